@@ -5,6 +5,7 @@
 //! forbids procedural macros. So the linker is led: a folder that is searched before the system's holds scripts that
 //! stand for the shared libraries and name the archives instead. Where a trial shows that this does not work, programs
 //! are linked as usual; `FOSSSIM_LINK=shared` asks for that.
+#![forbid(unsafe_code)]
 use std::{
     env, fs, io,
     path::{Path, PathBuf},

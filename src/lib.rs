@@ -4,6 +4,7 @@
 //! The rooms are crates of the workspace; this is the program on top of them and a facade under one name for each.
 //! They are listed from the lowest layer to the highest; a room imports only from those above it in this list.
 //! `ARCHITECTURE.md` tells the whole flow.
+#![forbid(unsafe_code)]
 
 pub use fosssim_num as num;
 

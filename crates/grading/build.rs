@@ -1,4 +1,5 @@
 //! Builds again when a scene or a recording appears: both are embedded.
+#![forbid(unsafe_code)]
 
 fn main() {
     println!("cargo:rerun-if-changed=../../assets");

@@ -1,22 +1,9 @@
 //! The specification that the sources cite lies in `docs/spec`, and every section that is cited exists.
+use crate::tree::{files, root, sources, text};
 use std::{
     collections::{BTreeMap, BTreeSet},
-    path::{Path, PathBuf},
+    path::Path,
 };
-
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
-
-fn files(folder: &Path, ending: &str, found: &mut Vec<PathBuf>) {
-    for entry in std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("entry").path()) {
-        if entry.is_dir() {
-            files(&entry, ending, found);
-        } else if entry.to_string_lossy().ends_with(ending) {
-            found.push(entry);
-        }
-    }
-}
 
 /// The sections of a document: `3` and `3.2` for headings, and `3.2` for the second numbered point of section 3.
 fn sections(text: &str) -> BTreeSet<String> {
@@ -68,10 +55,8 @@ fn citations(text: &str, documents: &BTreeMap<String, BTreeSet<String>>) -> Vec<
 }
 
 fn documents() -> BTreeMap<String, BTreeSet<String>> {
-    let mut found = Vec::new();
-    files(&root().join("docs/spec"), ".md", &mut found);
+    let found = files(&root().join("docs/spec"), ".md");
     let name = |path: &Path| path.file_name().expect("a name").to_string_lossy().into_owned();
-    let text = |path: &Path| std::fs::read_to_string(path).expect("a document");
     found.iter().filter(|path| name(path) != "README.md").map(|path| (name(path), sections(&text(path)))).collect()
 }
 
@@ -87,13 +72,9 @@ fn sections_are_headings_and_numbered_points() {
 fn every_section_that_the_sources_cite_exists() {
     let documents = documents();
     assert_eq!(documents.len(), 7, "{:?}", documents.keys());
-    let mut sources = Vec::new();
-    for folder in ["src", "crates", "tests", "benches"] {
-        files(&root().join(folder), ".rs", &mut sources);
-    }
     let (mut missing, mut seen) = (BTreeSet::new(), 0);
-    for source in sources.iter().filter(|path| !path.ends_with("tests/it/citations.rs")) {
-        for (document, section) in citations(&std::fs::read_to_string(source).expect("a source"), &documents) {
+    for source in sources().iter().filter(|path| !path.ends_with("tests/it/citations.rs")) {
+        for (document, section) in citations(&text(source), &documents) {
             seen += 1;
             if !documents[&document].contains(&section) {
                 missing.insert(format!("{} cites {document} {section}", source.display()));

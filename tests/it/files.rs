@@ -1,6 +1,6 @@
 //! Files are opened in one way, by `crates/files`: without waiting, beneath their folder, with a limit. Code that opens
 //! one otherwise is listed here with the reason, and how often.
-use crate::layers::{root, rust_files};
+use crate::tree::{files, name, root, text};
 use std::collections::BTreeMap;
 
 /// What opens, makes or lists files on its own.
@@ -48,16 +48,14 @@ const ALLOWED: [(&str, usize, &str); 10] = [
 fn files_are_opened_in_one_way() {
     let mut found: BTreeMap<String, usize> = BTreeMap::new();
     for room in ROOMS {
-        let mut files = Vec::new();
-        rust_files(&root().join(room), &mut files);
-        for file in files {
-            let name = file.strip_prefix(root()).expect("in the checkout").to_str().expect("a name").to_owned();
+        for file in files(&root().join(room), ".rs") {
+            let name = name(&file).to_owned();
             let is_of_tests =
                 ["tests", "cast.rs", "formats.rs", "fosssim-sample"].iter().any(|part| name.contains(part));
             if is_of_tests {
                 continue;
             }
-            let text = std::fs::read_to_string(&file).expect("source text");
+            let text = text(&file);
             let text = text.split("#[cfg(test)]\nmod ").next().unwrap_or_default();
             let code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
             let of_word = |line: &str, word: &str| {

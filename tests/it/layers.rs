@@ -1,6 +1,6 @@
 //! The walls of the house (ARCHITECTURE.md). Between crates the compiler keeps them, as far as their manifests ask for
 //! no more than they should; between the rooms that share a crate this reads the imports.
-use std::path::{Path, PathBuf};
+use crate::tree::{files, root};
 
 /// The crates of the house and those that each may use, lowest first.
 const CRATES: [(&str, &[&str]); 16] = [
@@ -33,22 +33,6 @@ const ROOMS: [(&str, &[&str]); 2] = [
     ("model", &["assignments", "scene", "sim", "trace"]),
     ("mistakes", &["plain", "assignments", "student", "diagnose"]),
 ];
-
-/// The checkout.
-pub fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
-
-/// Appends all Rust files below a folder.
-pub fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in std::fs::read_dir(folder).expect("source folder").map(|entry| entry.expect("entry").path()) {
-        if entry.is_dir() {
-            rust_files(&entry, found);
-        } else if entry.extension().is_some_and(|extension| extension == "rs") {
-            found.push(entry);
-        }
-    }
-}
 
 /// The first segments after every `crate::`, also those of a group `crate::{a::b, c}`.
 fn imported_modules(text: &str) -> Vec<String> {
@@ -114,9 +98,7 @@ fn rooms_of_one_crate_import_only_from_lower_rooms() {
     let (mut wrong, mut seen) = (Vec::new(), 0);
     for (name, rooms) in ROOMS {
         for (own, room) in rooms.iter().enumerate() {
-            let mut files = Vec::new();
-            rust_files(&root().join("crates").join(name).join("src").join(room), &mut files);
-            for file in files {
+            for file in files(&root().join("crates").join(name).join("src").join(room), ".rs") {
                 for import in imported_modules(&std::fs::read_to_string(&file).expect("source text")) {
                     let Some(other) = rooms.iter().position(|room| *room == import) else { continue };
                     seen += 1;

@@ -1,5 +1,5 @@
 //! Documents and comments that people read: links lead somewhere, sentences are short, and nouns stand for things.
-use crate::layers::rust_files;
+use crate::tree::{files, root, text};
 use std::path::{Path, PathBuf};
 
 /// A sentence of more words is read twice.
@@ -10,14 +10,6 @@ const MOST_WORDS_OF_README: usize = 1_200;
 
 /// Documents whose sentences may still be longer: two pages of the service.
 const LONGER: [&str; 2] = ["service.md", "lti.md"];
-
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
-
-fn text(path: &Path) -> String {
-    std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
-}
 
 /// The documents: at the top, in `docs`, and beside files that need one. Those in `docs/spec` describe the original, in
 /// its terms.
@@ -88,8 +80,7 @@ fn nouns_stand_for_people_and_numbers() {
     for document in documents().iter().filter(|path| !is_old(path)) {
         look(document, &paragraphs(&text(document)));
     }
-    let mut sources = Vec::new();
-    ["src", "crates"].iter().for_each(|folder| rust_files(&root().join(folder), &mut sources));
+    let sources = ["src", "crates"].map(|folder| files(&root().join(folder), ".rs")).concat();
     for source in sources.iter().filter(|path| !path.starts_with(root().join("crates/server"))) {
         let text = text(source);
         let comments: Vec<&str> = text.lines().filter(|line| line.trim_start().starts_with("//")).collect();

@@ -2,6 +2,7 @@
 //!
 //! The only place that knows both traces and programs. Yields a [`Grade`]; it writes no markup, speaks no HTTP and
 //! parses no arguments.
+#![forbid(unsafe_code)]
 
 mod assignments;
 pub mod batch;

@@ -7,6 +7,7 @@ use fosssim_model::{
     sim::{Pair, PairKind, Pass, Stage},
     trace::LoggedImpulse,
 };
+use fosssim_num::vector::{self, Vec2};
 use std::fmt::{self, Display, Formatter};
 
 impl Display for Finding {
@@ -171,7 +172,7 @@ struct Apart {
 impl Display for Apart {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let ([ex, ey], [ax, ay]) = (self.expected, self.actual);
-        let distance = (ax - ex).hypot(ay - ey);
+        let distance = vector::length(Vec2::new(ax - ex, ay - ey));
         let size = [ex, ey, ax, ay].into_iter().fold(0.0_f64, |size, value| size.max(value.abs()));
         // Two digits of the distance, and six in all at least.
         let digits =

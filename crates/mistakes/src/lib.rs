@@ -1,4 +1,5 @@
 //! Known mistakes and how they are found again: [`student`] makes them, [`diagnose`] names them.
+#![forbid(unsafe_code)]
 
 pub mod plain;
 

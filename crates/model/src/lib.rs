@@ -2,6 +2,7 @@
 //! from the lowest room to the highest.
 //!
 //! A room imports only from those listed above it. The arithmetic whose bits matter lies below, in `fosssim-num`.
+#![forbid(unsafe_code)]
 
 pub mod assignments;
 

@@ -48,6 +48,13 @@ pub const PARABOLA_COMPLEX: f64 = 1.0 - 1.0 / (1_u64 << 20) as f64;
 /// above [`IMAGINARY_PART`]: with [`PARABOLA_COMPLEX`] they exceed 2^-10 times the root of this.
 pub const PARABOLA_ROOM: f64 = 1.0 / (1_u64 << 30) as f64;
 
+/// Certificate: products of two coefficients, and sums of moduli, of at least this and less than [`PARABOLA_LARGEST`]
+/// neither overflow nor underflow in the closed form of a parabola's zeros. Wider bounds let them.
+pub const PARABOLA_SMALLEST: f64 = 1e-200;
+
+/// Certificate: see [`PARABOLA_SMALLEST`].
+pub const PARABOLA_LARGEST: f64 = 1e200;
+
 /// Certificate: as [`PARABOLA_NEAR`], for degrees three to five whose zeros are apart ([`DISCRIMINANT_MARGIN`]).
 /// Sixteen times as much has shown no disagreement either.
 pub const BERNSTEIN_NEAR: f64 = (1_u64 << 24) as f64;
@@ -61,7 +68,7 @@ pub const DISCRIMINANT_MARGIN: f64 = 1.0 / (1_u64 << 30) as f64;
 pub const BERNSTEIN_MARGIN: f64 = 1.0 / (1_u64 << 30) as f64;
 
 /// Certificate: searches among coefficients between this and [`SEARCH_LARGEST_COEFFICIENT`] (or zero) are known to end;
-/// among subnormal numbers some do not (root-finder.md 9.5).
+/// among subnormal numbers some do not (root-finder.md 9.5). Parabolas without a real zero lead with one of this size.
 pub const SEARCH_SMALLEST_COEFFICIENT: f64 = 1e-150;
 
 /// Certificate: see [`SEARCH_SMALLEST_COEFFICIENT`].

@@ -1,31 +1,33 @@
 //! How programs are run on this host, and the grader's side of a start.
 
-use std::ffi::{CString, OsString};
-use std::fs::File;
-use std::io;
-use std::os::fd::{AsFd, OwnedFd};
-use std::os::unix::ffi::OsStrExt;
-use std::os::unix::fs::FileTypeExt;
-use std::os::unix::net::UnixStream;
-use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
-use std::sync::Arc;
-use std::time::Duration;
+use std::{
+    ffi::{CString, OsString},
+    fs::File,
+    io,
+    os::{
+        fd::{AsFd, OwnedFd},
+        unix::{ffi::OsStrExt, fs::FileTypeExt, net::UnixStream},
+    },
+    path::{Path, PathBuf},
+    process::{Child, Command, Stdio},
+    sync::Arc,
+    time::Duration,
+};
 
-use super::bubblewrap;
-use super::fake::FakeRun;
-use super::fault::{SandboxError, set_up_failed};
-use super::job::{Identity, Job, Policy};
-use super::keepers::{Host, Keeper, Kind as Keeping, Pool};
-use super::layers::{self, Layer, LayerReport};
-use super::outcome::StartProblem;
-use super::own;
-use super::program;
-use super::room;
-use super::running::{Running, Supervised};
-use super::supervisor::{MODE_KEEP, MODE_PROBE, MODE_RUN};
-use super::sys;
-use super::wire::{self, Event, Order, Probe, SUPERVISOR_ARGUMENT, Walls};
+use super::{
+    bubblewrap,
+    fake::FakeRun,
+    fault::{SandboxError, set_up_failed},
+    job::{Identity, Job, Policy},
+    keepers::{Host, Keeper, Kind as Keeping, Pool},
+    layers::{self, Layer, LayerReport},
+    outcome::StartProblem,
+    own, program, room,
+    running::{Running, Supervised},
+    supervisor::{MODE_KEEP, MODE_PROBE, MODE_RUN},
+    sys,
+    wire::{self, Event, Order, Probe, SUPERVISOR_ARGUMENT, Walls},
+};
 
 /// The program that is started as the supervisor: one whose `main` calls [`supervisor_main`](super::supervisor_main).
 #[derive(Debug, Clone, PartialEq, Eq)]

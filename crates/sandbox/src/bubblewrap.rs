@@ -5,8 +5,10 @@
 //! puts up the same walls as ever; nothing is left to bubblewrap alone. What it shows of the host is more than our own
 //! view does, so that the file rules (Landlock) matter more.
 
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::{
+    path::{Path, PathBuf},
+    process::Command,
+};
 
 /// Where the system keeps it; a `PATH` could name somebody else's.
 const PLACES: [&str; 3] = ["/usr/bin/bwrap", "/usr/local/bin/bwrap", "/bin/bwrap"];

@@ -5,11 +5,12 @@
 //! descriptor: a regular file, with one name, within the limit. Call this only when every process is dead, which is
 //! when [`Running::wait`](super::Running::wait) has returned.
 
-use std::fs::File;
-use std::io::{self, Read};
-use std::os::fd::AsFd;
-use std::os::unix::fs::OpenOptionsExt;
-use std::path::Path;
+use std::{
+    fs::File,
+    io::{self, Read},
+    os::{fd::AsFd, unix::fs::OpenOptionsExt},
+    path::Path,
+};
 
 pub use fosssim_files::{FileError as CollectError, Folder as OpenFolder, FolderEntry, open_file};
 
@@ -59,8 +60,7 @@ pub fn open_regular_file(folder: &Path, name: &str, max_bytes: u64) -> Result<(F
 
 #[cfg(test)]
 mod tests {
-    use super::super::sys;
-    use super::*;
+    use super::{super::sys, *};
 
     fn problem(folder: &Path, name: &str) -> String {
         regular_file(folder, name, 1000).unwrap_err().to_string()

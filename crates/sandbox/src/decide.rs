@@ -4,8 +4,10 @@
 //! printed is consulted only to explain a failure: why it did not come to run, and whether it gave up for want of
 //! memory. Nobody gains by forging that; it is one failure instead of another.
 
-use super::outcome::{Ended, StartProblem, Stream};
-use super::wire::{Cause, Order, Report};
+use super::{
+    outcome::{Ended, StartProblem, Stream},
+    wire::{Cause, Order, Report},
+};
 
 /// The exit code of the dynamic loader when it finds no library.
 const LOADER_FAILED: i32 = 127;

@@ -1,7 +1,9 @@
 //! Which walls of the sandbox hold on this host.
 
-use super::backend::Supervisor;
-use super::layers::{Layer, LayerReport, reports};
+use super::{
+    backend::Supervisor,
+    layers::{Layer, LayerReport, reports},
+};
 
 /// Which walls hold on this host, tried once by starting this very program as a supervisor.
 ///

@@ -1,8 +1,10 @@
 //! Parts of ELF files. Every offset in a file is distrusted.
 
-use std::fs::File;
-use std::io::{Read, Seek, SeekFrom};
-use std::path::{Path, PathBuf};
+use std::{
+    fs::File,
+    io::{Read, Seek, SeekFrom},
+    path::{Path, PathBuf},
+};
 
 /// How such a file begins.
 pub(super) const MAGIC: &[u8] = b"\x7fELF";

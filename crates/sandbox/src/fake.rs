@@ -1,12 +1,13 @@
 //! Runs that never happened: scripted for tests, or decided before anything was started.
 
-use std::sync::Arc;
-use std::time::Duration;
+use std::{sync::Arc, time::Duration};
 
-use super::job::Job;
-use super::layers::LayerReport;
-use super::outcome::{Captured, Ended, RunOutcome, StartProblem};
-use super::running::Running;
+use super::{
+    job::Job,
+    layers::LayerReport,
+    outcome::{Captured, Ended, RunOutcome, StartProblem},
+    running::Running,
+};
 
 /// The answer of a fake run.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -1,7 +1,9 @@
 //! What can go wrong that is never the program's doing.
 
-use std::io::{self, Read};
-use std::process::Child;
+use std::{
+    io::{self, Read},
+    process::Child,
+};
 
 use super::wire;
 

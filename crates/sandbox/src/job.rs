@@ -2,10 +2,12 @@
 //!
 //! A [`Job`] is a description; nothing here runs a process.
 
-use std::ffi::OsString;
-use std::os::unix::fs::MetadataExt;
-use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::{
+    ffi::OsString,
+    os::unix::fs::MetadataExt,
+    path::{Path, PathBuf},
+    time::Duration,
+};
 
 /// The rights of a program, beyond computing and writing into its working folder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

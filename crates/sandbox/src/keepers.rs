@@ -1,21 +1,26 @@
 //! Supervisors that serve several runs of one submission, as the grader sees them.
 
-use std::fs::File;
-use std::io::{self, Write};
-use std::net::Shutdown;
-use std::os::fd::{AsFd, OwnedFd};
-use std::os::unix::fs::MetadataExt;
-use std::os::unix::net::UnixStream;
-use std::path::{Path, PathBuf};
-use std::process::Child;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::{
+    fs::File,
+    io::{self, Write},
+    net::Shutdown,
+    os::{
+        fd::{AsFd, OwnedFd},
+        unix::{fs::MetadataExt, net::UnixStream},
+    },
+    path::{Path, PathBuf},
+    process::Child,
+    sync::{Arc, Mutex, PoisonError},
+};
 
-use super::fault::{SandboxError, lost};
-use super::job::{Identity, Job};
-use super::outcome::StartProblem;
-use super::program::Program;
-use super::sys;
-use super::wire::{self, Order, Report};
+use super::{
+    fault::{SandboxError, lost},
+    job::{Identity, Job},
+    outcome::StartProblem,
+    program::Program,
+    sys,
+    wire::{self, Order, Report},
+};
 
 /// The properties that all runs of one keeper share: all of the order but arguments, environment and working folder
 /// with its contents, and the very files that it names.

@@ -92,27 +92,31 @@ pub struct LayerReport {
 
 /// The reports of a probe.
 pub(super) fn reports(probe: &Probe) -> Vec<LayerReport> {
-    let landlock = probe.landlock.is_none();
-    let user = probe.root && probe.own_user.is_none();
-    let hidden = probe.namespaces.is_none();
-    let report = |layer, problem: Option<String>, held: &str, required, remedy| LayerReport {
+    let mut reports = Vec::from(of_processes(probe));
+    reports.extend(of_calls_and_files(probe));
+    reports.extend(of_surroundings(probe));
+    reports
+}
+
+/// What holds of a wall where it has no problem, and what to do where it has one.
+fn report(layer: Layer, problem: Option<String>, held: &str, required: bool, remedy: &'static str) -> LayerReport {
+    LayerReport {
         layer,
         active: problem.is_none(),
         required,
         remedy: problem.is_some().then_some(remedy),
         detail: problem.unwrap_or_else(|| held.to_string()),
-    };
-    let scopes = match (landlock, probe.landlock_abi) {
-        (true, 6..) => None,
-        (true, abi) => Some(format!("Landlock here is version {abi}; signals are confined from version 6 on")),
-        (false, _) => Some("there is no Landlock".into()),
-    };
-    let own_user = match (probe.root, probe.roots_group) {
-        (true, _) => probe.own_user.clone(),
-        (false, true) => Some("the grader is not root, but in root's group, and so are the programs".into()),
-        (false, false) => Some("the grader is not root".into()),
-    };
-    vec![
+    }
+}
+
+/// Whether every running program has a user of its own.
+fn has_own_user(probe: &Probe) -> bool {
+    probe.root && probe.own_user.is_none()
+}
+
+/// The walls that a process puts up around itself, and what it needs to begin.
+fn of_processes(probe: &Probe) -> [LayerReport; 4] {
+    [
         report(
             Layer::NoNewPrivileges,
             probe.no_new_privileges.clone(),
@@ -145,6 +149,18 @@ pub(super) fn reports(probe: &Probe) -> Vec<LayerReport> {
             true,
             "name a temporary folder by TMPDIR in which programs may be executed",
         ),
+    ]
+}
+
+/// The walls before system calls, files and signals.
+fn of_calls_and_files(probe: &Probe) -> [LayerReport; 4] {
+    let (user, hidden) = (has_own_user(probe), probe.namespaces.is_none());
+    let scopes = match (&probe.landlock, probe.landlock_abi) {
+        (None, 6..) => None,
+        (None, abi) => Some(format!("Landlock here is version {abi}; signals are confined from version 6 on")),
+        (Some(_), _) => Some("there is no Landlock".into()),
+    };
+    [
         report(
             Layer::CallFilter,
             probe.seccomp.clone(),
@@ -182,9 +198,20 @@ pub(super) fn reports(probe: &Probe) -> Vec<LayerReport> {
             false,
             "use Linux 6.12 or newer; until then the system call filter alone confines signals",
         ),
+    ]
+}
+
+/// The walls that only some hosts have: users, namespaces, groups.
+fn of_surroundings(probe: &Probe) -> [LayerReport; 4] {
+    let own_user = match (probe.root, probe.roots_group) {
+        (true, _) => probe.own_user.clone(),
+        (false, true) => Some("the grader is not root, but in root's group, and so are the programs".into()),
+        (false, false) => Some("the grader is not root".into()),
+    };
+    [
         LayerReport {
             layer: Layer::OwnUser,
-            active: user,
+            active: has_own_user(probe),
             required: probe.root,
             detail: own_user.clone().unwrap_or_else(|| "every running program has a user of its own".into()),
             remedy: match (probe.root, own_user) {
@@ -212,8 +239,8 @@ pub(super) fn reports(probe: &Probe) -> Vec<LayerReport> {
                 (controls, false) => format!("the kernel limits {}", controls.join(", ")),
             },
             false,
-            "use Linux 5.14 or newer with version 2 (or version 1, for the limits), and start the grader in a group of its own, for example by \
-             systemd-run --user --scope -p Delegate=yes",
+            "use Linux 5.14 or newer with version 2 (or version 1, for the limits), and start the grader in a group of \
+             its own, for example by systemd-run --user --scope -p Delegate=yes",
         ),
         match (&probe.namespaces, &probe.bubblewrap) {
             (None, _) => LayerReport {

@@ -4,13 +4,17 @@
 //! last read, would be a store in which one run leaves data for another. The search is the loader's (`ld.so(8)`), but
 //! takes every file that it might choose. What a program names itself counts within the system's folders only.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::fs::File;
-use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fs::File,
+    io::Read,
+    path::{Path, PathBuf},
+};
 
-use super::elf::{self, Dynamic};
-use super::{machine, own};
+use super::{
+    elf::{self, Dynamic},
+    machine, own,
+};
 
 /// Where shared libraries lie.
 pub(super) const FOLDERS: [&str; 5] = ["/lib", "/lib64", "/usr/lib", "/usr/lib64", "/usr/local/lib"];

@@ -2,10 +2,7 @@
 
 #![expect(unsafe_code, reason = "these calls have no safe wrapper among the dependencies")]
 
-use std::fs::File;
-use std::io::Read;
-use std::os::fd::AsRawFd;
-use std::path::Path;
+use std::{fs::File, io::Read, os::fd::AsRawFd, path::Path};
 
 /// The kernel's answer to `sysinfo`.
 fn asked() -> libc::sysinfo {

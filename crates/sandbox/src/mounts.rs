@@ -5,9 +5,11 @@
 
 #![expect(unsafe_code, reason = "namespaces and mounts have no safe wrapper among the dependencies")]
 
-use std::ffi::CStr;
-use std::io;
-use std::os::fd::{AsRawFd, BorrowedFd, FromRawFd, OwnedFd, RawFd};
+use std::{
+    ffi::CStr,
+    io,
+    os::fd::{AsRawFd, BorrowedFd, FromRawFd, OwnedFd, RawFd},
+};
 
 use crate::sys::{Fork, SingleThread};
 

@@ -3,12 +3,13 @@
 //! They hold the answers: the grader computes the original's traces, and the sample is a right submission. Landlock
 //! only ever allows, so that a folder with such a file in it is allowed entry by entry.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::ffi::OsStr;
-use std::os::unix::ffi::OsStrExt;
-use std::os::unix::fs::MetadataExt;
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    ffi::OsStr,
+    os::unix::{ffi::OsStrExt, fs::MetadataExt},
+    path::{Path, PathBuf},
+    sync::{Arc, Mutex, PoisonError},
+};
 
 /// This very program.
 const THIS: &str = "/proc/self/exe";

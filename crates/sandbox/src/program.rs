@@ -4,14 +4,18 @@
 //! foreign processor), so the headers are read here: ELF class, machine, type, interpreter and the names in the
 //! dynamic string table. Every offset in a file is distrusted.
 
-use std::fs::File;
-use std::os::unix::fs::{MetadataExt, PermissionsExt};
-use std::path::{Path, PathBuf};
+use std::{
+    fs::File,
+    os::unix::fs::{MetadataExt, PermissionsExt},
+    path::{Path, PathBuf},
+};
 
-use super::elf::{self, MAGIC as ELF_MAGIC, read_at};
-use super::libraries::{self, Readable};
-use super::outcome::StartProblem;
-use super::own;
+use super::{
+    elf::{self, MAGIC as ELF_MAGIC, read_at},
+    libraries::{self, Readable},
+    outcome::StartProblem,
+    own,
+};
 
 /// Names that the runtimes of the address, thread and memory sanitisers define.
 const SANITISER_NAMES: [&[u8]; 4] = [b"__asan_init", b"__tsan_init", b"__msan_init", b"libasan.so"];

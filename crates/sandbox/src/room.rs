@@ -1,8 +1,10 @@
 //! How much memory the machine can spare for working folders.
 
-use std::path::{Path, PathBuf};
-use std::sync::{Mutex, OnceLock, PoisonError};
-use std::time::{Duration, Instant};
+use std::{
+    path::{Path, PathBuf},
+    sync::{Mutex, OnceLock, PoisonError},
+    time::{Duration, Instant},
+};
 
 /// Whether a folder of this number of bytes may lie in memory: as many as there can be runs at one time, and as much
 /// again for the programs, must leave the machine and our own control groups room.

@@ -1,20 +1,26 @@
 //! A program at work: its trace as it is written, the means to stop it, and its outcome.
 
-use std::fs::File;
-use std::io::{self, Read, Write};
-use std::os::unix::net::UnixStream;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
+use std::{
+    fs::File,
+    io::{self, Read, Write},
+    os::unix::net::UnixStream,
+    sync::{
+        Arc, Mutex, PoisonError,
+        atomic::{AtomicU64, Ordering},
+    },
+    time::Duration,
+};
 
-use super::collect::OpenFolder;
-use super::decide;
-use super::fault::{SandboxError, set_up_failed};
-use super::keepers::Host;
-use super::layers::LayerReport;
-use super::outcome::{Captured, RunOutcome};
-use super::supervisor::orphans;
-use super::wire::{self, COMMAND_CANCEL, COMMAND_TRACE_LIMIT, Event, Order};
+use super::{
+    collect::OpenFolder,
+    decide,
+    fault::{SandboxError, set_up_failed},
+    keepers::Host,
+    layers::LayerReport,
+    outcome::{Captured, RunOutcome},
+    supervisor::orphans,
+    wire::{self, COMMAND_CANCEL, COMMAND_TRACE_LIMIT, Event, Order},
+};
 
 /// The way to the supervisor; gone when the run is over.
 type Control = Arc<Mutex<Option<UnixStream>>>;

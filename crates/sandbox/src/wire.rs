@@ -5,12 +5,13 @@
 //! answers on its standard output with length-prefixed [`Event`]s; the last one is followed by the captured bytes.
 //! Paths travel as bytes, because they need not be UTF-8.
 
-use std::io::{self, Read, Write};
-use std::os::unix::ffi::{OsStrExt, OsStringExt};
-use std::path::{Path, PathBuf};
+use std::{
+    io::{self, Read, Write},
+    os::unix::ffi::{OsStrExt, OsStringExt},
+    path::{Path, PathBuf},
+};
 
-use serde::de::DeserializeOwned;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 /// The hidden first argument that turns the binary into the supervisor.
 pub(super) const SUPERVISOR_ARGUMENT: &str = "__sandbox-supervisor";

@@ -1,5 +1,6 @@
 //! The last words of `cargo test`: which tests did not run on this machine, and why. A program of its own, because the
 //! usual harness keeps what tests print to itself.
+#![forbid(unsafe_code)]
 
 fn main() {
     // A program that lists tests, such as cargo nextest, finds none here.

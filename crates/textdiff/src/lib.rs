@@ -2,6 +2,7 @@
 //!
 //! It stands in a crate of its own so that the algorithms are compiled once, and not with every change of what calls
 //! them.
+#![forbid(unsafe_code)]
 
 use similar::TextDiff;
 

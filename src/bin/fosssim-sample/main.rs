@@ -2,7 +2,7 @@
 //!
 //! It speaks the course's protocol (`fosssim-sample -s scene.xml -d 0 -o trace.bin`) and can make documented
 //! mistakes. Its physics is the library's second simulator, `student`; it never uses the one that judges, `sim`.
-
+#![forbid(unsafe_code)]
 #![expect(
     clippy::disallowed_methods,
     clippy::disallowed_types,

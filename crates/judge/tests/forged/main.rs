@@ -1,4 +1,5 @@
 //! What passes the fair rules has a reason to, and programs with factors pass.
+#![forbid(unsafe_code)]
 mod forge;
 
 use forge::{Random, Stage, forge, misprint, multiply};

@@ -3,6 +3,7 @@
 //!
 //! `scripts/explanation-matrix [FOLDER [PART-OF-AN-ID]]`. It prints every confusion, and ends with status 1 when a
 //! correct variant is accused.
+#![forbid(unsafe_code)]
 use std::{
     path::{Path, PathBuf},
     process::ExitCode,

@@ -2,6 +2,7 @@
 //!
 //! usage: `fair-table CORPUS [--all]`. The folder holds `verdicts.jsonl`, `scenes/` and `submissions/`. Without `--all`
 //! only rows where the two differ, and rows of correct kinds that fair refuses, are printed; the summary counts all.
+#![forbid(unsafe_code)]
 use std::{collections::BTreeMap, path::Path};
 
 use anyhow::Context;

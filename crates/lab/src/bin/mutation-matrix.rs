@@ -6,6 +6,7 @@
 //! set of scenes that catches all that can be caught. It ends with status 1 when a mistake changes no trace at all
 //! (then no rule book could ever see it), when the fair rules miss one, and when they refuse a correct variant that is
 //! not on the list of those that they are known to refuse.
+#![forbid(unsafe_code)]
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::{Path, PathBuf},

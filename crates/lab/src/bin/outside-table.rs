@@ -2,6 +2,7 @@
 //! figures that `docs/fair.md` names. Ends with status 1 when something misleads.
 //!
 //! usage: `outside-table [PART-OF-A-NAME]`
+#![forbid(unsafe_code)]
 use std::process::ExitCode;
 
 use fosssim_lab::{

@@ -8,6 +8,7 @@
 //! dyadic fractions, so that contacts fall exactly on the start and the end of steps. Scenes with decisions that hang
 //! on round-off, and those that correct variants fail, are not kept. What is found is printed, or written into the
 //! folder; names and descriptions are for people to give.
+#![forbid(unsafe_code)]
 use anyhow::Context;
 use fosssim_lab::sight::{Watched, WrongProgram, witnesses, wrong_programs};
 use fosssim_oracle::{

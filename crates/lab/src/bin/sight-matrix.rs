@@ -4,6 +4,7 @@
 //!
 //! It prints the programs that fewer than three scenes of the suite refuse, or no probe scene, with those that do, and
 //! the figures that `docs/fair.md` names. It ends with status 1 when there is such a program.
+#![forbid(unsafe_code)]
 use std::process::ExitCode;
 
 use fosssim_lab::{

@@ -7,6 +7,7 @@
 //! neighbour, its negative or another number of the trace; a bit turned; a count changed; bytes cut out, doubled, moved
 //! or left off. The same seed makes the same traces. A panic ends the storm and leaves the trace as `storm-TARGET-RUN`
 //! in the working folder.
+#![forbid(unsafe_code)]
 use rayon::prelude::*;
 use std::{
     panic::{AssertUnwindSafe, catch_unwind},

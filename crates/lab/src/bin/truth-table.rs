@@ -3,6 +3,7 @@
 //! often each sort of sentence was said. Ends with status 1 when a sentence is false.
 //!
 //! usage: `truth-table [EVERY]`: of the pairs of mistakes every EVERY-th (50 by default).
+#![forbid(unsafe_code)]
 use std::{collections::BTreeMap, process::ExitCode};
 
 use fosssim_lab::{mutants::mutants, witness::checked};

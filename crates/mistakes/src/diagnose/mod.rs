@@ -2,7 +2,6 @@
 //!
 //! Knows nothing of processes and reports. It looks at the steps of a trace that the fair rules find wrong, asks which
 //! mistake reproduces them, and yields [`Explanation`]s, the likeliest first: values, of which reports make sentences.
-#![forbid(unsafe_code)]
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
 mod about;

@@ -8,7 +8,6 @@
 //!
 //! The mathematics is that of `simulation.md` and `collisions.md`. From the rest of the crate it takes what the course
 //! supplies: the scene, the vectors, the linear solver and the root finder.
-#![forbid(unsafe_code)]
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
 mod author;

@@ -4,7 +4,6 @@
 //! catalogue of mistakes, formulas, probe scenes - stands in a folder `assignments/<key>` of the room that has such a
 //! thing. Readers of traces, simulator and judge ask the assignment of a scene, which its collision type tells
 //! ([`Assignment::of`]). It knows nothing of scenes, states and files.
-#![forbid(unsafe_code)]
 
 mod collision_type;
 mod earlier;

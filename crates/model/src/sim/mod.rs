@@ -3,7 +3,6 @@
 //! [`Simulation::step`] fails only with a typed numerical outcome. It never does I/O, reads no clock, starts no
 //! thread and prints nothing; everything it computes reaches an [`Observer`]. The mathematics is that of
 //! `simulation.md` and `collisions.md`, evaluated in the order given there.
-#![forbid(unsafe_code)]
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
 mod bodies;

@@ -1,7 +1,6 @@
 //! Traces: bytes to frames and back, streaming and indexed.
 //!
 //! Takes readers, writers and slices; never opens a file. The format is that of `trace-format.md`.
-#![forbid(unsafe_code)]
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
 mod counts;

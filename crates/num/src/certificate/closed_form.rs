@@ -4,7 +4,10 @@
 use super::{
     super::{
         polynomial::evaluate,
-        tolerances::{LINE_NEAR, PARABOLA_COMPLEX, PARABOLA_MARGIN, PARABOLA_NEAR, PARABOLA_ROOM},
+        tolerances::{
+            LINE_NEAR, PARABOLA_COMPLEX, PARABOLA_LARGEST, PARABOLA_MARGIN, PARABOLA_NEAR, PARABOLA_ROOM,
+            PARABOLA_SMALLEST, SEARCH_LARGEST_COEFFICIENT, SEARCH_SMALLEST_COEFFICIENT,
+        },
     },
     Level,
 };
@@ -68,8 +71,8 @@ fn misses(a: f64, b: f64, c: f64) -> bool {
     a < 0.0
         && b * b < product * PARABOLA_COMPLEX
         && c <= a * PARABOLA_ROOM
-        && (1e-200..1e200).contains(&product)
-        && (1e-150..1e150).contains(&-a)
+        && (PARABOLA_SMALLEST..PARABOLA_LARGEST).contains(&product)
+        && (SEARCH_SMALLEST_COEFFICIENT..SEARCH_LARGEST_COEFFICIENT).contains(&-a)
 }
 
 /// Whether it is below zero on `[0, 1]` with margin, and its zeros are near.
@@ -87,5 +90,5 @@ fn negative(a: f64, b: f64, c: f64) -> bool {
         && (a + b) + c < below
         && b.abs() <= a.abs() * PARABOLA_NEAR
         && c.abs() <= a.abs() * (PARABOLA_NEAR * PARABOLA_NEAR)
-        && (1e-200..1e200).contains(&size)
+        && (PARABOLA_SMALLEST..PARABOLA_LARGEST).contains(&size)
 }

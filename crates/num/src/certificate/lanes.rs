@@ -6,8 +6,8 @@
 use super::super::{
     lanes::{Lanes, Mask, Simd},
     tolerances::{
-        LEADING_COEFFICIENT, LINE_NEAR, PARABOLA_COMPLEX, PARABOLA_MARGIN, PARABOLA_NEAR, PARABOLA_ROOM,
-        SEARCH_LARGEST_COEFFICIENT, SEARCH_SMALLEST_COEFFICIENT,
+        LEADING_COEFFICIENT, LINE_NEAR, PARABOLA_COMPLEX, PARABOLA_LARGEST, PARABOLA_MARGIN, PARABOLA_NEAR,
+        PARABOLA_ROOM, PARABOLA_SMALLEST, SEARCH_LARGEST_COEFFICIENT, SEARCH_SMALLEST_COEFFICIENT,
     },
 };
 
@@ -58,8 +58,8 @@ fn parabola<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask<S> {
     let misses = a.below(0.0)
         & (b * b).lt(PARABOLA_COMPLEX * product)
         & c.le(PARABOLA_ROOM * a)
-        & within(product, 1e-200, 1e200)
-        & within(-a, 1e-150, 1e150);
+        & within(product, PARABOLA_SMALLEST, PARABOLA_LARGEST)
+        & within(-a, SEARCH_SMALLEST_COEFFICIENT, SEARCH_LARGEST_COEFFICIENT);
     let size = a.abs() + b.abs() + c.abs();
     let below = -PARABOLA_MARGIN * size;
     let negative = c.lt(below)
@@ -67,7 +67,7 @@ fn parabola<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask<S> {
         & ((a + b) + c).lt(below)
         & b.abs().le(PARABOLA_NEAR * a.abs())
         & c.abs().le((PARABOLA_NEAR * PARABOLA_NEAR) * a.abs())
-        & within(size, 1e-200, 1e200);
+        & within(size, PARABOLA_SMALLEST, PARABOLA_LARGEST);
     c.below(0.0) & (misses | negative)
 }
 

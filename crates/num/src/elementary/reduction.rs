@@ -1,6 +1,6 @@
 //! An angle less quarters of a turn: by π/2 in pieces (Cody and Waite), or, of very large angles, by the digits of 2/π
 //! (Payne and Hanek, SIGNUM 18, 1983).
-use super::{fused, tables::TWO_OVER_PI, trigonometry::QUARTER};
+use super::{fused, tables::TWO_OVER_PI};
 
 /// An angle near zero and the quarters of a turn that were taken from it, of which the last two bits count.
 #[derive(Debug, Clone, Copy)]
@@ -11,6 +11,8 @@ pub(super) struct Reduced {
     pub(super) rest: f64,
 }
 
+/// π/2 in two pieces.
+pub(super) const QUARTER: [f64; 2] = [f64::from_bits(0x3ff9_21fb_5444_2d18), f64::from_bits(0x3c91_a626_3314_5c07)];
 /// 2/π.
 const TO_QUARTERS: f64 = f64::from_bits(0x3fe4_5f30_6dc9_c883);
 /// Adding this to a number rounds it to a whole one, which stands in the lowest bits of the sum.

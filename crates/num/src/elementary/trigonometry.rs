@@ -2,7 +2,7 @@
 //! and Bachelis, ACM TOMS 17, 1991). An angle beyond the table's is first brought near zero.
 use super::{
     fused,
-    reduction::{Reduced, far, near},
+    reduction::{QUARTER, Reduced, far, near},
     tables::ANGLES,
 };
 
@@ -12,8 +12,6 @@ const COSINE_IS_ONE: u32 = 0x3e40_0000;
 const TABLE_ENDS: u32 = 0x3feb_6000;
 const QUARTER_ENDS: u32 = 0x4003_68fd;
 const NEAR_ENDS: u32 = 0x4199_21fb;
-/// π/2 in two pieces.
-pub(super) const QUARTER: [f64; 2] = [f64::from_bits(0x3ff9_21fb_5444_2d18), f64::from_bits(0x3c91_a626_3314_5c07)];
 /// Adding this to an angle rounds it to 1/128; the number of the step stands in the lowest bits of the sum.
 const ROUNDS: f64 = f64::from_bits(0x42c8_0000_0000_0000);
 /// Below this angle Taylor's series does without the table.

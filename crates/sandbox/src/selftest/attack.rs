@@ -5,8 +5,10 @@
 
 use std::time::Duration;
 
-use crate::job::Policy;
-use crate::outcome::{Ended, Stream};
+use crate::{
+    job::Policy,
+    outcome::{Ended, Stream},
+};
 
 /// The needs of an attack, without which it proves nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

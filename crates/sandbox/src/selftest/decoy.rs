@@ -2,13 +2,15 @@
 //!
 //! The state of all of it is recorded before and after a run, to the permission bits and the times of change.
 
-use std::collections::BTreeMap;
-use std::ffi::OsString;
-use std::io;
-use std::os::unix::fs::{MetadataExt, PermissionsExt};
-use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::{
+    collections::BTreeMap,
+    ffi::OsString,
+    io,
+    os::unix::fs::{MetadataExt, PermissionsExt},
+    path::{Path, PathBuf},
+    process::{Child, Command, Stdio},
+    time::{SystemTime, UNIX_EPOCH},
+};
 
 /// One set of decoys, for one run.
 pub(super) struct Decoy {

@@ -8,25 +8,33 @@
 mod attack;
 mod decoy;
 
-use std::path::{Path, PathBuf};
-use std::process::Command;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::Duration;
+use std::{
+    path::{Path, PathBuf},
+    process::Command,
+    sync::{
+        Mutex,
+        atomic::{AtomicUsize, Ordering},
+    },
+    time::Duration,
+};
 
 use include_dir::{Dir, include_dir};
 
-use self::attack::{Attack, Need};
-use self::decoy::Decoy;
-use super::backend::Backend;
-use super::collect::{self, CollectError};
-use super::fault::SandboxError;
-use super::job::{Job, Limits};
-use super::layers::Layer;
-use super::outcome::{Ended, RunOutcome};
-use super::running::Running;
-use super::supervisor::processes;
-use super::sys;
+use self::{
+    attack::{Attack, Need},
+    decoy::Decoy,
+};
+use super::{
+    backend::Backend,
+    collect::{self, CollectError},
+    fault::SandboxError,
+    job::{Job, Limits},
+    layers::Layer,
+    outcome::{Ended, RunOutcome},
+    running::Running,
+    supervisor::processes,
+    sys,
+};
 
 static SOURCES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../tests/attacks");
 

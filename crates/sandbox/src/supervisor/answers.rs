@@ -1,13 +1,16 @@
 //! Calls that the supervisor answers in the kernel's place, because the kernel's own answer would tell of other runs,
 //! or let them have a hand in it.
 
-use std::fs::File;
-use std::os::fd::BorrowedFd;
-use std::os::unix::fs::FileExt;
-use std::time::{Duration, Instant};
+use std::{
+    fs::File,
+    os::{fd::BorrowedFd, unix::fs::FileExt},
+    time::{Duration, Instant},
+};
 
-use crate::machine;
-use crate::sys::{self, Announced};
+use crate::{
+    machine,
+    sys::{self, Announced},
+};
 
 /// Tells the thread how much memory the machine has and how long it has been up, and nothing of what is in use: the C
 /// library sorts long arrays by it. The error number is for the caller; `None` where its memory cannot be written.

@@ -3,23 +3,27 @@
 //! Nothing here returns to the supervisor's code. A step that fails reports to the supervisor through the status
 //! socket, which closes by itself when the program has started.
 
-use std::ffi::CString;
-use std::fs::{File, Permissions};
-use std::io::{self, Write};
-use std::os::fd::{AsFd, AsRawFd, OwnedFd};
-use std::os::unix::fs::PermissionsExt;
-use std::os::unix::net::UnixStream;
-use std::path::Path;
-use std::rc::Rc;
-use std::time::Duration;
+use std::{
+    ffi::CString,
+    fs::{File, Permissions},
+    io::{self, Write},
+    os::{
+        fd::{AsFd, AsRawFd, OwnedFd},
+        unix::{fs::PermissionsExt, net::UnixStream},
+    },
+    path::Path,
+    rc::Rc,
+    time::Duration,
+};
 
 use landlock::RulesetCreated;
 use seccompiler::BpfProgram;
 
-use super::filter::Purpose;
-use super::{filter, processes, walls};
-use crate::sys;
-use crate::wire::{self, Failure, Order, Raw};
+use super::{filter, filter::Purpose, processes, walls};
+use crate::{
+    sys,
+    wire::{self, Failure, Order, Raw},
+};
 
 /// The stage whose failure is the program's and not ours.
 pub(super) const EXECUTE: &str = "execute the program";

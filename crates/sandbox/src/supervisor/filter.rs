@@ -6,15 +6,16 @@
 //! also takes away the calls that install filters. Every filter ends programs that use another architecture's calls
 //! (32-bit `int 0x80`); x32 numbers are on no list and so do not exist.
 
-use std::collections::BTreeMap;
-use std::io;
+use std::{collections::BTreeMap, io};
 
 use seccompiler::{
     BpfProgram, SeccompAction, SeccompCmpArgLen, SeccompCmpOp, SeccompCondition, SeccompFilter, SeccompRule,
 };
 
-use super::calls;
-use super::search::{self, Answer};
+use super::{
+    calls,
+    search::{self, Answer},
+};
 
 /// Stands for "announce" while a filter is compiled, because the compiler does not know that action.
 const ANNOUNCE_PLACEHOLDER: u16 = 0x5151;
@@ -258,23 +259,33 @@ fn refusals(purpose: Purpose) -> io::Result<Vec<Layer>> {
     refuse(libc::EOPNOTSUPP, libc::SYS_pwritev2, vec![all_differ(5, &[0])?]);
     // Without descriptors in common, open files could be hidden from the supervisor.
     refuse(libc::EINVAL, libc::SYS_close_range, vec![all_differ(2, &[0, u64::from(libc::CLOSE_RANGE_CLOEXEC)])?]);
+    for (errno, call, rules) in on_others(purpose)? {
+        refuse(errno, call, rules);
+    }
+    Ok(refusals.into_iter().rev().map(|(errno, rules)| (rules, SeccompAction::Errno(errno as u32))).collect())
+}
+
+/// Refusals of calls that name a process, unless it is the caller: error number, call, rules.
+fn on_others(purpose: Purpose) -> io::Result<Vec<(i32, i64, Vec<SeccompRule>)>> {
     let own = purpose.own_process.map(|pid| pid as u64);
-    refuse(libc::EPERM, libc::SYS_sched_setaffinity, vec![all_differ(0, &[0, own.unwrap_or(0)])?]);
+    let mut refusals = vec![
+        (libc::EPERM, libc::SYS_sched_setaffinity, vec![all_differ(0, &[0, own.unwrap_or(0)])?]),
+        (libc::EPERM, libc::SYS_prlimit64, vec![all_differ(0, &[0, own.unwrap_or(0)])?]),
+    ];
+    if let Some(pid) = own {
+        refusals.push((libc::EPERM, libc::SYS_kill, vec![all_differ(0, &[pid, 0])?]));
+        refusals.push((libc::EPERM, libc::SYS_tgkill, vec![all_differ(0, &[pid])?]));
+        refusals.push((libc::EPERM, libc::SYS_tkill, vec![all_differ(0, &[pid])?]));
+    }
     if let Some(pid) = own.filter(|_| !purpose.tools) {
         for call in QUESTIONS {
             // A thread of its own has a number, too: the C library does without this answer if there is no such call.
             let errno = if call == libc::SYS_sched_getaffinity { libc::ENOSYS } else { libc::EPERM };
-            refuse(errno, call, vec![all_differ(0, &[0, pid])?]);
+            refusals.push((errno, call, vec![all_differ(0, &[0, pid])?]));
         }
-        refuse(libc::EPERM, libc::SYS_getpriority, vec![all_differ(1, &[0, pid])?]);
+        refusals.push((libc::EPERM, libc::SYS_getpriority, vec![all_differ(1, &[0, pid])?]));
     }
-    refuse(libc::EPERM, libc::SYS_prlimit64, vec![all_differ(0, &[0, own.unwrap_or(0)])?]);
-    if let Some(pid) = own {
-        refuse(libc::EPERM, libc::SYS_kill, vec![all_differ(0, &[pid, 0])?]);
-        refuse(libc::EPERM, libc::SYS_tgkill, vec![all_differ(0, &[pid])?]);
-        refuse(libc::EPERM, libc::SYS_tkill, vec![all_differ(0, &[pid])?]);
-    }
-    Ok(refusals.into_iter().rev().map(|(errno, rules)| (rules, SeccompAction::Errno(errno as u32))).collect())
+    Ok(refusals)
 }
 
 type Rules = BTreeMap<i64, Vec<SeccompRule>>;

@@ -3,13 +3,19 @@
 //! The program changes the folder while we look. Folders are therefore opened by descriptor, without following links,
 //! and nothing here fails because an entry has gone meanwhile.
 
-use std::ffi::CString;
-use std::fs::{Metadata, Permissions};
-use std::io;
-use std::os::fd::{AsFd, AsRawFd, BorrowedFd};
-use std::os::unix::ffi::OsStrExt;
-use std::os::unix::fs::{FileTypeExt, MetadataExt, PermissionsExt};
-use std::path::{Path, PathBuf};
+use std::{
+    ffi::CString,
+    fs::{Metadata, Permissions},
+    io,
+    os::{
+        fd::{AsFd, AsRawFd, BorrowedFd},
+        unix::{
+            ffi::OsStrExt,
+            fs::{FileTypeExt, MetadataExt, PermissionsExt},
+        },
+    },
+    path::{Path, PathBuf},
+};
 
 use crate::sys;
 

@@ -7,15 +7,16 @@
 //!
 //! Version 2 comes first. Where it has no controller for memory, version 1 limits memory, but cannot end a run.
 
-use std::ffi::CStr;
-use std::fs::File;
-use std::io::{self, Read, Write};
-use std::os::fd::AsFd;
-use std::path::{Path, PathBuf};
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use std::{
+    ffi::CStr,
+    fs::File,
+    io::{self, Read, Write},
+    os::fd::AsFd,
+    path::{Path, PathBuf},
+    time::{Duration, SystemTime, UNIX_EPOCH},
+};
 
-use crate::sys;
-use crate::wire::Order;
+use crate::{sys, wire::Order};
 
 /// How the names of our groups begin.
 const PREFIX: &str = "fosssim-oracle-";

@@ -1,11 +1,12 @@
 //! Holdings of processes that neither their folder nor their resident memory shows: files without a name that are open,
 //! mapped or executed, and memory behind mappings that is resident for nobody.
 
-use std::collections::BTreeSet;
-use std::fs::{Metadata, read_dir};
-use std::os::unix::ffi::OsStrExt;
-use std::os::unix::fs::MetadataExt;
-use std::path::Path;
+use std::{
+    collections::BTreeSet,
+    fs::{Metadata, read_dir},
+    os::unix::{ffi::OsStrExt, fs::MetadataExt},
+    path::Path,
+};
 
 /// Blocks that `stat` counts in.
 const BLOCK: u64 = 512;

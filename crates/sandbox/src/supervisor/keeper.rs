@@ -11,19 +11,28 @@
 //! The guardian outside holds user and control group until the keeper has ended; the keeper dies with it, and every run
 //! with the keeper.
 
-use std::fs::File;
-use std::io;
-use std::os::fd::{AsFd, OwnedFd};
-use std::os::unix::net::UnixStream;
-use std::process::ExitCode;
-use std::time::Duration;
+use std::{
+    fs::File,
+    io,
+    os::{
+        fd::{AsFd, OwnedFd},
+        unix::net::UnixStream,
+    },
+    process::ExitCode,
+    time::Duration,
+};
 
-use super::prepared::{Held, Prepared};
-use super::run::{self, Run};
-use super::{namespaces, view};
-use crate::mounts;
-use crate::sys::{self, Fork, Readiness};
-use crate::wire::{self, Event, Failure, Order, Raw};
+use super::{
+    namespaces,
+    prepared::{Held, Prepared},
+    run::{self, Run},
+    view,
+};
+use crate::{
+    mounts,
+    sys::{self, Fork, Readiness},
+    wire::{self, Event, Failure, Order, Raw},
+};
 
 /// A keeper without orders goes after this time, so that its user is there for others.
 const IDLE: Duration = Duration::from_secs(2);

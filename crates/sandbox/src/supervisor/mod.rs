@@ -26,11 +26,9 @@ mod view;
 mod volatile;
 mod walls;
 
-use std::ffi::OsString;
-use std::process::ExitCode;
+use std::{ffi::OsString, process::ExitCode};
 
-pub(super) use self::folder::open_up;
-pub(super) use self::group::memory_groups;
+pub(super) use self::{folder::open_up, group::memory_groups};
 use super::wire::SUPERVISOR_ARGUMENT;
 
 /// Asks for a run.

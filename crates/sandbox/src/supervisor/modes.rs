@@ -4,13 +4,16 @@
 //! step could open or close the grader's own files. So the call is announced, and the supervisor carries it out
 //! beneath the working folder and refuses it elsewhere. Links are not followed.
 
-use std::ffi::CString;
-use std::fs::{File, Permissions};
-use std::io::{self, Read, Seek, SeekFrom};
-use std::os::fd::{AsRawFd, BorrowedFd, OwnedFd};
-use std::os::unix::ffi::OsStrExt;
-use std::os::unix::fs::PermissionsExt;
-use std::path::{Path, PathBuf};
+use std::{
+    ffi::CString,
+    fs::{File, Permissions},
+    io::{self, Read, Seek, SeekFrom},
+    os::{
+        fd::{AsRawFd, BorrowedFd, OwnedFd},
+        unix::{ffi::OsStrExt, fs::PermissionsExt},
+    },
+    path::{Path, PathBuf},
+};
 
 use super::calls;
 use crate::sys::{self, Announced};

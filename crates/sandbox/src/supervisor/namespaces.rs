@@ -11,9 +11,11 @@
 use std::io;
 
 use super::view;
-use crate::mounts;
-use crate::sys::{self, Fork};
-use crate::wire::{Failure, Order};
+use crate::{
+    mounts,
+    sys::{self, Fork},
+    wire::{Failure, Order},
+};
 
 /// Where a supervisor finds itself after [`enter`].
 pub(super) enum Side {

@@ -2,8 +2,10 @@
 
 use std::time::Duration;
 
-use super::processes::{of_session, of_user, stop_then_kill};
-use super::slot;
+use super::{
+    processes::{of_session, of_user, stop_then_kill},
+    slot,
+};
 
 /// Ends the processes that a lost supervisor may have left: those of its child's session and those of the child's own
 /// user. A process namespace ends all of its processes by itself, and its sessions are not ours to name.

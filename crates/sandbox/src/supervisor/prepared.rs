@@ -1,16 +1,15 @@
 //! The state before a run begins: the resources that it has to itself on this machine, and the preparations for it.
 
-use std::io;
-use std::os::fd::BorrowedFd;
-use std::rc::Rc;
+use std::{io, os::fd::BorrowedFd, rc::Rc};
 
 use landlock::RulesetCreated;
 
-use super::group::Group;
-use super::{child, filter, slot, walls};
-use crate::mounts;
-use crate::sys::{self, Fork, SingleThread};
-use crate::wire::{Failure, Order};
+use super::{child, filter, group::Group, slot, walls};
+use crate::{
+    mounts,
+    sys::{self, Fork, SingleThread},
+    wire::{Failure, Order},
+};
 
 /// The resources that a run has to itself on this machine, for as long as this is held.
 pub(super) struct Held {

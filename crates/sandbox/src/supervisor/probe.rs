@@ -1,19 +1,27 @@
 //! Tries every wall once, in a child that then ends, and reports the kernel's answers.
 
-use std::fs::{File, Permissions};
-use std::io::{self, Write};
-use std::os::fd::{AsFd, AsRawFd, OwnedFd};
-use std::os::unix::fs::PermissionsExt;
-use std::os::unix::net::UnixStream;
-use std::path::Path;
-use std::process::ExitCode;
-use std::time::Duration;
+use std::{
+    fs::{File, Permissions},
+    io::{self, Write},
+    os::{
+        fd::{AsFd, AsRawFd, OwnedFd},
+        unix::{fs::PermissionsExt, net::UnixStream},
+    },
+    path::Path,
+    process::ExitCode,
+    time::Duration,
+};
 
-use super::group::Group;
-use super::namespaces::{self, Side};
-use super::{filter, slot, walls};
-use crate::sys::{self, Fork};
-use crate::wire::{self, Failure, Order, Probe};
+use super::{
+    filter,
+    group::Group,
+    namespaces::{self, Side},
+    slot, walls,
+};
+use crate::{
+    sys::{self, Fork},
+    wire::{self, Failure, Order, Probe},
+};
 
 /// The first kernel interface whose rules also confine signals and abstract sockets.
 const SCOPES_SINCE: i32 = 6;

@@ -1,7 +1,9 @@
 //! What `/proc` says about the processes below us, and how they are ended.
 
-use std::collections::BTreeSet;
-use std::time::{Duration, Instant};
+use std::{
+    collections::BTreeSet,
+    time::{Duration, Instant},
+};
 
 use crate::{machine, sys};
 

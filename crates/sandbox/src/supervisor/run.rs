@@ -1,25 +1,35 @@
 //! One supervised run: start, watch, kill, report.
 
-use std::fs::File;
-use std::io::{self, Read, Write};
-use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
-use std::os::unix::fs::MetadataExt;
-use std::os::unix::net::UnixStream;
-use std::process::ExitCode;
-use std::rc::Rc;
-use std::time::{Duration, Instant};
+use std::{
+    fs::File,
+    io::{self, Read, Write},
+    os::{
+        fd::{AsFd, BorrowedFd, OwnedFd},
+        unix::{fs::MetadataExt, net::UnixStream},
+    },
+    process::ExitCode,
+    rc::Rc,
+    time::{Duration, Instant},
+};
 
-use super::answers::{self, SharedWaits};
-use super::child::{self, Opened, Plan};
-use super::folder::{self, Contents};
-use super::group::Group;
-use super::namespaces::{self, Side};
-use super::prepared::{Held, Prepared};
-use super::streams::Capture;
-use super::{calls, filter, holdings, locks, modes, processes, slot};
-use crate::job::Limits;
-use crate::sys::{self, Fork, Readiness};
-use crate::wire::{self, Cause, Event, Failure, Order, Report};
+use super::{
+    answers::{self, SharedWaits},
+    calls,
+    child::{self, Opened, Plan},
+    filter,
+    folder::{self, Contents},
+    group::Group,
+    holdings, locks, modes,
+    namespaces::{self, Side},
+    prepared::{Held, Prepared},
+    processes, slot,
+    streams::{Capture, Stalled},
+};
+use crate::{
+    job::Limits,
+    sys::{self, Fork, Readiness},
+    wire::{self, Cause, Event, Failure, Order, Report},
+};
 
 /// How often clocks and counters are looked at. A look costs some ten microseconds.
 const TICK: Duration = Duration::from_millis(10);
@@ -127,24 +137,10 @@ impl Run {
             }
             _ => None,
         };
-        let slot = if let Some(slot) = slot {
-            let owner = File::from(folder.try_clone().map_err(stage("open the working folder"))?)
-                .metadata()
-                .map_err(stage("look at the working folder"))?;
-            folder::give(folder.as_fd(), slot.user, slot.user).map_err(stage("give the working folder away"))?;
-            Some((slot, (owner.uid(), owner.gid())))
-        } else {
-            None
-        };
-        let pipe = match &order.pipe {
-            Some(name) => {
-                let name = std::ffi::CString::new(name.as_slice())
-                    .map_err(|error| Failure::new("open the trace pipe", &io::Error::other(error)))?;
-                let flags = libc::O_WRONLY | libc::O_NONBLOCK;
-                Some(sys::open_beneath(folder.as_fd(), &name, flags).map_err(stage("open the trace pipe"))?)
-            }
-            None => None,
-        };
+        let slot = slot.map(|slot| owner_before(folder.as_fd(), slot.user).map(|owner| (slot, owner))).transpose();
+        let slot = slot.map_err(stage("give the working folder away"))?;
+        let pipe = order.pipe.as_ref().map(|name| open_pipe(folder.as_fd(), name)).transpose();
+        let pipe = pipe.map_err(stage("open the trace pipe"))?;
         if order.volatile {
             hand_over(&control, folder.as_fd(), volatile_pipe).map_err(stage("hand the working folder over"))?;
         }
@@ -153,14 +149,7 @@ impl Run {
         let (status, child_status) = UnixStream::pair().map_err(stage("make a socket"))?;
         status.set_nonblocking(true).map_err(stage("make a socket"))?;
         let opened = Opened::new(&wire::path(&order.program), slot.is_some()).map_err(stage("open the program"))?;
-        let entrance = if order.walls.seccomp && !order.walls.notify && !order.tools {
-            let interpreter = order.interpreter.as_ref().map(|path| Opened::new(&wire::path(path), false)).transpose();
-            let interpreter = interpreter.map_err(stage("open the interpreter"))?;
-            let executed = interpreter.as_ref().unwrap_or(&opened);
-            Some(executed.under_number(order.open_files).map_err(stage("open the program once more"))?)
-        } else {
-            None
-        };
+        let entrance = entrance(&order, &opened)?;
         let rules = prepared.rules(&order, folder.as_fd()).map_err(stage("prepare Landlock"))?;
         let plan = Plan {
             supervisor: std::process::id(),
@@ -545,6 +534,30 @@ fn make_pipe(folder: BorrowedFd<'_>, name: &[u8]) -> io::Result<OwnedFd> {
     Ok(reader)
 }
 
+/// The end of the trace pipe that says how full it is.
+fn open_pipe(folder: BorrowedFd<'_>, name: &[u8]) -> io::Result<OwnedFd> {
+    let name = std::ffi::CString::new(name).map_err(io::Error::other)?;
+    sys::open_beneath(folder, &name, libc::O_WRONLY | libc::O_NONBLOCK)
+}
+
+/// Gives the working folder to the run's own user; whose it was.
+fn owner_before(folder: BorrowedFd<'_>, user: u32) -> io::Result<(u32, u32)> {
+    let owner = File::from(folder.try_clone_to_owned()?).metadata()?;
+    folder::give(folder, user, user)?;
+    Ok((owner.uid(), owner.gid()))
+}
+
+/// The number of the descriptor by which alone the program can be executed, where only the filter decides that.
+fn entrance(order: &Order, opened: &Opened) -> Result<Option<OwnedFd>, Failure> {
+    if !order.walls.seccomp || order.walls.notify || order.tools {
+        return Ok(None);
+    }
+    let interpreter = order.interpreter.as_ref().map(|path| Opened::new(&wire::path(path), false)).transpose();
+    let interpreter = interpreter.map_err(|error| Failure::new("open the interpreter", &error))?;
+    let entrance = interpreter.as_ref().unwrap_or(opened).under_number(order.open_files);
+    entrance.map(Some).map_err(|error| Failure::new("open the program once more", &error))
+}
+
 /// Gives the grader the folder and the reading end of the pipe. Only now, with a writer, may a read wait.
 fn hand_over(control: &File, folder: BorrowedFd<'_>, pipe: Option<OwnedFd>) -> io::Result<()> {
     let socket = UnixStream::from(control.as_fd().try_clone_to_owned()?);
@@ -553,40 +566,6 @@ fn hand_over(control: &File, folder: BorrowedFd<'_>, pipe: Option<OwnedFd>) -> i
     sys::send_descriptors(&socket, wire::FOLDER, [folder, pipe.as_fd()])
 }
 
-/// How long the trace pipe was full.
-#[derive(Debug, Default)]
-struct Stalled {
-    since: Option<Instant>,
-    total: Duration,
-}
-
-impl Stalled {
-    /// Notes whether the pipe is full now. The time between two looks counts when it was at both.
-    fn look(&mut self, full: bool, now: Instant) {
-        if let Some(since) = self.since.filter(|_| full) {
-            self.total += now.saturating_duration_since(since);
-        }
-        self.since = full.then_some(now);
-    }
-}
-
 fn micros(time: Duration) -> u64 {
     u64::try_from(time.as_micros()).unwrap_or(u64::MAX)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn only_time_between_two_looks_at_a_full_pipe_is_given_back() {
-        let start = Instant::now();
-        let mut stalled = Stalled::default();
-        for (milliseconds, full) in
-            [(0, false), (10, true), (20, true), (35, true), (40, false), (50, true), (60, false)]
-        {
-            stalled.look(full, start + Duration::from_millis(milliseconds));
-        }
-        assert_eq!(stalled.total, Duration::from_millis(25));
-    }
 }

@@ -6,8 +6,7 @@
 //! their length, because the kernel checks and translates them each time; so calls that are answered alike share one
 //! answer.
 
-use std::collections::BTreeMap;
-use std::io;
+use std::{collections::BTreeMap, io};
 
 use seccompiler::{BpfProgram, SeccompAction, sock_filter};
 

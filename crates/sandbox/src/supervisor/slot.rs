@@ -3,12 +3,14 @@
 //! Only root can become another user. The ids are 61000 and up, a range that no distribution hands out; each is held by
 //! a lock on a file that only root can reach, for as long as the supervisor lives.
 
-use std::fs::{DirBuilder, File, OpenOptions};
-use std::io;
-use std::ops::Range;
-use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt};
-use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::{
+    fs::{DirBuilder, File, OpenOptions},
+    io,
+    ops::Range,
+    os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt},
+    path::{Path, PathBuf},
+    time::{Duration, Instant},
+};
 
 use super::processes;
 

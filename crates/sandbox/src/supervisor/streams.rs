@@ -1,7 +1,10 @@
 //! What the program writes to its standard streams, kept up to a limit and counted to the byte.
 
-use std::io::{self, PipeReader, Read};
-use std::os::fd::{AsFd, BorrowedFd};
+use std::{
+    io::{self, PipeReader, Read},
+    os::fd::{AsFd, BorrowedFd},
+    time::{Duration, Instant},
+};
 
 use crate::sys;
 
@@ -68,6 +71,23 @@ impl Capture {
     }
 }
 
+/// How long the trace pipe was full.
+#[derive(Debug, Default)]
+pub(super) struct Stalled {
+    since: Option<Instant>,
+    pub(super) total: Duration,
+}
+
+impl Stalled {
+    /// Notes whether the pipe is full now. The time between two looks counts when it was at both.
+    pub(super) fn look(&mut self, full: bool, now: Instant) {
+        if let Some(since) = self.since.filter(|_| full) {
+            self.total += now.saturating_duration_since(since);
+        }
+        self.since = full.then_some(now);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use std::io::Write;
@@ -87,5 +107,17 @@ mod tests {
             assert_eq!(capture.truncated, truncated);
             assert!(capture.descriptor().is_none());
         }
+    }
+
+    #[test]
+    fn only_time_between_two_looks_at_a_full_pipe_is_given_back() {
+        let start = Instant::now();
+        let mut stalled = Stalled::default();
+        for (milliseconds, full) in
+            [(0, false), (10, true), (20, true), (35, true), (40, false), (50, true), (60, false)]
+        {
+            stalled.look(full, start + Duration::from_millis(milliseconds));
+        }
+        assert_eq!(stalled.total, Duration::from_millis(25));
     }
 }

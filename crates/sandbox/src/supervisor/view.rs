@@ -4,20 +4,25 @@
 //! else of the host exists, not even by name. There is no writable place in memory (`/tmp`, `/dev/shm`), because what
 //! lies there would count for nobody.
 
-use std::collections::VecDeque;
-use std::ffi::{CString, OsString};
-use std::fs::File;
-use std::io;
-use std::os::fd::{AsFd, AsRawFd, BorrowedFd};
-use std::os::unix::ffi::OsStrExt;
-use std::os::unix::fs::symlink;
-use std::path::{Component, Path, PathBuf};
+use std::{
+    collections::VecDeque,
+    ffi::{CString, OsString},
+    fs::File,
+    io,
+    os::{
+        fd::{AsFd, AsRawFd, BorrowedFd},
+        unix::{ffi::OsStrExt, fs::symlink},
+    },
+    path::{Component, Path, PathBuf},
+};
 
 use super::{volatile, walls};
-use crate::libraries;
-use crate::mounts::{self, NO_DEVICES, NO_SET_USER, READ_ONLY};
-use crate::sys;
-use crate::wire::{self, Failure, Order, Raw};
+use crate::{
+    libraries,
+    mounts::{self, NO_DEVICES, NO_SET_USER, READ_ONLY},
+    sys,
+    wire::{self, Failure, Order, Raw},
+};
 
 /// Where the new root is put together: a folder that every Linux has. It is in sight again once the roots have changed.
 const SITE: &str = "/proc";

@@ -4,10 +4,12 @@
 //! are not part of a program's resident memory but where it maps them; a control group's limit has room for all of
 //! them.
 
-use std::fs::{File, Permissions};
-use std::io::{self, Read, Seek, SeekFrom, Write};
-use std::os::unix::fs::{MetadataExt, PermissionsExt};
-use std::path::Path;
+use std::{
+    fs::{File, Permissions},
+    io::{self, Read, Seek, SeekFrom, Write},
+    os::unix::fs::{MetadataExt, PermissionsExt},
+    path::Path,
+};
 
 use crate::wire::{self, Order, Raw};
 

@@ -3,22 +3,28 @@
 //! Rules name open descriptors, so that they are made while we still are who we are, and come into force in the child
 //! after it has become another user.
 
-use std::ffi::CStr;
-use std::fs::File;
-use std::io;
-use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
-use std::os::unix::fs::OpenOptionsExt;
-use std::path::{Path, PathBuf};
+use std::{
+    ffi::CStr,
+    fs::File,
+    io,
+    os::{
+        fd::{AsFd, BorrowedFd, OwnedFd},
+        unix::fs::OpenOptionsExt,
+    },
+    path::{Path, PathBuf},
+};
 
 use landlock::{
     ABI, Access, AccessFs, AccessNet, BitFlags, CompatLevel, Compatible, PathBeneath, Ruleset, RulesetAttr,
     RulesetCreated, RulesetCreatedAttr, RulesetError, RulesetStatus, Scope,
 };
 
-use crate::libraries::{FOLDERS, LOADERS};
-use crate::own::{self, Allowed};
-use crate::sys;
-use crate::wire::{self, Order};
+use crate::{
+    libraries::{FOLDERS, LOADERS},
+    own::{self, Allowed},
+    sys,
+    wire::{self, Order},
+};
 
 /// The newest rules we know and have tried; older kernels enforce a part of them, which [`LayerReport`] names.
 ///

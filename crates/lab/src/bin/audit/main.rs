@@ -17,6 +17,7 @@
 //! drawn [traces] [seed]` does so on random traces. `audit forged [of each scene] [seed] [CORPUS]` looks for wrong
 //! traces that the fair rules accept, and for programs with factors that they refuse. `audit cost [of each scene]
 //! [seed] [CORPUS]` looks for traces that take long to judge.
+#![forbid(unsafe_code)]
 use std::{
     fmt::Write as _,
     process::ExitCode,

@@ -335,6 +335,7 @@ fn is_one(ratios: &[f64]) -> bool {
 }
 
 /// The angle by which the particles have turned about their centre, radians.
+#[expect(clippy::disallowed_methods, reason = "angles are compared with a tolerance here: no bit is a contract")]
 fn turn(zone: &Group, start: &State, from: Vec2, end: &State, to: Vec2) -> f64 {
     let (mut across, mut along) = (0.0, 0.0);
     for &one in &zone.particles {

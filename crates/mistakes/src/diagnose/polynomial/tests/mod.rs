@@ -533,7 +533,7 @@ fn what_is_not_reproduced_everywhere_says_so() {
     assert!(partly[0].reproduced > 50 && partly[0].reproduced < partly[0].samples, "{partly:#?}");
     let noise = explain(&samples(PairKind::ParticleEdge, 300, |motion| {
         let mut lists = edge_lists(motion);
-        lists[0][2] += (lists[0][4] * 100.0).cbrt();
+        lists[0][2] += (lists[0][4] * 100.0).abs().sqrt();
         lists
     }));
     assert_eq!((noise[0].key.as_str(), noise[0].reproduced), ("unexplained", 0));

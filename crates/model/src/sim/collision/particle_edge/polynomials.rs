@@ -203,6 +203,53 @@ mod tests {
         polynomials
     }
 
+    /// The approach polynomial by the formulas of the specification, from differences of positions and displacements.
+    fn approach_by_the_formulas([x12, x32, x21]: [Vec2; 3], [d12, d32, d21]: [Vec2; 3]) -> [f64; 6] {
+        let a = x32.dot(&x32);
+        let b = x32.dot(&d32);
+        let c = d32.dot(&d32);
+        let d = d21.dot(&d21);
+        let e = d21.dot(&x21);
+        let f = x12.dot(&x32);
+        let g = x12.dot(&d32) + d12.dot(&x32);
+        let h = d12.dot(&d32);
+        let i = d32.dot(&x21) + d21.dot(&x32);
+        let j = d32.dot(&d21);
+        let k = a * f;
+        let l = (a * g) + ((2.0 * b) * f);
+        let m = ((a * h) + ((2.0 * b) * g)) + (c * f);
+        let n = (c * g) + ((2.0 * b) * h);
+        let o = c * h;
+        let (p, q) = (b, c);
+        let terms: [&[f64]; 6] = [
+            &[((-h) * h) * q, (c * c) * d, (2.0 * o) * j],
+            &[((-h) * h) * p, ((2.0 * g) * h) * q, ((4.0 * b) * c) * d, (c * c) * e, o * i, (2.0 * n) * j],
+            &[
+                ((-2.0 * g) * h) * p,
+                ((2.0 * f) * g) * q,
+                (g * g) * q,
+                ((2.0 * a) * c) * d,
+                ((4.0 * b) * b) * d,
+                ((4.0 * b) * c) * e,
+                n * i,
+                (2.0 * m) * j,
+            ],
+            &[
+                ((-2.0 * f) * h) * p,
+                (g * g) * p,
+                ((2.0 * f) * g) * q,
+                ((4.0 * a) * b) * d,
+                ((2.0 * a) * c) * e,
+                ((4.0 * b) * b) * e,
+                m * i,
+                (2.0 * l) * j,
+            ],
+            &[((-2.0 * f) * g) * p, (f * f) * q, (a * a) * d, ((4.0 * a) * b) * e, l * i, (2.0 * k) * j],
+            &[((-f) * f) * p, (a * a) * e, k * i],
+        ];
+        terms.map(|terms| terms[1..].iter().fold(terms[0], |sum, term| sum - term))
+    }
+
     /// Sharing values and filling lanes change no bit: the formulas of the specification, parenthesised in full.
     #[test]
     fn shared_values_are_those_of_the_formulas() {
@@ -236,51 +283,7 @@ mod tests {
                 (((a * a) - (d * g)) + (s * g)),
             ];
             let ends = [[c, b, a], [d13.dot(&d23), d13.dot(&x23) + x13.dot(&d23), x13.dot(&x23)]];
-            let approach: [f64; 6] = {
-                let a = x32.dot(&x32);
-                let b = x32.dot(&d32);
-                let c = d32.dot(&d32);
-                let d = d21.dot(&d21);
-                let e = d21.dot(&x21);
-                let f = x12.dot(&x32);
-                let g = x12.dot(&d32) + d12.dot(&x32);
-                let h = d12.dot(&d32);
-                let i = d32.dot(&x21) + d21.dot(&x32);
-                let j = d32.dot(&d21);
-                let k = a * f;
-                let l = (a * g) + ((2.0 * b) * f);
-                let m = ((a * h) + ((2.0 * b) * g)) + (c * f);
-                let n = (c * g) + ((2.0 * b) * h);
-                let o = c * h;
-                let (p, q) = (b, c);
-                let terms: [&[f64]; 6] = [
-                    &[((-h) * h) * q, (c * c) * d, (2.0 * o) * j],
-                    &[((-h) * h) * p, ((2.0 * g) * h) * q, ((4.0 * b) * c) * d, (c * c) * e, o * i, (2.0 * n) * j],
-                    &[
-                        ((-2.0 * g) * h) * p,
-                        ((2.0 * f) * g) * q,
-                        (g * g) * q,
-                        ((2.0 * a) * c) * d,
-                        ((4.0 * b) * b) * d,
-                        ((4.0 * b) * c) * e,
-                        n * i,
-                        (2.0 * m) * j,
-                    ],
-                    &[
-                        ((-2.0 * f) * h) * p,
-                        (g * g) * p,
-                        ((2.0 * f) * g) * q,
-                        ((4.0 * a) * b) * d,
-                        ((2.0 * a) * c) * e,
-                        ((4.0 * b) * b) * e,
-                        m * i,
-                        (2.0 * l) * j,
-                    ],
-                    &[((-2.0 * f) * g) * p, (f * f) * q, (a * a) * d, ((4.0 * a) * b) * e, l * i, (2.0 * k) * j],
-                    &[((-f) * f) * p, (a * a) * e, k * i],
-                ];
-                terms.map(|terms| terms[1..].iter().fold(terms[0], |sum, term| sum - term))
-            };
+            let approach = approach_by_the_formulas([x12, x32, x21], [d12, d32, d21]);
             let expected = [
                 Polynomial::trimmed(&distance),
                 Polynomial::trimmed(&ends[0]),

@@ -1,0 +1,138 @@
+//! What the packages of others allow, and which Rust they ask for: from cargo's own data.
+use crate::{
+    ratchets::modules,
+    tree::{files, root, text},
+};
+use serde_json::Value;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path,
+    sync::OnceLock,
+};
+
+/// Programs are run on this platform only; packages of others are not downloaded.
+const PLATFORM: &str = "x86_64-unknown-linux-gnu";
+
+/// Packages with their licences, as cargo tells of them.
+#[expect(clippy::disallowed_types, reason = "cargo is a program")]
+fn metadata() -> &'static Value {
+    static METADATA: OnceLock<Value> = OnceLock::new();
+    METADATA.get_or_init(|| {
+        let mut cargo = std::process::Command::new(env!("CARGO"));
+        cargo.args(["metadata", "--locked", "--format-version=1", "--filter-platform", PLATFORM]);
+        let output = cargo.current_dir(root()).output().expect("cargo starts");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice(&output.stdout).expect("JSON")
+    })
+}
+
+/// All packages by their ids.
+fn packages() -> BTreeMap<&'static str, &'static Value> {
+    let packages = metadata()["packages"].as_array().expect("packages");
+    packages.iter().map(|package| (string(&package["id"]), package)).collect()
+}
+
+fn string(value: &'static Value) -> &'static str {
+    value.as_str().unwrap_or_default()
+}
+
+/// The licences that `deny.toml` allows, from which this test and cargo-deny take them.
+fn allowed() -> BTreeSet<String> {
+    let rules = text(&root().join("deny.toml"));
+    let list =
+        rules.split_once("\nallow = [").and_then(|(_, rest)| rest.split_once(']')).expect("a list of licences").0;
+    list.split('"').skip(1).step_by(2).map(str::to_owned).collect()
+}
+
+/// Whether some choice that an SPDX expression offers is allowed.
+fn is_allowed(expression: &str, allowed: &BTreeSet<String>) -> bool {
+    // No expression in use nests deeper than `(A OR B) AND C`.
+    let any = |group: &str| {
+        let group = group.trim_matches(['(', ')', ' ']);
+        group.split(" OR ").any(|licence| licence.split(" AND ").all(|licence| allowed.contains(licence)))
+    };
+    let expression = expression.replace(" / ", " OR ").replace('/', " OR ");
+    if expression.contains('(') { expression.split(" AND ").all(any) } else { any(&expression) }
+}
+
+/// A version's first two numbers, which compare as versions do.
+fn version(text: &str) -> Vec<u32> {
+    text.split('.').take(2).map(|part| part.parse().expect("a number")).collect()
+}
+
+#[test]
+fn licences_are_read_as_choices() {
+    let allowed = ["MIT", "Zlib"].map(str::to_owned).into();
+    for (expression, expected) in [
+        ("MIT", true),
+        ("MIT/Apache-2.0", true),
+        ("GPL-3.0 OR MIT", true),
+        ("GPL-3.0 AND MIT", false),
+        ("(MIT OR Apache-2.0) AND Zlib", true),
+        ("(MIT OR Apache-2.0) AND GPL-3.0", false),
+        ("", false),
+    ] {
+        assert_eq!(is_allowed(expression, &allowed), expected, "{expression}");
+    }
+}
+
+#[test]
+fn everybody_may_use_what_is_compiled() {
+    let (packages, allowed) = (packages(), allowed());
+    assert!(packages.len() > 100 && !allowed.is_empty(), "{} packages, {allowed:?}", packages.len());
+    let licence = |package: &Value| package["license"].as_str().unwrap_or_default().to_owned();
+    let refused = packages.values().filter(|package| !is_allowed(&licence(package), &allowed));
+    let refused: Vec<_> = refused.map(|package| format!("{} {}", package["name"], licence(package))).collect();
+    assert!(refused.is_empty(), "not in deny.toml: {refused:#?}");
+}
+
+/// The Rust that a manifest promises is enough for everything that is compiled for it.
+#[test]
+fn the_promised_rust_compiles_all_dependencies() {
+    let packages = packages();
+    let nodes = metadata()["resolve"]["nodes"].as_array().expect("nodes");
+    let nodes: BTreeMap<_, _> = nodes.iter().map(|node| (string(&node["id"]), node)).collect();
+    for name in ["fosssim-oracle", "fosssim-server"] {
+        let (top, package) = packages.iter().find(|(_, package)| package["name"] == name).expect("a crate of ours");
+        let promised = version(string(&package["rust_version"]));
+        let (mut open, mut seen) = (vec![*top], BTreeSet::new());
+        while let Some(id) = open.pop() {
+            if !seen.insert(id) {
+                continue;
+            }
+            let asked = string(&packages[id]["rust_version"]);
+            assert!(asked.is_empty() || version(asked) <= promised, "{id} asks for {asked}, more than {name} promises");
+            for dependency in nodes[id]["deps"].as_array().expect("dependencies") {
+                let kinds = dependency["dep_kinds"].as_array().expect("kinds");
+                if kinds.iter().any(|kind| kind["kind"] != "dev") {
+                    open.push(string(&dependency["pkg"]));
+                }
+            }
+        }
+        assert!(seen.len() > 50, "{name}: {} packages", seen.len());
+    }
+}
+
+/// What a manifest asks for, some source names; optional packages may be there for their features.
+#[test]
+fn every_dependency_is_used() {
+    let mut unused = Vec::new();
+    for package in packages().values().filter(|package| package["source"].is_null()) {
+        let folder = Path::new(string(&package["manifest_path"])).parent().expect("a folder");
+        let own = ["src", "tests", "benches", "examples", "build.rs"].map(|part| folder.join(part));
+        let sources = own
+            .iter()
+            .filter(|path| path.exists())
+            .flat_map(|path| if path.is_dir() { files(path, ".rs") } else { vec![path.clone()] });
+        let sources: Vec<_> = sources.flat_map(|source| [modules(&source), vec![source]].concat()).collect();
+        let sources: String = sources.iter().filter(|source| source.exists()).map(|source| text(source)).collect();
+        let dependencies = package["dependencies"].as_array().expect("dependencies").iter();
+        for dependency in dependencies.filter(|dependency| dependency["optional"] == false) {
+            let name = string(&dependency["name"]).replace('-', "_");
+            if !sources.contains(&format!("{name}::")) && !sources.contains(&format!("use {name}")) {
+                unused.push(format!("{} asks for {name}", package["name"]));
+            }
+        }
+    }
+    assert!(unused.is_empty(), "and no source names it: {unused:#?}");
+}

@@ -1,0 +1,223 @@
+//! Numbers that only fall. A change that mends a part of one lowers it here; none may raise it.
+use crate::tree::{crate_of, files, is_of_tests, name, root, sources, text};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::{Path, PathBuf},
+};
+
+/// Lines wider than rustfmt makes code, which are comments and texts.
+const MOST_WIDE_LINES: usize = 644;
+
+/// A line is as wide as rustfmt makes code (`rustfmt.toml`).
+const WIDTH: usize = 120;
+
+/// Types whose name stands in a second crate, too.
+const MOST_SHARED_NAMES: usize = 169;
+
+/// A file that is longer holds a second noun.
+const LONGEST_FILE: usize = 600;
+
+/// A function that is longer does two things.
+const LONGEST_FUNCTION: usize = 80;
+
+/// Files that are longer, and how long they may be.
+const LONG_FILES: [(&str, usize); 1] = [("crates/mistakes/src/assignments/t2m2/catalogue.rs", 626)];
+
+/// Functions that are longer, by the names of their files, and how long they may be.
+const LONG_FUNCTIONS: [(&str, usize); 14] = [
+    ("gather.rs gather_from", 111),
+    ("execute.rs attempt", 101),
+    ("words.rs fmt", 106),
+    ("places.rs places", 99),
+    ("stages.rs of_fault", 95),
+    ("tests.rs faults", 82),
+    ("serve.rs run", 102),
+    ("ledger.rs write_result", 81),
+    ("program.rs grade", 82),
+    ("servers.rs two_servers_lose_nothing", 112),
+    ("rows.rs fill", 99),
+    ("platforms.rs what_a_platform_did_not_say_is_refused", 140),
+    ("upgrade.rs the_database_is_copied_before_its_tables_change", 117),
+    ("check.rs run", 137),
+];
+
+/// Roots of crates in which unsafe code stands, and what for.
+const UNSAFE: [(&str, &str); 6] = [
+    ("crates/mistakes/tests/memory.rs", "counts allocations"),
+    ("crates/sandbox/src/lib.rs", "makes system calls between fork and exec"),
+    ("crates/server/src/lib.rs", "makes system calls"),
+    ("crates/server/tests/it/main.rs", "sends signals"),
+    ("tests/it/main.rs", "counts allocations, sends signals"),
+    ("benches/course.rs", "asks the kernel for processor time"),
+];
+
+/// The name of the function that a line begins.
+fn function(line: &str) -> Option<&str> {
+    let mut words = line.trim_start();
+    while let Some((word, rest)) = words.split_once(' ') {
+        match word {
+            "fn" => return rest.split(['(', '<']).next(),
+            "pub" | "const" | "async" | "unsafe" | "extern" | "\"C\"" => words = rest,
+            _ if word.starts_with("pub(") => words = rest,
+            _ => return None,
+        }
+    }
+    None
+}
+
+/// Functions of more than one line with their lengths; rustfmt indents an end as it does the beginning.
+fn functions(text: &str) -> Vec<(&str, usize)> {
+    let lines: Vec<&str> = text.lines().collect();
+    let mut found = Vec::new();
+    for (begin, line) in lines.iter().copied().enumerate() {
+        let Some(name) = function(line).filter(|_| !line.ends_with(['}', ';'])) else { continue };
+        let indent = &line[..line.len() - line.trim_start().len()];
+        let is_end = |line: &&str| line.strip_prefix(indent).is_some_and(|rest| rest == "}" || rest.starts_with(");"));
+        found.extend(lines[begin..].iter().position(is_end).map(|length| (name, length + 1)));
+    }
+    found
+}
+
+/// The name of the type that a line at the left edge begins.
+fn type_name(line: &str) -> Option<&str> {
+    let line = line.strip_prefix("pub").map_or(line, |rest| rest.trim_start_matches(|c| c != ' ').trim_start());
+    let (kind, rest) = line.split_once(' ')?;
+    let is_type = ["struct", "enum", "trait", "type", "union"].contains(&kind);
+    is_type.then(|| rest.split(|c: char| !c.is_alphanumeric() && c != '_').next())?
+}
+
+/// What is longer than all may be, but for those that are named.
+fn too_long(found: BTreeMap<String, usize>, most: usize, named: &[(&str, usize)]) -> Vec<String> {
+    let most = |name: &str| named.iter().find(|(long, _)| *long == name).map_or(most, |(_, most)| *most);
+    found.into_iter().filter(|(name, length)| *length > most(name)).map(|(name, n)| format!("{name}: {n}")).collect()
+}
+
+/// Whether a program, a library, or a test or bench of its own begins in a file.
+fn is_root(name: &str) -> bool {
+    matches!(
+        name.split('/').collect::<Vec<_>>()[..],
+        ["build.rs"]
+            | ["src", "lib.rs" | "main.rs"]
+            | ["tests", "it", "main.rs"]
+            | ["benches" | "examples", _]
+            | ["src", "bin", _]
+            | ["src", "bin", _, "main.rs"]
+            | ["crates", _, "build.rs"]
+            | ["crates", _, "src", "lib.rs" | "main.rs"]
+            | ["crates", _, "src", "bin", _]
+            | ["crates", _, "src", "bin", _, "main.rs"]
+            | ["crates", _, "benches" | "tests" | "examples", _]
+            | ["crates", _, "tests", _, "main.rs"]
+    )
+}
+
+#[test]
+fn functions_and_types_are_found_in_sources() {
+    let text = "impl A {\n    pub(crate) const fn a() -> u8 {\n        1\n    }\n    fn b();\n    fn c() {}\n}\n";
+    assert_eq!(functions(text), [("a", 3)]);
+    assert_eq!(type_name("pub(super) struct State<'a> {"), Some("State"));
+    assert_eq!([type_name("enum A {"), type_name("use b::type"), type_name("    struct C;")], [Some("A"), None, None]);
+}
+
+#[test]
+fn functions_are_short() {
+    let mut found = BTreeMap::new();
+    for source in sources() {
+        for (function, length) in functions(&text(&source)) {
+            let longest =
+                found.entry(format!("{} {function}", source.file_name().expect("a name").display())).or_insert(0);
+            *longest = length.max(*longest);
+        }
+    }
+    assert!(found.len() > 3_000, "{}: the test no longer understands the sources", found.len());
+    let long = too_long(found, LONGEST_FUNCTION, &LONG_FUNCTIONS);
+    assert!(long.is_empty(), "longer than {LONGEST_FUNCTION} lines: {long:#?}");
+}
+
+#[test]
+fn files_are_short() {
+    let lines = sources().iter().map(|source| (name(source).to_owned(), text(source).lines().count())).collect();
+    let long = too_long(lines, LONGEST_FILE, &LONG_FILES);
+    assert!(long.is_empty(), "longer than {LONGEST_FILE} lines: {long:#?}");
+}
+
+#[test]
+fn lines_are_as_wide_as_rustfmt_makes_code() {
+    let mut wide = BTreeMap::new();
+    for source in sources() {
+        let count = text(&source).lines().filter(|line| line.chars().count() > WIDTH).count();
+        *wide.entry(crate_of(name(&source)).to_owned()).or_insert(0) += count;
+    }
+    assert!(wide.values().sum::<usize>() <= MOST_WIDE_LINES, "wrap what you touch: {wide:?}");
+}
+
+/// A reader of `Place` must not have to ask which of twelve it is.
+#[test]
+fn names_of_types_stand_in_one_crate() {
+    let mut crates: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    for source in sources().iter().filter(|source| !is_of_tests(name(source))) {
+        for found in text(source).lines().filter_map(type_name) {
+            crates.entry(found.to_owned()).or_default().insert(crate_of(name(source)).to_owned());
+        }
+    }
+    assert!(crates.len() > 800, "{}: the test no longer understands the sources", crates.len());
+    crates.retain(|_, crates| crates.len() > 1);
+    assert!(crates.len() <= MOST_SHARED_NAMES, "{} names stand in several crates: {crates:#?}", crates.len());
+}
+
+#[test]
+fn no_crate_without_a_reason_may_hold_unsafe_code() {
+    let sources = sources();
+    let roots = sources.iter().map(|source| name(source)).filter(|name| is_root(name));
+    let free = |root_of: &&str| !text(&root().join(root_of)).contains("#![forbid(unsafe_code)]");
+    let without: Vec<&str> = roots.filter(free).collect();
+    let listed: Vec<&str> = UNSAFE.iter().map(|(root, _)| *root).collect();
+    assert_eq!(without, listed, "forbid unsafe code, or say here what it is for");
+}
+
+/// The files that a source may mean by its `mod name;` and `#[path = "..."]`.
+pub fn modules(source: &Path) -> Vec<PathBuf> {
+    let (folder, own) = (source.parent().expect("a folder"), source.with_extension(""));
+    let mut files = Vec::new();
+    for line in text(source).lines().map(str::trim_start) {
+        if let Some(path) = line.strip_prefix("#[path = \"").and_then(|rest| rest.strip_suffix("\"]")) {
+            files.extend(folder.join(path).canonicalize());
+        }
+        let Some((_, name)) = line.strip_suffix(';').and_then(|line| line.split_once("mod ")) else { continue };
+        for above in [folder, &own] {
+            files.extend([above.join(format!("{name}.rs")), above.join(name).join("mod.rs")]);
+        }
+    }
+    files
+}
+
+/// No compiler tells of a module that nobody declares.
+#[test]
+fn every_source_is_compiled() {
+    let sources = sources();
+    let declared: BTreeSet<PathBuf> = sources.iter().flat_map(|source| modules(source)).collect();
+    let is_target = |source: &PathBuf| is_root(name(source)) || name(source).starts_with("fuzz/fuzz_targets/");
+    let unused: Vec<_> = sources.iter().filter(|source| !declared.contains(*source) && !is_target(source)).collect();
+    assert!(unused.is_empty(), "nobody declares {unused:#?}");
+}
+
+/// A snapshot is named by a test, or after a scene.
+#[test]
+fn every_snapshot_is_compared() {
+    let all: String = sources().iter().map(|source| text(source)).collect();
+    let words: BTreeSet<&str> = all.split(['"', '(', ' ', '\n']).collect();
+    let snapshots = ["src", "crates", "tests"].map(|folder| files(&root().join(folder), ".snap")).concat();
+    let scenes = files(&root().join("assets"), ".xml");
+    let is_scene = |short: &str| scenes.iter().any(|scene| scene.ends_with(short.replace("--", "/") + ".xml"));
+    let is_used = |snapshot: &PathBuf| {
+        // `crate__module__tests__name@input.snap`
+        let stem = snapshot.file_stem().expect("a name").to_str().expect("a name");
+        let short = stem.split('@').next().and_then(|stem| stem.rsplit("__").next()).expect("a name");
+        let numbered = short.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches('-');
+        let formatted = format!("{}_{{}}", short.split('_').next().expect("a part"));
+        [short, numbered, &formatted].iter().any(|name| words.contains(name)) || is_scene(short)
+    };
+    assert!(snapshots.len() > 100, "{} snapshots: is this where they lie?", snapshots.len());
+    let unused: Vec<_> = snapshots.iter().filter(|snapshot| !is_used(snapshot)).collect();
+    assert!(unused.is_empty(), "no test compares {unused:#?}");
+}

@@ -1,0 +1,53 @@
+//! The checkout as tests read it: its sources and its other files.
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+/// The folders in which Rust sources lie.
+const SOURCES: [&str; 5] = ["src", "crates", "tests", "benches", "fuzz"];
+
+/// Folders that tools fill.
+const FILLED_BY_TOOLS: [&str; 2] = ["target", "node_modules"];
+
+/// The checkout.
+pub fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// What a file holds.
+pub fn text(path: &Path) -> String {
+    fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// A path as it is written in the checkout.
+pub fn name(path: &Path) -> &str {
+    path.strip_prefix(root()).expect("in the checkout").to_str().expect("a name")
+}
+
+/// All files below a folder whose names end like this, in their order.
+pub fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+    let mut paths: Vec<_> = entries.map(|entry| entry.expect("an entry").path()).collect();
+    paths.retain(|path| !FILLED_BY_TOOLS.iter().any(|name| path.ends_with(name)));
+    paths.sort();
+    let found = paths.into_iter().flat_map(|path| if path.is_dir() { files(&path, ending) } else { vec![path] });
+    found.filter(|path| path.to_string_lossy().ends_with(ending)).collect()
+}
+
+/// Every Rust file of the checkout.
+pub fn sources() -> Vec<PathBuf> {
+    let found = SOURCES.iter().flat_map(|folder| files(&root().join(folder), ".rs"));
+    found.chain([root().join("build.rs")]).collect()
+}
+
+/// The crate that a source belongs to: the name of its folder.
+pub fn crate_of(name: &str) -> &str {
+    name.strip_prefix("crates/").unwrap_or(name).split('/').next().unwrap_or_default()
+}
+
+/// Whether only tests and benches use a file.
+pub fn is_of_tests(name: &str) -> bool {
+    let is_folder = |part| ["tests", "benches", "fuzz", "testing"].contains(&part);
+    name.split('/').any(is_folder) || name.ends_with("tests.rs")
+}
