@@ -6,7 +6,7 @@ use std::{
 };
 
 /// Lines wider than rustfmt makes code, which are comments and texts.
-const MOST_WIDE_LINES: usize = 644;
+const MOST_WIDE_LINES: usize = 568;
 
 /// A line is as wide as rustfmt makes code (`rustfmt.toml`).
 const WIDTH: usize = 120;
@@ -31,13 +31,13 @@ const LONG_FUNCTIONS: [(&str, usize); 14] = [
     ("places.rs places", 99),
     ("stages.rs of_fault", 95),
     ("tests.rs faults", 82),
-    ("serve.rs run", 102),
+    ("serve.rs run", 107),
     ("ledger.rs write_result", 81),
     ("program.rs grade", 82),
-    ("servers.rs two_servers_lose_nothing", 112),
+    ("servers.rs two_servers_lose_nothing", 127),
     ("rows.rs fill", 99),
     ("platforms.rs what_a_platform_did_not_say_is_refused", 140),
-    ("upgrade.rs the_database_is_copied_before_its_tables_change", 117),
+    ("upgrade.rs the_database_is_copied_before_its_tables_change", 118),
     ("check.rs run", 137),
 ];
 

@@ -8,9 +8,9 @@ use std::ops::Range;
 use quick_xml::errors::{Error, SyntaxError};
 use quick_xml::events::Event;
 
-use super::grammar::{self, Rule};
 use super::problem::{Finding, MOST_PROBLEMS, Report, quote};
 use super::tag::{self, Tag, is_space, offset};
+use super::{grammar, rule::Rule};
 
 /// The elements of the text.
 #[derive(Debug, Default)]

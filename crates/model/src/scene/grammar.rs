@@ -1,18 +1,12 @@
 //! The names that a scene may use, and the one that somebody probably meant (scene-format.md 4, 5).
-
-/// The rules for one element.
-#[derive(Debug)]
-pub(super) struct Rule {
-    pub(super) name: &'static str,
-    pub(super) attributes: &'static [&'static str],
-}
+use super::{forces, rule::Rule};
 
 const fn element(name: &'static str, attributes: &'static [&'static str]) -> Rule {
     Rule { name, attributes }
 }
 
-/// Every element that may stand in a scene.
-static RULES: [Rule; 25] = [
+/// Every element that may stand in a scene, but for those of forces.
+static OTHERS: [Rule; 19] = [
     element("simtype", &["type"]),
     element("duration", &["time"]),
     element("maxsimfreq", &["max"]),
@@ -26,12 +20,6 @@ static RULES: [Rule; 25] = [
     element("particle", &["px", "py", "vx", "vy", "m", "fixed", "radius", "tag"]),
     element("edge", &["i", "j", "radius"]),
     element("halfplane", &["px", "py", "nx", "ny"]),
-    element("springforce", &["edge", "k", "l0", "b"]),
-    element("simplegravity", &["fx", "fy"]),
-    element("gravitationalforce", &["i", "j", "G"]),
-    element("constantforce", &["fx", "fy"]),
-    element("dragdamping", &["b"]),
-    element("vortexforce", &["i", "j", "kbs", "kvc"]),
     element("particlecolor", &["i", "r", "g", "b"]),
     element("edgecolor", &["i", "r", "g", "b"]),
     element("halfplanecolor", &["i", "r", "g", "b"]),
@@ -41,14 +29,18 @@ static RULES: [Rule; 25] = [
     element("rigidbodyvertex", &["x", "y", "m"]),
 ];
 
+fn rules() -> impl Iterator<Item = &'static Rule> {
+    OTHERS.iter().chain(forces::RULES)
+}
+
 /// The rule for an element of this name.
 pub(super) fn rule(name: &str) -> Option<&'static Rule> {
-    RULES.iter().find(|rule| rule.name == name)
+    rules().find(|rule| rule.name == name)
 }
 
 /// The known element that `name` looks like.
 pub(super) fn similar_element(name: &str) -> Option<&'static str> {
-    closest(name, RULES.iter().map(|rule| rule.name))
+    closest(name, rules().map(|rule| rule.name))
 }
 
 /// Names that many people write for a name of the format.

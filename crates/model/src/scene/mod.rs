@@ -10,6 +10,7 @@
 mod checks;
 mod document;
 mod fields;
+mod forces;
 mod grammar;
 mod model;
 mod numbers;
@@ -18,6 +19,7 @@ mod problem;
 mod reader;
 #[cfg(test)]
 mod reader_tests;
+mod rule;
 mod scale;
 mod tag;
 mod write;
@@ -29,4 +31,4 @@ pub use model::{
 };
 pub use problem::{MOST_PROBLEMS, Problem, Problems, Severity};
 pub use reader::{LARGEST_SCENE, Loaded, read};
-pub use write::write;
+pub use write::{collision_element, integrator_element, write};

@@ -7,8 +7,8 @@ use std::ops::Range;
 
 use quick_xml::events::attributes::{AttrError, Attributes};
 
-use super::grammar::{self, Rule};
 use super::problem::{Finding, Report, quote};
+use super::{grammar, rule::Rule};
 
 /// An attribute as written.
 #[derive(Debug)]

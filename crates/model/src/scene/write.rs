@@ -1,6 +1,7 @@
 //! Scenes as XML that both readers understand alike.
 use std::fmt::{self, Write as _};
 
+use super::forces::{self, Sink};
 use super::model::{Collision, Color, Force, Integrator, Scene};
 
 /// Writes a scene as XML, one element a line, every attribute spelt out, every number in the shortest form that reads
@@ -22,9 +23,10 @@ fn body(out: &mut String, scene: &Scene) -> fmt::Result {
         writeln!(out, r#"  <description text="{}"/>"#, Text(text))?;
     }
     writeln!(out, r#"  <duration time="{}"/>"#, Number(scene.duration))?;
-    let (name, step) = (integrator(scene.integrator), Number(scene.time_step));
-    writeln!(out, r#"  <integrator type="{name}" dt="{step}"/>"#)?;
-    collision(out, scene.collision)?;
+    writeln!(out, "  {}", integrator_element(scene))?;
+    if scene.collision != Collision::None {
+        writeln!(out, "  {}", collision_element(scene.collision))?;
+    }
     display(out, scene)?;
     for particle in &scene.particles {
         let [px, py, vx, vy] = [particle.position.x, particle.position.y, particle.velocity.x, particle.velocity.y];
@@ -47,38 +49,39 @@ fn body(out: &mut String, scene: &Scene) -> fmt::Result {
         let (nx, ny) = (Number(plane.normal.x), Number(plane.normal.y));
         writeln!(out, r#"  <halfplane px="{px}" py="{py}" nx="{nx}" ny="{ny}"/>"#)?;
     }
-    scene.forces.iter().try_for_each(|one| force(out, one))?;
+    scene.forces.iter().try_for_each(|force| writeln!(out, "  {force}"))?;
     colors(out, scene)
 }
 
-fn integrator(integrator: Integrator) -> &'static str {
-    match integrator {
+/// The element of a scene's integrator and time step.
+#[must_use]
+pub fn integrator_element(scene: &Scene) -> String {
+    let name = match scene.integrator {
         Integrator::ExplicitEuler => "explicit-euler",
         Integrator::ForwardBackwardEuler => "forward-backward-euler",
         Integrator::SymplecticEuler => "symplectic-euler",
         Integrator::ImplicitEuler => "implicit-euler",
         Integrator::LinearizedImplicitEuler => "linearized-implicit-euler",
-    }
+    };
+    format!(r#"<integrator type="{name}" dt="{}"/>"#, Number(scene.time_step))
 }
 
-fn collision(out: &mut String, collision: Collision) -> fmt::Result {
+/// The element of a scene's collision handling; empty where there is none.
+#[must_use]
+pub fn collision_element(collision: Collision) -> String {
+    let name = collision.kind().name();
     match collision {
-        Collision::None => Ok(()),
-        Collision::Simple { restitution } => {
-            writeln!(out, r#"  <collision type="simple" COR="{}"/>"#, Number(restitution))
-        }
-        Collision::ContinuousTime { restitution } => {
-            writeln!(out, r#"  <collision type="continuous-time" COR="{}"/>"#, Number(restitution))
+        Collision::None => String::new(),
+        Collision::Simple { restitution } | Collision::ContinuousTime { restitution } => {
+            format!(r#"<collision type="{name}" COR="{}"/>"#, Number(restitution))
         }
         Collision::Penalty { stiffness, thickness } => {
-            let (k, thickness) = (Number(stiffness), Number(thickness));
-            writeln!(out, r#"  <collision type="penalty" k="{k}" thickness="{thickness}"/>"#)
+            format!(r#"<collision type="{name}" k="{}" thickness="{}"/>"#, Number(stiffness), Number(thickness))
         }
         Collision::Hybrid { restitution, max_iterations, stiffness, thickness } => {
             let (cor, k, thickness) = (Number(restitution), Number(stiffness), Number(thickness));
-            writeln!(
-                out,
-                r#"  <collision type="hybrid" COR="{cor}" maxiters="{max_iterations}" k="{k}" thickness="{thickness}"/>"#
+            format!(
+                r#"<collision type="{name}" COR="{cor}" maxiters="{max_iterations}" k="{k}" thickness="{thickness}"/>"#
             )
         }
     }
@@ -102,26 +105,29 @@ fn display(out: &mut String, scene: &Scene) -> fmt::Result {
     Ok(())
 }
 
-fn force(out: &mut String, force: &Force) -> fmt::Result {
-    match *force {
-        Force::Spring { edge, stiffness, rest_length, damping } => {
-            let (k, l0, b) = (Number(stiffness), Number(rest_length), Number(damping));
-            writeln!(out, r#"  <springforce edge="{edge}" k="{k}" l0="{l0}" b="{b}"/>"#)
-        }
-        Force::SimpleGravity { acceleration } => {
-            writeln!(out, r#"  <simplegravity fx="{}" fy="{}"/>"#, Number(acceleration.x), Number(acceleration.y))
-        }
-        Force::Gravitation { first, second, constant } => {
-            writeln!(out, r#"  <gravitationalforce i="{first}" j="{second}" G="{}"/>"#, Number(constant))
-        }
-        Force::Constant { force } => {
-            writeln!(out, r#"  <constantforce fx="{}" fy="{}"/>"#, Number(force.x), Number(force.y))
-        }
-        Force::Drag { coefficient } => writeln!(out, r#"  <dragdamping b="{}"/>"#, Number(coefficient)),
-        Force::Vortex { first, second, strength, coupling } => {
-            let (kbs, kvc) = (Number(strength), Number(coupling));
-            writeln!(out, r#"  <vortexforce i="{first}" j="{second}" kbs="{kbs}" kvc="{kvc}"/>"#)
-        }
+/// The element as a file has it.
+impl fmt::Display for Force {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut attributes = Attributes(String::new());
+        let element = forces::tell(self, &mut attributes);
+        write!(f, "<{element}{}/>", attributes.0)
+    }
+}
+
+/// Attributes as they are written, each behind a space.
+struct Attributes(String);
+
+impl Sink for Attributes {
+    fn edge(&mut self, name: &str, index: usize) {
+        self.particle(name, index);
+    }
+
+    fn particle(&mut self, name: &str, index: usize) {
+        self.0 += &format!(r#" {name}="{index}""#);
+    }
+
+    fn number(&mut self, name: &str, value: f64) {
+        self.0 += &format!(r#" {name}="{}""#, Number(value));
     }
 }
 

@@ -3,6 +3,7 @@
 //! What only several elements together can get wrong is judged in `checks`.
 use super::document::Document;
 use super::fields::{Count, Fields};
+use super::forces::{ForceKind, Source};
 use super::model::{Collision, Display, Edge, Force, HalfPlane, Integrator, Particle, ParticlePath, Scene, Viewport};
 use super::problem::{Finding, Report};
 use super::tag::Tag;
@@ -175,29 +176,12 @@ impl<'d, 't> Reading<'d, 't, '_> {
 
     /// All forces in the order in which they act.
     fn forces(&mut self, particles: Count, edges: Count) -> Vec<Part<'d, 't, Force>> {
-        let mut forces = self.repeated("springforce", |fields| spring(fields, edges));
-        forces.extend(self.repeated("simplegravity", |fields| {
-            Some(Force::SimpleGravity { acceleration: fields.vector("fx", "fy")? })
-        }));
-        forces.extend(self.repeated("gravitationalforce", |fields| {
-            let (pair, constant) = (pair(fields, particles), fields.scalar("G"));
-            let (first, second) = pair?;
-            Some(Force::Gravitation { first, second, constant: constant? })
-        }));
-        forces.extend(
-            self.repeated("constantforce", |fields| Some(Force::Constant { force: fields.vector("fx", "fy")? })),
-        );
-        forces.extend(self.repeated("dragdamping", |fields| {
-            let coefficient = fields.scalar("b")?;
-            negative(fields, "b", coefficient, "motion is driven instead of damped");
-            Some(Force::Drag { coefficient })
-        }));
-        forces.extend(self.repeated("vortexforce", |fields| {
-            let pair = pair(fields, particles);
-            let (strength, coupling) = (fields.scalar("kbs"), fields.scalar("kvc"));
-            let (first, second) = pair?;
-            Some(Force::Vortex { first, second, strength: strength?, coupling: coupling? })
-        }));
+        let mut forces = Vec::new();
+        for kind in ForceKind::ALL {
+            forces.extend(self.repeated(kind.element(), |fields| {
+                kind.read(&mut ForceFields { fields, particles, edges, first: None }).ok()
+            }));
+        }
         forces
     }
 
@@ -351,26 +335,58 @@ fn edge(fields: &mut AnyFields<'_, '_, '_>, particles: Count) -> Option<Edge> {
     Some(Edge { first, second, radius: radius? })
 }
 
-fn spring(fields: &mut AnyFields<'_, '_, '_>, edges: Count) -> Option<Force> {
-    let edge = fields.index("edge", edges);
-    let (stiffness, rest_length) = (fields.scalar("k"), fields.scalar("l0"));
-    let damping = fields.scalar_or("b", 0.0);
-    let (edge, stiffness, rest_length, damping) = (edge?, stiffness?, rest_length?, damping?);
-    negative(fields, "k", stiffness, "the spring pushes where it should pull");
-    negative(fields, "l0", rest_length, "a length cannot be negative");
-    negative(fields, "b", damping, "motion is driven instead of damped");
-    Some(Force::Spring { edge, stiffness, rest_length, damping })
-}
-
 /// Two different particles in `i` and `j`.
 fn pair(fields: &mut AnyFields<'_, '_, '_>, particles: Count) -> Option<(usize, usize)> {
-    let (first, second) = (fields.index("i", particles), fields.index("j", particles));
-    let (first, second) = (first?, second?);
-    if first == second {
+    let first = fields.index("i", particles);
+    let second = other(fields, first, particles);
+    Some((first?, second?))
+}
+
+/// The particle in `j`, which is another one than that in `i`.
+fn other(fields: &mut AnyFields<'_, '_, '_>, first: Option<usize>, particles: Count) -> Option<usize> {
+    let second = fields.index("j", particles)?;
+    if first == Some(second) {
         fields.error("j", "is the same particle as `i`", "two different particles are needed");
         return None;
     }
-    Some((first, second))
+    Some(second)
+}
+
+/// The attributes of a force.
+struct ForceFields<'d, 't, 'r, 'f> {
+    fields: &'f mut Fields<'d, 't, 'r>,
+    particles: Count,
+    edges: Count,
+    /// The particle in `i`.
+    first: Option<usize>,
+}
+
+impl Source for ForceFields<'_, '_, '_, '_> {
+    /// The report has it.
+    type Error = ();
+
+    fn edge(&mut self, name: &'static str) -> Result<usize, ()> {
+        self.fields.index(name, self.edges).ok_or(())
+    }
+
+    fn particle(&mut self, name: &'static str) -> Result<usize, ()> {
+        if name == "j" {
+            return other(self.fields, self.first, self.particles).ok_or(());
+        }
+        self.first = self.fields.index(name, self.particles);
+        self.first.ok_or(())
+    }
+
+    fn number(&mut self, name: &'static str, default: Option<f64>, odd: Option<&str>) -> Result<f64, ()> {
+        let number = match default {
+            Some(default) => self.fields.scalar_or(name, default),
+            None => self.fields.scalar(name),
+        };
+        if let (Some(number), Some(effect)) = (number, odd) {
+            negative(self.fields, name, number, effect);
+        }
+        number.ok_or(())
+    }
 }
 
 fn path(fields: &mut AnyFields<'_, '_, '_>, particles: Count) -> Option<ParticlePath> {

@@ -37,7 +37,7 @@ fn of_case(case: &Case<'_>, evidence: &Evidence, rounded: Option<&Rounded>) -> V
     let is_full = case.hints == Hints::Full;
     let inspected: &[InspectedStep] = if is_full { &evidence.inspected } else { &[] };
     let Scene { particles, edges, half_planes, .. } = case.scene;
-    let Tags { integrator, collision, forces } = Tags::of(case.scene);
+    let forces: Vec<String> = case.scene.forces.iter().map(ToString::to_string).collect();
     let strip: String = evidence.steps.iter().map(|step| step.class.letter()).collect();
     let calls = inspected.iter().flat_map(|up| {
         up.calls.iter().map(|call| {
@@ -54,8 +54,8 @@ fn of_case(case: &Case<'_>, evidence: &Evidence, rounded: Option<&Rounded>) -> V
         "traceName": case.has_trace.then(|| markup::visible(case.check.trace)),
         "full": is_full,
         "collision": case.scene.collision.kind().name(),
-        "collisionTag": collision,
-        "integrator": integrator,
+        "collisionTag": scene::collision_element(case.scene.collision),
+        "integrator": scene::integrator_element(case.scene),
         "forces": forces,
         "rounded": rounded.map(|rounded| json!({"unit": rounded.unit, "exact": rounded.exact})),
         "dt": case.scene.time_step,
@@ -76,31 +76,6 @@ fn of_case(case: &Case<'_>, evidence: &Evidence, rounded: Option<&Rounded>) -> V
         "calls": calls.collect::<Vec<_>>(),
         "whatIf": case.what_if.filter(|_| is_full).map(|what| json!({"id": what.id, "text": what.sentence, "equal": what.equal})),
     })
-}
-
-/// Some elements of a scene, as a file has them.
-struct Tags {
-    integrator: String,
-    collision: String,
-    forces: Vec<String>,
-}
-
-impl Tags {
-    fn of(scene: &Scene) -> Self {
-        let bare = Scene { description: None, display: Default::default(), ..scene.clone() };
-        let text = scene::write(&bare);
-        let lines = || text.lines().map(str::trim);
-        let line = |name: &str| lines().find(|line| line.starts_with(name)).unwrap_or("").to_owned();
-        let is_force = |line: &&str| {
-            let name = line.trim_start_matches('<').split([' ', '/']).next().unwrap_or("");
-            name.ends_with("force") || name == "simplegravity" || name == "dragdamping"
-        };
-        Self {
-            integrator: line("<integrator"),
-            collision: line("<collision"),
-            forces: lines().filter(is_force).map(str::to_owned).collect(),
-        }
-    }
 }
 
 fn inspected_step(up: &InspectedStep, evidence: &Evidence) -> Value {

@@ -3,6 +3,7 @@ use super::item::Item;
 use super::markup::{self, Element};
 use super::single::Singles;
 use super::{OriginalScene, Refusal};
+use crate::scene::forces::{ForceKind, Source};
 use crate::scene::model::{Color, Display, Edge, Force, HalfPlane, Particle, ParticlePath, Scene};
 
 /// Reads a scene as the original does.
@@ -140,35 +141,12 @@ impl<'e> Repeated<'e> {
     /// All forces, in the order in which they act.
     fn forces(&mut self, particles: usize, edges: usize) -> Result<Vec<Force>, Refusal> {
         let mut forces = Vec::new();
-        for item in self.all("springforce") {
-            let edge = item.index("edge")?;
-            let (stiffness, rest_length) = (item.numeric("k")?, item.numeric("l0")?);
-            let damping = item.optional("b", 0.0, "value of ", "numeric")?;
-            let edge = self.within(&item, "springforce", "edge", edge, edges);
-            forces.push(Force::Spring { edge, stiffness, rest_length, damping });
-        }
-        // The original calls this one a constant force in its messages, too.
-        for item in Item::all(self.elements, "simplegravity", "constantforce") {
-            forces.push(Force::SimpleGravity { acceleration: item.numerics("fx", "fy")? });
-        }
-        for item in self.all("gravitationalforce") {
-            let (i, j, constant) = (item.index("i")?, item.index("j")?, item.numeric("G")?);
-            let first = self.within(&item, "gravitationalforce", "particle", i, particles);
-            let second = self.within(&item, "gravitationalforce", "particle", j, particles);
-            forces.push(Force::Gravitation { first, second, constant });
-        }
-        for item in self.all("constantforce") {
-            forces.push(Force::Constant { force: item.numerics("fx", "fy")? });
-        }
-        for item in self.all("dragdamping") {
-            forces.push(Force::Drag { coefficient: item.numeric("b")? });
-        }
-        for item in self.all("vortexforce") {
-            let (i, j) = (item.index("i")?, item.index("j")?);
-            let (strength, coupling) = (item.numeric("kbs")?, item.numeric("kvc")?);
-            let first = self.within(&item, "vortexforce", "particle", i, particles);
-            let second = self.within(&item, "vortexforce", "particle", j, particles);
-            forces.push(Force::Vortex { first, second, strength, coupling });
+        for kind in ForceKind::ALL {
+            // The original calls simple gravity a constant force in its messages, too.
+            let called = if *kind == ForceKind::SimpleGravity { ForceKind::Constant } else { *kind };
+            for item in Item::all(self.elements, kind.element(), called.element()) {
+                forces.push(kind.read(&mut ForceItem { item, kind: *kind, scene: self, particles, edges })?);
+            }
         }
         Ok(forces)
     }
@@ -205,5 +183,35 @@ impl<'e> Repeated<'e> {
             }
         }
         Ok(paths)
+    }
+}
+
+/// The attributes of a force.
+struct ForceItem<'e, 's> {
+    item: Item<'e>,
+    kind: ForceKind,
+    scene: &'s mut Repeated<'e>,
+    particles: usize,
+    edges: usize,
+}
+
+impl Source for ForceItem<'_, '_> {
+    type Error = Refusal;
+
+    fn edge(&mut self, name: &'static str) -> Result<usize, Refusal> {
+        let index = self.item.index(name)?;
+        Ok(self.scene.within(&self.item, self.kind.element(), "edge", index, self.edges))
+    }
+
+    fn particle(&mut self, name: &'static str) -> Result<usize, Refusal> {
+        let index = self.item.index(name)?;
+        Ok(self.scene.within(&self.item, self.kind.element(), "particle", index, self.particles))
+    }
+
+    fn number(&mut self, name: &'static str, default: Option<f64>, _: Option<&str>) -> Result<f64, Refusal> {
+        default.map_or_else(
+            || self.item.numeric(name),
+            |default| self.item.optional(name, default, "value of ", "numeric"),
+        )
     }
 }

@@ -1,0 +1,91 @@
+//! The table of forces: how an element is called, which attributes it has, and what they become.
+//!
+//! Both readers, the grammar, the writer and everybody who shows a force go by it. A force that has no row does not
+//! compile.
+use super::{model::Force, rule::Rule};
+use fosssim_num::vector::Vec2;
+
+/// The attributes of one element, as a reader takes them.
+pub(super) trait Source {
+    /// Why an attribute can't be used.
+    type Error;
+    /// The index of an edge.
+    fn edge(&mut self, name: &'static str) -> Result<usize, Self::Error>;
+    /// The index of a particle.
+    fn particle(&mut self, name: &'static str) -> Result<usize, Self::Error>;
+    /// A number with its default, if it has one, and the odd effect of one below zero.
+    fn number(&mut self, name: &'static str, default: Option<f64>, odd: Option<&str>) -> Result<f64, Self::Error>;
+    /// Two numbers.
+    fn vector(&mut self, x: &'static str, y: &'static str) -> Result<Vec2, Self::Error> {
+        let (x, y) = (self.number(x, None, None), self.number(y, None, None));
+        Ok(Vec2::new(x?, y?))
+    }
+}
+
+/// The attributes of one element, as somebody writes them.
+pub(super) trait Sink {
+    fn edge(&mut self, name: &str, index: usize);
+    fn particle(&mut self, name: &str, index: usize);
+    fn number(&mut self, name: &str, value: f64);
+    fn vector(&mut self, x: &str, y: &str, value: Vec2) {
+        self.number(x, value.x);
+        self.number(y, value.y);
+    }
+}
+
+macro_rules! forces {
+    ($($kind:ident $element:literal { $($field:ident: $part:ident($($name:literal),+ $(; $($rule:expr),+)?)),+ })+) => {
+        /// The kinds of forces, in the order in which they act.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub(super) enum ForceKind { $($kind),+ }
+
+        impl ForceKind {
+            /// All kinds, in the order in which they act.
+            pub const ALL: &[Self] = &[$(Self::$kind),+];
+
+            /// The name of its element.
+            pub const fn element(self) -> &'static str {
+                match self { $(Self::$kind => $element),+ }
+            }
+
+            /// The force that an element describes. All attributes are read before the first error is returned.
+            pub fn read<S: Source>(self, source: &mut S) -> Result<Force, S::Error> {
+                match self {
+                    $(Self::$kind => {
+                        $(let $field = source.$part($($name),+ $(, $($rule),+)?);)+
+                        Ok(Force::$kind { $($field: $field?),+ })
+                    })+
+                }
+            }
+        }
+
+        /// The elements of forces.
+        pub(super) static RULES: &[Rule] = &[$(Rule { name: $element, attributes: &[$($($name),+),+] }),+];
+
+        /// Tells the attributes of a force; the name of its element.
+        pub(super) fn tell(force: &Force, sink: &mut impl Sink) -> &'static str {
+            match *force {
+                $(Force::$kind { $($field),+ } => { $(sink.$part($($name),+, $field);)+ $element })+
+            }
+        }
+    };
+}
+
+forces! {
+    Spring "springforce" {
+        edge: edge("edge"),
+        stiffness: number("k"; None, Some("the spring pushes where it should pull")),
+        rest_length: number("l0"; None, Some("a length cannot be negative")),
+        damping: number("b"; Some(0.0), Some("motion is driven instead of damped"))
+    }
+    SimpleGravity "simplegravity" { acceleration: vector("fx", "fy") }
+    Gravitation "gravitationalforce" { first: particle("i"), second: particle("j"), constant: number("G"; None, None) }
+    Constant "constantforce" { force: vector("fx", "fy") }
+    Drag "dragdamping" { coefficient: number("b"; None, Some("motion is driven instead of damped")) }
+    Vortex "vortexforce" {
+        first: particle("i"),
+        second: particle("j"),
+        strength: number("kbs"; None, None),
+        coupling: number("kvc"; None, None)
+    }
+}

@@ -1,0 +1,8 @@
+//! What the grammar knows of an element.
+
+/// The rules for one element.
+#[derive(Debug)]
+pub(super) struct Rule {
+    pub(super) name: &'static str,
+    pub(super) attributes: &'static [&'static str],
+}
