@@ -1,5 +1,5 @@
 //! Judges a trace that comes once, and keeps of it what explanations need.
-use super::{Explanation, explain::explain_source, source::Source};
+use super::{Explanation, explain::explain_source};
 use fosssim_judge::{
     Outcome,
     kept::{Keeper, KeptTrace, LONGEST},
@@ -64,6 +64,5 @@ impl Examined<'_> {
 /// found something.
 #[must_use]
 pub fn explain_kept(trace: &KeptTrace<'_>) -> Vec<Explanation> {
-    let source = || Source { beginning: Box::new(trace.beginning()), is_whole: trace.is_whole(), late: trace.late() };
-    explain_source(trace.scene(), &source)
+    explain_source(trace.scene(), trace.into())
 }

@@ -2,9 +2,9 @@
 use super::{
     Detail, Explanation,
     about::About,
-    known::{self, Known, Sample, is_empty_stage, known_or_open},
-    not_finite, polynomial, samples,
-    source::Source,
+    known::{Known, is_empty_stage, known_or_open},
+    not_finite, polynomial,
+    sampling::{KeptStep, Sampled, Source, sampled},
     stages,
 };
 use crate::{
@@ -31,27 +31,27 @@ const MOST_PAIRS: usize = 400_000;
 /// trace breaks off. A trace of another scene yields nothing but that question ([`Explanation::is_other_scene`]).
 #[must_use]
 pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
-    explain_source(scene, &|| Source::whole(trace))
+    explain_source(scene, Source::whole(trace))
 }
 
 /// The explanation of the trace's stages, whether or not a known mistake explains it: for measuring what it says.
 #[must_use]
 pub fn explain_stages(scene: &Scene, trace: &[u8]) -> Option<Explanation> {
-    let scan = known::kept_steps(scene, Source::whole(trace));
-    stages::explain(scene, scan.wrong.iter().chain(&scan.right))
+    let Sampled { mut reference, scan, .. } = sampled(scene, Source::whole(trace));
+    stages::explain(&mut reference, scene, scan.wrong.iter().chain(&scan.right))
 }
 
-/// As [`explain`], whatever the trace's records are read from, more than once.
-pub(super) fn explain_source<'a>(scene: &Scene, source: &dyn Fn() -> Source<'a>) -> Vec<Explanation> {
-    let not_finite = not_finite::of_source(scene, source());
+/// As [`explain`], whatever the trace's records are read from.
+pub(super) fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     if Layout::of(scene).polynomials && pairs(scene).count() > MOST_PAIRS {
-        return not_finite.into_iter().collect();
+        return not_finite::of_source(scene, source);
     }
-    let Known { explanations: mut known, open, denies } = known_or_open(scene, source());
+    let Sampled { mut reference, not_finite, scan, detections } = sampled(scene, source);
+    let Known { explanations: mut known, open, denies } = known_or_open(&mut reference, scene, scan);
     if known.iter().any(Explanation::is_other_scene) {
         return known;
     }
-    let mut polynomials = polynomial::explain(&samples::samples(scene, source()));
+    let mut polynomials = polynomial::explain(&detections);
     if known.iter().any(|one| find(&one.key).is_some_and(is_empty_stage)) {
         polynomials.retain(|one| !one.is_of_missing());
     }
@@ -97,8 +97,8 @@ pub(super) fn explain_source<'a>(scene: &Scene, source: &dyn Fn() -> Source<'a>)
         one.is_complete() || !polynomials.iter().any(is_told)
     });
     let stage = open.and_then(|scan| {
-        let is_of_numbers = |sample: &&Sample| sample.records.is_finite();
-        stages::explain(scene, scan.wrong.iter().chain(&scan.right).filter(is_of_numbers))
+        let is_of_numbers = |kept: &&KeptStep| kept.records.is_finite();
+        stages::explain(&mut reference, scene, scan.wrong.iter().chain(&scan.right).filter(is_of_numbers))
     });
     if stage.as_ref().is_some_and(|stage| stage.key == Explanation::ORDER) {
         // Where pairs come in another order, polynomials of one are not those of another.

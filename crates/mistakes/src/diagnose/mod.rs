@@ -16,9 +16,8 @@ mod heads;
 mod known;
 mod not_finite;
 pub mod polynomial;
-mod samples;
+mod sampling;
 mod settled;
-mod source;
 mod stages;
 
 pub use crate::{assignments::probe_scenes, plain::formula_in};

@@ -6,67 +6,67 @@ use super::{
     Explanation,
     about::About,
     fault::{NanStage, NotFinite},
-    known::Capture,
-    source::{Source, StepFrames, read},
+    sampling::{Capture, Reference, Source, StepFrames, Steps},
 };
-use fosssim_judge::{
-    budget::Budget,
-    kept::{KeptTrace, LONGEST},
-};
+use fosssim_judge::kept::KeptTrace;
 use fosssim_model::{
     scene::{Collision, Scene},
-    sim::{Pair, PairKind, RootSearch, Simulation, State, pairs},
-    trace::{Layout, Lenient, LenientFrame, LoggedImpulse, PolynomialLog, record_memory},
+    sim::{Pair, PairKind, State, pairs},
+    trace::{LenientFrame, LoggedImpulse, PolynomialLog},
 };
 
 /// What is told of the first number of a kept trace that is none, and nothing else that explanations find; empty where
 /// all are finite, or where the reference comes to the same.
 #[must_use]
 pub fn not_finite(trace: &KeptTrace<'_>) -> Vec<Explanation> {
-    let source = Source { beginning: Box::new(trace.beginning()), is_whole: trace.is_whole(), late: trace.late() };
-    of_source(trace.scene(), source).into_iter().collect()
+    of_source(trace.scene(), trace.into())
 }
 
 /// The same, of a whole trace.
 #[must_use]
 pub fn not_finite_in(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
-    of_source(scene, Source::whole(trace)).into_iter().collect()
+    of_source(scene, Source::whole(trace))
 }
 
 /// The same, of what records are at hand.
-pub(super) fn of_source(scene: &Scene, source: Source<'_>) -> Option<Explanation> {
-    let layout = Layout::of(scene);
-    let mut reader = Lenient::new(source.beginning, layout).with_limit(record_memory(scene));
-    let mut frames = StepFrames::default();
-    if !read(&mut reader, &mut frames.before) {
-        return None;
+pub(super) fn of_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
+    let (mut steps, mut reference, mut first) = (Steps::new(scene, source), Reference::new(scene), First::default());
+    first.begin(&steps.frames);
+    while let (Some(step), false) = (steps.next(), first.is_found) {
+        first.step(&mut reference, scene, step, &steps.frames);
     }
-    if let Some(wild) = wild_value(&frames.before.state) {
-        return Some(explanation(NotFinite { step: Some(0), stage: NanStage::FirstRecord, is_nan: wild.is_nan() }));
-    }
-    for step in 1..=layout.steps {
-        let StepFrames { before, mid, end } = &mut frames;
-        if reader.offset() > LONGEST || (layout.polynomials && !read(&mut reader, mid)) || !read(&mut reader, end) {
-            break;
-        }
-        if is_wild(mid) || is_wild(end) {
-            return of_step(scene, step, &frames).map(explanation);
-        }
-        before.state.clone_from(&end.state);
-    }
-    let is_first = |frames: &StepFrames| wild_value(&frames.before.state).is_none();
-    source
-        .late
-        .iter()
-        .find_map(|late| {
-            let frames = StepFrames::of_late(scene, late).filter(is_first)?;
-            if is_wild(&frames.mid) || is_wild(&frames.end) { of_step(scene, late.step, &frames) } else { None }
-        })
-        .map(explanation)
+    first.explanation().into_iter().collect()
 }
 
-fn explanation(found: NotFinite) -> Explanation {
-    Explanation::about(Explanation::NOT_FINITE, About::NotFinite(found))
+/// Looks for the first number that is none, step by step.
+#[derive(Default)]
+pub(super) struct First {
+    is_found: bool,
+    /// Nothing where the reference comes to the same.
+    told: Option<NotFinite>,
+}
+
+impl First {
+    /// Looks at the first record.
+    pub(super) fn begin(&mut self, frames: &StepFrames) {
+        if let Some(wild) = wild_value(&frames.before.state) {
+            let told = NotFinite { step: Some(0), stage: NanStage::FirstRecord, is_nan: wild.is_nan() };
+            *self = Self { is_found: true, told: Some(told) };
+        }
+    }
+
+    /// Looks at a step, unless it is found already.
+    pub(super) fn step(&mut self, reference: &mut Reference<'_>, scene: &Scene, step: u32, frames: &StepFrames) {
+        let begins = wild_value(&frames.before.state).is_none() && (is_wild(&frames.mid) || is_wild(&frames.end));
+        if begins && !self.is_found {
+            *self = Self { is_found: true, told: of_step(reference, scene, step, frames) };
+        }
+    }
+
+    /// What is told of it.
+    pub(super) fn explanation(self) -> Option<Explanation> {
+        self.told.map(|found| Explanation::about(Explanation::NOT_FINITE, About::NotFinite(found)))
+    }
 }
 
 /// The first value that is no finite number.
@@ -91,15 +91,11 @@ fn is_wild(frame: &LenientFrame) -> bool {
 
 /// The stage of a step that leaves what is no number, of a state that is numbers; nothing where the reference does as
 /// well.
-fn of_step(scene: &Scene, step: u32, frames: &StepFrames) -> Option<NotFinite> {
-    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
-    simulation.state_mut().clone_from(&frames.before.state);
-    simulation.set_steps_done(step - 1);
+fn of_step(reference: &mut Reference<'_>, scene: &Scene, step: u32, frames: &StepFrames) -> Option<NotFinite> {
     let mut capture = Capture::new(&scene.collision);
-    let is_ours =
-        Budget::new(scene, false).step(&mut simulation, &mut capture).is_err() || !capture.records.is_finite();
+    let has_result = reference.step(step, &frames.before.state, &mut capture).is_some();
     let (stage, value) = stage(scene, frames)?;
-    (!is_ours).then_some(NotFinite { step: Some(step), stage, is_nan: value.is_nan() })
+    (has_result && capture.records.is_finite()).then_some(NotFinite { step: Some(step), stage, is_nan: value.is_nan() })
 }
 
 /// The first stage whose results are no numbers, with the first such value.

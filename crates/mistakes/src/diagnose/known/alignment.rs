@@ -1,12 +1,10 @@
 //! Records that are missing throughout: then every later record stands for another one, and no step looks right.
-use super::{
-    compare::{Logged, ROUND_OFF, StepRecords, first_difference},
-    explain,
-    resimulate::resimulate,
-    scan::Scan,
-};
+use super::{explain, resimulate::resimulate};
 use crate::{
-    diagnose::Explanation,
+    diagnose::{
+        Explanation,
+        sampling::{Logged, ROUND_OFF, Scan, StepRecords, first_difference},
+    },
     student::{Mistake, Row, StepLog, Student, World, find},
 };
 use fosssim_model::{scene::Scene, sim::State, trace::Layout};
@@ -16,12 +14,12 @@ pub(super) fn missing_record(scene: &Scene, scan: &Scan) -> Option<Explanation> 
     let layout = Layout::of(scene);
     ["log-no-initial", "log-no-mid"].into_iter().filter_map(find).find_map(|row| {
         let expected = records_without(layout, row);
-        if scan.records.is_some_and(|records| records > expected) {
+        if scan.outline.records.is_some_and(|records| records > expected) {
             return None;
         }
-        let steps = aligned_steps(scene, layout, &scan.opening, row)?;
+        let steps = aligned_steps(scene, layout, &scan.outline.opening, row)?;
         // What never moves is right however it is read; then only the number of records tells.
-        let tells = !scan.wrong.is_empty() || scan.records == Some(expected);
+        let tells = !scan.wrong.is_empty() || scan.outline.records == Some(expected);
         tells.then(|| explain(row, (steps, steps)))
     })
 }

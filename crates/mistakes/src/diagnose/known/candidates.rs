@@ -1,13 +1,15 @@
 //! Tries the rows of the catalogue on the kept steps.
 use super::{
-    compare::{ROUND_OFF, first_difference, same_polynomial},
-    resimulate::{Correct, resimulate, step_work},
-    scan::{Sample, Scan},
+    resimulate::Correct,
     shown::applicable,
+    trials::{Program, Trials},
 };
-use crate::student::{Area, Mistake, Row, StepLog, Student, World};
+use crate::{
+    diagnose::sampling::{KeptStep, Scan},
+    student::{Mistake, Row},
+};
 use fosssim_model::scene::Scene;
-use std::{cell::Cell, collections::BTreeSet};
+use std::collections::BTreeSet;
 
 /// Wrong steps that are tried first, one of each sort.
 const PROBES: usize = 8;
@@ -26,20 +28,19 @@ pub(super) struct Score {
 /// A program with one mistake.
 struct Candidate {
     row: &'static Row,
-    world: World,
+    program: Program,
 }
 
 /// All programs, and the steps in the order in which they are tried.
 pub(super) struct Candidates<'a> {
     candidates: Vec<Candidate>,
     /// Wrong steps: first one of each sort, the cheapest first, then the others.
-    wrong: Vec<&'a Sample>,
+    wrong: Vec<&'a KeptStep>,
     probes: usize,
     /// The first divergence.
-    first: Option<&'a Sample>,
-    right: Vec<&'a Sample>,
-    work: Cell<u64>,
-    step_work: u64,
+    first: Option<&'a KeptStep>,
+    right: Vec<&'a KeptStep>,
+    trials: Trials,
 }
 
 impl<'a> Candidates<'a> {
@@ -47,9 +48,8 @@ impl<'a> Candidates<'a> {
     ///
     /// `correct` is the program that the mistakes are added to.
     pub(super) fn new(scene: &Scene, scan: &'a Scan, correct: Correct) -> Self {
-        let world = World::new(scene.clone(), Student::default());
-        let candidates =
-            applicable(scene).map(|row| Candidate { row, world: world.of(correct.with(Some(row.mistake))) }).collect();
+        let trials = Trials::new(scene, correct);
+        let candidates = applicable(scene).map(|row| Candidate { row, program: trials.program(&[row]) }).collect();
         let mut signatures = BTreeSet::new();
         let (mut probes, mut others) = (Vec::new(), Vec::new());
         for sample in &scan.wrong {
@@ -63,15 +63,7 @@ impl<'a> Candidates<'a> {
         let number = probes.len();
         probes.append(&mut others);
         let (first, right) = (scan.wrong.first(), scan.right.iter().collect());
-        Self {
-            candidates,
-            wrong: probes,
-            probes: number,
-            first,
-            right,
-            work: Cell::new(0),
-            step_work: step_work(scene),
-        }
+        Self { candidates, wrong: probes, probes: number, first, right, trials }
     }
 
     /// The rows that reproduce the most, all of them equally many wrong steps, in the order of the catalogue. Empty
@@ -101,11 +93,11 @@ impl<'a> Candidates<'a> {
 
     /// The rows that reproduce the most wrong steps, half of them at least, and all right ones.
     fn partial(&self) -> Vec<Score> {
-        self.work.set(0);
+        self.trials.work.set(0);
         let stride = self.wrong.len().div_ceil(PARTIAL).max(1);
-        let spread: Vec<&Sample> = self.wrong.iter().step_by(stride).copied().collect();
+        let spread: Vec<&KeptStep> = self.wrong.iter().step_by(stride).copied().collect();
         let rest = self.wrong.iter().enumerate().filter(|(index, _)| !index.is_multiple_of(stride));
-        let rest: Vec<&Sample> = rest.map(|(_, sample)| *sample).collect();
+        let rest: Vec<&KeptStep> = rest.map(|(_, sample)| *sample).collect();
         let mut left: Vec<(&Candidate, usize)> = self.candidates.iter().map(|candidate| (candidate, 0)).collect();
         let mut tried = 0;
         for (number, sample) in spread.iter().chain(&rest).enumerate() {
@@ -137,11 +129,11 @@ impl<'a> Candidates<'a> {
     }
 
     fn exhausted(&self) -> bool {
-        self.work.get() > WORK
+        self.trials.work.get() > WORK
     }
 
     /// Whether this program logs in this step what the submission did.
-    fn reproduces(&self, candidate: &Candidate, sample: &Sample) -> bool {
+    fn reproduces(&self, candidate: &Candidate, sample: &KeptStep) -> bool {
         match candidate.row.mistake {
             Mistake::LogPolynomialsKept if sample.difference.is_some() => return sample.context.polynomials_kept,
             Mistake::LogImpulsesKept if sample.difference.is_some() => return sample.context.impulses_kept,
@@ -151,23 +143,12 @@ impl<'a> Candidates<'a> {
             Mistake::LogSinglePrecision if sample.difference.is_some() => return sample.context.single_precision,
             _ => {}
         }
-        let logged = &sample.records.end.polynomials;
-        // A program that logs wrongly asks the root finder something else than it says.
-        let logs_wrongly = candidate.row.area == Area::Trace;
-        let asked = Cell::new(self.step_work);
-        let guard = |index: usize, coefficients: &[f64]| {
-            asked.set(asked.get() + 1);
-            index < logged.len() && (logs_wrongly || same_polynomial(coefficients, logged.get(index), &ROUND_OFF))
-        };
-        let records =
-            resimulate(&candidate.world, &sample.before, StepLog { guard: Some(&guard), ..StepLog::default() });
-        self.work.set(self.work.get() + asked.get());
-        records.is_some_and(|records| first_difference(&records, &sample.records, &ROUND_OFF).is_none())
+        self.trials.reached(&candidate.program, sample) >= 1.0
     }
 }
 
 /// Whether NaN stands in all polynomials of the step, or in all its contact vectors, as this row has it.
-fn logs_nan(row: &Row, sample: &Sample) -> bool {
+fn logs_nan(row: &Row, sample: &KeptStep) -> bool {
     let end = &sample.records.end;
     let in_polynomials = end.polynomials.coefficients.iter().all(|value| value.is_nan());
     let in_vectors = end.impulses.iter().all(|contact| contact.normal.x.is_nan() && contact.normal.y.is_nan());

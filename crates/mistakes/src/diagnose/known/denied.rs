@@ -1,9 +1,8 @@
 //! What a trace shows not to be so, whatever else is wrong with it: stages that are not empty, zones that do not stop.
-use super::{
-    compare::{Difference, Logged, PLAIN, ROUND_OFF, state_difference},
-    scan::{Sample, Scan},
+use crate::{
+    diagnose::sampling::{Difference, KeptStep, Logged, PLAIN, ROUND_OFF, Scan, state_difference},
+    student::{CATALOGUE, Mistake},
 };
-use crate::student::{CATALOGUE, Mistake};
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{PairKind, pairs},
@@ -30,7 +29,7 @@ pub(super) fn denied(scene: &Scene, scan: &Scan) -> Vec<String> {
 }
 
 /// The kinds of pairs whose first polynomials of the step are right.
-fn right_kinds(scene: &Scene, sample: &Sample) -> Vec<PairKind> {
+fn right_kinds(scene: &Scene, sample: &KeptStep) -> Vec<PairKind> {
     let logged = sample.records.end.polynomials.len();
     let right = match sample.difference {
         Some(Difference::Polynomial(index)) => index.min(logged),
@@ -49,17 +48,17 @@ fn right_kinds(scene: &Scene, sample: &Sample) -> Vec<PairKind> {
     kinds
 }
 
-fn has_rounds(sample: &Sample) -> bool {
+fn has_rounds(sample: &KeptStep) -> bool {
     sample.records.mid.as_ref().is_some_and(|mid| !mid.polynomials.is_empty())
 }
 
-fn has_passes(sample: &Sample) -> bool {
+fn has_passes(sample: &KeptStep) -> bool {
     let (mid, end) = (&sample.records.mid, &sample.records.end);
     mid.as_ref().is_some_and(|mid| end.polynomials.len() > mid.polynomials.len())
 }
 
 /// Whether the end of the step is another state than its middle.
-fn moves(sample: &Sample) -> bool {
+fn moves(sample: &KeptStep) -> bool {
     let end = &sample.records.end.state;
     let is_sound = end.positions.iter().chain(&end.velocities).all(|value| value.is_finite());
     let differs = |mid: &Logged| state_difference(&mid.state, end, &ROUND_OFF).is_some();
@@ -67,7 +66,7 @@ fn moves(sample: &Sample) -> bool {
 }
 
 /// Whether the geometric part moves a particle that is not back at its start then.
-fn moves_on(sample: &Sample) -> bool {
+fn moves_on(sample: &KeptStep) -> bool {
     let Some(mid) = &sample.records.mid else { return false };
     let end = &sample.records.end.state.positions;
     let differs =

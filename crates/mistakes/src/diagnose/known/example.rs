@@ -1,36 +1,27 @@
 //! The first place at which a wrong step differs from the reference.
-use super::{
-    capture::Capture,
-    compare::{Difference, ROUND_OFF, same_impulse},
-    resimulate::{Correct, resimulate},
-    scan::Sample,
-};
+use super::resimulate::{Correct, resimulate};
 use crate::{
-    diagnose::{Example, ExamplePlace, StepRecord},
+    diagnose::{
+        Example, ExamplePlace, StepRecord,
+        sampling::{Capture, Difference, KeptStep, ROUND_OFF, Reference, same_impulse},
+    },
     student::{StepLog, World},
 };
 use fosssim_judge::Role;
-use fosssim_model::{
-    scene::Scene,
-    sim::{RootSearch, Simulation, State},
-    trace::LoggedImpulse,
-};
+use fosssim_model::{scene::Scene, sim::State, trace::LoggedImpulse};
 use fosssim_num::vector::at;
 
 /// The example of a wrong step: where it differs first, what was expected there and what the submission logged.
-pub(super) fn example(scene: &Scene, correct: Correct, sample: &Sample) -> Example {
-    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+pub(super) fn example(reference: &mut Reference<'_>, scene: &Scene, correct: Correct, kept: &KeptStep) -> Example {
     let mut capture = Capture::new(&scene.collision);
-    simulation.state_mut().clone_from(&sample.before);
-    simulation.set_steps_done(sample.step - 1);
     // The step was simulated before, so it does not fail; if it did, the lists below would be empty.
-    let _outcome = simulation.step(&mut capture);
+    let _end = reference.step(kept.step, &kept.before, &mut capture);
     if correct == Correct::RightApproach {
         let world = World::new(scene.clone(), correct.with(None));
-        capture.records = resimulate(&world, &sample.before, StepLog::default()).unwrap_or_default();
+        capture.records = resimulate(&world, &kept.before, StepLog::default()).unwrap_or_default();
     }
-    let (ours, theirs) = (&capture.records, &sample.records);
-    let (place, expected, actual) = match sample.difference {
+    let (ours, theirs) = (&capture.records, &kept.records);
+    let (place, expected, actual) = match kept.difference {
         Some(Difference::Polynomial(index)) => {
             let list = |log: &fosssim_model::trace::PolynomialLog| {
                 if index < log.len() { log.get(index).to_vec() } else { Vec::new() }
@@ -52,7 +43,7 @@ pub(super) fn example(scene: &Scene, correct: Correct, sample: &Sample) -> Examp
         Some(Difference::EndState(particle)) => state(particle, StepRecord::End, &ours.end.state, &theirs.end.state),
         Some(Difference::MidLists) | None => (ExamplePlace::MidLists, Vec::new(), Vec::new()),
     };
-    Example { step: sample.step, place, given: Vec::new(), expected, actual }
+    Example { step: kept.step, place, given: Vec::new(), expected, actual }
 }
 
 /// The first contact that differs: normal and time, three numbers.

@@ -11,30 +11,26 @@
 //! The mathematics is that of the two simulators; the only tolerances are those of [`compare`].
 mod alignment;
 mod candidates;
-mod capture;
-mod compare;
 mod denied;
 mod example;
 mod refute;
 mod resimulate;
-mod scan;
 mod several;
 mod shown;
+mod trials;
 
-pub(super) use capture::Capture;
-pub(super) use compare::{
-    Logged, ROUND_OFF, StepRecords, first_difference, same_formula, same_impulse, same_polynomial, state_difference,
-};
 pub use refute::shows;
-pub(super) use scan::Sample;
 pub(super) use several::is_empty_stage;
 
-use super::{Detail, Explanation, about::About, source::Source};
-use crate::student::{Mistake, Row, RowKind, find};
+use super::{
+    Detail, Explanation,
+    about::About,
+    sampling::{ROUND_OFF, Reference, Sampled, Scan, Source, first_difference, sampled},
+};
+use crate::student::{Mistake, Row, RowKind, StepLog, World, find};
 use candidates::{Candidates, Score};
 use fosssim_model::{scene::Scene, trace::Layout};
-use resimulate::Correct;
-use scan::Scan;
+use resimulate::{Correct, resimulate};
 use several::Several;
 use std::io::Read;
 
@@ -53,12 +49,8 @@ use std::io::Read;
 /// ([`Explanation::OTHER_SCENE`]).
 #[must_use]
 pub fn known(scene: &Scene, trace: impl Read) -> Vec<Explanation> {
-    known_or_open(scene, Source::whole(trace)).explanations
-}
-
-/// The kept steps of a trace.
-pub(super) fn kept_steps(scene: &Scene, source: Source<'_>) -> Scan {
-    scan::scan(scene, source)
+    let Sampled { mut reference, scan, .. } = sampled(scene, Source::whole(trace));
+    known_or_open(&mut reference, scene, scan).explanations
 }
 
 /// What the catalogue says of a trace.
@@ -72,62 +64,91 @@ pub(super) struct Known {
     pub(super) denies: Vec<String>,
 }
 
-/// The same, with the kept steps where no mistake explains all of them.
-pub(super) fn known_or_open(scene: &Scene, source: Source<'_>) -> Known {
+/// The same of kept steps, with these where no mistake explains all of them.
+pub(super) fn known_or_open(reference: &mut Reference<'_>, scene: &Scene, mut scan: Scan) -> Known {
     let only = |one: Explanation| Known { explanations: vec![one], ..Known::default() };
-    let mut scan = scan::scan(scene, source);
     if let Some(missing) = alignment::missing_record(scene, &scan) {
         return only(missing);
     }
-    if scan.foreign {
-        let layout = Layout::of(scene);
-        let has_length = !scan.longer && scan.records.is_none_or(|records| records == layout.records());
+    if scan.outline.is_of_other_scene(scene) {
+        let (layout, outline) = (Layout::of(scene), &scan.outline);
+        let has_length = !outline.is_longer && outline.records.is_none_or(|records| records == layout.records());
         return only(Explanation::of_other_scene(has_length));
     }
     let denies = denied::denied(scene, &scan);
-    let (mut explanations, is_settled) = of_wrong_steps(scene, &mut scan);
+    let (mut explanations, is_settled) = of_wrong_steps(reference, scene, &mut scan);
     explanations.retain(|one| one.is_complete() || !denies.contains(&one.key));
-    if !explanations.is_empty() || scan.padded == 0 {
+    if !explanations.is_empty() || scan.outline.padded == 0 {
         return Known { explanations, open: (!is_settled).then_some(scan), denies };
     }
     // Reading drops what the course's library would have dropped, so such steps look right.
-    let padded = find("log-padded").map(|row| explain(row, (scan.padded, scan.padded)));
+    let padded = find("log-padded").map(|row| explain(row, (scan.outline.padded, scan.outline.padded)));
     Known { explanations: padded.into_iter().collect(), open: None, denies }
 }
 
 /// What the catalogue says, and whether that is all there is to say. May leave the steps as a program with the right
 /// approach sees them.
-fn of_wrong_steps(scene: &Scene, scan: &mut Scan) -> (Vec<Explanation>, bool) {
+fn of_wrong_steps(reference: &mut Reference<'_>, scene: &Scene, scan: &mut Scan) -> (Vec<Explanation>, bool) {
     if scan.wrong.is_empty() {
         return (Vec::new(), true);
     }
-    let supplied = best(scene, scan, Correct::Supplied);
+    let supplied = best(reference, scene, scan, Correct::Supplied);
     if supplied.complete {
         return (supplied.explanation.into_iter().collect(), true);
     }
     if let Some(several) = several::several(scene, scan, Correct::Supplied) {
-        return (together(scene, scan, Correct::Supplied, &several), true);
+        return (together(reference, scene, scan, Correct::Supplied, &several), true);
     }
     // The fair rules accept the right approach as well as the supplied one; behind it may be a mistake of another kind.
-    if !scan.take_right_approach(scene) {
+    if !take_right_approach(scan, scene) {
         return (supplied.explanation.into_iter().collect(), scan.wrong.is_empty());
     }
-    let right = best(scene, scan, Correct::RightApproach);
+    let right = best(reference, scene, scan, Correct::RightApproach);
     if right.complete {
         return (right.explanation.into_iter().collect(), true);
     }
     if let Some(several) = several::several(scene, scan, Correct::RightApproach) {
-        return (together(scene, scan, Correct::RightApproach, &several), true);
+        return (together(reference, scene, scan, Correct::RightApproach, &several), true);
     }
     (supplied.explanation.or(right.explanation).into_iter().collect(), false)
 }
 
+/// Sees the same steps as a program does whose particle-edge approach is mathematically right: many that were wrong
+/// are right then. False when all are, or when the scene has no edge.
+fn take_right_approach(scan: &mut Scan, scene: &Scene) -> bool {
+    if scene.edges.is_empty() {
+        return false;
+    }
+    let world = World::new(scene.clone(), Correct::RightApproach.with(None));
+    let samples = std::mem::take(&mut scan.wrong).into_iter().chain(std::mem::take(&mut scan.right));
+    for mut sample in samples {
+        let logged = sample.records.end.polynomials.len();
+        // A few more than were logged show that there are too few; no more are of interest.
+        let guard = |index: usize, _: &[f64]| index < 2 * logged + SPARE;
+        let expected = resimulate(&world, &sample.before, StepLog { guard: Some(&guard), ..StepLog::default() });
+        let Some(expected) = expected else { continue };
+        sample.difference = first_difference(&expected, &sample.records, &ROUND_OFF);
+        if sample.difference.is_some() { scan.wrong.push(sample) } else { scan.right.push(sample) }
+    }
+    scan.keep_fewer_right();
+    !scan.wrong.is_empty()
+}
+
+/// How many polynomials more than were logged a step may have before it is left.
+const SPARE: usize = 10_000;
+
 /// The explanations of several mistakes, which reproduce the same steps together. Empty stages are told first.
-fn together(scene: &Scene, scan: &Scan, correct: Correct, several: &Several) -> Vec<Explanation> {
+fn together(
+    reference: &mut Reference<'_>,
+    scene: &Scene,
+    scan: &Scan,
+    correct: Correct,
+    several: &Several,
+) -> Vec<Explanation> {
     let counts = (several.samples, several.samples);
     let mut all: Vec<Explanation> = several.rows.iter().map(|row| explain(row, counts)).collect();
     if let Some(first) = all.first_mut() {
-        first.example = scan.wrong.first().map(|sample| example::example(scene, correct, sample));
+        first.example = scan.wrong.first().map(|sample| example::example(reference, scene, correct, sample));
     }
     for (explanation, others) in all.iter_mut().zip(&several.same_as) {
         explanation.same_as = others.iter().map(|row| row.id.to_owned()).collect();
@@ -150,7 +171,7 @@ struct Found {
 }
 
 /// Tries the catalogue on the kept steps.
-fn best(scene: &Scene, scan: &Scan, correct: Correct) -> Found {
+fn best(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan, correct: Correct) -> Found {
     let mut scores = Candidates::new(scene, scan, correct).best();
     scores.sort_by_key(|score| plausibility(score.row));
     let (Some(best), Some(first)) = (scores.first(), scan.wrong.first()) else { return Found::default() };
@@ -159,7 +180,7 @@ fn best(scene: &Scene, scan: &Scan, correct: Correct) -> Found {
         return Found { explanation: None, complete };
     }
     let mut explanation = explain(best.row, (best.reproduced, best.samples));
-    explanation.example = Some(example::example(scene, correct, first));
+    explanation.example = Some(example::example(reference, scene, correct, first));
     explanation.same_as = scores[1..].iter().map(|score: &Score| score.row.id.to_owned()).collect();
     Found { explanation: Some(explanation), complete }
 }

@@ -1,11 +1,12 @@
 //! Whether a mistake would be seen on a scene: where a program was right all the same, it does not make it.
 use super::{
-    capture::Capture,
-    compare::{PLAIN, first_difference, same_polynomial},
     resimulate::{resimulate, step_work},
     shown::can_show,
 };
-use crate::student::{Area, StepLog, Student, World, find};
+use crate::{
+    diagnose::sampling::{Capture, PLAIN, first_difference, same_polynomial},
+    student::{Area, StepLog, Student, World, find},
+};
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{RootSearch, Simulation},

@@ -1,6 +1,8 @@
 //! Steps of a student's program, from a submission's own state.
-use super::compare::{Logged, StepRecords};
-use crate::student::{Mistake, Record, State, StepLog, Student, World, step};
+use crate::{
+    diagnose::sampling::{Logged, StepRecords},
+    student::{Mistake, Record, State, StepLog, Student, World, step},
+};
 use fosssim_model::{scene::Scene, sim::pairs};
 
 /// What a submission does right.

@@ -3,19 +3,16 @@
 //! A row is worth adding when it carries the simulation of the wrong steps further before it parts from what was
 //! logged. Only a set that reproduces everything, right steps included, and of which no row can be left out, explains
 //! anything.
-use super::{
-    compare::{Difference, ROUND_OFF, first_difference, same_polynomial},
-    plausibility,
-    resimulate::{Correct, resimulate, step_work},
-    scan::{Sample, Scan},
-    shown::applicable,
+use super::{plausibility, resimulate::Correct, shown::applicable, trials::Trials};
+use crate::{
+    diagnose::sampling::{KeptStep, Scan},
+    student::{CATALOGUE, Mistake, Row, RowKind},
 };
-use crate::student::{Area, CATALOGUE, Mistake, Row, RowKind, StepLog, Student, World};
 use fosssim_model::{
     scene::Scene,
     sim::{PairKind, pairs},
 };
-use std::{cell::Cell, collections::BTreeSet};
+use std::collections::BTreeSet;
 
 /// The greatest number of mistakes in a set, besides empty stages.
 const MOST: usize = 3;
@@ -58,32 +55,21 @@ pub(in crate::diagnose) fn is_empty_stage(row: &Row) -> bool {
 
 struct Search<'a> {
     scene: &'a Scene,
-    /// The scene, for programs of all students.
-    world: World,
-    step_work: u64,
-    correct: Correct,
-    wrong: Vec<&'a Sample>,
-    probes: Vec<&'a Sample>,
-    right: Vec<&'a Sample>,
-    work: Cell<u64>,
+    trials: Trials,
+    wrong: Vec<&'a KeptStep>,
+    probes: Vec<&'a KeptStep>,
+    right: Vec<&'a KeptStep>,
 }
 
 impl<'a> Search<'a> {
     fn new(scene: &'a Scene, scan: &'a Scan, correct: Correct) -> Self {
         let mut signatures = BTreeSet::new();
         // The first divergence has to be reproduced, whatever it is.
-        let is_probe = |sample: &&Sample| signatures.insert(sample.signature);
-        let mut probes: Vec<&Sample> = scan.wrong.iter().filter(is_probe).take(PROBES).collect();
-        probes.sort_by_key(|sample| sample.records.end.polynomials.len());
-        let wrong = scan.wrong.iter().collect();
-        let world = World::new(scene.clone(), Student::default());
-        let step_work = step_work(scene);
-        Self { scene, world, step_work, correct, wrong, probes, right: scan.right.iter().collect(), work: Cell::new(0) }
-    }
-
-    fn world(&self, rows: &[&'static Row]) -> World {
-        let student: Student = rows.iter().fold(self.correct.with(None), |student, row| student.and(Some(row.mistake)));
-        self.world.of(student)
+        let is_probe = |kept: &&KeptStep| signatures.insert(kept.signature);
+        let mut probes: Vec<&KeptStep> = scan.wrong.iter().filter(is_probe).take(PROBES).collect();
+        probes.sort_by_key(|kept| kept.records.end.polynomials.len());
+        let (wrong, right) = (scan.wrong.iter().collect(), scan.right.iter().collect());
+        Self { scene, trials: Trials::new(scene, correct), wrong, probes, right }
     }
 
     #[expect(clippy::cast_precision_loss, reason = "a handful")]
@@ -92,38 +78,8 @@ impl<'a> Search<'a> {
     }
 
     fn progress(&self, rows: &[&'static Row]) -> f64 {
-        let world = self.world(rows);
-        let logs_wrongly = rows.iter().any(|row| row.area == Area::Trace);
-        self.probes.iter().map(|sample| self.reached(&world, logs_wrongly, sample)).sum()
-    }
-
-    /// How far the program's step is what was logged: 1 is all the way, polynomials are the first half.
-    #[expect(clippy::cast_precision_loss, reason = "a share")]
-    fn reached(&self, world: &World, logs_wrongly: bool, sample: &Sample) -> f64 {
-        let logged = &sample.records.end.polynomials;
-        let (asked, failed) = (Cell::new(self.step_work), Cell::new(None));
-        let guard = |index: usize, coefficients: &[f64]| {
-            asked.set(asked.get() + 1);
-            let goes_on =
-                index < logged.len() && (logs_wrongly || same_polynomial(coefficients, logged.get(index), &ROUND_OFF));
-            if !goes_on && failed.get().is_none() {
-                failed.set(Some(index));
-            }
-            goes_on
-        };
-        let records = resimulate(world, &sample.before, StepLog { guard: Some(&guard), ..StepLog::default() });
-        self.work.set(self.work.get() + asked.get());
-        let share = |index: usize| 0.5 * index as f64 / (logged.len() + 1) as f64;
-        let Some(records) = records else { return failed.get().map_or(0.0, share) };
-        match first_difference(&records, &sample.records, &ROUND_OFF) {
-            None => 1.0,
-            Some(Difference::Polynomial(index)) => share(index),
-            Some(Difference::PolynomialCount) => share(records.end.polynomials.len().min(logged.len())),
-            Some(Difference::MidState(_)) => 0.6,
-            Some(Difference::Impulses) => 0.7,
-            Some(Difference::EndState(_)) => 0.8,
-            Some(Difference::MidLists) => 0.9,
-        }
+        let program = self.trials.program(rows);
+        self.probes.iter().map(|kept| self.trials.reached(&program, kept)).sum()
     }
 
     /// Adds rows to a set of empty stages until it reproduces everything.
@@ -213,7 +169,7 @@ impl<'a> Search<'a> {
         sets.sort_by_key(Vec::len);
         let mut best = (self.progress(&[]), Vec::new());
         for set in sets.into_iter().skip(1) {
-            if self.work.get() > WORK / 2 {
+            if self.trials.work.get() > WORK / 2 {
                 break;
             }
             let progress = self.progress(&set);
@@ -234,7 +190,7 @@ impl<'a> Search<'a> {
         let mut best: (f64, Vec<&'static Row>) = (reached + 1e-9, Vec::new());
         let rows = applicable(self.scene).filter(|row| set.iter().all(|other| other.mistake != row.mistake));
         for row in rows {
-            if self.work.get() > WORK {
+            if self.trials.work.get() > WORK {
                 return None;
             }
             let with: Vec<&Row> = set.iter().copied().chain([row]).collect();
@@ -261,14 +217,13 @@ impl<'a> Search<'a> {
 
     /// How many wrong steps the set reproduces, if that is all of them and all right ones, as far as there is time.
     fn confirmed(&self, set: &[&'static Row]) -> Option<u64> {
-        let world = self.world(set);
-        let logs_wrongly = set.iter().any(|row| row.area == Area::Trace);
+        let program = self.trials.program(set);
         let mut samples = 0;
         for sample in self.right.iter().chain(&self.wrong) {
-            if self.work.get() > 2 * WORK && samples > 0 {
+            if self.trials.work.get() > 2 * WORK && samples > 0 {
                 break;
             }
-            if self.reached(&world, logs_wrongly, sample) < 1.0 {
+            if self.trials.reached(&program, sample) < 1.0 {
                 return None;
             }
             samples += u64::from(sample.difference.is_some());

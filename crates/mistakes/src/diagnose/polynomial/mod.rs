@@ -12,7 +12,6 @@
 mod compare;
 mod dictionary;
 mod example;
-mod sample;
 mod slips;
 mod sparse;
 mod specials;
@@ -22,13 +21,13 @@ mod terms;
 #[cfg(test)]
 mod tests;
 
-pub use sample::Sample;
+pub use super::sampling::Sample;
 
 use super::{
     Detail, Explanation, PolynomialDetail, Weight,
     about::{About, OfPolynomials},
     guess::{Guess, digest},
-    known::{ROUND_OFF, same_polynomial},
+    sampling::{ROUND_OFF, same_polynomial},
 };
 use crate::assignments::t2m2::{
     Subject,

@@ -1,7 +1,7 @@
 //! All samples of one polynomial of one kind of pair, and how well a guess reproduces them.
 use super::{
+    Sample,
     compare::{coefficient_matches, expected_at, fitted_scale, is_right, is_sure, logged_at, matches, scale_fitted_to},
-    sample::Sample,
 };
 use crate::assignments::t2m2::{
     Inputs, Reading, Subject,

@@ -1,11 +1,14 @@
 //! What the impulse lists of `continuous-time` say: contacts too many or too few, their vectors and times. And the
 //! order in which pairs are looked at.
 use super::{
-    ALIKE, Explanation, ROUND_OFF, common_value,
+    ALIKE, Explanation, common_value,
     events::{Facts, Hit},
-    observation, ratios, same_polynomial,
+    observation, ratios,
 };
-use crate::diagnose::{StageDetail, StageFault, WrongDecisions, WrongVectors, known::same_impulse};
+use crate::diagnose::{
+    StageDetail, StageFault, WrongDecisions, WrongVectors,
+    sampling::{ROUND_OFF, same_impulse, same_polynomial},
+};
 use fosssim_model::{
     sim::{PairKind, Stage},
     trace::LoggedImpulse,

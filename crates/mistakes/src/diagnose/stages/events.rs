@@ -1,10 +1,12 @@
 //! What the reference does in a step from the submission's own state, event by event.
-use super::{ROUND_OFF, Sample, first_difference, same_formula, same_polynomial};
-use crate::diagnose::known::{Capture, Logged, StepRecords, state_difference};
-use fosssim_judge::{budget::Budget, fair::formulas::BoundedPairMotion};
+use crate::diagnose::sampling::{
+    Capture, KeptStep, Logged, ROUND_OFF, Reference, StepRecords, first_difference, same_formula, same_polynomial,
+    state_difference,
+};
+use fosssim_judge::fair::formulas::BoundedPairMotion;
 use fosssim_model::{
     scene::Scene,
-    sim::{Decision, Detection, Observer, Pair, PairKind, Pass, RootSearch, Simulation, Stage, State, Time, Zone},
+    sim::{Decision, Detection, Observer, Pair, PairKind, Pass, Stage, State, Time, Zone},
     trace::PolynomialLog,
 };
 use fosssim_num::{bounded::Bounded, polynomial::Polynomial, vector::Vec2};
@@ -182,45 +184,24 @@ impl Facts {
     }
 }
 
-/// Lets the reference run steps.
-pub(super) struct Reference<'a> {
-    budget: Budget<'a>,
-    simulation: Simulation,
-    observers: (Capture, StepEvents<'a>),
-}
-
-impl<'a> Reference<'a> {
-    pub(super) fn new(scene: &'a Scene) -> Self {
-        let simulation = Simulation::new(scene, RootSearch::WhereNeeded);
-        let events = StepEvents { scene, heard: Events::default() };
-        Self { budget: Budget::new(scene, false), simulation, observers: (Capture::new(&scene.collision), events) }
-    }
-
-    fn set(&mut self, sample: &Sample) {
-        self.simulation.state_mut().clone_from(&sample.before);
-        self.simulation.set_steps_done(sample.step - 1);
-    }
-
+impl Facts {
     /// The facts of a step; none where the reference has no result.
-    pub(super) fn facts(&mut self, sample: &Sample) -> Option<Facts> {
-        self.set(sample);
-        self.budget.step(&mut self.simulation, &mut NoCollisions).ok()?;
-        let prediction = self.simulation.state().clone();
-        self.set(sample);
-        self.budget.step(&mut self.simulation, &mut self.observers).ok()?;
-        let (capture, events) = &mut self.observers;
-        let events = std::mem::take(&mut events.heard);
-        let (mut expected, actual) = (capture.records.clone(), sample.records.clone());
+    pub(super) fn of(reference: &mut Reference<'_>, scene: &Scene, kept: &KeptStep) -> Option<Self> {
+        let prediction = reference.step(kept.step, &kept.before, &mut NoCollisions)?.clone();
+        let mut observers = (Capture::new(&scene.collision), StepEvents { scene, heard: Events::default() });
+        reference.step(kept.step, &kept.before, &mut observers)?;
+        let (capture, StepEvents { heard: events, .. }) = observers;
+        let (mut expected, actual) = (capture.records, kept.records.clone());
         take_other_forms(&mut expected, &actual, &events.other_forms);
         let (ours, theirs) = (&expected.end.polynomials, &actual.end.polynomials);
         let differing =
             ours.iter().zip(theirs.iter()).position(|(ours, theirs)| !same_polynomial(ours, theirs, &ROUND_OFF));
         let right_polynomials = differing.unwrap_or(ours.len().min(theirs.len()));
         let is_wrong = first_difference(&expected, &actual, &ROUND_OFF).is_some();
-        let mut facts = Facts {
+        let mut facts = Self {
             is_wrong,
             has_wrong_formula: false,
-            before: sample.before.clone(),
+            before: kept.before.clone(),
             prediction,
             expected,
             actual,

@@ -7,7 +7,7 @@ use super::{
     observation,
     responses::{Responses, bodies_of},
 };
-use crate::diagnose::{LoopEnd, Quantity, StageDetail, StageFault, WrongGeometric, WrongNumber, known::ROUND_OFF};
+use crate::diagnose::{LoopEnd, Quantity, StageDetail, StageFault, WrongGeometric, WrongNumber, sampling::ROUND_OFF};
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{Pair, Stage},

@@ -16,9 +16,9 @@ use super::{
     Detail, Explanation, Ratios, StageDetail,
     about::About,
     fault::StageFault,
-    known::{ROUND_OFF, Sample, first_difference, same_formula, same_polynomial},
+    sampling::{KeptStep, Reference},
 };
-use events::{Facts, Reference};
+use events::Facts;
 use fosssim_model::scene::{Collision, Scene};
 
 /// The greatest number of steps that are compared.
@@ -32,20 +32,23 @@ const ALIKE: f64 = 1e-6;
 
 /// What can be said of the stages of these steps; nothing when polynomials whose inputs are known are wrong, or when
 /// nothing is.
-pub(super) fn explain<'a>(scene: &Scene, samples: impl Iterator<Item = &'a Sample>) -> Option<Explanation> {
+pub(super) fn explain<'a>(
+    reference: &mut Reference<'_>,
+    scene: &Scene,
+    steps: impl Iterator<Item = &'a KeptStep>,
+) -> Option<Explanation> {
     if !matches!(scene.collision, Collision::ContinuousTime { .. } | Collision::Hybrid { .. }) {
         return None;
     }
-    let mut reference = Reference::new(scene);
     let mut work = 0;
-    let facts: Vec<Facts> = samples
+    let facts: Vec<Facts> = steps
         .take(MOST_STEPS)
-        .take_while(|sample| {
+        .take_while(|kept| {
             let goes_on = work < WORK;
-            work += sample.records.end.polynomials.len();
+            work += kept.records.end.polynomials.len();
             goes_on
         })
-        .filter_map(|sample| reference.facts(sample))
+        .filter_map(|kept| Facts::of(reference, scene, kept))
         .collect();
     if facts.iter().all(|facts| !facts.is_wrong) {
         return None;

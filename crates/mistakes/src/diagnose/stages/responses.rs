@@ -6,7 +6,7 @@ use super::{
 };
 use crate::diagnose::{
     Amount, Changed, Quantity, StageDetail, StageFault, WrongResponses,
-    known::{ROUND_OFF, same_impulse},
+    sampling::{ROUND_OFF, same_impulse},
 };
 use fosssim_model::{
     scene::{Collision, Scene},

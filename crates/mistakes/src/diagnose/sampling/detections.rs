@@ -4,70 +4,39 @@
 //! The inputs of a detection pass are the start and the end positions of the step. The trace holds the start; the end
 //! is what the integrator makes of it, before any response. So the first pass of each step is looked at, and in hybrid
 //! scenes the first pass of the geometric part, which starts from the mid record.
-use super::{
-    polynomial::Sample,
-    source::{Source, StepFrames, read},
-};
-use fosssim_judge::{
-    budget::Budget,
-    fair::{compare::compare, formulas},
-    kept::LONGEST,
-};
+use super::{reference::Reference, source::StepFrames};
+use fosssim_judge::fair::{compare::compare, formulas};
 use fosssim_model::{
     scene::{Collision, Scene},
-    sim::{
-        ByKind, Decision, Observer, Pair, PairKind, PairMotion, Pass, Resume, RootSearch, Simulation, Stage, State,
-        pairs,
-    },
-    trace::{Layout, Lenient, LenientFrame, LoggedImpulse, PolynomialLog, record_memory},
+    sim::{ByKind, Decision, Observer, Pair, PairKind, PairMotion, Pass, Resume, Stage, State, pairs},
+    trace::{Layout, LenientFrame, LoggedImpulse, PolynomialLog},
 };
 use fosssim_num::polynomial::Polynomial;
+
+/// One detection of a submission: what went in, and the polynomials that it handed to the root finder.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sample {
+    /// The step, from 1.
+    pub step: u32,
+    /// The detection pass within the step, from 0.
+    pub pass: u32,
+    /// Who was looked at. Its kind is that of `motion`.
+    pub pair: Pair,
+    /// The inputs, from the submission's own states.
+    pub motion: PairMotion,
+    /// What was logged, one list per polynomial of the kind in the trace's order (2 or 4); each highest power first and
+    /// without the small leading coefficients that the course's library drops. Fewer lists: the last polynomials are
+    /// missing.
+    pub polynomials: Vec<Vec<f64>>,
+}
 
 /// The greatest number of wrong and of right detections kept of each kind of pair.
 const MOST_WRONG: usize = 400;
 const MOST_RIGHT: usize = 200;
 
-/// The samples of a trace; empty for scenes without polynomials. A trace that breaks off or goes wild yields what it
-/// holds up to there.
-pub(super) fn samples(scene: &Scene, source: Source<'_>) -> Vec<Sample> {
-    let layout = Layout::of(scene);
-    if !layout.polynomials {
-        return Vec::new();
-    }
-    let mut reader = Lenient::new(source.beginning, layout).with_limit(record_memory(scene));
-    let mut frames = StepFrames::default();
-    let mut gathered = Gathered::default();
-    if !read(&mut reader, &mut frames.before) {
-        return Vec::new();
-    }
-    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
-    let mut budget = Budget::new(scene, false);
-    let mut look = |step: u32, frames: &StepFrames, gathered: &mut Gathered| {
-        simulation.state_mut().clone_from(&frames.before.state);
-        simulation.set_steps_done(step - 1);
-        let mut gatherer = Gatherer::new(scene, step, &frames.mid, &frames.end.polynomials, gathered);
-        // A step without result is a trace gone wild; what was gathered stays.
-        let _ = budget.step(&mut simulation, &mut gatherer);
-    };
-    for step in 1..=layout.steps {
-        let is_far = reader.offset() > LONGEST;
-        if is_far || gathered.is_full() || !read(&mut reader, &mut frames.mid) || !read(&mut reader, &mut frames.end) {
-            break;
-        }
-        look(step, &frames, &mut gathered);
-        let StepFrames { before, end, .. } = &mut frames;
-        before.state.clone_from(&end.state);
-    }
-    for late in source.late {
-        if let Some(frames) = StepFrames::of_late(scene, late).filter(|_| !gathered.is_full()) {
-            look(late.step, &frames, &mut gathered);
-        }
-    }
-    gathered.kinds.into_values().flat_map(|kind| kind.samples).collect()
-}
-
-#[derive(Default)]
-struct Gathered {
+/// Gathers the samples of a trace step by step; none of scenes without polynomials.
+pub struct Detections<'a> {
+    scene: &'a Scene,
     kinds: ByKind<OfKind>,
 }
 
@@ -78,9 +47,27 @@ struct OfKind {
     right: usize,
 }
 
-impl Gathered {
-    fn is_full(&self) -> bool {
-        self.kinds.values().all(|kind| kind.wrong >= MOST_WRONG)
+impl<'a> Detections<'a> {
+    /// For traces of this scene.
+    pub fn new(scene: &'a Scene) -> Self {
+        Self { scene, kinds: ByKind::default() }
+    }
+
+    /// Gathers the samples of a step. One without result is of a trace gone wild; what was gathered stays.
+    pub fn step(&mut self, reference: &mut Reference<'_>, step: u32, frames: &StepFrames) {
+        let is_full = self.kinds.values().all(|kind| kind.wrong >= MOST_WRONG);
+        if is_full || !Layout::of(self.scene).polynomials {
+            return;
+        }
+        let (mid, log) = (&frames.mid, &frames.end.polynomials);
+        let sizes = sizes(pairs(self.scene).counts(), mid.polynomials.len(), log.len());
+        let (scene, kinds) = (self.scene, &mut self.kinds);
+        reference.step(step, &frames.before.state, &mut Gatherer { scene, step, mid, log, kinds, sizes, next: None });
+    }
+
+    /// What was gathered.
+    pub fn into_samples(self) -> Vec<Sample> {
+        self.kinds.into_values().flat_map(|kind| kind.samples).collect()
     }
 }
 
@@ -94,25 +81,13 @@ struct Gatherer<'a> {
     step: u32,
     mid: &'a LenientFrame,
     log: &'a PolynomialLog,
-    gathered: &'a mut Gathered,
+    kinds: &'a mut ByKind<OfKind>,
     sizes: Option<Sizes>,
     /// The pass's number and the next polynomial in the list, for passes that are looked at.
     next: Option<(u32, usize)>,
 }
 
-impl<'a> Gatherer<'a> {
-    fn new(
-        scene: &'a Scene,
-        step: u32,
-        mid: &'a LenientFrame,
-        log: &'a PolynomialLog,
-        gathered: &'a mut Gathered,
-    ) -> Self {
-        let counts = pairs(scene).counts();
-        let sizes = sizes(counts, mid.polynomials.len(), log.len());
-        Self { scene, step, mid, log, gathered, sizes, next: None }
-    }
-
+impl Gatherer<'_> {
     /// Whether the submission lists a contact of this pair, which only `continuous-time` does.
     fn is_hit(&self, pair: Pair) -> bool {
         let is_pair = |impulse: &LoggedImpulse| {
@@ -186,12 +161,12 @@ impl Observer for Gatherer<'_> {
                 let forms = [Some(expected.polynomial(number)), expected.other_form(number)];
                 forms.into_iter().flatten().any(|form| compare(form, logged, &[1.0]).is_ok())
             });
-        let kind = &self.gathered.kinds[pair.kind];
+        let kind = &self.kinds[pair.kind];
         if if is_right { kind.right >= MOST_RIGHT } else { kind.wrong >= MOST_WRONG } {
             return;
         }
         let motion = PairMotion::between(self.scene, pair, q_start, q_end);
-        let kind = &mut self.gathered.kinds[pair.kind];
+        let kind = &mut self.kinds[pair.kind];
         *(if is_right { &mut kind.right } else { &mut kind.wrong }) += 1;
         kind.samples.push(Sample { step: self.step, pass, pair, motion, polynomials });
     }

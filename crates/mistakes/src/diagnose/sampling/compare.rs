@@ -19,22 +19,22 @@ fosssim_model::drops_leading!();
 
 /// How far numbers may be apart.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::diagnose) struct Tolerance {
+pub struct Tolerance {
     /// Of a coefficient, relative to itself.
-    pub(in crate::diagnose) coefficient: f64,
+    pub coefficient: f64,
     /// Of a coefficient, relative to the largest one of its polynomial: where the terms of a coefficient cancel, its
     /// round-off is that of the terms.
-    pub(in crate::diagnose) floor: f64,
+    pub floor: f64,
     /// Of a coordinate or a velocity, relative to the largest one of its kind plus 1.
-    pub(in crate::diagnose) state: f64,
+    pub state: f64,
     /// Of a contact vector, relative to its length plus 1.
-    pub(in crate::diagnose) normal: f64,
+    pub normal: f64,
     /// Of a time of impact (fraction of the step). A double zero is known to about the root of the unit roundoff.
-    pub(in crate::diagnose) time: f64,
+    pub time: f64,
 }
 
 /// Round-off.
-pub(in crate::diagnose) const ROUND_OFF: Tolerance = Tolerance {
+pub const ROUND_OFF: Tolerance = Tolerance {
     coefficient: KNOWN_COEFFICIENT,
     floor: KNOWN_COEFFICIENT_FLOOR,
     state: KNOWN_STATE,
@@ -43,22 +43,22 @@ pub(in crate::diagnose) const ROUND_OFF: Tolerance = Tolerance {
 };
 
 /// The bound beyond which nobody takes a difference for round-off.
-pub(in crate::diagnose) const PLAIN: Tolerance =
+pub const PLAIN: Tolerance =
     Tolerance { coefficient: 1e-7, floor: 1e-9, state: 1e-8, normal: 1e-8, time: 1e-6 };
 
 /// The bound for a step whose states were rounded to single precision before and after.
-pub(super) const SINGLE_PRECISION: Tolerance =
+pub const SINGLE_PRECISION: Tolerance =
     Tolerance { coefficient: 1e-4, floor: 1e-4, state: 1e-5, normal: 1e-2, time: 1e-1 };
 
 /// The numbers of one record.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(in crate::diagnose) struct Logged {
+pub struct Logged {
     /// Positions and velocities.
-    pub(in crate::diagnose) state: State,
+    pub state: State,
     /// The impulse list.
-    pub(in crate::diagnose) impulses: Vec<LoggedImpulse>,
+    pub impulses: Vec<LoggedImpulse>,
     /// The polynomial list, small leading coefficients dropped.
-    pub(in crate::diagnose) polynomials: PolynomialLog,
+    pub polynomials: PolynomialLog,
 }
 
 impl Logged {
@@ -71,23 +71,23 @@ impl Logged {
 
 impl StepRecords {
     /// Whether all numbers are finite.
-    pub(in crate::diagnose) fn is_finite(&self) -> bool {
+    pub fn is_finite(&self) -> bool {
         self.end.values().chain(self.mid.iter().flat_map(Logged::values)).all(f64::is_finite)
     }
 }
 
 /// The records of one step.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(in crate::diagnose) struct StepRecords {
+pub struct StepRecords {
     /// The mid record, where scenes have one.
-    pub(in crate::diagnose) mid: Option<Logged>,
+    pub mid: Option<Logged>,
     /// The end record.
-    pub(in crate::diagnose) end: Logged,
+    pub end: Logged,
 }
 
 /// Where the records of a step part first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::diagnose) enum Difference {
+pub enum Difference {
     /// This polynomial of the end record.
     Polynomial(usize),
     /// The number of polynomials.
@@ -129,7 +129,7 @@ impl From<Record> for Logged {
 
 impl Logged {
     /// Memory that it takes, in bytes.
-    pub(in crate::diagnose) fn bytes(&self) -> usize {
+    pub fn bytes(&self) -> usize {
         16 * self.state.positions.len()
             + size_of::<LoggedImpulse>() * self.impulses.len()
             + 8 * (self.polynomials.coefficients.len() + self.polynomials.ends.len())
@@ -137,11 +137,7 @@ impl Logged {
 }
 
 /// The first difference in the order in which a step computes; `None` when all is the same but for round-off.
-pub(in crate::diagnose) fn first_difference(
-    expected: &StepRecords,
-    actual: &StepRecords,
-    by: &Tolerance,
-) -> Option<Difference> {
+pub fn first_difference(expected: &StepRecords, actual: &StepRecords, by: &Tolerance) -> Option<Difference> {
     let (ours, theirs) = (&expected.end.polynomials, &actual.end.polynomials);
     let wrong = ours.iter().zip(theirs.iter()).position(|(ours, theirs)| !same_polynomial(ours, theirs, by));
     if let Some(index) = wrong {
@@ -172,13 +168,13 @@ pub(in crate::diagnose) fn first_difference(
 }
 
 /// Whether two lists hold the same polynomials in the same order.
-pub(super) fn same_polynomials(ours: &PolynomialLog, theirs: &PolynomialLog, by: &Tolerance) -> bool {
+pub fn same_polynomials(ours: &PolynomialLog, theirs: &PolynomialLog, by: &Tolerance) -> bool {
     ours.len() == theirs.len() && ours.iter().zip(theirs.iter()).all(|(ours, theirs)| same_polynomial(ours, theirs, by))
 }
 
 /// Whether one polynomial is a positive multiple of the other (highest power first, small leading coefficients
 /// dropped).
-pub(in crate::diagnose) fn same_polynomial(expected: &[f64], actual: &[f64], by: &Tolerance) -> bool {
+pub fn same_polynomial(expected: &[f64], actual: &[f64], by: &Tolerance) -> bool {
     if multiple(expected, actual, 1.0, by) {
         return true;
     }
@@ -189,7 +185,7 @@ pub(in crate::diagnose) fn same_polynomial(expected: &[f64], actual: &[f64], by:
 }
 
 /// The same of a polynomial as formulas yield it, nothing dropped.
-pub(in crate::diagnose) fn same_formula(expected: &[Bounded], actual: &[f64], by: &Tolerance) -> bool {
+pub fn same_formula(expected: &[Bounded], actual: &[f64], by: &Tolerance) -> bool {
     let values: Vec<f64> = expected.iter().map(|coefficient| coefficient.value).collect();
     same_polynomial(trim(&values), actual, by)
 }
@@ -229,7 +225,7 @@ fn same_impulses(ours: &[LoggedImpulse], theirs: &[LoggedImpulse], by: &Toleranc
 }
 
 /// Whether two contacts are the same but for round-off.
-pub(in crate::diagnose) fn same_impulse(ours: &LoggedImpulse, theirs: &LoggedImpulse, by: &Tolerance) -> bool {
+pub fn same_impulse(ours: &LoggedImpulse, theirs: &LoggedImpulse, by: &Tolerance) -> bool {
     let within = by.normal * (1.0 + largest(ours.normal));
     (ours.kind, ours.first, ours.second) == (theirs.kind, theirs.first, theirs.second)
         && same_number(ours.normal.x, theirs.normal.x, within)
@@ -242,7 +238,7 @@ fn largest(v: Vec2) -> f64 {
 }
 
 /// The first particle whose position or velocity differs.
-pub(in crate::diagnose) fn state_difference(ours: &State, theirs: &State, by: &Tolerance) -> Option<usize> {
+pub fn state_difference(ours: &State, theirs: &State, by: &Tolerance) -> Option<usize> {
     let different = |ours: &[f64], theirs: &[f64]| {
         let largest = ours.iter().filter(|value| value.is_finite()).fold(0.0_f64, |largest, v| largest.max(v.abs()));
         let within = by.state * (1.0 + largest);

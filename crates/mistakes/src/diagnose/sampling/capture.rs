@@ -9,29 +9,29 @@ use fosssim_model::{
 
 /// The observer that keeps a step.
 #[derive(Debug, Default)]
-pub(in crate::diagnose) struct Capture {
+pub struct Capture {
     /// Whether the reference's impulses are logged; in `hybrid` they are not.
     logs_impulses: bool,
     has_mid: bool,
     pass: Option<Pass>,
     /// The records of the step; valid after it.
-    pub(in crate::diagnose) records: StepRecords,
+    pub records: StepRecords,
     /// The pairs in the order of detection, with the pass and the index of their first polynomial.
-    pub(super) detections: Vec<(Pair, Pass, usize)>,
+    pub detections: Vec<(Pair, Pass, usize)>,
     /// The events of the step, as bits (see [`Capture::events`]).
     events: u32,
 }
 
 impl Capture {
     /// For scenes of this collision type.
-    pub(in crate::diagnose) fn new(collision: &Collision) -> Self {
+    pub fn new(collision: &Collision) -> Self {
         let records = collision.handling().records;
         let logs_impulses = records.impulses != ImpulseList::Empty;
         Self { logs_impulses, has_mid: records.polynomials, ..Self::default() }
     }
 
     /// Where a polynomial belongs: pair, pass, number within the pair; `None` when the reference has no such one.
-    pub(super) fn place(&self, index: usize) -> Option<(Pair, Pass, usize)> {
+    pub fn place(&self, index: usize) -> Option<(Pair, Pass, usize)> {
         let after = self.detections.partition_point(|&(_, _, first)| first <= index);
         let &(pair, pass, first) = self.detections.get(after.checked_sub(1)?)?;
         (index < self.records.end.polynomials.len()).then_some((pair, pass, index - first))
@@ -39,7 +39,7 @@ impl Capture {
 
     /// The events of the step: one bit per kind of pair that collided and stage in which it did, per number of rounds,
     /// per kind of zone. Zero when nothing collided.
-    pub(super) fn events(&self) -> u32 {
+    pub fn events(&self) -> u32 {
         self.events
     }
 

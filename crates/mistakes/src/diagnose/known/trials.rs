@@ -1,0 +1,69 @@
+//! Programs with mistakes of the catalogue, tried on kept steps.
+use super::resimulate::{Correct, resimulate, step_work};
+use crate::{
+    diagnose::sampling::{Difference, KeptStep, ROUND_OFF, first_difference, same_polynomial},
+    student::{Area, Row, StepLog, Student, World},
+};
+use fosssim_model::scene::Scene;
+use std::cell::Cell;
+
+/// Tries programs, and counts the polynomials that they compute; one takes about a microsecond.
+pub(super) struct Trials {
+    /// The scene, for programs of all students.
+    world: World,
+    correct: Correct,
+    step_work: u64,
+    /// What was computed so far, in polynomials.
+    pub(super) work: Cell<u64>,
+}
+
+/// A program.
+pub(super) struct Program {
+    world: World,
+    /// A program that logs wrongly asks the root finder something else than it says.
+    logs_wrongly: bool,
+}
+
+impl Trials {
+    /// On a scene; `correct` is the program to which mistakes are added.
+    pub(super) fn new(scene: &Scene, correct: Correct) -> Self {
+        let world = World::new(scene.clone(), Student::default());
+        Self { world, correct, step_work: step_work(scene), work: Cell::new(0) }
+    }
+
+    /// The program with these mistakes.
+    pub(super) fn program(&self, rows: &[&'static Row]) -> Program {
+        let student: Student = rows.iter().fold(self.correct.with(None), |student, row| student.and(Some(row.mistake)));
+        let logs_wrongly = rows.iter().any(|row| row.area == Area::Trace);
+        Program { world: self.world.of(student), logs_wrongly }
+    }
+
+    /// How far the program's step is what was logged: 1 is all the way, polynomials are the first half.
+    #[expect(clippy::cast_precision_loss, reason = "a share")]
+    pub(super) fn reached(&self, program: &Program, kept: &KeptStep) -> f64 {
+        let logged = &kept.records.end.polynomials;
+        let (asked, failed) = (Cell::new(self.step_work), Cell::new(None));
+        let guard = |index: usize, coefficients: &[f64]| {
+            asked.set(asked.get() + 1);
+            let goes_on = index < logged.len()
+                && (program.logs_wrongly || same_polynomial(coefficients, logged.get(index), &ROUND_OFF));
+            if !goes_on && failed.get().is_none() {
+                failed.set(Some(index));
+            }
+            goes_on
+        };
+        let records = resimulate(&program.world, &kept.before, StepLog { guard: Some(&guard), ..StepLog::default() });
+        self.work.set(self.work.get() + asked.get());
+        let share = |index: usize| 0.5 * index as f64 / (logged.len() + 1) as f64;
+        let Some(records) = records else { return failed.get().map_or(0.0, share) };
+        match first_difference(&records, &kept.records, &ROUND_OFF) {
+            None => 1.0,
+            Some(Difference::Polynomial(index)) => share(index),
+            Some(Difference::PolynomialCount) => share(records.end.polynomials.len().min(logged.len())),
+            Some(Difference::MidState(_)) => 0.6,
+            Some(Difference::Impulses) => 0.7,
+            Some(Difference::EndState(_)) => 0.8,
+            Some(Difference::MidLists) => 0.9,
+        }
+    }
+}

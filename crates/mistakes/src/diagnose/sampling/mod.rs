@@ -1,0 +1,51 @@
+//! The one way from a trace to what explanations are made of: it is read once, and every step is looked at for wrong
+//! records, for detections, and for numbers that are none. The reference's work for all of it has one budget.
+mod capture;
+mod compare;
+mod detections;
+mod reference;
+mod scan;
+mod source;
+
+pub use capture::Capture;
+pub use compare::{
+    Difference, Logged, PLAIN, ROUND_OFF, StepRecords, first_difference, same_formula, same_impulse, same_polynomial,
+    state_difference,
+};
+pub use detections::{Detections, Sample};
+pub use reference::Reference;
+pub use scan::{KeptStep, Scan, Scanner};
+pub use source::{Source, StepFrames, Steps};
+
+use super::{Explanation, not_finite::First};
+use fosssim_model::scene::Scene;
+
+/// What explanations are made of.
+pub struct Sampled<'a> {
+    /// The reference, with what is left of its budget.
+    pub reference: Reference<'a>,
+    /// What is told of the first number that is none.
+    pub not_finite: Option<Explanation>,
+    /// Wrong steps and right ones.
+    pub scan: Scan,
+    /// Detections with known inputs.
+    pub detections: Vec<Sample>,
+}
+
+/// Reads a trace once.
+pub fn sampled<'a>(scene: &'a Scene, source: Source<'a>) -> Sampled<'a> {
+    let (mut steps, mut reference) = (Steps::new(scene, source), Reference::new(scene));
+    let (mut first, mut scanner, mut detections) = (First::default(), Scanner::new(scene), Detections::new(scene));
+    first.begin(&steps.frames);
+    while let Some(step) = steps.next() {
+        first.step(&mut reference, scene, step, &steps.frames);
+        scanner.step(&mut reference, step, &steps.frames);
+        detections.step(&mut reference, step, &steps.frames);
+    }
+    Sampled {
+        not_finite: first.explanation(),
+        scan: scanner.into_scan(steps.outline),
+        detections: detections.into_samples(),
+        reference,
+    }
+}

@@ -1,0 +1,248 @@
+//! Finds the wrong steps of a trace, and keeps some of them, as diverse as possible.
+use super::{
+    capture::Capture,
+    compare::{Difference, Logged, ROUND_OFF, SINGLE_PRECISION, StepRecords, first_difference, same_polynomial},
+    reference::Reference,
+    source::{Outline, StepFrames},
+};
+use fosssim_model::{
+    scene::Scene,
+    sim::State,
+    trace::{Layout, LenientFrame},
+};
+use std::collections::BTreeMap;
+
+/// Steps that are kept, wrong and right.
+const MOST_WRONG: usize = 200;
+const MOST_RIGHT: usize = 40;
+/// Of the steps that look alike, the first ones are kept, and then one out of this number.
+const FIRST_ALIKE: u32 = 8;
+const ALIKE: u32 = 16;
+/// Right steps that look alike.
+const RIGHT_ALIKE: u32 = 3;
+/// Memory that kept steps may take, in bytes.
+const MEMORY: usize = 24 << 20;
+
+/// A step that is kept.
+#[derive(Debug)]
+pub struct KeptStep {
+    /// Its number, from 1.
+    pub step: u32,
+    /// The submission's own state before it.
+    pub before: State,
+    /// What the submission logged.
+    pub records: StepRecords,
+    /// Where it differs first from the reference; `None` for right steps.
+    pub difference: Option<Difference>,
+    /// What can only be seen with the record before.
+    pub context: Context,
+    /// Steps with the same one look alike.
+    pub signature: u64,
+}
+
+/// What the step tells together with the step before.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Context {
+    /// Right, but behind the polynomials of the step before.
+    pub polynomials_kept: bool,
+    /// Right, but behind the impulses of the step before.
+    pub impulses_kept: bool,
+    /// Right, though NaN stands in its lists: contacts were found and resolved that NaN can't lead to.
+    pub logs_nan: bool,
+    /// All numbers of its states are those of single precision, and apart from that it is right.
+    pub single_precision: bool,
+}
+
+/// What a trace has, for the rows of the catalogue.
+#[derive(Debug, Default)]
+pub struct Scan {
+    /// Wrong steps, in their order.
+    pub wrong: Vec<KeptStep>,
+    /// Right steps, in their order.
+    pub right: Vec<KeptStep>,
+    /// What is known of the trace besides its steps.
+    pub outline: Outline,
+}
+
+impl Scan {
+    /// Leaves as many right steps as are kept at most.
+    pub fn keep_fewer_right(&mut self) {
+        self.right.truncate(MOST_RIGHT);
+    }
+}
+
+/// Looks at the steps of a trace, one after the other.
+pub struct Scanner {
+    has_mid: bool,
+    capture: Capture,
+    actual: StepRecords,
+    scan: Scan,
+    seen: BTreeMap<(bool, u64), u32>,
+    memory: usize,
+}
+
+impl Scanner {
+    /// For traces of this scene.
+    pub fn new(scene: &Scene) -> Self {
+        Self {
+            has_mid: Layout::of(scene).polynomials,
+            capture: Capture::new(&scene.collision),
+            actual: StepRecords::default(),
+            scan: Scan::default(),
+            seen: BTreeMap::new(),
+            memory: 0,
+        }
+    }
+
+    /// What was kept.
+    pub fn into_scan(self, outline: Outline) -> Scan {
+        Scan { outline, ..self.scan }
+    }
+
+    /// Looks at one step, and keeps it if it is of use.
+    pub fn step(&mut self, reference: &mut Reference<'_>, step: u32, frames: &StepFrames) {
+        let StepFrames { before, mid, end } = frames;
+        if !before.state.positions.iter().chain(&before.state.velocities).all(|value| value.is_finite())
+            || reference.step(step, &before.state, &mut self.capture).is_none()
+        {
+            return;
+        }
+        self.actual.end.clone_from_frame(end);
+        if self.has_mid {
+            self.actual.mid.get_or_insert_default().clone_from_frame(mid);
+        }
+        let logs_nan = !self.actual.is_finite();
+        if logs_nan && !self.logs_nan() {
+            // What follows from NaN speaks neither for a mistake nor against one.
+            return;
+        }
+        let difference = first_difference(&self.capture.records, &self.actual, &ROUND_OFF);
+        let signature = self.signature(difference);
+        let count = self.seen.entry((difference.is_some(), signature)).or_default();
+        let number = *count;
+        *count += 1;
+        let wanted = if difference.is_some() {
+            self.scan.wrong.len() < MOST_WRONG && (number < FIRST_ALIKE || number.is_multiple_of(ALIKE))
+        } else {
+            self.scan.right.len() < MOST_RIGHT && number < RIGHT_ALIKE
+        };
+        // The first wrong step is kept whatever it takes: without one there is nothing to explain.
+        if !wanted || (self.memory > MEMORY && !self.scan.wrong.is_empty()) {
+            return;
+        }
+        let context = difference.map_or(Context::default(), |_| Context { logs_nan, ..self.context(before) });
+        let kept = KeptStep {
+            step,
+            before: before.state.clone(),
+            records: self.actual.clone(),
+            difference,
+            context,
+            signature,
+        };
+        self.memory += kept.bytes();
+        if difference.is_some() { self.scan.wrong.push(kept) } else { self.scan.right.push(kept) }
+    }
+
+    /// Steps with the same number look alike: the same events in the reference, the same first difference.
+    fn signature(&self, difference: Option<Difference>) -> u64 {
+        let first = match difference {
+            None => 0,
+            Some(Difference::Polynomial(index)) => match self.capture.place(index) {
+                Some((pair, pass, number)) => {
+                    8 + u64::from(pass.index.min(2)) * 32
+                        + u64::from(pair.kind.code().unsigned_abs()) * 8
+                        + number as u64
+                }
+                None => 1,
+            },
+            Some(Difference::PolynomialCount) => 2,
+            Some(Difference::MidState(_)) => 3,
+            Some(Difference::Impulses) => 4,
+            Some(Difference::EndState(_)) => 5,
+            Some(Difference::MidLists) => 6,
+        };
+        let logged = self.actual.end.impulses.iter().fold(0, |bits, impulse| bits | 1 << impulse.kind.clamp(0, 3));
+        u64::from(self.capture.events()) | first << 32 | logged << 48
+    }
+
+    fn context(&self, before: &LenientFrame) -> Context {
+        let (expected, actual) = (&self.capture.records, &self.actual);
+        Context {
+            polynomials_kept: self.right_without(before, |records, previous| {
+                let kept = previous.polynomials.len();
+                let theirs = &mut records.polynomials;
+                let begins = theirs.len() >= kept
+                    && previous.polynomials.iter().zip(theirs.iter()).all(|(a, b)| same_polynomial(a, b, &ROUND_OFF));
+                if begins && kept > 0 {
+                    let start = theirs.ends[kept - 1];
+                    theirs.coefficients.drain(..start);
+                    theirs.ends.drain(..kept);
+                    theirs.ends.iter_mut().for_each(|end| *end -= start);
+                }
+                begins
+            }),
+            impulses_kept: self.right_without(before, |records, previous| {
+                let begins = records.impulses.starts_with(&previous.impulses);
+                if begins {
+                    records.impulses.drain(..previous.impulses.len());
+                }
+                begins
+            }),
+            logs_nan: false,
+            single_precision: single(&actual.end.state)
+                && !single(&expected.end.state)
+                && first_difference(expected, actual, &SINGLE_PRECISION).is_none(),
+        }
+    }
+
+    /// Whether contacts were found and resolved rightly though only NaN is logged in their place, so that just the
+    /// logging is wrong.
+    fn logs_nan(&self) -> bool {
+        let without_lists = |records: &StepRecords| {
+            let bare = |logged: &Logged| Logged { state: logged.state.clone(), ..Logged::default() };
+            StepRecords { mid: records.mid.as_ref().map(bare), end: bare(&records.end) }
+        };
+        let (expected, actual) = (&self.capture.records, &self.actual);
+        let has_lengths = |ours: &Logged, theirs: &Logged| {
+            (ours.polynomials.len(), ours.impulses.len()) == (theirs.polynomials.len(), theirs.impulses.len())
+        };
+        let end = &actual.end;
+        let is_meant = end.polynomials.coefficients.iter().all(|value| value.is_nan())
+            || end.impulses.iter().all(|contact| contact.normal.x.is_nan() && contact.normal.y.is_nan());
+        is_meant
+            && self.capture.events() != 0
+            && has_lengths(&expected.end, &actual.end)
+            && first_difference(&without_lists(expected), &without_lists(actual), &ROUND_OFF).is_none()
+    }
+
+    /// Whether the step is right once `strip` has taken the lists of the step before off its records.
+    fn right_without(&self, before: &LenientFrame, strip: impl Fn(&mut Logged, &LenientFrame) -> bool) -> bool {
+        let mut records = self.actual.clone();
+        let stripped = records.mid.as_mut().is_none_or(|mid| strip(mid, before)) && strip(&mut records.end, before);
+        stripped && first_difference(&self.capture.records, &records, &ROUND_OFF).is_none()
+    }
+}
+
+impl Logged {
+    fn clone_from_frame(&mut self, frame: &LenientFrame) {
+        self.state.positions.clone_from(&frame.state.positions);
+        self.state.velocities.clone_from(&frame.state.velocities);
+        self.impulses.clone_from(&frame.impulses);
+        self.polynomials.coefficients.clone_from(&frame.polynomials.coefficients);
+        self.polynomials.ends.clone_from(&frame.polynomials.ends);
+    }
+}
+
+impl KeptStep {
+    fn bytes(&self) -> usize {
+        let mid = self.records.mid.as_ref().map_or(0, Logged::bytes);
+        16 * self.before.positions.len() + mid + self.records.end.bytes()
+    }
+}
+
+/// Whether all numbers of a state are those of single precision.
+fn single(state: &State) -> bool {
+    #[expect(clippy::cast_possible_truncation, reason = "whether it loses anything is the question")]
+    let exact = |value: &f64| f64::from(*value as f32).to_bits() == value.to_bits();
+    state.positions.iter().chain(&state.velocities).all(exact)
+}
