@@ -4,7 +4,7 @@ use crate::{
     rulings::StepRuling,
     track::{Track, Window},
 };
-use fosssim_judge::{Finding, FindingDetail, budget::Budget};
+use fosssim_judge::{Finding, FindingDetail, Outcome, budget::Budget};
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{Detection, Observer, Pair, Pass, Resume, RootSearch, Simulation, State},
@@ -72,6 +72,15 @@ pub struct Focus {
     pub pair: Option<Pair>,
 }
 
+impl Focus {
+    /// What both books found, the official one's first.
+    #[must_use]
+    pub fn of(outcome: &Outcome) -> Vec<Self> {
+        let books = outcome.fair.iter().map(|fair| &fair.findings).chain([&outcome.parity.findings]);
+        books.flat_map(|book| book.first_divergence.iter().chain(&book.examples)).map(Self::from).collect()
+    }
+}
+
 impl From<&Finding> for Focus {
     fn from(finding: &Finding) -> Self {
         let (pass, pair) = match &finding.detail {
@@ -114,19 +123,7 @@ pub struct Evidence {
 /// `focus` names the places of findings, the most important first.
 ///
 /// A trace that can't be read to its end gives evidence as far as it goes.
-pub fn gather<R: Read>(
-    scene: &Scene,
-    mut trace: R,
-    rulings: &[StepRuling],
-    fair: bool,
-    focus: &[Focus],
-    budget: usize,
-) -> Evidence {
-    gather_from(scene, &mut trace, rulings, fair, focus, budget)
-}
-
-/// The body of [`gather`], compiled once.
-fn gather_from(
+pub fn gather(
     scene: &Scene,
     trace: &mut dyn Read,
     rulings: &[StepRuling],
@@ -138,103 +135,149 @@ fn gather_from(
     let wrong = |ruling: &StepRuling| if fair { ruling.wrong_by_fair } else { ruling.wrong_by_parity };
     let first_wrong = (1..).zip(rulings).find(|(_, ruling)| wrong(ruling)).map(|(step, _)| step);
     let centre = first_wrong.or(focus.first().map(|focus| focus.step)).unwrap_or(0);
-    let window = Window::around(centre, layout, budget);
     let close = close_steps(focus, first_wrong, layout);
+    let mut gathering = Gathering::new(scene, Window::around(centre, layout, budget));
     let mut reader = Lenient::new(trace, layout).with_limit(record_memory(scene));
-    let mut free = Simulation::new(scene, RootSearch::WhereNeeded);
-    let mut own = Simulation::new(scene, RootSearch::WhereNeeded);
-    let mut work = Budget::new(scene, false);
     let (mut mid, mut end) = (LenientFrame::default(), LenientFrame::default());
-    let mut evidence = Evidence {
-        layout,
-        window,
-        reference: Track::default(),
-        submission: Track::default(),
-        steps: Vec::new(),
-        inspected: Vec::new(),
-    };
     if reader.next(&mut end).is_err() {
-        return evidence;
+        return gathering.evidence;
     }
-    if window.holds(0, false) {
-        evidence.reference.push(free.state());
-        evidence.submission.push(&end.state);
-    }
-    let mut before = end.state.clone();
-    let (mut free_goes_on, mut seen_wrong) = (true, false);
+    gathering.begin(&end.state);
+    let (mut before, mut seen_wrong) = (end.state.clone(), false);
     for step in 1..=layout.steps {
-        if free_goes_on {
-            let mut midway = Midway::default();
-            free_goes_on = free.step(&mut midway).is_ok();
-            if free_goes_on {
-                if let (Some(state), true) = (&midway.state, layout.polynomials && window.holds(step, true)) {
-                    evidence.reference.push(state);
-                }
-                if window.holds(step, false) {
-                    evidence.reference.push(free.state());
-                }
-            }
-        }
+        gathering.run_freely(step);
         if layout.polynomials && reader.next(&mut mid).is_err() || reader.next(&mut end).is_err() {
             break;
         }
-        if layout.polynomials && window.holds(step, true) {
-            evidence.submission.push(&mid.state);
-        }
-        if window.holds(step, false) {
-            evidence.submission.push(&end.state);
-        }
-        own.state_mut().clone_from(&before);
-        own.set_steps_done(step - 1);
-        let wanted: Vec<(WantedCalls, Pair)> = focus
-            .iter()
-            .filter(|focus| focus.step == step)
-            .filter_map(|focus| Some((focus.pass.map_or(WantedCalls::Hits, WantedCalls::In), focus.pair?)))
-            .collect();
-        // The mid record of `continuous-time` equals the end record, so it is compared with the end of the step.
-        let mid_state = matches!(scene.collision, Collision::Hybrid { .. }).then_some(&mid.state);
-        let is_close = close.contains(&step);
-        let mut count = Count::new(mid_state);
-        let done = if is_close {
-            let mut watch = Inspector::new(scene, step, mid_state, (&end.polynomials, end.logged), &wanted);
-            let done = work.step(&mut own, &mut (&mut watch, &mut count)).is_ok();
-            let impulses = if end.impulses.is_empty() { &mid.impulses } else { &end.impulses };
-            watch.step.actual_contacts.clone_from(impulses);
-            // The inspector comes first: it keeps the expected mid record, and makes the step go on with the trace's.
-            if let (Some(expected), Some(mid)) = (&watch.step.expected_mid, mid_state) {
-                count.apart = apart(expected, mid);
-            }
-            evidence.inspected.push(watch.finish());
-            done
-        } else {
-            work.step(&mut own, &mut count).is_ok()
-        };
-        if !done {
-            break;
-        }
+        gathering.keep_states(step, &mid, &end);
+        let wanted = close.contains(&step).then(|| wanted_calls(focus, step));
+        let Some(count) = gathering.step(step, &before, (&mid, &end), wanted.as_deref()) else { break };
         let ruling = rulings.get(step as usize - 1);
         let is_wrong = ruling.is_some_and(wrong);
         seen_wrong |= is_wrong;
-        let is_apart = free_goes_on && largest(&free.state().positions, &end.state.positions) > APART;
         let class = match ruling {
             None => StepClass::Unknown,
             Some(ruling) if ruling.damaged => StepClass::Unknown,
             Some(_) if is_wrong => StepClass::Wrong,
-            Some(_) if seen_wrong && is_apart => StepClass::Inherited,
+            Some(_) if seen_wrong && gathering.is_apart(&end.state) => StepClass::Inherited,
             Some(_) => StepClass::Right,
         };
-        evidence.steps.push(Step {
-            class,
-            position: worse(count.apart[0], largest(&own.state().positions, &end.state.positions)),
-            velocity: worse(count.apart[1], largest(&own.state().velocities, &end.state.velocities)),
-            expected_passes: count.passes,
-            actual_passes: count.passes_of(end.logged),
-        });
+        gathering.keep_step(class, &count, &end);
         before.clone_from(&end.state);
         end.shrink();
         mid.shrink();
     }
-    evidence
+    gathering.evidence
+}
+
+/// The calls of a step to look at closely.
+fn wanted_calls(focus: &[Focus], step: u32) -> Vec<(WantedCalls, Pair)> {
+    let of_step = focus.iter().filter(|focus| focus.step == step);
+    of_step.filter_map(|focus| Some((focus.pass.map_or(WantedCalls::Hits, WantedCalls::In), focus.pair?))).collect()
+}
+
+/// Evidence on its way, with the reference's own run and its steps from the trace's states.
+struct Gathering<'a> {
+    scene: &'a Scene,
+    free: Simulation,
+    free_goes_on: bool,
+    own: Simulation,
+    work: Budget<'a>,
+    evidence: Evidence,
+}
+
+impl<'a> Gathering<'a> {
+    fn new(scene: &'a Scene, window: Window) -> Self {
+        let simulation = || Simulation::new(scene, RootSearch::WhereNeeded);
+        let evidence = Evidence {
+            layout: Layout::of(scene),
+            window,
+            reference: Track::default(),
+            submission: Track::default(),
+            steps: Vec::new(),
+            inspected: Vec::new(),
+        };
+        let work = Budget::new(scene, false);
+        Self { scene, free: simulation(), free_goes_on: true, own: simulation(), work, evidence }
+    }
+
+    fn begin(&mut self, first: &State) {
+        if self.evidence.window.holds(0, false) {
+            self.evidence.reference.push(self.free.state());
+            self.evidence.submission.push(first);
+        }
+    }
+
+    /// Whether a record of the step is kept.
+    fn holds(&self, step: u32, is_mid: bool) -> bool {
+        (self.evidence.layout.polynomials || !is_mid) && self.evidence.window.holds(step, is_mid)
+    }
+
+    /// Makes a step of the reference's own run.
+    fn run_freely(&mut self, step: u32) {
+        let mut midway = Midway::default();
+        self.free_goes_on = self.free_goes_on && self.free.step(&mut midway).is_ok();
+        if self.free_goes_on {
+            if let (Some(state), true) = (&midway.state, self.holds(step, true)) {
+                self.evidence.reference.push(state);
+            }
+            if self.holds(step, false) {
+                self.evidence.reference.push(self.free.state());
+            }
+        }
+    }
+
+    fn keep_states(&mut self, step: u32, mid: &LenientFrame, end: &LenientFrame) {
+        for (frame, is_mid) in [(mid, true), (end, false)] {
+            if self.holds(step, is_mid) {
+                self.evidence.submission.push(&frame.state);
+            }
+        }
+    }
+
+    /// Makes a step from the trace's own state; `None` where it has no result. With `wanted` it is looked at closely.
+    fn step<'f>(
+        &mut self,
+        step: u32,
+        before: &State,
+        (mid, end): (&'f LenientFrame, &'f LenientFrame),
+        wanted: Option<&[(WantedCalls, Pair)]>,
+    ) -> Option<Count<'f>> {
+        self.own.state_mut().clone_from(before);
+        self.own.set_steps_done(step - 1);
+        // The mid record of `continuous-time` equals the end record, so it is compared with the end of the step.
+        let mid_state = matches!(self.scene.collision, Collision::Hybrid { .. }).then_some(&mid.state);
+        let mut count = Count::new(mid_state);
+        let Some(wanted) = wanted else {
+            return self.work.step(&mut self.own, &mut count).is_ok().then_some(count);
+        };
+        let mut inspector = Inspector::new(self.scene, step, mid_state, (&end.polynomials, end.logged), wanted);
+        let done = self.work.step(&mut self.own, &mut (&mut inspector, &mut count)).is_ok();
+        let impulses = if end.impulses.is_empty() { &mid.impulses } else { &end.impulses };
+        inspector.step.actual_contacts.clone_from(impulses);
+        // The inspector comes first: it keeps the expected mid record, and makes the step go on with the trace's.
+        if let (Some(expected), Some(mid)) = (&inspector.step.expected_mid, mid_state) {
+            count.apart = apart(expected, mid);
+        }
+        self.evidence.inspected.push(inspector.finish());
+        done.then_some(count)
+    }
+
+    /// Whether the reference's own run is elsewhere.
+    fn is_apart(&self, end: &State) -> bool {
+        self.free_goes_on && largest(&self.free.state().positions, &end.positions) > APART
+    }
+
+    fn keep_step(&mut self, class: StepClass, count: &Count<'_>, end: &LenientFrame) {
+        let [position, velocity] = apart(self.own.state(), &end.state);
+        self.evidence.steps.push(Step {
+            class,
+            position: worse(count.apart[0], position),
+            velocity: worse(count.apart[1], velocity),
+            expected_passes: count.passes,
+            actual_passes: count.passes_of(end.logged),
+        });
+    }
 }
 
 /// The steps to look at: those of findings, and those around the first wrong one, the most important ones if they are

@@ -8,6 +8,7 @@
 #![forbid(unsafe_code)]
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
+mod examined;
 mod gather;
 mod inspected_pair;
 mod inspected_step;
@@ -17,6 +18,7 @@ mod rulings;
 mod tests;
 mod track;
 
+pub use examined::{Examined, Keep, examine};
 pub use gather::{Evidence, Focus, Step, StepClass, gather};
 pub use inspected_pair::{InspectedPair, Records, inspect};
 pub use inspected_step::{InspectedCall, InspectedPass, InspectedStep, Logged, MergedZones};

@@ -19,7 +19,7 @@ fn judged(scene: &Scene, trace: &[u8]) -> (Outcome, Evidence) {
     let mut rulings = StepRulings::new(&mut nobody);
     let outcome = replay::judge(scene, trace, &options, &mut rulings);
     let focus: Vec<Focus> = outcome.findings_by(Book::Fair).examples.iter().map(Focus::from).collect();
-    let evidence = gather(scene, trace, &rulings.into_steps(&outcome), true, &focus, BUDGET);
+    let evidence = gather(scene, &mut &trace[..], &rulings.into_steps(&outcome), true, &focus, BUDGET);
     (outcome, evidence)
 }
 

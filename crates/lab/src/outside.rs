@@ -3,7 +3,8 @@
 use crate::mutants::{Mutant, mutants};
 use fosssim_oracle::{
     assignments::Assignment,
-    diagnose::{About, Explanation, Keep, examine, probe_scenes, refuted, several},
+    diagnose::{About, Explanation, probe_scenes, refuted, several},
+    evidence::{Keep, examine},
     judge::{fair::FairVerdict, replay::Options},
     report::words::explanation::{details, what},
     scene::Scene,
@@ -44,7 +45,7 @@ pub fn told_of(student: Student) -> Vec<Explanation> {
     let (mut explained, mut right): (Vec<Vec<Explanation>>, Vec<Scene>) = (Vec::new(), Vec::new());
     for (_, scene) in probe_scenes(Assignment::DEFAULT) {
         let trace = student::trace(&scene, student).unwrap_or_else(|(bytes, _)| bytes);
-        let examined = examine(&scene, &trace[..], Keep::EXPLAINED, &options, &mut ());
+        let examined = examine(&scene, &trace[..], Keep::All, &options, &mut ());
         match &examined.outcome.fair {
             Some(fair) if fair.verdict == FairVerdict::Accepted => right.push(scene.clone()),
             _ => explained.push(examined.explain()),

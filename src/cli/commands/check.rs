@@ -1,16 +1,13 @@
 //! `check`: grades a trace.
-use super::{
-    headroom,
-    pages::{focus, what_if},
-};
+use super::{headroom, pages::what_if};
 use crate::{
     cli::{
         arguments::{Check, CheckFormat},
-        console, exit, input,
+        console, exit,
+        input::{self, SceneInput, TraceInput},
         output::Output,
     },
-    diagnose::{self, Keep, examine},
-    evidence::{self, StepRulings},
+    evidence::{self, Evidence, Examined, Keep, examine},
     judge::{
         Outcome, Overall, Rules, Stop, Unreadable, fair,
         replay::{self, Progress, Remark, WrongStep},
@@ -25,7 +22,7 @@ use crate::{
     sim::{RootSearch, StepError},
     suite::config::Hints,
 };
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use std::{io::Read, path::Path};
 
 pub(super) fn run(arguments: &Check) -> Result<u8> {
@@ -39,43 +36,125 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
     let inputs: Vec<_> = scene.identity.into_iter().chain(trace.identity).collect();
     // An output that can't be written is said before the work is done, not after.
     let target = arguments.output.as_deref().map(|name| Output::create(name, &inputs)).transpose()?;
+    let (shown, lasts) = (Shown::of(arguments, target.is_some()), is_lasting(name));
+    let mut heard = Heard { bar: console::Bar::new(scene.scene.steps()), wrong: wrong_steps(arguments, &scene)? };
+    let options = options(arguments);
+    let examined = examine(&scene.scene, &mut trace.reader, shown.keep(lasts), &options, &mut heard);
+    let Heard { bar, wrong } = heard;
+    drop(bar);
+    let outcome = &examined.outcome;
+    refuse_unreadable(outcome, &scene, &trace)?;
+    let explanations = if shown.is_explained && is_wrong(outcome) { examined.explain() } else { Vec::new() };
+    let check = report::check::Check {
+        scene: &scene.name,
+        trace: &trace.name,
+        outcome,
+        explanations: &explanations,
+        rules: arguments.rules.into(),
+        steps: &wrong,
+        audit: arguments.audit,
+        tables: arguments.tables,
+        looks_like: trace.looks_like,
+    };
+    let accepted = check.accepted();
+    let evidence = || evidence_of(&examined, name, lasts);
+    write(target, arguments.format, check, shown.drawing, &examined, &evidence)?;
+    let disagreements = outcome.searches.disagreements;
+    if disagreements > 0 {
+        bail!("{disagreements} disagreements between certificates and the root finder; please report this");
+    }
+    Ok(if accepted { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
+}
+
+/// Writes the report in its format.
+fn write(
+    target: Option<Output>,
+    format: CheckFormat,
+    check: report::check::Check<'_>,
+    drawing: Drawing,
+    examined: &Examined<'_>,
+    evidence: &dyn Fn() -> Evidence,
+) -> Result<()> {
+    let style = if target.is_some() { Style::Plain } else { console::style() };
+    let text = match (format, drawing) {
+        (CheckFormat::Text, Drawing::Plots(columns)) if !check.accepted() => {
+            with_plots(check.text(style), &evidence(), columns)
+        }
+        (CheckFormat::Text, _) => check.text(style),
+        (CheckFormat::Json, _) => check.json(),
+        (CheckFormat::Github, _) => check.github(),
+        (CheckFormat::Html, _) => html(check, examined, &evidence()),
+    };
+    match (target, format) {
+        (Some(target), format) => target.finish_and_tell(text.as_bytes(), format == CheckFormat::Html),
+        (None, CheckFormat::Text) => console::report(&text),
+        (None, _) => console::print(text.as_bytes()),
+    }
+}
+
+/// What is shown besides the verdict, which decides what is kept of a trace.
+struct Shown {
+    is_explained: bool,
+    drawing: Drawing,
+}
+
+/// Pictures of the trace.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Drawing {
+    None,
+    /// In the terminal, with this width.
+    Plots(usize),
+    Page,
+}
+
+impl Shown {
+    fn of(arguments: &Check, is_written: bool) -> Self {
+        // Of single steps the numbers are asked for.
+        let is_whole = arguments.step.is_empty();
+        let drawing = match (arguments.format, console::pictures()) {
+            (CheckFormat::Html, _) => Drawing::Page,
+            (CheckFormat::Text, Some(columns)) if is_whole && !is_written => Drawing::Plots(columns),
+            _ => Drawing::None,
+        };
+        Self { is_explained: is_whole && !arguments.no_explain, drawing }
+    }
+
+    fn keep(&self, lasts: bool) -> Keep {
+        match (self.is_explained || self.drawing != Drawing::None, lasts) {
+            (false, _) => Keep::Nothing,
+            (true, false) => Keep::Read,
+            (true, true) => Keep::All,
+        }
+    }
+}
+
+fn options(arguments: &Check) -> replay::Options {
     let rules: Rules = arguments.rules.into();
-    let options = replay::Options {
+    replay::Options {
         threads: arguments.threads.map_or(0, |threads| threads.get().min(8)),
         root_search: if arguments.audit { RootSearch::Audit } else { RootSearch::WhereNeeded },
         fair: rules.ask_fair(),
         ..replay::Options::default()
-    };
+    }
+}
+
+/// The list for wrong steps, of those that are to be shown.
+fn wrong_steps(arguments: &Check, scene: &SceneInput) -> Result<WrongSteps> {
     let steps = scene.scene.steps();
     if let Some(step) = arguments.step.iter().find(|step| **step > steps) {
         bail!("the scene {} has {}; there is no step {step}", scene.name, counted(steps.into(), "step"));
     }
-    let shown = if arguments.all {
+    Ok(WrongSteps::new(if arguments.all {
         StepChoice::All
     } else if arguments.step.is_empty() {
         StepChoice::None
     } else {
         StepChoice::These(arguments.step.clone())
-    };
-    let mut heard = Heard { bar: console::Bar::new(steps), wrong: WrongSteps::new(shown) };
-    let lasting = is_lasting(name);
-    let explain = !arguments.no_explain && arguments.step.is_empty();
-    let is_page = arguments.format == CheckFormat::Html;
-    let pictures = console::pictures().filter(|_| arguments.format == CheckFormat::Text && target.is_none());
-    let pictures = pictures.filter(|_| arguments.step.is_empty());
-    let draws = is_page || pictures.is_some();
-    // A file that is there later, too, is read again if it comes to that: most traces are right.
-    let is_short_file = lasting && trace.length.is_some_and(|length| length <= Keep::EXPLAINED.most as u64);
-    let is_kept = if explain { !is_short_file } else { draws && !lasting };
-    let most = if is_kept { Keep::EXPLAINED.most } else { 0 };
-    // The program that writes a pipe may write no more.
-    let keep = Keep { most, reads_on: lasting };
-    let mut rulings = StepRulings::new(&mut heard);
-    let examined = examine(&scene.scene, &mut trace.reader, keep, &options, &mut rulings);
-    let outcome = &examined.outcome;
-    let rulings = if draws { rulings.into_steps(outcome) } else { Vec::new() };
-    let Heard { bar, wrong } = heard;
-    drop(bar);
+    }))
+}
+
+/// Ends with an error where the scene has no verdicts, or the trace could not be read to its end.
+fn refuse_unreadable(outcome: &Outcome, scene: &SceneInput, trace: &TraceInput) -> Result<()> {
     match &outcome.stop {
         Some(Stop::Step(StepError::VortexHessian { .. })) => bail!(
             "the scene {} has a vortexforce, which has no Hessian: choose an integrator that is not implicit",
@@ -94,76 +173,27 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
             }
         }
     }
-    let content = &scene.scene;
-    let mut again = Vec::new();
-    let explanations = match explain && is_wrong(outcome) {
-        true if is_short_file => {
-            let file = input::trace(name)?.reader;
-            file.take(Keep::EXPLAINED.most as u64)
-                .read_to_end(&mut again)
-                .with_context(|| format!("cannot read the trace {} again", trace.name))?;
-            diagnose::explain(content, &again)
-        }
-        true => examined.explain(),
-        false => Vec::new(),
-    };
-    let (scene, shown) = (scene.name.as_str(), trace.name.as_str());
-    let check = report::check::Check {
-        scene,
-        trace: shown,
-        outcome,
-        explanations: &explanations,
-        rules,
-        steps: &wrong,
-        audit: arguments.audit,
-        tables: arguments.tables,
-        looks_like: trace.looks_like,
-    };
-    let style = if target.is_some() { Style::Plain } else { console::style() };
-    let evidence = || {
-        let (fair, focus, budget) = (outcome.fair.is_some(), focus(outcome), evidence::BUDGET);
-        match if lasting { input::trace(name).ok() } else { None } {
-            Some(whole) => evidence::gather(content, whole.reader, &rulings, fair, &focus, budget),
-            None => evidence::gather(content, examined.trace.beginning(), &rulings, fair, &focus, budget),
-        }
-    };
-    let text = match arguments.format {
-        CheckFormat::Text => match pictures {
-            Some(columns) if !check.accepted() => {
-                let plots = report::check::plots(&evidence(), columns);
-                let gap = if plots.is_empty() { "" } else { "\n" };
-                check.text(style) + gap + &plots
-            }
-            _ => check.text(style),
-        },
-        CheckFormat::Json => check.json(),
-        CheckFormat::Github => check.github(),
-        CheckFormat::Html => {
-            let evidence = evidence();
-            let bytes = if is_short_file { again } else { examined.trace.bytes(Keep::EXPLAINED.most) };
-            let what_if = explanations.first().and_then(|first| what_if(content, first, &bytes, &evidence));
-            let hints = Hints::Full;
-            let case = page::Case {
-                check,
-                scene: content,
-                evidence: Some(&evidence),
-                what_if: what_if.as_ref(),
-                hints,
-                has_trace: true,
-            };
-            page::Page { title: &format!("{}: {scene}", check.verdict()), cases: vec![case] }.html()
-        }
-    };
-    match (target, arguments.format) {
-        (Some(target), _) => target.finish_and_tell(text.as_bytes(), is_page)?,
-        (None, CheckFormat::Text) => console::report(&text)?,
-        (None, _) => console::print(text.as_bytes())?,
-    }
-    let disagreements = outcome.searches.disagreements;
-    if disagreements > 0 {
-        bail!("{disagreements} disagreements between certificates and the root finder; please report this");
-    }
-    Ok(if check.accepted() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
+    Ok(())
+}
+
+/// The evidence: of the whole trace, where what was kept is not all of it and the file can be read again.
+fn evidence_of(examined: &Examined<'_>, name: &Path, lasts: bool) -> Evidence {
+    let mut again = if lasts && !examined.trace.is_whole() { input::trace(name).ok() } else { None };
+    examined.evidence(again.as_mut().map(|trace| &mut trace.reader as &mut dyn Read), evidence::BUDGET)
+}
+
+fn with_plots(text: String, evidence: &Evidence, columns: usize) -> String {
+    let plots = report::check::plots(evidence, columns);
+    text + if plots.is_empty() { "" } else { "\n" } + &plots
+}
+
+fn html(check: report::check::Check<'_>, examined: &Examined<'_>, evidence: &Evidence) -> String {
+    let scene = examined.trace.scene();
+    let what_if = check.explanations.first().and_then(|first| what_if(scene, first, &examined.bytes(), evidence));
+    let title = format!("{}: {}", check.verdict(), check.scene);
+    let (evidence, what_if) = (Some(evidence), what_if.as_ref());
+    let case = page::Case { check, scene, evidence, what_if, hints: Hints::Full, has_trace: true };
+    page::Page { title: &title, cases: vec![case] }.html()
 }
 
 /// Shows how far judging is, and gathers the wrong steps.

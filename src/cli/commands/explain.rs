@@ -11,10 +11,10 @@ use crate::{
         interrupt::cancelled_by_signals,
         output::Output,
     },
-    diagnose::{self, Explanation, Keep, examine},
-    evidence::StepRulings,
+    diagnose::{self, Explanation},
+    evidence::{Keep, examine},
     files::Place,
-    judge::{Rules, fair::FairVerdict, replay::Options},
+    judge::{Rules, fair::FairVerdict, kept::LONGEST, replay::Options},
     report::{
         check::stopped,
         diagnosis::{Case, Diagnosis},
@@ -37,9 +37,6 @@ use std::{
     path::{Path, PathBuf},
     time::Duration,
 };
-
-/// The greatest number of bytes of a trace that are read.
-const LONGEST: usize = Keep::EXPLAINED.most;
 
 /// The number of runs of a program that may end at a limit. Further runs have [`LEAST`]; what they have recorded until
 /// then is read all the same.
@@ -81,7 +78,7 @@ fn trace_on_scene(scene: &Path, trace: &Path, arguments: &Explain) -> Result<(Ca
     let (case, card, _) =
         case((scene.name, trace.name.clone()), true, &scene.scene, &mut trace.reader, None, arguments);
     // What follows the last step is of interest only where it can't be read.
-    let _ = io::copy(&mut (&mut trace.reader).take(LONGEST as u64), &mut io::sink());
+    let _ = io::copy(&mut (&mut trace.reader).take(LONGEST), &mut io::sink());
     if let Some(message) = trace.failure() {
         bail!("cannot read the trace {}: {message}", trace.name);
     }
@@ -99,11 +96,8 @@ fn case(
 ) -> (Case, Option<Card>, u32) {
     let hints: Hints = arguments.hints.into();
     let options = Options { fair: true, ..Options::default() };
-    let mut nobody = ();
-    let mut rulings = StepRulings::new(&mut nobody);
-    let examined = examine(scene, bytes, Keep::EXPLAINED, &options, &mut rulings);
+    let examined = examine(scene, bytes, Keep::All, &options, &mut ());
     let outcome = &examined.outcome;
-    let rulings = rulings.into_steps(outcome);
     // How the program ended tells more than how its trace did.
     let note = note.or_else(|| outcome.stop.as_ref().map(|stop| stopped(stop, outcome)));
     let fair = outcome.fair.clone().unwrap_or_default();
@@ -118,9 +112,9 @@ fn case(
     let card = draws.then(|| {
         pages::card(&Source {
             scene,
-            trace: &examined.trace.bytes(LONGEST),
+            trace: &examined.bytes(),
             outcome,
-            rulings: &rulings,
+            rulings: &examined.rulings,
             explanations: &explanations,
             rules: Rules::Fair,
             hints,
@@ -176,7 +170,7 @@ fn program_on_probes(
     for task in &tasks {
         bar.next_run(&task.name);
         let limits = if stopped < PATIENCE { &plan.limits } else { &short };
-        let (trace, outcome) = runner(limits).collect(&program, task, LONGEST).map_err(anyhow::Error::msg)?;
+        let (trace, outcome) = runner(limits).collect(&program, task, LONGEST as usize).map_err(anyhow::Error::msg)?;
         if cancellation.is_cancelled() {
             return Ok(None);
         }

@@ -3,7 +3,7 @@ use super::ending::file_name;
 use crate::{
     cli::output,
     diagnose::Explanation,
-    evidence::{self, Evidence, Focus, StepRulings, Track},
+    evidence::{self, Evidence, Examined, Focus, Keep, Track, examine},
     files::Place,
     judge::{Outcome, Rules, replay},
     report::{
@@ -123,13 +123,10 @@ pub(super) fn draw(judged: &Judged<'_>, names: (&str, Option<&str>), recorded: b
     if recorded {
         let again = guarded(|| {
             let options = replay::Options { threads: 1, fair: true, ..replay::Options::default() };
-            let mut nobody = ();
-            let mut rulings = StepRulings::new(&mut nobody);
-            let outcome = replay::judge(&judged.task.scene, judged.trace, &options, &mut rulings);
-            (rulings.into_steps(&outcome), outcome)
+            examine(&judged.task.scene, judged.trace, Keep::Nothing, &options, &mut ())
         });
         // What failed while drawing costs nobody's points.
-        let Ok((rulings, outcome)) = again else { return None };
+        let Ok(Examined { outcome, rulings, .. }) = again else { return None };
         let own = Judged { outcome: &outcome, rulings: &rulings, rules: Rules::Fair, ..*judged };
         return draw(&own, names, false)
             .map(|kept| Card::from_kept(&kept).map_or(kept, |card| card.noting(RECORDED).kept()));
@@ -172,7 +169,8 @@ pub(super) struct Source<'a> {
 /// The card of a judged trace.
 pub(super) fn card(source: &Source<'_>) -> Option<Card> {
     let Source { scene, trace, outcome, rulings, explanations, rules, hints, names, depth } = *source;
-    let evidence = evidence::gather(scene, trace, rulings, outcome.fair.is_some(), &focus(outcome), BUDGET);
+    let (fair, focus) = (outcome.fair.is_some(), Focus::of(outcome));
+    let evidence = evidence::gather(scene, &mut &trace[..], rulings, fair, &focus, BUDGET);
     let what_if = match (hints, explanations.first()) {
         (Hints::Full, Some(first)) => what_if(scene, first, trace, &evidence),
         _ => None,
@@ -193,12 +191,6 @@ pub(super) fn card(source: &Source<'_>) -> Option<Card> {
     let has_trace = names.1.is_some();
     let case = Case { check, scene, evidence: Some(&evidence), what_if: what_if.as_ref(), hints, has_trace };
     Card::of(&case, depth)
-}
-
-/// The places that a viewer shows closely: the findings of both books, the official one's first.
-pub(super) fn focus(outcome: &Outcome) -> Vec<Focus> {
-    let books = outcome.fair.iter().map(|fair| &fair.findings).chain([&outcome.parity.findings]);
-    books.flat_map(|book| book.first_divergence.iter().chain(&book.examples)).map(Focus::from).collect()
 }
 
 /// The run of the reference with the mistake that is named, beside the trace.

@@ -8,8 +8,8 @@ use super::{
 };
 use crate::{
     cli::{console, grading::Grade as Arguments, selection::Selection},
-    diagnose::{self, Keep, examine},
-    evidence::StepRulings,
+    diagnose,
+    evidence::{Keep, examine},
     files::{FileError, Folder},
     judge::replay::Options,
     report::grade::{Format, Text, rehearse},
@@ -143,12 +143,7 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) 
     let (trace, passed_over) = read(folder, &task.name, plan.limits.trace)?;
     let options =
         Options { stop_by: plan.rules.official(), threads: 1, fair: plan.rules.ask_fair(), ..Options::default() };
-    let mut quiet = ();
-    let mut rulings = StepRulings::new(&mut quiet);
-    // It is in memory already; what lies beyond is kept only where something is found.
-    let is_short = trace.len() <= Keep::EXPLAINED.most;
-    let keep = if is_short { Keep::NOTHING } else { Keep::EXPLAINED };
-    let examined = examine(&task.scene, &trace[..], keep, &options, &mut rulings);
+    let examined = examine(&task.scene, &trace[..], Keep::All, &options, &mut ());
     let outcome = &examined.outcome;
     // As if a program had ended well after it wrote this.
     let program = RunOutcome::without_run(trace.len() as u64);
@@ -162,11 +157,9 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) 
         hints: plan.hints,
         limits: &plan.limits,
     };
-    let explained = conclude(&run, |look| match (look, is_short) {
-        (Look::NotFinite, true) => diagnose::not_finite_in(&task.scene, &trace),
-        (Look::NotFinite, false) => diagnose::not_finite(&examined.trace),
-        (Look::Mistakes, true) => diagnose::explain(&task.scene, &trace),
-        (Look::Mistakes, false) => examined.explain(),
+    let explained = conclude(&run, |look| match look {
+        Look::NotFinite => diagnose::not_finite(&examined.trace),
+        Look::Mistakes => examined.explain(),
     });
     let mut result = SceneResult { ended: None, memory: None, ..explained };
     if let Some(pages) = pages
@@ -176,7 +169,7 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) 
             task,
             result: &result,
             outcome,
-            rulings: &rulings.into_steps(outcome),
+            rulings: &examined.rulings,
             trace: &trace,
             is_cut: false,
             rules: plan.rules,

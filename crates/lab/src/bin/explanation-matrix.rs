@@ -96,7 +96,8 @@ fn main() -> anyhow::Result<ExitCode> {
         "\nmistakes: {wrong}; first on their best scene: {best_first}; first or the same as the first: {best_among}"
     );
     println!(
-        "traces that differ: {traces}; first: {first}; same as the first: {among}; other: {other}; nothing: {nothing}; round-off only: {unseen}"
+        "traces that differ: {traces}; first: {first}; same as the first: {among}; other: {other}; nothing: {nothing}; \
+         round-off only: {unseen}"
     );
     println!("slowest: {row} on {scene}, {slowest:.2?}");
     together(&rows, &results);

@@ -11,6 +11,7 @@ use crate::{
     assignments::t2m2::Subject,
     student::{Area, Row, find},
 };
+use fosssim_judge::kept::KeptTrace;
 use fosssim_model::{
     scene::Scene,
     sim::{PairKind, pairs},
@@ -34,6 +35,13 @@ pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
     explain_source(scene, Source::whole(trace))
 }
 
+/// As [`explain`], of what was kept of a trace: its beginning, and the steps beyond in which a book has found
+/// something.
+#[must_use]
+pub fn explain_kept(trace: &KeptTrace<'_>) -> Vec<Explanation> {
+    explain_source(trace.scene(), trace.into())
+}
+
 /// The explanation of the trace's stages, whether or not a known mistake explains it: for measuring what it says.
 #[must_use]
 pub fn explain_stages(scene: &Scene, trace: &[u8]) -> Option<Explanation> {
@@ -42,7 +50,7 @@ pub fn explain_stages(scene: &Scene, trace: &[u8]) -> Option<Explanation> {
 }
 
 /// As [`explain`], whatever the trace's records are read from.
-pub(super) fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
+fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     if Layout::of(scene).polynomials && pairs(scene).count() > MOST_PAIRS {
         return not_finite::of_source(scene, source);
     }

@@ -6,7 +6,6 @@
 
 mod about;
 mod detail;
-mod examine;
 mod example;
 mod explain;
 mod explanation;
@@ -23,9 +22,8 @@ mod stages;
 pub use crate::{assignments::probe_scenes, plain::formula_in};
 pub use about::{About, OfPolynomials};
 pub use detail::{Amount, Detail, PolynomialDetail, Ratios, StageDetail, Stand, Weight};
-pub use examine::{Examined, Keep, examine, explain_kept};
 pub use example::{Example, ExamplePlace, ExampleValue, StepRecord};
-pub use explain::{explain, explain_stages};
+pub use explain::{explain, explain_kept, explain_stages};
 pub use explanation::Explanation;
 pub use fault::{
     Changed, LoopEnd, NanStage, NotFinite, Quantity, StageFault, StepStage, WrongDecisions, WrongGeometric,
@@ -34,7 +32,7 @@ pub use fault::{
 pub use guess::{CoefficientGuess, Guess, ListGuess, QuantityGuess};
 pub use heads::{common, refuted, several};
 pub use known::{known, shows};
-pub use not_finite::{not_finite, not_finite_in};
+pub use not_finite::not_finite;
 pub use settled::{Settled, settled};
 
 #[cfg(test)]

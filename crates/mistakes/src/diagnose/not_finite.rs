@@ -22,12 +22,6 @@ pub fn not_finite(trace: &KeptTrace<'_>) -> Vec<Explanation> {
     of_source(trace.scene(), trace.into())
 }
 
-/// The same, of a whole trace.
-#[must_use]
-pub fn not_finite_in(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
-    of_source(scene, Source::whole(trace))
-}
-
 /// The same, of what records are at hand.
 pub(super) fn of_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     let (mut steps, mut reference, mut first) = (Steps::new(scene, source), Reference::new(scene), First::default());

@@ -65,7 +65,7 @@ mod tests {
         let options = replay::Options { fair: true, ..Default::default() };
         let outcome = replay::judge(&scene, &trace[..], &options, &mut rulings);
         let focus: Vec<Focus> = outcome.parity.findings.examples.iter().map(Focus::from).collect();
-        plots(&gather(&scene, &trace[..], &rulings.into_steps(&outcome), true, &focus, BUDGET), 80)
+        plots(&gather(&scene, &mut &trace[..], &rulings.into_steps(&outcome), true, &focus, BUDGET), 80)
     }
 
     #[test]

@@ -29,7 +29,7 @@ fn told(scene: &Scene, scene_name: &str, trace_name: &str, trace: &[u8], hints: 
     let outcome: Outcome = replay::judge(scene, trace, &options, &mut rulings);
     let explanations = hints.cut(diagnose::explain(scene, trace));
     let focus: Vec<Focus> = outcome.parity.findings.examples.iter().map(Focus::from).collect();
-    let evidence = gather(scene, trace, &rulings.into_steps(&outcome), true, &focus, BUDGET);
+    let evidence = gather(scene, &mut &trace[..], &rulings.into_steps(&outcome), true, &focus, BUDGET);
     let check = Check {
         scene: scene_name,
         trace: trace_name,
@@ -129,7 +129,7 @@ fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
     let options = replay::Options { fair: true, ..Default::default() };
     let outcome = replay::judge(scene, &trace[..], &options, &mut rulings);
     let focus: Vec<Focus> = outcome.parity.findings.examples.iter().map(Focus::from).collect();
-    let evidence = gather(scene, &trace[..], &rulings.into_steps(&outcome), true, &focus, BUDGET);
+    let evidence = gather(scene, &mut &trace[..], &rulings.into_steps(&outcome), true, &focus, BUDGET);
     let explanations = hints.cut(diagnose::explain(scene, &trace));
     let what_if = WhatIf {
         id: id.to_owned(),

@@ -43,8 +43,7 @@ pub const ROUND_OFF: Tolerance = Tolerance {
 };
 
 /// The bound beyond which nobody takes a difference for round-off.
-pub const PLAIN: Tolerance =
-    Tolerance { coefficient: 1e-7, floor: 1e-9, state: 1e-8, normal: 1e-8, time: 1e-6 };
+pub const PLAIN: Tolerance = Tolerance { coefficient: 1e-7, floor: 1e-9, state: 1e-8, normal: 1e-8, time: 1e-6 };
 
 /// The bound for a step whose states were rounded to single precision before and after.
 pub const SINGLE_PRECISION: Tolerance =

@@ -126,11 +126,11 @@ impl<'a> Steps<'a> {
 
     /// Reads the next step; its number.
     pub fn next(&mut self) -> Option<u32> {
-        if let Some(step) = self.next.take() {
-            if self.read_step(step) {
-                self.next = Some(step + 1);
-                return Some(step);
-            }
+        if let Some(step) = self.next.take()
+            && self.read_step(step)
+        {
+            self.next = Some(step + 1);
+            return Some(step);
         }
         if !self.is_whole {
             self.outline.records = None;

@@ -1,7 +1,10 @@
 //! Programs with several mistakes, asked about on the probe scenes.
-use super::{About, Explanation, Keep, examine, explain, probe_scenes, several};
+use super::{About, Explanation, explain, explain_kept, probe_scenes, several};
 use crate::student::{self, Row, Student};
-use fosssim_judge::replay::Options;
+use fosssim_judge::{
+    kept::{Keeper, LONGEST},
+    replay::Options,
+};
 use fosssim_model::assignments::Assignment;
 
 mod heads;
@@ -96,13 +99,17 @@ fn mistakes_beyond_what_is_kept_are_explained() {
         probe_scenes(Assignment::T2M2).into_iter().find(|(name, _)| name == "edges-struck").expect("a probe scene");
     let trace = student::trace(&scene, Student::new(Some(row.mistake))).expect("it comes to an end");
     let options = Options { threads: 1, fair: true, ..Options::default() };
-    for most in [trace.len() / 4, Keep::EXPLAINED.most] {
-        let keep = Keep { most, ..Keep::EXPLAINED };
-        let examined = examine(&scene, Slowly(&trace), keep, &options, &mut ());
-        assert_eq!(examined.trace.is_whole(), most > trace.len());
-        let told = examined.explain();
+    let kept = |most: usize| {
+        let keeper = Keeper::new(&scene, most);
+        let outcome = keeper.judge(Slowly(&trace), &options, &mut ());
+        assert!(outcome.stop.is_none());
+        keeper.into_kept()
+    };
+    for most in [trace.len() / 4, LONGEST as usize] {
+        let kept = kept(most);
+        assert_eq!(kept.is_whole(), most > trace.len());
+        let told = explain_kept(&kept);
         assert_eq!(told.first().map(|one| one.key.as_str()), Some(row.id), "{told:#?}");
     }
-    let nothing = examine(&scene, &trace[..], Keep::NOTHING, &options, &mut ());
-    assert!(nothing.explain().is_empty());
+    assert!(explain_kept(&kept(0)).is_empty());
 }
