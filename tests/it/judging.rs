@@ -1,4 +1,4 @@
-//! Judging many steps and calls at a time: the outcome is that of judging them one by one.
+//! The shortcuts of judging, bytes first and right at once: the outcome is that of the full way.
 use fosssim_oracle::{
     judge::replay::{self, Options},
     scene::original,

@@ -4,15 +4,13 @@
 //! with what is read. Where they are equal, every comparison of the two books is known to find nothing; where anything
 //! hangs on more than that, or differs, the step goes the long way.
 use super::{
-    alike::Alike,
     fair::{Context, StepJudgement},
-    tally::{Pending, SAFE_SUM, rejects_itself},
-    watch::Watch,
+    tally::{SAFE_SUM, rejects_itself},
 };
 use fosssim_model::{
     scene::Scene,
     sim::{RootSearch, SearchCounts, Simulation, State},
-    trace::{Layout, Lenient},
+    trace::{Layout, Lenient, StepBytes},
 };
 use fosssim_num::polynomial::MAX_COEFFICIENTS;
 use std::io::Read;
@@ -23,12 +21,8 @@ const LONGEST_PAUSE: u32 = 63;
 /// Looks for such steps.
 pub(super) struct Identical {
     simulation: Simulation,
-    watch: Watch,
-    alike: Alike,
-    /// What the trace has in the place of the step's records.
-    theirs: Vec<u8>,
-    /// What the original finds about that.
-    pending: Pending,
+    /// The reference's records of the step.
+    records: StepBytes,
     /// The number of steps in a row that differed. After the first of them no step is skipped, and then about twice as
     /// many with each.
     misses: u32,
@@ -44,8 +38,6 @@ pub(super) struct Found {
     pub(super) work: u64,
     /// Bytes of its records.
     pub(super) bytes: usize,
-    /// Whether these are the reference's.
-    pub(super) is_own: bool,
     /// What the fair rules say about it, if they are asked.
     pub(super) fair: Option<StepJudgement>,
 }
@@ -55,10 +47,7 @@ impl Identical {
     pub(super) fn new(scene: &Scene, root_search: RootSearch) -> Self {
         Self {
             simulation: Simulation::new(scene, root_search),
-            watch: Watch::new(Layout::of(scene)),
-            alike: Alike::new(scene),
-            theirs: Vec::new(),
-            pending: Pending::default(),
+            records: StepBytes::new(Layout::of(scene)),
             misses: 0,
             skipped: 0,
             searches: SearchCounts::default(),
@@ -73,11 +62,6 @@ impl Identical {
     /// Counts of root searches, of the steps that were found.
     pub(super) fn searches(&self) -> SearchCounts {
         self.searches
-    }
-
-    /// What the original finds about the polynomials of the step that was found.
-    pub(super) fn pending(&mut self) -> &mut Pending {
-        &mut self.pending
     }
 
     /// The state at the end of the step that was found.
@@ -100,17 +84,9 @@ impl Identical {
             return None;
         }
         let (counts, work) = (self.simulation.search_counts(), self.simulation.work());
-        let is_sound = self.step(step, before, context, work.saturating_add(most_work)) && !self.hangs_on_size();
-        let Self { watch, alike, theirs, pending, .. } = self;
-        pending.clear();
-        let is_own = is_sound && reader.passes(&watch.bytes);
-        let mut fair = None;
-        let is_found = is_own
-            || is_sound
-                && reader.passes_like(&watch.bytes, theirs, &mut |lists| {
-                    fair = alike.accepts(watch, step, context, lists, pending);
-                    fair.is_some()
-                });
+        let is_found = self.step(step, before, context, work.saturating_add(most_work))
+            && !self.hangs_on_size()
+            && reader.passes(&self.records);
         if !is_found {
             self.skipped = ((1 << self.misses) - 1).min(LONGEST_PAUSE);
             self.misses = (self.misses + 1).min(LONGEST_PAUSE.ilog2() + 1);
@@ -118,12 +94,8 @@ impl Identical {
         }
         self.misses = 0;
         self.searches += self.simulation.search_counts() - counts;
-        let bytes = &self.watch.bytes;
-        if is_own {
-            fair = context.map(|context| StepJudgement::identical(context, step, bytes.polynomials()));
-        }
-        let work = self.simulation.work() - work;
-        Some(Found { work, bytes: bytes.len(), is_own, fair })
+        let fair = context.map(|context| StepJudgement::identical(context, step, self.records.polynomials()));
+        Some(Found { work: self.simulation.work() - work, bytes: self.records.len(), fair })
     }
 
     /// Whether the step has a result and its states are nothing out of the ordinary.
@@ -135,17 +107,17 @@ impl Identical {
         self.simulation.limit_work(most_work);
         let is_ordinary = |state: &State| context.is_none_or(|context| context.ordinary.holds(state));
         is_ordinary(before)
-            && self.simulation.step(&mut self.watch).is_ok()
-            && self.watch.bytes.is_finite()
-            && self.watch.bytes.mid().is_none_or(is_ordinary)
+            && self.simulation.step(&mut self.records).is_ok()
+            && self.records.is_finite()
+            && self.records.mid().is_none_or(is_ordinary)
             && is_ordinary(self.simulation.state())
     }
 
     /// Whether the original rejects a polynomial although it is the reference's.
     fn hangs_on_size(&self) -> bool {
         // Written so that what is not small for certain is looked at, one by one.
-        let all_small = self.watch.bytes.largest() < SAFE_SUM / MAX_COEFFICIENTS as f64;
-        !all_small && self.watch.bytes.any(rejects_itself)
+        let all_small = self.records.largest() < SAFE_SUM / MAX_COEFFICIENTS as f64;
+        !all_small && self.records.any(rejects_itself)
     }
 }
 
@@ -156,7 +128,7 @@ mod tests {
         replay,
         samples::{BOUNCE, ZONES, changed, relog, scene},
     };
-    use fosssim_model::{scene::Scene, trace::Frame};
+    use fosssim_model::{scene::Scene, sim::RootSearch, trace::Frame};
 
     /// A ball beside a half-plane, so far away that the original rejects its own polynomials.
     const LARGE: &str = r#"<scene>
@@ -268,6 +240,29 @@ mod tests {
             let options = Options { fair: true, threads: 1, one_by_one, ..Options::default() };
             let fair = replay::judge(&scene, &trace[..], &options, &mut ()).fair.expect("asked");
             assert_eq!(fair.findings.first_divergence, None, "one by one: {one_by_one}");
+        }
+    }
+
+    /// To search all roots changes no verdict, by either book.
+    #[test]
+    fn audited_searches_judge_the_same() {
+        let changes: [Change; 4] = [
+            |_| {},
+            |frames| frames.iter_mut().for_each(|frame| relog(frame, |_, own| own.iter().map(|c| 3.0 * c).collect())),
+            |frames| frames.iter_mut().for_each(|frame| relog(frame, |_, own| rounded(own, 40.0))),
+            |frames| relog(&mut frames[1], |_, own| own.iter().map(|c| c + 1e-3).collect()),
+        ];
+        for scene in [BOUNCE, ZONES, SPIN].map(scene) {
+            for change in changes {
+                let trace = changed(&scene, change);
+                let [needed, audited] = [RootSearch::WhereNeeded, RootSearch::Audit].map(|root_search| {
+                    let options = Options { fair: true, threads: 1, root_search, ..Options::default() };
+                    let mut outcome = replay::judge(&scene, &trace[..], &options, &mut ());
+                    (std::mem::take(&mut outcome.searches), format!("{outcome:?}"))
+                });
+                assert_eq!((audited.0.searched, audited.0.disagreements), (needed.0.calls, 0));
+                assert!(audited.1 == needed.1, "{}\n{}", audited.1, needed.1);
+            }
         }
     }
 

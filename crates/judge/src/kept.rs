@@ -49,7 +49,7 @@ impl<'a> Keeper<'a> {
             self.scene,
             KeepingReader { is_judged: true, ..self.reader(trace) },
             options,
-            &mut Heard { keeper: self, inner: progress },
+            &mut KeepingProgress { keeper: self, inner: progress },
         )
     }
 
@@ -108,12 +108,12 @@ impl<R: Read> Read for KeepingReader<'_, R> {
 }
 
 /// Hears which steps are the reference's and which are wrong, and passes on everything.
-struct Heard<'k, 'a> {
+struct KeepingProgress<'k, 'a> {
     keeper: &'k Keeper<'a>,
     inner: &'k mut dyn Progress,
 }
 
-impl Progress for Heard<'_, '_> {
+impl Progress for KeepingProgress<'_, '_> {
     fn begins(&mut self) {
         self.inner.begins();
     }

@@ -6,10 +6,8 @@
 #![forbid(unsafe_code)]
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
-mod alike;
 mod book_findings;
 pub mod budget;
-mod calls;
 mod contacts;
 mod counts;
 mod differing;
@@ -29,7 +27,6 @@ mod samples;
 pub mod share;
 pub mod study;
 mod tally;
-mod watch;
 mod words;
 
 pub use book_findings::BookFindings;

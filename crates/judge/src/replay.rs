@@ -4,7 +4,7 @@
 //! state (oracle-behaviour.md 4.2). So while one batch is judged, on all threads, the next one is read. Steps that are
 //! the reference's byte for byte are judged as they are read (`identical`): that takes hardly longer than decoding
 //! them. What is reported, and in which order, does not depend on the number of threads.
-mod crew;
+mod workers;
 
 pub use super::{
     options::Options,
@@ -19,7 +19,6 @@ use super::{
     rules::Book,
     tally::{self, StepResult},
 };
-use crew::Crew;
 use fosssim_model::{
     assignments::ImpulseList,
     scene::Scene,
@@ -27,6 +26,7 @@ use fosssim_model::{
     trace::{Layout, Lenient, LenientFrame, LoggedImpulse, Unreadable, record_memory},
 };
 use std::{io::Read, sync::Mutex};
+use workers::Workers;
 
 /// A batch is full when its frames hold this many bytes ...
 const BATCH_BYTES: usize = 1 << 18;
@@ -118,6 +118,9 @@ pub(super) fn judge_within<R: Read + Send>(
     }
     if options.one_by_one {
         replay.identical.give_up();
+        if let Some(context) = &mut replay.shape.fair {
+            context.looks_closely = true;
+        }
     }
     replay.judge(options, progress)
 }
@@ -167,20 +170,20 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         progress.begins();
         let (mut current, mut next) = (Batch::default(), Batch::default());
         let mut stop = self.read_batch(&mut current);
-        let mut crew = Crew::new(self.scene, options);
+        let mut workers = Workers::new(self.scene, options);
         loop {
             // A trace that fits into one batch is judged before threads have started, unless somebody asks for them.
             let is_last = stop.is_some() || self.complete();
             let mut stop_after = None;
-            let at_once = !is_last && current.is_waiting() && current.bytes <= LARGE_BATCH_BYTES && crew.has_pool();
+            let at_once = !is_last && current.is_waiting() && current.bytes <= LARGE_BATCH_BYTES && workers.has_pool();
             if at_once {
                 let (shape, rest) = (self.shape, self.budget.rest());
-                crew.judge_beside(&current, &shape, rest, || stop_after = self.read_batch(&mut next));
+                workers.judge_beside(&current, &shape, rest, || stop_after = self.read_batch(&mut next));
             } else if current.is_waiting() {
-                crew.judge(&current, &self.shape, self.budget.rest(), is_last);
+                workers.judge(&current, &self.shape, self.budget.rest(), is_last);
             }
             if current.work() > self.budget.rest() && self.budget.widen() && current.is_waiting() {
-                crew.judge(&current, &self.shape, self.budget.rest(), is_last);
+                workers.judge(&current, &self.shape, self.budget.rest(), is_last);
             }
             if self.deliver(&mut current, progress, options) {
                 break;
@@ -204,7 +207,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             std::mem::swap(&mut current, &mut next);
         }
         self.outcome.searches = self.identical.searches();
-        self.outcome.searches += crew.searches();
+        self.outcome.searches += workers.searches();
         self.outcome.conclude();
         self.outcome
     }
@@ -328,8 +331,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         Ok(())
     }
 
-    /// Reads a step and judges it, if it is the reference's byte for byte, or but for polynomials that are right at
-    /// once.
+    /// Reads a step and judges it, if it is the reference's byte for byte.
     fn read_at_once(&mut self, slot: &mut Slot) -> bool {
         let (context, rest) = (self.shape.fair.as_ref(), self.budget.rest());
         let Some(found) = self.identical.find(&mut self.reader, slot.step, &self.state, context, rest) else {
@@ -339,8 +341,8 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         self.state_at = self.reader.record_offset();
         (slot.end_at, slot.behind) = (self.state_at, self.reader.offset());
         self.steps_read += 1;
-        slot.result.set_states_right(found.is_own, self.identical.pending());
-        slot.is_own = found.is_own;
+        slot.result.set_identical();
+        slot.is_own = true;
         slot.fair = found.fair.unwrap_or_default();
         (slot.bytes, slot.work, slot.is_done) = (found.bytes, found.work, true);
         (slot.is_extraordinary, slot.is_put_off) = (false, false);

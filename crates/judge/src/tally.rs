@@ -5,7 +5,7 @@
 //! whether the two lists have the same length; findings about polynomials count only then (oracle-behaviour.md 6.2).
 mod pending;
 
-pub(super) use pending::Pending;
+use pending::Pending;
 
 use super::{
     contacts::{Contacts, key, logged_key},
@@ -48,12 +48,10 @@ pub(super) struct StepResult {
 }
 
 impl StepResult {
-    /// Of a step whose states and impulses are the reference's bit for bit, so that no residual is above zero;
-    /// `identical` says that the polynomials are so, too. If they are not, this is what the original finds about them.
-    pub(super) fn set_states_right(&mut self, identical: bool, pending: &mut Pending) {
+    /// Of a step that is the reference's bit for bit: no residual is above zero.
+    pub(super) fn set_identical(&mut self) {
         self.clear();
-        self.identical = identical;
-        pending.settle(self);
+        self.identical = true;
     }
 
     fn clear(&mut self) {
@@ -391,7 +389,7 @@ pub(super) fn rejects_itself(coefficients: &[f64]) -> bool {
 
 /// Whether the original finds nothing about a polynomial (oracle-behaviour.md 6.2): it is right up to a factor, or
 /// zero, or holds what is no number.
-pub(super) fn passes(own: &[f64], actual: &[f64]) -> bool {
+fn passes(own: &[f64], actual: &[f64]) -> bool {
     let (sum_actual, sum_own) = (sum_of_moduli(actual), sum_of_moduli(own));
     if own.len() != actual.len() {
         return false;

@@ -6,7 +6,7 @@
 //! with the modulus of the operands instead of the result's for sums: so terms that cancel keep their weight, and the
 //! bound also covers other orders of summation. Nothing of this reaches a trace.
 use super::{
-    lanes::{Lanes, Modulus, Number, Plane, Simd},
+    lanes::{Modulus, Number, Plane},
     vector::Vec2,
 };
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -162,16 +162,6 @@ impl Mul<Bounded<Size>> for f64 {
     fn mul(self, other: Bounded<Size>) -> Bounded<Size> {
         let value = Size(self.abs() * other.value.0);
         Bounded { value, bound: Size(self.abs() * other.bound.0) + value }
-    }
-}
-
-/// A factor without error.
-impl<S: Simd> Mul<Bounded<Lanes<S>>> for f64 {
-    type Output = Bounded<Lanes<S>>;
-    #[inline(always)]
-    fn mul(self, other: Bounded<Lanes<S>>) -> Bounded<Lanes<S>> {
-        let value = self * other.value;
-        Bounded { value, bound: self.abs() * other.bound + value.abs() }
     }
 }
 

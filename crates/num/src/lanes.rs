@@ -29,13 +29,6 @@ impl Modulus for f64 {
     }
 }
 
-impl<S: Simd> Modulus for Lanes<S> {
-    #[inline(always)]
-    fn modulus(self) -> Self {
-        self.abs()
-    }
-}
-
 /// A vector in the plane.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Plane<N> {
@@ -236,19 +229,6 @@ impl<S: Simd> Lanes<S> {
         Mask { simd: self.simd, lanes: self.simd.less_than_or_equal_f64s(self.values, other.values) }
     }
 
-    /// Where a lane is equal to the other one.
-    #[inline(always)]
-    pub fn equals(self, other: Self) -> Mask<S> {
-        Mask { simd: self.simd, lanes: self.simd.equal_f64s(self.values, other.values) }
-    }
-
-    /// Where a lane is the other one bit for bit.
-    #[inline(always)]
-    pub fn is_same(self, other: Self) -> Mask<S> {
-        let (own, other) = (self.simd.transmute_u64s_f64s(self.values), self.simd.transmute_u64s_f64s(other.values));
-        Mask { simd: self.simd, lanes: self.simd.equal_u64s(own, other) }
-    }
-
     /// Where a lane is less than a number.
     #[inline(always)]
     pub fn below(self, bound: f64) -> Mask<S> {
@@ -264,7 +244,7 @@ impl<S: Simd> Lanes<S> {
     /// Where a lane is zero.
     #[inline(always)]
     pub fn is_zero(self) -> Mask<S> {
-        self.equals(self.like(0.0))
+        Mask { simd: self.simd, lanes: self.simd.equal_f64s(self.values, self.like(0.0).values) }
     }
 }
 
@@ -343,13 +323,6 @@ impl<S: Simd> Mask<S> {
         };
         let bits = simd.and_u64s(mask, simd.splat_u64s(number.to_bits()));
         Lanes { simd, values: simd.transmute_f64s_u64s(bits) }
-    }
-
-    /// The one number of each lane where it says yes, the other one elsewhere.
-    #[inline(always)]
-    #[must_use]
-    pub fn choose(self, yes: Lanes<S>, no: Lanes<S>) -> Lanes<S> {
-        Lanes { simd: self.simd, values: self.simd.select_f64s(self.lanes, yes.values, no.values) }
     }
 
     /// Whether any lane says yes.

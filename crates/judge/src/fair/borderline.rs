@@ -14,22 +14,23 @@ use fosssim_model::{
 /// # Errors
 /// When a step has no result.
 pub fn borderline(scene: &Scene) -> Result<Vec<Borderline>, StepError> {
-    let mut watch = Watch { scene, step: 0, pass: Pass { stage: Stage::Simple, index: 0 }, found: Vec::new() };
+    let mut observer =
+        BorderlineObserver { scene, step: 0, pass: Pass { stage: Stage::Simple, index: 0 }, found: Vec::new() };
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     for _ in 0..scene.steps() {
-        simulation.step(&mut watch)?;
+        simulation.step(&mut observer)?;
     }
-    Ok(watch.found)
+    Ok(observer.found)
 }
 
-struct Watch<'a> {
+struct BorderlineObserver<'a> {
     scene: &'a Scene,
     step: u32,
     pass: Pass,
     found: Vec<Borderline>,
 }
 
-impl Observer for Watch<'_> {
+impl Observer for BorderlineObserver<'_> {
     fn begin_step(&mut self, step: u32) {
         self.step = step;
     }

@@ -56,7 +56,7 @@ pub fn compare(expected: &[Bounded], actual: &[f64], hints: &[f64]) -> Result<Ma
 /// than [`FAIR_NORM_UNITS`] of the sum of moduli is right; what is off by a small part of that, as nearly all right
 /// coefficients are, is right at once.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Likeness {
+pub(crate) struct Similarity {
     /// The sum of the expected coefficients' moduli.
     pub sum: f64,
     /// That of the logged ones.
@@ -68,29 +68,56 @@ pub(crate) struct Likeness {
 }
 
 /// Sums of coefficients between these neither overflow nor underflow on the way; beyond, a close look is taken.
-pub(super) const LEAST: f64 = 1e-100;
+const LEAST: f64 = 1e-100;
 pub(super) const MOST: f64 = 1e100;
 
-impl Likeness {
+impl Similarity {
     /// Of what is not compared.
     pub const NONE: Self = Self { sum: 0.0, logged: 0.0, scale: 0.0, worst: 0.0 };
 
-    /// Of these expected coefficients, each with the logged one.
+    /// Of these expected and logged coefficients, of which there are as many.
     #[inline(always)]
-    pub fn of(both: impl Iterator<Item = (f64, f64)> + Clone) -> Self {
+    pub fn of(own: &[f64], logged: &[f64]) -> Self {
+        // Loops of a known length are unrolled.
+        match own.len() {
+            2 => Self::of_length::<2>(own, logged),
+            3 => Self::of_length::<3>(own, logged),
+            5 => Self::of_length::<5>(own, logged),
+            6 => Self::of_length::<6>(own, logged),
+            _ => Self::of_lists(own, logged),
+        }
+    }
+
+    #[inline(always)]
+    fn of_length<const LENGTH: usize>(own: &[f64], logged: &[f64]) -> Self {
+        match (own.first_chunk::<LENGTH>(), logged.first_chunk::<LENGTH>()) {
+            (Some(own), Some(logged)) => Self::of_lists(own, logged),
+            _ => Self::NONE,
+        }
+    }
+
+    #[inline(always)]
+    fn of_lists(own: &[f64], theirs: &[f64]) -> Self {
         let (mut sum, mut logged) = (0.0, 0.0);
-        for (own, theirs) in both.clone() {
+        for (own, theirs) in own.iter().zip(theirs) {
             sum += own.abs();
             logged += theirs.abs();
         }
         let scale = logged / sum;
+        let both = own.iter().zip(theirs);
         let worst = both.fold(0.0_f64, |worst, (own, theirs)| worst.max((theirs - scale * own).abs()));
         Self { sum, logged, scale, worst }
     }
 
+    /// The same of polynomials that are right.
+    #[inline(always)]
+    pub fn matched(&self) -> Match {
+        Match { scale: Some(self.scale), share: self.worst / self.tolerance() }
+    }
+
     /// How far coefficients may be off at least.
     #[inline(always)]
-    pub fn tolerance(&self) -> f64 {
+    fn tolerance(&self) -> f64 {
         FAIR_NORM_UNITS * UNIT_ROUNDOFF * self.logged
     }
 
@@ -115,9 +142,11 @@ fn is_clear(expected: &[Bounded], actual: &[f64]) -> Option<Match> {
     if kept.is_empty() {
         return Some(Match { scale: None, share: 0.0 });
     }
-    let likeness = Likeness::of(kept.iter().zip(actual).map(|(own, theirs)| (own.value, *theirs)));
-    let is_right = likeness.is_clear(lost == 0) && norm(expected).is_finite() && !says_nothing(expected);
-    is_right.then(|| Match { scale: Some(likeness.scale), share: likeness.worst / likeness.tolerance() })
+    let mut values = [0.0; MAX_COEFFICIENTS];
+    values.iter_mut().zip(kept).for_each(|(value, own)| *value = own.value);
+    let similarity = Similarity::of(values.get(..kept.len())?, actual);
+    let is_right = similarity.is_clear(lost == 0) && norm(expected).is_finite() && !says_nothing(expected);
+    is_right.then(|| similarity.matched())
 }
 
 /// Whether a logged polynomial is certainly wrong with every factor, found without looking for the best one. `false`

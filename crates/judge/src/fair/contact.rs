@@ -138,13 +138,6 @@ fn normal(motion: &BoundedPairMotion, t: f64) -> (Vec2, f64) {
     (Vec2::new(normal.x.value, normal.y.value), FAIR_UNITS * UNIT_ROUNDOFF * bound)
 }
 
-/// The share of the tolerance that a contact's normal uses; `None` if that is wrong.
-pub(super) fn normal_share(motion: &BoundedPairMotion, contact: Impulse) -> Option<f64> {
-    let (expected, tolerance) = normal(motion, contact.time);
-    let residual = length(contact.normal - expected);
-    (residual <= tolerance).then(|| if residual > 0.0 { residual / tolerance } else { 0.0 })
-}
-
 /// The tolerance of contact normals that come from positions at once.
 fn simple_tolerance(context: &Context<'_>, records: &Records<'_>) -> f64 {
     FAIR_UNITS * UNIT_ROUNDOFF * context.size(records.before)
@@ -248,13 +241,14 @@ pub(super) fn followed(logged: LoggedImpulse) -> Option<Decision> {
 }
 
 /// Whether the root finder certainly ends with these coefficients.
+#[inline]
 pub(super) fn is_searchable(coefficients: &[f64]) -> bool {
-    coefficients.len() <= MAX_COEFFICIENTS && coefficients.iter().all(|c| is_ordinary(*c))
+    coefficients.len() <= MAX_COEFFICIENTS && coefficients.iter().fold(true, |all, c| all & is_ordinary(*c))
 }
 
 /// Whether a coefficient is zero, or far from where numbers overflow and underflow.
 fn is_ordinary(c: f64) -> bool {
-    c == 0.0 || (SEARCH_SMALLEST_COEFFICIENT..=SEARCH_LARGEST_COEFFICIENT).contains(&c.abs())
+    (c == 0.0) | (c.abs() >= SEARCH_SMALLEST_COEFFICIENT) & (c.abs() <= SEARCH_LARGEST_COEFFICIENT)
 }
 
 /// The time of impact of these polynomials as they are, infinite where there is certainly none; `None` where the root

@@ -22,6 +22,8 @@ pub(crate) struct Context<'a> {
     pub records_per_step: u32,
     /// States that need no look at the reference's own run.
     pub ordinary: Ordinary,
+    /// Whether bounds are asked about every polynomial, also about those that are right at once.
+    pub looks_closely: bool,
 }
 
 impl<'a> Context<'a> {
@@ -32,7 +34,7 @@ impl<'a> Context<'a> {
         pairs.iter().for_each(|pair| of_kinds[pair.kind] += 1);
         let (per_pass, pairs) = (pairs.polynomials(), pairs.count());
         let records_per_step = Layout::of(scene).records_per_step();
-        Self { scene, per_pass, pairs, of_kinds, records_per_step, ordinary: Ordinary::of(scene) }
+        Self { scene, per_pass, pairs, of_kinds, records_per_step, ordinary: Ordinary::of(scene), looks_closely: false }
     }
 
     /// The particles of a pair: one, two, or three with an edge.

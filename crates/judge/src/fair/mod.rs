@@ -22,14 +22,12 @@
 //!    last record.
 //! 6. A step from or to a state that leads nowhere is never right.
 //!
-//! A step whose records are the reference's bit for bit needs none of this, and one where only polynomials differ,
-//! which are right at once, only what `alike` looks at.
+//! A step whose records are the reference's bit for bit needs none of this. Polynomials that are right at once
+//! (`follow::at_once`) need no bounds.
 //!
 //! [`FAIR_UNITS`]: fosssim_num::tolerances::FAIR_UNITS
 //! [`FAIR_SENSITIVITY`]: fosssim_num::tolerances::FAIR_SENSITIVITY
 
-mod ahead;
-mod alike;
 mod borderline;
 mod cause;
 pub mod compare;
@@ -52,11 +50,8 @@ mod sensitivity;
 mod step;
 mod step_judgement;
 
-pub(super) use ahead::Ahead;
-pub(super) use alike::AlikeStep;
 pub use borderline::borderline;
 pub use cause::{Cause, cause};
-pub(super) use compare::Likeness;
 pub use contact::decides;
 pub(super) use context::{Context, Records};
 pub use judgement::{FairRefusal, FairVerdict, Judgement};

@@ -7,6 +7,7 @@ use super::{
     step_judgement::StepJudgement,
 };
 use crate::finding::{Finding, FindingDetail, PolynomialPlace};
+use fosssim_model::sim::PairKind;
 use fosssim_num::{
     bounded::Bounded,
     polynomial::{MAX_COEFFICIENTS, Polynomial},
@@ -73,10 +74,10 @@ impl StepJudgement {
         // That another one of the course's form is right tells nothing new, whatever the other form says.
         let tells_nothing = first.is_ok() && self.course_form.is_some();
         let Some(right) = expected.other_form(number).filter(|_| !tells_nothing) else {
-            return match (first, possible_factors(own, list)) {
-                (Ok(found), _) => self.take(logged, own, found, is_known),
-                (Err(_), factors @ Some(_)) => pend(self, Form::Either, own, factors),
-                (Err(mismatch), None) => Said::Wrong(mismatch),
+            return match first.map_err(|mismatch| (mismatch, possible_factors(own, list))) {
+                Ok(found) => self.take(logged, own, found, is_known),
+                Err((_, factors @ Some(_))) => pend(self, Form::Either, own, factors),
+                Err((mismatch, None)) => Said::Wrong(mismatch),
             };
         };
         let other = compare(right, list, &self.hints(place.pair.kind, number));
@@ -111,14 +112,26 @@ impl StepJudgement {
     /// Notes the factor of a right polynomial. One that shows a single coefficient, and lacks others that the course's
     /// library would have kept of the assignment's own, claims a factor, which others have to confirm.
     fn take(&mut self, logged: &Logged<'_>, expected: &[Bounded], found: Match, is_known: bool) -> Said {
-        self.shares.coefficient = self.shares.coefficient.max(found.share);
-        let Some(scale) = found.scale else { return Said::Right };
-        match claimed_factors(expected, logged.list, scale) {
-            Some(factors) if is_known => self.pend(logged, (Form::Either, true), expected, factors),
-            Some(_) => {}
-            None => self.scales[logged.place.pair.kind][logged.number].take(scale),
+        let claims = found.scale.and_then(|scale| claimed_factors(expected, logged.list, scale));
+        match claims {
+            None => self.take_share_and_factor(logged.place.pair.kind, logged.number, &found),
+            Some(factors) => {
+                self.shares.coefficient = self.shares.coefficient.max(found.share);
+                if is_known {
+                    self.pend(logged, (Form::Either, true), expected, factors);
+                }
+            }
         }
         Said::Right
+    }
+
+    /// Notes the share of the tolerance that a right polynomial uses, and its factor, if it tells one.
+    #[inline]
+    pub(super) fn take_share_and_factor(&mut self, kind: PairKind, number: usize, found: &Match) {
+        self.shares.coefficient = self.shares.coefficient.max(found.share);
+        if let Some(scale) = found.scale {
+            self.scales[kind][number].take(scale);
+        }
     }
 
     /// Notes that an approach polynomial which is the reference's bit for bit is of the course's form, where it tells.

@@ -65,7 +65,7 @@ impl<'a> Reach<'a> {
                 let simulation = self.other.get_or_insert_with(|| Simulation::new(self.scene, RootSearch::WhereNeeded));
                 let begin = simulation.work();
                 simulation.limit_work(begin.saturating_add(most_work));
-                let judged = judge(context, simulation, None, records, identical);
+                let judged = judge(context, simulation, records, identical);
                 (judged, simulation.work() - begin)
             }
         }

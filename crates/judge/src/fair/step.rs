@@ -1,7 +1,6 @@
 //! Judges one step by the fair rules: follows it, looks at its sensitivity where something differs, and tries
 //! borderline decisions the other way where they can't be seen.
 use super::{
-    ahead::Ahead,
     contact,
     context::{Context, Records},
     follow::Follower,
@@ -21,13 +20,11 @@ use fosssim_num::polynomial::MAX_COEFFICIENTS;
 const MOST_FLIPS: usize = 4;
 
 /// Judges a step. `identical` says that states, impulses and polynomials of both records are the reference's bit for
-/// bit; then only what the records say besides is looked at. With `ahead` calls are looked at many at a time; the
-/// judgement is the same. The reference has a result; if there is none here, it is what the trace logged that leads to
-/// a search without end.
+/// bit; then only what the records say besides is looked at. The reference has a result; if there is none here, it is
+/// what the trace logged that leads to a search without end.
 pub(crate) fn judge(
     context: &Context<'_>,
     simulation: &mut Simulation,
-    ahead: Option<&mut Ahead>,
     records: Records<'_>,
     identical: bool,
 ) -> StepJudgement {
@@ -35,7 +32,7 @@ pub(crate) fn judge(
     let mut judged = if identical {
         StepJudgement::identical(context, step, records.end.polynomials.len())
     } else {
-        follow(context, simulation, ahead, records).unwrap_or_else(|_| StepJudgement {
+        follow(context, simulation, records).unwrap_or_else(|_| StepJudgement {
             step,
             frame,
             endless: true,
@@ -67,7 +64,6 @@ pub(crate) fn judge_initial(context: &Context<'_>, frame: &LenientFrame) -> Step
 fn follow(
     context: &Context<'_>,
     simulation: &mut Simulation,
-    ahead: Option<&mut Ahead>,
     records: Records<'_>,
 ) -> Result<StepJudgement, StepError> {
     let run = |simulation: &mut Simulation, mut follower: Follower<'_>| {
@@ -78,9 +74,9 @@ fn follow(
         Ok::<_, StepError>((follower.judged, follower.decisions, follower.borderline, follower.has_disputes))
     };
     let attempt = |simulation: &mut Simulation, sensitivity: Option<&Sensitivity>, flips: &[usize]| {
-        run(simulation, Follower::new(context, records, None, sensitivity, flips))
+        run(simulation, Follower::new(context, records, sensitivity, flips))
     };
-    let follower = Follower::new(context, records, ahead, None, &[]).preferring_own();
+    let follower = Follower::new(context, records, None, &[]).preferring_own();
     let (mut first, mut decisions, _, has_disputes) = run(simulation, follower)?;
     if has_disputes && first.total() > 0 {
         // Decisions that the root finder makes of right polynomials may as well be the submission's.

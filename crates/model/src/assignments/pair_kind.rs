@@ -21,6 +21,15 @@ impl PairKind {
         }
     }
 
+    /// How many coefficients each of them has before small leading ones are dropped; 0 where there is none.
+    #[must_use]
+    pub const fn coefficients(self) -> [usize; Self::MOST_POLYNOMIALS] {
+        match self {
+            Self::ParticleEdge => [5, 3, 3, 6],
+            Self::ParticleParticle | Self::ParticleHalfPlane => [3, 2, 0, 0],
+        }
+    }
+
     /// The number that a trace writes.
     #[must_use]
     pub const fn code(self) -> i32 {

@@ -10,8 +10,7 @@ use fosssim_num::{polynomial::Polynomial, vector::Vec2};
 /// the end of the handler; hybrid: after the impulses, before the geometric part). In the geometric part: `begin_pass`
 /// .. `end_pass`, then per round a `failsafe` per zone and the next pass; `zones` after each merge. Last `end_step`.
 ///
-/// Four methods may steer what they hear: `passes_over`, `solve`, `decide` and `synchronise`. By default they change
-/// nothing.
+/// Three methods may steer what they hear: `solve`, `decide` and `synchronise`. By default they change nothing.
 pub trait Observer {
     /// A step begins; steps count from 1.
     fn begin_step(&mut self, _step: u32) {}
@@ -24,15 +23,6 @@ pub trait Observer {
     #[inline]
     fn wanted(&mut self) -> Wanted<'_> {
         Wanted::Calls
-    }
-    /// How many calls of the pass, from this one on in the order of [`pairs`](super::pairs()), need not be made,
-    /// because this observer knows that a certificate excludes their impacts, and hears nothing of them that it does
-    /// not know. They count as excluded, and `solve`, `decide` and `detection` are not called. Asked before every call
-    /// that is not passed over, with the positions as they are then; not where searches are audited. `simple` does not
-    /// ask.
-    #[inline]
-    fn passes_over(&mut self, _next: Pair, _q_start: &[f64], _q_end: &[f64]) -> usize {
-        0
     }
     /// The polynomials of a pair, trimmed, are about to be searched for a time of impact. An observer may put others in
     /// their place; search, decision and `detection` then go by those. Not called by `simple`, which has none.
@@ -95,9 +85,6 @@ impl<O: Observer + ?Sized> Observer for &mut O {
         (**self).wanted()
     }
     #[inline]
-    fn passes_over(&mut self, next: Pair, q_start: &[f64], q_end: &[f64]) -> usize {
-        (**self).passes_over(next, q_start, q_end)
-    }
     fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
         (**self).solve(pair, q_start, q_end, polynomials);
     }

@@ -20,7 +20,7 @@ pub(super) struct Objects {
 
 /// The pair that a pass looks at next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Place {
+pub(super) struct PassCursor {
     /// The particle.
     pub first: usize,
     /// The kind of the object that it meets.
@@ -29,7 +29,7 @@ pub(super) struct Place {
     pub second: usize,
 }
 
-impl Place {
+impl PassCursor {
     /// The first pair in which this particle comes first.
     #[inline]
     pub const fn of(first: usize) -> Self {
@@ -58,7 +58,7 @@ impl Objects {
     /// The rest of a particle's pairs from a place on: for each kind, in the order of the pass, the numbers of the
     /// objects that it meets. Among edges there are those that it is an end of ([`is_end`]).
     #[inline(always)]
-    pub fn row(self, from: Place) -> [Range<usize>; PairKind::ALL.len()] {
+    pub fn row(self, from: PassCursor) -> [Range<usize>; PairKind::ALL.len()] {
         PairKind::ALL.map(|kind| {
             let Range { start, end } = self.seconds(kind, from.first);
             match kind.cmp(&from.kind) {
@@ -107,7 +107,7 @@ impl Pairs<'_> {
 
     /// The pairs in which this particle comes first.
     pub fn of(&self, first: usize) -> impl Iterator<Item = Pair> + Clone {
-        PairKind::ALL.into_iter().zip(self.objects().row(Place::of(first))).flat_map(move |(kind, seconds)| {
+        PairKind::ALL.into_iter().zip(self.objects().row(PassCursor::of(first))).flat_map(move |(kind, seconds)| {
             let is_pair = move |&second: &usize| match kind {
                 PairKind::ParticleEdge => !is_end(self.edges[second], first),
                 PairKind::ParticleParticle | PairKind::ParticleHalfPlane => true,

@@ -17,23 +17,6 @@ pub struct PolynomialBytes {
     used: usize,
     count: usize,
     largest: f64,
-    /// The numbers of the first polynomials of pairs whose zeros were searched, ascending.
-    searched: Vec<u32>,
-}
-
-/// Notes whose zeros are searched.
-pub(super) struct Searched<'a> {
-    list: &'a mut Vec<u32>,
-    /// Polynomials that the list holds already.
-    count: usize,
-}
-
-impl Searched<'_> {
-    /// Those of the pair whose polynomials will stand behind this many more.
-    #[cold]
-    pub(super) fn note(&mut self, behind: usize) {
-        self.list.extend(u32::try_from(self.count + behind));
-    }
 }
 
 /// Bytes of the largest polynomial that a detection logs.
@@ -53,7 +36,6 @@ impl PolynomialBytes {
     /// Begins a new list behind those that are there.
     pub(crate) fn begin(&mut self) {
         (self.begin, self.count, self.largest) = (self.used, 0, 0.0);
-        self.searched.clear();
     }
 
     /// Where the list stands among [all](Self::all) that are there.
@@ -96,13 +78,6 @@ impl PolynomialBytes {
         self.largest
     }
 
-    /// The numbers of the first polynomials of those pairs for which the certificate was not enough, ascending: of all
-    /// other pairs these polynomials exclude an impact.
-    #[must_use]
-    pub fn searched(&self) -> &[u32] {
-        &self.searched
-    }
-
     /// Appends one polynomial, highest power first.
     ///
     /// # Panics
@@ -139,16 +114,6 @@ impl PolynomialBytes {
     pub(super) fn added(&mut self, bytes: usize, polynomials: usize) {
         self.used += bytes;
         self.count += polynomials;
-    }
-
-    /// The same room, and where it is noted whose zeros are searched.
-    #[inline]
-    pub(super) fn parts(&mut self, bytes: usize) -> (&mut [u8], Searched<'_>) {
-        if self.bytes.len() - self.used < bytes {
-            self.grow(bytes);
-        }
-        let Self { bytes, used, count, searched, .. } = self;
-        (&mut bytes[*used..], Searched { list: searched, count: *count })
     }
 
     /// Notes that a coefficient has this modulus, or that none has a larger one.

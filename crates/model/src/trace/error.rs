@@ -6,7 +6,7 @@ use std::{fmt, io};
 
 /// Something wrong with a trace, and its place.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("byte {offset}, {}: {what}", Place(*.frame, *.step))]
+#[error("byte {offset}, {}: {what}", RecordName(*.frame, *.step))]
 pub struct TraceError {
     /// Byte offset from the beginning of the trace: where the value begins that is wrong or not there.
     pub offset: u64,
@@ -19,9 +19,9 @@ pub struct TraceError {
 }
 
 /// A record and its step in words.
-struct Place(u64, u32);
+struct RecordName(u64, u32);
 
-impl fmt::Display for Place {
+impl fmt::Display for RecordName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.1 {
             0 => write!(f, "record {} (initial state)", self.0),

@@ -11,7 +11,7 @@ use super::{
     error::{List, Malformation, TraceError},
     frame::{LoggedImpulse, PolynomialLog},
     layout::Layout,
-    source::{Source, WINDOW},
+    source::Source,
     step_bytes::StepBytes,
 };
 use crate::{
@@ -136,9 +136,6 @@ pub enum Unreadable {
     Io,
 }
 
-/// The greatest size in bytes of records that are compared number by number, without being decoded.
-const MOST_LIKENED: usize = 4 << 20;
-
 /// Reads records as the original does.
 #[derive(Debug)]
 pub struct Lenient<R> {
@@ -217,76 +214,6 @@ impl<R: Read> Lenient<R> {
         }
         self.begin = begin;
         self.record += records;
-        true
-    }
-
-    /// Goes past the next records if they have the states and impulses of this step, as many polynomials, and `accepts`
-    /// says that these, as bytes, will do in their place: those of the mid record, if there is one, and of the end
-    /// record. Otherwise nothing is read. `buffer` takes the bytes. Nobody is asked about records that take more memory
-    /// than allowed, or more than `MOST_LIKENED`.
-    pub fn passes_like(
-        &mut self,
-        step: &StepBytes,
-        buffer: &mut Vec<u8>,
-        accepts: &mut dyn FnMut([&[u8]; 2]) -> bool,
-    ) -> bool {
-        if self.failed || step.memory() > self.limit || step.len() > MOST_LIKENED {
-            return false;
-        }
-        let start = self.source.offset();
-        buffer.clear();
-        // Where a record begins, where its polynomials do, and where it ends.
-        let mut places = [[0; 3]; 2];
-        let mut records = 0;
-        for ([head, _], count) in step.records().zip(step.counts()) {
-            let begin = buffer.len();
-            if !self.copy(head.len(), buffer) || buffer[begin..] != *head || !self.copy_polynomials(count, buffer) {
-                break;
-            }
-            places[records] = [begin, begin + head.len(), buffer.len()];
-            records += 1;
-        }
-        let lists = places.map(|[_, begin, end]| &buffer[begin..end]);
-        let is_whole = records == step.records().count();
-        let is_alike = is_whole && accepts(if records == 1 { [&[], lists[0]] } else { lists });
-        if !is_alike {
-            self.source.unread(buffer.len(), std::iter::once(&buffer[..]));
-            return false;
-        }
-        self.begin = start + places[records - 1][0] as u64;
-        self.record += records as u64;
-        true
-    }
-
-    /// Moves this number of bytes into the buffer; false where they are not there.
-    fn copy(&mut self, bytes: usize, buffer: &mut Vec<u8>) -> bool {
-        let end = buffer.len() + bytes;
-        while buffer.len() < end {
-            let there = self.source.ensure(1).min(end - buffer.len());
-            if there == 0 {
-                return false;
-            }
-            buffer.extend_from_slice(&self.source.window()[..there]);
-            self.source.consume(there);
-        }
-        true
-    }
-
-    /// Moves this number of ordinary polynomials into the buffer; false where there are others.
-    fn copy_polynomials(&mut self, mut count: usize, buffer: &mut Vec<u8>) -> bool {
-        while count > 0 {
-            let (bytes, polynomials) = decode::pass_over(self.source.window(), count as u64);
-            if polynomials == 0 {
-                let there = self.source.window().len();
-                if self.source.ensure(WINDOW) == there {
-                    return false;
-                }
-                continue;
-            }
-            buffer.extend_from_slice(&self.source.window()[..bytes]);
-            self.source.consume(bytes);
-            count = count.saturating_sub(usize::try_from(polynomials).unwrap_or(usize::MAX));
-        }
         true
     }
 

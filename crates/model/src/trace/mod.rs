@@ -1,4 +1,4 @@
-//! Traces: bytes to frames and back, streaming and indexed.
+//! Traces: bytes to frames and back, streaming.
 //!
 //! Takes readers, writers and slices; never opens a file. The format is that of `trace-format.md`.
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
@@ -11,7 +11,6 @@ mod encode;
 mod error;
 mod frame;
 mod histogram;
-mod index;
 mod labels;
 mod layout;
 mod lenient;
@@ -29,7 +28,6 @@ pub use digest::{Digests, Sha, Short};
 pub use error::{List, Malformation, TraceError};
 pub use frame::{Frame, LoggedImpulse, PolynomialLog};
 pub use histogram::Histogram;
-pub use index::Indexed;
 pub use labels::{Label, labels};
 pub use layout::Layout;
 pub use lenient::{Lenient, LenientFrame, ReadStop, Unreadable, record_memory};

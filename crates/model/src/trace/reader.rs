@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{scene::Scene, sim::PairKind};
 use fosssim_num::polynomial::MAX_COEFFICIENTS;
-use std::io::{Read, Seek};
+use std::io::Read;
 
 /// Memory that one decoded frame may take, in bytes.
 pub const FRAME_LIMIT: u64 = 256 * 1024 * 1024;
@@ -401,14 +401,6 @@ impl<R: Read> Reader<R> {
             }
         }
         Ok(())
-    }
-}
-
-impl<R: Read + Seek> Reader<R> {
-    /// Goes on with record `record`, which begins at byte `offset`.
-    pub(crate) fn seek(&mut self, record: u64, offset: u64) {
-        self.source.seek(offset);
-        (self.record, self.begin, self.stopped) = (record, offset, None);
     }
 }
 

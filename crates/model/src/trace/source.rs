@@ -3,7 +3,7 @@
 //!
 //! An error of the stream counts as its end and is kept, so that both readers treat it like missing bytes and can
 //! still name it.
-use std::io::{self, Read, Seek, SeekFrom};
+use std::io::{self, Read};
 
 /// Size of the buffer, hence of the largest piece that [`Source::ensure`] can show at once. A larger one makes no
 /// faster reading: its pages have to be made, and its bytes do not stay near the processor.
@@ -193,18 +193,6 @@ impl<R: Read> Source<R> {
                     self.ended = true;
                 }
             }
-        }
-    }
-}
-
-impl<R: Read + Seek> Source<R> {
-    /// Goes on reading at `offset`.
-    pub(crate) fn seek(&mut self, offset: u64) {
-        (self.start, self.end, self.ended, self.error) = (0, 0, false, None);
-        self.offset = offset;
-        if let Err(error) = self.stream.seek(SeekFrom::Start(offset)) {
-            self.error = Some((error.kind(), error.to_string()));
-            self.ended = true;
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The records of one step as bytes, to be compared with those of a trace before anything is decoded.
 use super::{decode, encode, layout::Layout, log::Log};
-use crate::sim::{Detection, Impulse, Observer, Pass, PolynomialBytes, Resume, State, Wanted};
+use crate::sim::{Detection, Impulse, Observer, Pass, Resume, State, Wanted};
 
 /// What [`Recorder`](super::Recorder) would write of a step, in pieces that are not copied: the observer of that step.
 #[derive(Debug, Clone)]
@@ -15,13 +15,11 @@ pub struct StepBytes {
     mid: State,
 }
 
-/// A record: what stands before the polynomials, how many bytes of the step's polynomials belong to it, and how many
-/// of these there are.
+/// A record: what stands before the polynomials, and how many bytes of the step's polynomials belong to it.
 #[derive(Debug, Clone, Default)]
 struct Record {
     head: Vec<u8>,
     polynomials: usize,
-    count: usize,
 }
 
 impl StepBytes {
@@ -36,12 +34,6 @@ impl StepBytes {
         let skipped = if self.layout.polynomials { 0 } else { 1 };
         let polynomials = self.log.polynomials.bytes();
         self.records[skipped..].iter().map(|record| [&record.head[..], &polynomials[..record.polynomials]])
-    }
-
-    /// The number of polynomials of each record.
-    pub(super) fn counts(&self) -> impl Iterator<Item = usize> {
-        let skipped = if self.layout.polynomials { 0 } else { 1 };
-        self.records[skipped..].iter().map(|record| record.count)
     }
 
     /// Number of bytes of all records.
@@ -74,12 +66,6 @@ impl StepBytes {
         self.log.polynomials.count()
     }
 
-    /// The end record's polynomials.
-    #[must_use]
-    pub fn log(&self) -> &PolynomialBytes {
-        &self.log.polynomials
-    }
-
     /// The largest modulus of their coefficients, see
     /// [`PolynomialBytes::largest`](crate::sim::PolynomialBytes::largest).
     #[must_use]
@@ -108,7 +94,7 @@ impl StepBytes {
 
     fn record(&mut self, index: usize, state: &State) {
         let Self { layout, log, records, has_odd_states, .. } = self;
-        let Record { head, polynomials, count } = &mut records[index];
+        let Record { head, polynomials } = &mut records[index];
         head.clear();
         encode::state(head, state);
         if layout.impulses {
@@ -119,7 +105,6 @@ impl StepBytes {
             encode::count(head, log.polynomials.count());
         }
         *polynomials = log.polynomials.bytes().len();
-        *count = log.polynomials.count();
         *has_odd_states |= !state.positions.iter().chain(&state.velocities).all(|value| value.is_finite());
     }
 }

@@ -85,21 +85,9 @@ pub fn excludes_two<S: Simd>([a, b, c]: [Lanes<S>; 3], [d, e]: [Lanes<S>; 2]) ->
 }
 
 /// Where the closed forms exclude an impact of a pair with an edge: one of its polynomials is certainly not positive
-/// within the step, and the search among all of them would end.
+/// within the step, and the search among all of them would end, which `ends` says of the first and the last.
 #[inline(always)]
 pub fn excludes_edge<S: Simd>(
-    distance: [Lanes<S>; 5],
-    beyond_first: [Lanes<S>; 3],
-    before_second: [Lanes<S>; 3],
-    approach: [Lanes<S>; 6],
-) -> Mask<S> {
-    let ends = search_ends(&distance) & search_ends(&approach);
-    excludes_edge_that_ends(ends, distance, beyond_first, before_second, approach)
-}
-
-/// The same, where it is known where the searches of the first and the last polynomial end.
-#[inline(always)]
-pub fn excludes_edge_that_ends<S: Simd>(
     ends: Mask<S>,
     distance: [Lanes<S>; 5],
     beyond_first: [Lanes<S>; 3],

@@ -64,22 +64,27 @@ pub fn excludes_unit_interval(polynomials: &[Polynomial]) -> bool {
 #[inline]
 #[must_use]
 pub fn exclusion(polynomials: &[Polynomial]) -> Option<Level> {
+    exclusion_of(polynomials.iter().map(Polynomial::coefficients))
+}
+
+/// [`exclusion`] by lists of coefficients without small leading ones.
+#[inline]
+pub fn exclusion_of<'a>(lists: impl Iterator<Item = &'a [f64]> + Clone) -> Option<Level> {
     let mut best = None;
     let mut searches = false;
-    for polynomial in polynomials {
-        let coefficients = polynomial.coefficients();
+    for coefficients in lists.clone() {
         if coefficients.len() > 3 {
             searches = true;
         } else if best.is_none() {
             best = closed_form::never_positive(coefficients);
         }
     }
-    if searches { with_search(polynomials, best) } else { best }
+    if searches { with_search(lists, best) } else { best }
 }
 
 /// The levels for lists with a polynomial that needs a search; `known` is what the others have shown.
-fn with_search(polynomials: &[Polynomial], known: Option<Level>) -> Option<Level> {
-    let mut searched = polynomials.iter().map(Polynomial::coefficients).filter(|list| list.len() > 3);
+fn with_search<'a>(lists: impl Iterator<Item = &'a [f64]> + Clone, known: Option<Level>) -> Option<Level> {
+    let mut searched = lists.filter(|list| list.len() > 3);
     if !searched.clone().all(search_ends) {
         return None;
     }

@@ -199,3 +199,15 @@ fn garbage_of_constant_size_check() {
     assert!(compare(&parabola(), &[], &[1.0]).is_err());
     assert!(compare(&parabola(), &[1.0; 9], &[1.0]).is_err());
 }
+
+/// Sums with which something may overflow or underflow on the way are not right at once, however well they fit.
+#[test]
+fn extreme_sums_are_looked_at_closely() {
+    let is_clear = |own: f64, logged: f64| Similarity::of(&[own, -own], &[logged, -logged]).is_clear(true);
+    for moderate in [1e-99, 1.0, 1e99] {
+        assert!(is_clear(moderate, 1.0) && is_clear(1.0, moderate), "{moderate}");
+    }
+    for extreme in [0.0, 5e-324, 1e-101, 1e100, f64::MAX, f64::INFINITY, f64::NAN] {
+        assert!(!is_clear(extreme, 1.0) && !is_clear(1.0, extreme), "{extreme}");
+    }
+}

@@ -25,7 +25,7 @@ impl Follower<'_> {
     pub(super) fn settle(&mut self, pair: Pair, by_polynomials: Decision) -> Decision {
         let call = self.decisions.len();
         let findings = self.judged.total();
-        let own = self.own.take();
+        let own = self.call.own.take();
         if let Some(own) = own {
             self.review_losses(pair, by_polynomials, own);
         }
@@ -48,6 +48,18 @@ impl Follower<'_> {
             self.borderline.push(call);
         }
         decision
+    }
+
+    /// The decision about a call whose logged polynomials exclude an impact, where the reference's own, of which nothing
+    /// was lost, say this.
+    pub(super) fn dispute(&mut self, pair: Pair, by_own: Decision) -> Decision {
+        let Decision::Hit { time, .. } = by_own else { return by_own };
+        self.call.own = Some(Own { time, lost: false });
+        if self.searchable(self.place(pair).index, pair.kind.polynomials()).is_none() {
+            return by_own;
+        }
+        (self.call.is_disputed, self.has_disputes) = (true, true);
+        if self.prefers_own { by_own } else { Decision::Miss { time: Time::Excluded } }
     }
 
     /// Charges what lost coefficients change: they are no round-off, their loss is the factor's fault. Where a factor
@@ -85,7 +97,7 @@ impl Follower<'_> {
     /// Whether round-off may flip the decision of this call, or has flipped it: where right polynomials lead the root
     /// finder to another decision than the reference's, the submission may have either.
     fn is_borderline(&self, call: usize) -> bool {
-        if self.is_disputed {
+        if self.call.is_disputed {
             return true;
         }
         match &self.expected() {

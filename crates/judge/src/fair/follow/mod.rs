@@ -1,14 +1,13 @@
 //! The observer that follows a submission through one step, and charges what can't be followed.
 //!
 //! `passes` counts detection passes, `polynomials` compares what is logged, `decisions` follows what was decided,
-//! `over` takes over what was seen of calls beforehand.
+//! `at_once` spares polynomials that are clearly right the close look.
+mod at_once;
 mod decisions;
-mod over;
 mod passes;
 mod polynomials;
 
 use super::{
-    ahead::Ahead,
     contact,
     context::{Context, Followed, Records},
     formulas::{BoundedPairMotion, Expected},
@@ -19,9 +18,10 @@ use crate::{
     contacts::Contacts,
     finding::{Finding, FindingDetail, Part},
 };
+use at_once::Floors;
 use decisions::Own;
 use fosssim_model::sim::{ByKind, Decision, Detection, Observer, Pair, PairKind, Pass, Resume, Stage, State, Zone};
-use fosssim_num::polynomial::Polynomial;
+use fosssim_num::{certificate::exclusion_of, polynomial::Polynomial};
 
 /// The greatest number of decisions for which room is made at first.
 const DECISIONS: usize = 1 << 14;
@@ -30,8 +30,6 @@ const DECISIONS: usize = 1 << 14;
 pub(super) struct Follower<'a> {
     context: &'a Context<'a>,
     records: Records<'a>,
-    /// Looks at calls before they are made; on a first look only.
-    ahead: Option<&'a mut Ahead>,
     /// What is known of the step's sensitivity to round-off, on a second look.
     sensitivity: Option<&'a Sensitivity>,
     /// Decisions (by number of the call) that are turned round: borderline ones, in hybrid scenes.
@@ -54,22 +52,33 @@ pub(super) struct Follower<'a> {
     /// Particles that the responses to the pass's hits are about to move, once it is over.
     moving: Vec<usize>,
     /// Whether the part before the mid record, or the geometric part, has an error that its result may follow from.
-    spoilt: [bool; 2],
+    tainted: [bool; 2],
     /// Polynomials that were wrong of known positions in this step.
     wrong_formulas: ByKind<[bool; PairKind::MOST_POLYNOMIALS]>,
     /// The pairs of the logged impulses.
     contacts: Contacts,
     /// Logged impulses that a decision has used.
     used: Vec<bool>,
-    /// What the reference's own polynomials say about the call, where the logged ones are right, and others.
-    own: Option<Own>,
-    /// Whether the call's polynomials are right, and lead the root finder to another decision than the reference's.
-    is_disputed: bool,
-    /// Whether any call's were so.
+    /// What is known of the call that is looked at.
+    call: CurrentCall,
+    /// Whether any call was disputed.
     pub has_disputes: bool,
     /// Whether such calls are decided as the reference decides them.
     prefers_own: bool,
-    /// How the call's objects move.
+    /// Above these polynomials of the positions that the pass sees are more than round-off, once that was asked.
+    floors: Option<Floors>,
+}
+
+/// What is known of a call between its polynomials and its decision.
+#[derive(Debug, Default)]
+struct CurrentCall {
+    /// What the reference's own polynomials say, where the logged ones are right, and others.
+    own: Option<Own>,
+    /// Whether the polynomials are right, and lead the root finder to another decision than the reference's.
+    is_disputed: bool,
+    /// Whether the polynomials are right, nothing was lost, and those that were logged exclude an impact.
+    misses_logged: bool,
+    /// How the objects move.
     seen: Option<Seen>,
 }
 
@@ -86,7 +95,6 @@ impl<'a> Follower<'a> {
     pub fn new(
         context: &'a Context<'a>,
         records: Records<'a>,
-        ahead: Option<&'a mut Ahead>,
         sensitivity: Option<&'a Sensitivity>,
         flips: &'a [usize],
     ) -> Self {
@@ -94,7 +102,6 @@ impl<'a> Follower<'a> {
         let mut follower = Self {
             context,
             records,
-            ahead,
             sensitivity,
             flips,
             judged,
@@ -106,15 +113,14 @@ impl<'a> Follower<'a> {
             next: None,
             moved: vec![false; context.scene.particles.len()],
             moving: Vec::new(),
-            spoilt: [false; 2],
+            tainted: [false; 2],
             wrong_formulas: ByKind::default(),
             contacts: Contacts::of(&records.end.impulses),
             used: vec![false; records.end.impulses.len()],
-            own: None,
-            is_disputed: false,
+            call: CurrentCall::default(),
             has_disputes: false,
             prefers_own: false,
-            seen: None,
+            floors: None,
         };
         follower.count_passes();
         let passes = follower.logged_passes.map_or(1, |[before, after]| before + after);
@@ -128,18 +134,19 @@ impl<'a> Follower<'a> {
         self
     }
 
-    /// The time of impact of several logged polynomials from one on; none where the root finder does not end.
-    fn logged_time(&self, index: usize, count: usize) -> Option<f64> {
-        let mut logged = [Polynomial::default(); PairKind::MOST_POLYNOMIALS];
-        for (number, polynomial) in logged[..count].iter_mut().enumerate() {
-            *polynomial = Polynomial::untrimmed(self.records.end.polynomials.get(index + number));
+    /// The logged polynomials of a call, if their search is known to end.
+    fn searchable(&self, index: usize, count: usize) -> Option<[Polynomial; PairKind::MOST_POLYNOMIALS]> {
+        let mut found = [Polynomial::default(); PairKind::MOST_POLYNOMIALS];
+        for (number, polynomial) in found[..count].iter_mut().enumerate() {
+            let logged = self.records.end.polynomials.get(index + number);
+            *polynomial = contact::is_searchable(logged).then(|| Polynomial::untrimmed(logged))?;
         }
-        contact::time_of(&logged[..count])
+        Some(found)
     }
 
     /// How the call's objects move, and what its polynomials should be.
     fn expected(&self) -> Option<(BoundedPairMotion, Expected)> {
-        let Seen { motion, has_right_approach } = self.seen?;
+        let Seen { motion, has_right_approach } = self.call.seen?;
         let polynomials = motion.polynomials();
         Some((motion, if has_right_approach { polynomials.with_right_approach() } else { polynomials }))
     }
@@ -149,7 +156,7 @@ impl<'a> Follower<'a> {
         self.judged.decisions = self.decisions.len() as u64;
         self.settle_passes();
         self.settle_impulses();
-        if !self.spoilt[1] {
+        if !self.tainted[1] {
             let frame = self.records.frame;
             let bounds = self.sensitivity.map(|known| &known.end);
             contact::states(self.context, &mut self.judged, frame, state, &self.records.end.state, bounds);
@@ -165,9 +172,7 @@ impl<'a> Follower<'a> {
 impl Observer for Follower<'_> {
     fn begin_pass(&mut self, pass: Pass) {
         self.pass = pass;
-        if let Some(ahead) = &mut self.ahead {
-            ahead.begin_pass();
-        }
+        self.floors = None;
         for particle in self.moving.drain(..) {
             self.moved[particle] = true;
         }
@@ -184,17 +189,8 @@ impl Observer for Follower<'_> {
         });
     }
 
-    fn passes_over(&mut self, next: Pair, q_start: &[f64], q_end: &[f64]) -> usize {
-        self.take_over(next, q_start, q_end)
-    }
-
     fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
-        if let Some(ahead) = &mut self.ahead {
-            ahead.step_over();
-        }
-        self.own = None;
-        self.is_disputed = false;
-        self.seen = None;
+        self.call = CurrentCall::default();
         let Some(index) = self.next else { return };
         self.next = Some(index + polynomials.len());
         let records = self.records;
@@ -208,39 +204,50 @@ impl Observer for Follower<'_> {
             if self.sensitivity.is_some() || !self.is_hybrid() {
                 // Should the decision be disputed, it must be known how far round-off may reach.
                 let motion = BoundedPairMotion::of(self.context.scene, pair, q_start, q_end);
-                self.seen = Some(Seen { motion, has_right_approach: false });
+                self.call.seen = Some(Seen { motion, has_right_approach: false });
             }
             self.note_course_form(pair, q_start, q_end, index);
             return;
         }
-        let can_be_searched = (0..polynomials.len()).all(|number| contact::is_searchable(logged(number)));
-        if self.review(pair, q_start, q_end, index, polynomials.len()) {
-            let lengths =
-                || polynomials.iter().enumerate().map(|(number, own)| (own.coefficients().len(), logged(number).len()));
-            self.judged.lost += u64::from(lengths().any(|(own, logged)| logged != own));
-            let lost = lengths().any(|(own, logged)| logged < own);
-            self.own = contact::time_of(polynomials).map(|time| Own { time, lost });
-            if let (Some(Own { time, lost: false }), Some(Seen { motion, .. }), true) =
-                (self.own, &self.seen, can_be_searched)
-                && let Some(other) = self.logged_time(index, polynomials.len())
-            {
-                self.is_disputed = (time <= 1.0) != (other <= 1.0);
-                self.has_disputes |= self.is_disputed;
-                if self.is_disputed && self.prefers_own || motion.is_moment(time, other) {
-                    // Round-off is all that the submission's own time would bring.
-                    return;
-                }
+        let count = polynomials.len();
+        let at_once = self.right_at_once(pair, [q_start, q_end], index, polynomials);
+        let is_right = self.review(pair, [q_start, q_end], index, &at_once[..count]);
+        if is_right {
+            let lengths = || polynomials.iter().enumerate().map(|(k, own)| (own.coefficients().len(), logged(k).len()));
+            let differ = at_once[..count].contains(&None) && lengths().any(|(own, logged)| logged != own);
+            self.judged.lost += u64::from(differ);
+            // The reference's own are searched then, which has to end, too.
+            self.call.misses_logged = !differ
+                && polynomials.iter().all(|own| contact::is_searchable(own.coefficients()))
+                && exclusion_of((0..count).map(logged)).is_some();
+            if self.call.seen.is_none() && !(self.call.misses_logged && self.is_hybrid()) {
+                let motion = BoundedPairMotion::of(self.context.scene, pair, q_start, q_end);
+                self.call.seen = Some(Seen { motion, has_right_approach: false });
+            }
+            if self.call.misses_logged {
+                return;
+            }
+            let lost = differ && lengths().any(|(own, logged)| logged < own);
+            self.call.own = contact::time_of(polynomials).map(|time| Own { time, lost });
+        }
+        let Some(searched) = self.searchable(index, count) else { return };
+        if let (true, Some(Own { time, lost: false }), Some(Seen { motion, .. })) =
+            (is_right, self.call.own, &self.call.seen)
+            && let Some(other) = contact::time_of(&searched[..count])
+        {
+            self.call.is_disputed = (time <= 1.0) != (other <= 1.0);
+            self.has_disputes |= self.call.is_disputed;
+            if self.call.is_disputed && self.prefers_own || motion.is_moment(time, other) {
+                // Round-off is all that the submission's own time would bring.
+                return;
             }
         }
         // What the submission solved is what decides, even if it is wrong: a wrong polynomial is charged once.
-        if can_be_searched {
-            for (number, own) in polynomials.iter_mut().enumerate() {
-                *own = Polynomial::untrimmed(logged(number));
-            }
-        }
+        polynomials.copy_from_slice(&searched[..count]);
     }
 
     fn decide(&mut self, pair: Pair, decision: Decision) -> Decision {
+        let decision = if self.call.misses_logged { self.dispute(pair, decision) } else { decision };
         let decision = self.settle(pair, decision);
         self.decisions.push(Followed { pair, pass: self.pass, decision });
         decision
@@ -252,7 +259,10 @@ impl Observer for Follower<'_> {
         }
         let particles = self.context.particles(detection.pair).into_iter().flatten();
         match self.pass.stage {
-            Stage::ContinuousTime => particles.for_each(|particle| self.moved[particle] = true),
+            Stage::ContinuousTime => {
+                particles.for_each(|particle| self.moved[particle] = true);
+                self.floors = None;
+            }
             // A round's responses come behind its last detection.
             Stage::Impulses { .. } => self.moving.extend(particles),
             Stage::Simple | Stage::Geometric { .. } => {}
@@ -269,12 +279,12 @@ impl Observer for Follower<'_> {
         let Some(mid) = self.records.mid else { return Resume::Own };
         if let Some(logged) = self.logged_passes
             && logged[0] != self.passes[0]
-            && !self.spoilt[0]
+            && !self.tainted[0]
         {
             self.charge(FindingDetail::PassCount { part: Part::Impulses, expected: self.passes[0], actual: logged[0] });
-            self.spoilt[0] = true;
+            self.tainted[0] = true;
         }
-        if !self.spoilt[0] {
+        if !self.tainted[0] {
             let bounds = self.sensitivity.map(|known| &known.mid);
             contact::states(self.context, &mut self.judged, self.records.frame - 1, state, &mid.state, bounds);
         }

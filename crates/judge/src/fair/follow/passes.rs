@@ -29,18 +29,18 @@ impl<'a> Follower<'a> {
             let (expected, actual) =
                 ((self.passes[0] + self.passes[1]) * self.context.per_pass, self.records.end.polynomials.len());
             self.charge(FindingDetail::PolynomialCount { expected, actual, per_pass: self.context.per_pass });
-            self.spoilt[1] = true;
+            self.tainted[1] = true;
             return;
         };
         for (index, part) in [Part::Impulses, Part::Geometric].into_iter().enumerate() {
             // Whether the geometric part runs follows from what happened before.
-            let follows = index == 1 && self.spoilt[0];
+            let follows = index == 1 && self.tainted[0];
             if logged[index] != self.passes[index] {
-                if !self.spoilt[index] && !follows {
+                if !self.tainted[index] && !follows {
                     self.charge(FindingDetail::PassCount { part, expected: self.passes[index], actual: logged[index] });
                 }
-                self.spoilt[index] = true;
-                self.spoilt[1] = true;
+                self.tainted[index] = true;
+                self.tainted[1] = true;
             }
         }
     }

@@ -17,7 +17,22 @@ type Results = [Result<Match, Mismatch>; PairKind::MOST_POLYNOMIALS];
 impl<'a> Follower<'a> {
     /// Compares a pair's logged polynomials, which begin at `index`, with what they should be. Whether they are right
     /// as far as the place of the particles is known.
-    pub(super) fn review(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], index: usize, count: usize) -> bool {
+    pub(super) fn review(
+        &mut self,
+        pair: Pair,
+        [q_start, q_end]: [&[f64]; 2],
+        index: usize,
+        at_once: &[Option<Match>],
+    ) -> bool {
+        let count = at_once.len();
+        // The first approach polynomial that tells its form is looked at closely.
+        let is_form_known = pair.kind != PairKind::ParticleEdge || self.judged.course_form.is_some();
+        if is_form_known && at_once.iter().all(Option::is_some) {
+            for (number, found) in at_once.iter().flatten().enumerate() {
+                self.judged.take_share_and_factor(pair.kind, number, found);
+            }
+            return true;
+        }
         let bounds = self.sensitivity.and_then(|known| known.passes.get(self.pass.index as usize));
         let motion = |q_end: &[f64], bounds: Option<&Vec<f64>>| {
             let motion = BoundedPairMotion::of(self.context.scene, pair, q_start, q_end);
@@ -25,21 +40,20 @@ impl<'a> Follower<'a> {
         };
         let mut seen = motion(q_end, bounds);
         let mut expected = seen.polynomials();
-        let matches = |expected: &Expected| -> Results {
-            std::array::from_fn(|number| {
-                if number >= count {
-                    return Ok(Match { scale: None, share: 0.0 });
-                }
-                compare_first(&self.judged, expected, &self.logged_polynomial(pair, index, number))
+        let matches = |expected: &Expected, at_once: &[Option<Match>]| -> Results {
+            std::array::from_fn(|number| match at_once.get(number) {
+                None => Ok(Match { scale: None, share: 0.0 }),
+                Some(Some(found)) => Ok(*found),
+                Some(None) => compare_first(&self.judged, expected, &self.logged_polynomial(pair, index, number)),
             })
         };
-        let mut results = matches(&expected);
+        let mut results = matches(&expected, at_once);
         if results.iter().any(Result::is_err)
             && let Some(known) = self.known_positions()
         {
             let other_motion = motion(known, None);
             let other = other_motion.polynomials();
-            let others = matches(&other);
+            let others = matches(&other, &[None; PairKind::MOST_POLYNOMIALS][..count]);
             if others.iter().filter(|result| result.is_err()).count()
                 < results.iter().filter(|result| result.is_err()).count()
             {
@@ -52,7 +66,7 @@ impl<'a> Follower<'a> {
             let is_known = self.known_positions().is_some()
                 || result.is_err() && self.is_proven(&expected, &results, pair, index, number);
             // Where the particles are behind an error that moves them, nobody knows.
-            let is_reached = is_known || !self.spoilt[self.part()];
+            let is_reached = is_known || !self.tainted[self.part()];
             let pended = self.judged.pended();
             let said = self.judged.note(&expected, &logged, result, is_reached);
             let hangs = self.judged.pended() > pended;
@@ -71,7 +85,7 @@ impl<'a> Follower<'a> {
             // What a response has led to has its round-off.
             self.judged.hangs |= self.is_moved(pair) && (hangs || matches!(said, Said::Wrong(_)));
         }
-        self.seen = Some(Seen { motion: seen, has_right_approach });
+        self.call.seen = Some(Seen { motion: seen, has_right_approach });
         is_right
     }
 
@@ -101,14 +115,14 @@ impl<'a> Follower<'a> {
     fn charge_polynomial(&mut self, logged: &Logged<'_>, expected: &Expected, mismatch: Mismatch, is_known: bool) {
         let (part, kind, number) = (self.part(), logged.place.pair.kind, logged.number);
         if !is_known {
-            if self.spoilt[part] {
+            if self.tainted[part] {
                 return;
             }
             if self.is_moved(logged.place.pair) {
                 // A formula that is known to be wrong is wrong here, too, wherever the particles are.
                 if !self.wrong_formulas[kind][number] {
                     self.charge(FindingDetail::PassPositions { place: logged.place });
-                    self.spoilt[part] = true;
+                    self.tainted[part] = true;
                 }
                 return;
             }

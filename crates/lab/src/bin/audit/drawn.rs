@@ -1,6 +1,5 @@
 //! Random traces on random scenes: polynomials with factors, roundings and lost coefficients, near the bounds of what
-//! is right. Judging many calls at a time, step by step from bytes, and one by one has to say the same to the last
-//! field.
+//! is right. Judging by the shortcuts and the full way have to say the same to the last field.
 use super::{Random, lanes};
 use fosssim_oracle::{
     judge::{

@@ -1,4 +1,4 @@
-//! Compares judging steps and calls many at a time with judging them one by one, on the traces of all samples on all
+//! Compares judging by the shortcuts (bytes first, right at once) with the full way, on the traces of all samples on all
 //! scenes that come with the program, and on those of a corpus: outcomes have to be the same to the last field.
 use std::{
     path::Path,

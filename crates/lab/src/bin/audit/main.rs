@@ -13,7 +13,7 @@
 //! coefficients are dropped; whatever is left is its rounding. These do not change the exit code.
 //!
 //! `audit lanes [pairs] [seed]` compares detection in lanes with detection pair by pair instead, on random scenes, and
-//! `audit judging [CORPUS or part of a sample's id]` judging of many calls at a time with judging one by one; `audit
+//! `audit judging [CORPUS or part of a sample's id]` judging by the shortcuts with the full way; `audit
 //! drawn [traces] [seed]` does so on random traces. `audit forged [of each scene] [seed] [CORPUS]` looks for wrong
 //! traces that the fair rules accept, and for programs with factors that they refuse. `audit cost [of each scene]
 //! [seed] [CORPUS]` looks for traces that take long to judge.

@@ -136,3 +136,42 @@ fn detect<O: Observer>(
         Reaction::Kept
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::{
+        scene::original,
+        sim::{Observer, RootSearch, Simulation, Zone},
+    };
+
+    /// The zones of each geometric round of each step.
+    #[derive(Default)]
+    struct Rounds(Vec<Vec<Vec<Vec<u32>>>>);
+
+    impl Observer for Rounds {
+        fn begin_step(&mut self, _: u32) {
+            self.0.push(Vec::new());
+        }
+
+        fn zones(&mut self, _: u32, zones: &[Zone<'_>]) {
+            let zones = zones.iter().map(|zone| zone.particles.to_vec()).collect();
+            self.0.last_mut().expect("a step").push(zones);
+        }
+    }
+
+    /// Rows of discs that a fast one drives together: each round moves a zone against the next disc.
+    #[test]
+    fn rounds_go_on_until_no_zone_grows() {
+        let xml = include_bytes!("../../../../../assets/t2m2/GeometricTests/rows-collected-over-many-rounds.xml");
+        let scene = original::read(xml).expect("a scene").scene;
+        let mut rounds = Rounds::default();
+        let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
+        (0..scene.steps()).for_each(|_| simulation.step(&mut rounds).expect("a step"));
+        let longest = rounds.0.iter().max_by_key(|step| step.len()).expect("a step");
+        assert!(longest.len() > 4, "{longest:?}");
+        let [.., before, last] = &longest[..] else { panic!("{longest:?}") };
+        assert_eq!(before, last);
+        let merged: Vec<_> = longest[..longest.len() - 1].windows(2).filter(|pair| pair[0] == pair[1]).collect();
+        assert!(merged.is_empty(), "only the last round changes no zone: {merged:?}");
+    }
+}

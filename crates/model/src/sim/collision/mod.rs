@@ -15,7 +15,6 @@ mod particle_particle;
 mod pass;
 mod response;
 mod simple;
-mod two;
 mod zones;
 
 /// The coefficients of the detection polynomials (collisions.md 2), once for all: over one number as a pass computes

@@ -5,7 +5,10 @@ use super::{
 };
 use crate::{
     scene::Scene,
-    sim::pair::{Pair, PairKind},
+    sim::{
+        bodies::Bodies,
+        pair::{Pair, PairKind},
+    },
 };
 use fosssim_num::{
     lanes::Plane,
@@ -106,23 +109,60 @@ impl PairMotion {
         }
     }
 
+    /// The motion of a pair whose particles move by these displacements.
+    #[inline]
+    pub(super) fn of_bodies(bodies: &Bodies, pair: Pair, q_start: &[f64], displacements: &[f64]) -> Self {
+        let (first, second) = (pair.first as usize, pair.second as usize);
+        let point = |index| PointMotion { start: at(q_start, index), shift: at(displacements, index) };
+        let radius = bodies.radii[first];
+        match pair.kind {
+            PairKind::ParticleParticle => {
+                Self::Particles { centres: [point(first), point(second)], radii: [radius, bodies.radii[second]] }
+            }
+            PairKind::ParticleEdge => Self::Edge {
+                centre: point(first),
+                ends: bodies.edges[second].map(point),
+                radii: [radius, bodies.edge_radii[second]],
+            },
+            PairKind::ParticleHalfPlane => {
+                let (point_on, normal) = (bodies.points[second], bodies.normals[second]);
+                Self::HalfPlane { centre: point(first), radius, point: point_on, normal }
+            }
+        }
+    }
+
     /// The detection polynomials in the order of the trace, nothing dropped (collisions.md 2).
     #[must_use]
     pub fn polynomials(&self) -> Vec<Polynomial> {
+        self.list()[..self.kind().polynomials()].to_vec()
+    }
+
+    /// The same, and behind them empty ones.
+    #[inline]
+    pub(super) fn list(&self) -> [Polynomial; PairKind::MOST_POLYNOMIALS] {
+        let two = |(overlap, approach): ([f64; 3], [f64; 2])| {
+            let none = Polynomial::default();
+            [Polynomial::untrimmed(&overlap), Polynomial::untrimmed(&approach), none, none]
+        };
         match *self {
-            Self::Particles { centres: [one, two], radii } => {
-                particle_particle::polynomials(one.start, one.shift, two.start, two.shift, radii[0] + radii[1]).to_vec()
+            Self::Particles { centres: [one, other], radii } => {
+                let [x1, d1, x2, d2] = [one.start, one.shift, other.start, other.shift].map(Plane::from);
+                two(particle_particle::coefficients(x1, d1, x2, d2, radii[0] + radii[1]))
             }
             Self::Edge { centre, ends: [first, second], radii } => {
                 let [x2, d2, x3, d3] = [first.start, first.shift, second.start, second.shift].map(Plane::from);
                 let (x1, d1, edge) = (centre.start.into(), centre.shift.into(), EdgeMotions::new(x2, d2, x3, d3));
                 let pair = particle_edge::coefficients(x1, d1, &edge, radii[0] + radii[1]);
-                let lists: [&[f64]; 4] = [&pair.distance, &pair.beyond_first, &pair.before_second, &pair.approach];
-                lists.map(Polynomial::untrimmed).to_vec()
+                [
+                    Polynomial::untrimmed(&pair.distance),
+                    Polynomial::untrimmed(&pair.beyond_first),
+                    Polynomial::untrimmed(&pair.before_second),
+                    Polynomial::untrimmed(&pair.approach),
+                ]
             }
             Self::HalfPlane { centre, radius, point, normal } => {
-                let squared = normal.dot(&normal);
-                particle_half_plane::polynomials(centre.start, centre.shift, radius, point, normal, squared).to_vec()
+                let [x, d, point, normal] = [centre.start, centre.shift, point, normal].map(Plane::from);
+                two(particle_half_plane::coefficients(x, d, radius, point, normal, normal.dot(normal)))
             }
         }
     }

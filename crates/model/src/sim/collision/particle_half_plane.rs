@@ -5,21 +5,12 @@ use super::response::{Change, Response, Setting};
 use crate::sim::bodies::Bodies;
 use fosssim_num::{
     lanes::{Number, Plane},
-    polynomial::Polynomial,
     vector::{Vec2, at, length, unit},
 };
 use std::ops::Mul;
 
-/// The two polynomials, untrimmed, of a disc that starts at `x` and moves by `d` in the step: "closer than `radius`"
-/// and "approaching". `squared` is `dot(normal, normal)`.
-#[inline]
-pub(super) fn polynomials(x: Vec2, d: Vec2, radius: f64, point: Vec2, normal: Vec2, squared: f64) -> [Polynomial; 2] {
-    let [x, d, point, normal] = [x, d, point, normal].map(Plane::from);
-    let (overlap, approach) = coefficients(x, d, radius, point, normal, squared);
-    [Polynomial::untrimmed(&overlap), Polynomial::untrimmed(&approach)]
-}
-
-/// Their coefficients, highest power first, of one pair or of several.
+/// The coefficients of the two polynomials of a disc that starts at `x` and moves by `d` in the step: "closer than
+/// `radius`" and "approaching". Highest power first, of one pair or of several. `squared` is `dot(normal, normal)`.
 #[inline(always)]
 pub fn coefficients<N: Number>(
     x: Plane<N>,
@@ -84,9 +75,9 @@ mod tests {
     fn the_annotated_example() {
         let (x, d) = (Vec2::new(0.0, 0.5), Vec2::new(0.0, -0.5));
         let (point, q) = (Vec2::new(0.0, 0.0), Vec2::new(0.0, 1.0));
-        let [overlap, approach] = polynomials(x, d, 0.25, point, q, 1.0);
-        assert_eq!(overlap.coefficients(), [-0.25, 0.5, -0.1875]);
-        assert_eq!(approach.coefficients(), [-0.25, 0.25]);
+        let (overlap, approach) = coefficients(x.into(), d.into(), 0.25, point.into(), q.into(), 1.0);
+        assert_eq!(overlap, [-0.25, 0.5, -0.1875]);
+        assert_eq!(approach, [-0.25, 0.25]);
         let n = normal(x, d, point, q, 1.0, 0.5);
         assert_eq!([n.x.to_bits(), n.y.to_bits()], [(-0.0_f64).to_bits(), (-0.25_f64).to_bits()]);
     }

@@ -3,21 +3,13 @@ use super::response::{Change, Response, Setting};
 use crate::sim::bodies::Bodies;
 use fosssim_num::{
     lanes::{Number, Plane},
-    polynomial::Polynomial,
     vector::{Vec2, at, length, unit},
 };
 use std::ops::Mul;
 
-/// The two polynomials, untrimmed, of discs that start at `x` and move by `d` in the step: "closer than `radii`" and
-/// "approaching". Time is a fraction of the step.
-#[inline]
-pub(super) fn polynomials(x1: Vec2, d1: Vec2, x2: Vec2, d2: Vec2, radii: f64) -> [Polynomial; 2] {
-    let [x1, d1, x2, d2] = [x1, d1, x2, d2].map(Plane::from);
-    let (overlap, approach) = coefficients(x1, d1, x2, d2, radii);
-    [Polynomial::untrimmed(&overlap), Polynomial::untrimmed(&approach)]
-}
-
-/// Their coefficients, highest power first, of one pair or of several.
+/// The coefficients of the two polynomials of discs that start at `x1` and `x2` and move by `d1` and `d2` in the step:
+/// "closer than `radii`" and "approaching". Highest power first, of one pair or of several. Time is a fraction of the
+/// step.
 #[inline(always)]
 pub fn coefficients<N: Number>(x1: Plane<N>, d1: Plane<N>, x2: Plane<N>, d2: Plane<N>, radii: N) -> ([N; 3], [N; 2])
 where

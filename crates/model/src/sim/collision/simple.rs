@@ -6,7 +6,7 @@ use super::{
         bodies::Bodies,
         observer::{Decision, Detection, Impulse, Observer, Pass, Stage, Time},
         pair::{Pair, PairKind, pair},
-        pairs::{Place, is_end},
+        pairs::{PassCursor, is_end},
         state::State,
     },
     particle_edge, particle_half_plane, particle_particle,
@@ -31,7 +31,7 @@ pub(super) fn handle<O: Observer>(bodies: &Bodies, law: &Law, q_start: &[f64], s
         }
     };
     for i in 0..bodies.particles() {
-        let [particles, edges, half_planes] = bodies.objects().row(Place::of(i));
+        let [particles, edges, half_planes] = bodies.objects().row(PassCursor::of(i));
         for j in particles {
             let normal = particle_particle::overlap(bodies, x, v, i, j);
             look(pair(PairKind::ParticleParticle, i, j), normal, v, &|v, n| {

@@ -5,7 +5,7 @@
 use super::{add, subtract};
 use crate::sim::{
     bodies::Bodies,
-    pairs::{Place, is_end},
+    pairs::{PassCursor, is_end},
 };
 use fosssim_num::vector::{Vec2, at, length, unit};
 
@@ -32,7 +32,7 @@ impl Penalty {
     /// Adds the gradient, pair by pair in the order of a detection pass.
     pub fn add_gradient(self, bodies: &Bodies, x: &[f64], gradient: &mut [f64]) {
         for i in 0..bodies.particles() {
-            let [particles, edges, half_planes] = bodies.objects().row(Place::of(i));
+            let [particles, edges, half_planes] = bodies.objects().row(PassCursor::of(i));
             // Nearly all others are beyond reach, which is asked here with as few instructions as possible.
             let (own, radius) = (at(x, i), bodies.radii[i]);
             let others = x.as_chunks::<2>().0[particles.clone()].iter().zip(&bodies.radii[particles.clone()]);

@@ -1,8 +1,5 @@
 use super::*;
-use crate::{
-    sim::{RootSearch, Simulation},
-    trace::{Frame, Recorder, Writer},
-};
+use crate::trace::{Frame, Writer};
 
 const LAYOUT: Layout = Layout { particles: 0, impulses: true, polynomials: true, steps: 0 };
 
@@ -20,69 +17,6 @@ fn a_record_may_hold_what_the_scenes_passes_log() {
     assert_eq!(memory(20, &hybrid(10)), FLOOR);
     assert_eq!(memory(20, &hybrid(10_000)), 20 * 19 * (10_000 + 2 + 60) * POLYNOMIAL_MEMORY);
     assert_eq!(memory(1000, &hybrid(10_000)), LIMIT);
-}
-
-/// Records that will do are gone past as two reads would; others are read as if nobody had asked.
-#[test]
-fn records_alike_are_gone_past_or_read() {
-    const SCENE: &str = r#"<scene>
-        <duration time="0.2"/><integrator type="explicit-euler" dt="0.1"/><collision type="continuous-time" COR="1"/>
-        <particle m="1" px="0" py="0.5" vx="0.1" vy="-1" fixed="0" radius="0.25"/>
-        <particle m="1" px="1" py="0.5" vx="-9" vy="-1" fixed="0" radius="0.25"/>
-        <halfplane px="0" py="0" nx="0" ny="1"/>
-    </scene>"#;
-    let scene = crate::scene::original::read(SCENE.as_bytes()).unwrap().scene;
-    let layout = Layout::of(&scene);
-    let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
-    let mut recorder = Recorder::start(Vec::new(), layout, simulation.state());
-    let mut step = StepBytes::new(layout);
-    simulation.step(&mut (&mut recorder, &mut step)).unwrap();
-    let mut all = StepBytes::new(layout);
-    simulation.step(&mut (&mut recorder, &mut all)).unwrap();
-    let trace = recorder.finish().unwrap().0;
-    let mut frame = LenientFrame::default();
-    let mut slow = Lenient::of_slice(&trace, layout);
-    let mut states = Vec::new();
-    for _ in 0..3 {
-        slow.next(&mut frame).unwrap();
-        states.push((frame.state.clone(), frame.polynomials.coefficients.clone()));
-    }
-    let mut reader = Lenient::of_slice(&trace, layout);
-    reader.next(&mut frame).unwrap();
-    let (mut buffer, mut asked) = (Vec::new(), 0);
-    for answer in [false, true] {
-        // The records of the second step do not have these states, and nobody is asked.
-        assert!(!reader.passes_like(&all, &mut buffer, &mut |_| panic!("other states")));
-        let passes = reader.passes_like(&step, &mut buffer, &mut |[mid, end]| {
-            asked += 1;
-            assert!(mid == end && end == step.log().bytes());
-            answer
-        });
-        assert_eq!(passes, answer);
-        let mut other = Lenient::of_slice(&trace, layout);
-        other.next(&mut frame).unwrap();
-        if !answer {
-            assert_eq!((reader.offset(), reader.records()), (other.offset(), 1));
-        }
-    }
-    assert_eq!(asked, 2);
-    let places = |reader: &Lenient<_>| (reader.offset(), reader.record_offset(), reader.records());
-    assert_eq!(places(&reader), places(&slow));
-    for reader in [&mut reader, &mut slow] {
-        reader.next(&mut frame).unwrap();
-        states.push((frame.state.clone(), frame.polynomials.coefficients.clone()));
-    }
-    assert!(states[3] == states[4] && states[3] != states[2]);
-    // What was read on the way and given back is read again.
-    let mut again = Lenient::of_slice(&trace, layout);
-    again.next(&mut frame).unwrap();
-    assert!(!again.passes_like(&step, &mut buffer, &mut |_| false));
-    again.next(&mut frame).unwrap();
-    assert!((&frame.state, &frame.polynomials.coefficients) == (&states[1].0, &states[1].1));
-    let cut = &trace[..slow.record_offset() as usize - 3];
-    let mut cut = Lenient::of_slice(cut, layout);
-    cut.next(&mut frame).unwrap();
-    assert!(!cut.passes_like(&all, &mut buffer, &mut |_| true));
 }
 
 #[test]

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::sim::bodies::Bodies;
 use fosssim_num::{
-    certificate::lanes::{excludes_edge_that_ends, excludes_two, is_small, search_ends},
+    certificate::lanes::{excludes_edge, excludes_two, is_small, search_ends},
     lanes::{Lanes, Plane, Simd},
     vector::Vec2,
 };
@@ -71,7 +71,7 @@ impl Group {
         let (x, d, radius) = lists.particles(simd, first);
         let mut largest = Lanes::all(simd, 0.0);
         for (edge, rows) in self.edges.chunks_exact_mut(EDGE_ROW * width).enumerate() {
-            let motion = lists.edge(simd, edge);
+            let motion = lists.edge(simd, bodies.edges[edge]);
             let sum = radius + Lanes::all(simd, bodies.edge_radii[edge]);
             let pair = particle_edge::coefficients(x, d, &motion, sum);
             let [o0, o1, o2, o3, o4] = pair.distance;
@@ -87,8 +87,7 @@ impl Group {
             let ends = search_ends(&pair.distance) & search_ends(&pair.approach);
             let fours = [[o0, o1, o2, o3], [o4, f0, f1, f2], [s0, s1, s2, a0], [a1, a2, a3, a4]];
             Lanes::store_by_lane(&fours, EDGE_ROW, rows);
-            let excluded =
-                excludes_edge_that_ends(ends, pair.distance, pair.beyond_first, pair.before_second, pair.approach);
+            let excluded = excludes_edge(ends, pair.distance, pair.beyond_first, pair.before_second, pair.approach);
             let known = small + (!excluded).as_numbers();
             Lanes::store_by_lane(&[[a5, known, known, known]], EDGE_ROW, &mut rows[16..]);
         }

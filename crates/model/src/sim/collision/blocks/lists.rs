@@ -1,5 +1,4 @@
-//! What a pass computes with: one list per number of all particles, for lanes to be loaded from, and the motions of
-//! edges.
+//! What a pass computes with: one list per number of all particles, for lanes to be loaded from.
 use super::{super::particle_edge::EdgeMotions, Setting};
 use crate::sim::bodies::Bodies;
 use fosssim_num::{
@@ -14,8 +13,6 @@ pub(super) struct Lists {
     /// Positions at the start of the step (x, y), displacements (x, y) and radii of particles, with as many entries
     /// behind the last one as lanes may reach; these repeat it.
     particles: [Vec<f64>; 5],
-    /// The motions of edges.
-    pub edges: Vec<EdgeMotions<f64>>,
     /// The squared lengths of half-planes' normals.
     pub squares: Vec<f64>,
     /// For each particle the edges that end in it, ascending.
@@ -48,12 +45,10 @@ impl Lists {
                 list[count..].fill(last);
             }
         }
-        self.edges.clear();
-        self.edges.extend((0..bodies.edges.len()).map(|edge| motion(setting, edge)));
         self.has_moderate_constants && are_moderate(q_start) && are_moderate(displacements)
     }
 
-    /// Takes over the displacements of these particles and the motions of their edges; false as in [`Lists::prepare`].
+    /// Takes over the displacements of these particles; false as in [`Lists::prepare`].
     pub fn refresh(&mut self, setting: Setting<'_>, moved: [usize; 3]) -> bool {
         let count = setting.bodies.particles();
         moved.into_iter().all(|particle| {
@@ -63,9 +58,6 @@ impl Lists {
                 if particle + 1 == count {
                     list[count..].fill(value);
                 }
-            }
-            for &edge in &self.own_edges[particle] {
-                self.edges[edge] = motion(setting, edge);
             }
             are_moderate(&[shift.x, shift.y])
         })
@@ -117,40 +109,12 @@ impl Lists {
         (position, displacement, Lanes::load(simd, &radius[first..]))
     }
 
-    /// The motion of an edge, in all lanes.
+    /// The motion of an edge with these ends, in all lanes.
     #[inline(always)]
-    pub fn edge<S: Simd>(&self, simd: S, edge: usize) -> EdgeMotions<Lanes<S>> {
-        let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s] = self.edges[edge].values();
-        EdgeMotions::of([
-            Lanes::all(simd, a),
-            Lanes::all(simd, b),
-            Lanes::all(simd, c),
-            Lanes::all(simd, d),
-            Lanes::all(simd, e),
-            Lanes::all(simd, f),
-            Lanes::all(simd, g),
-            Lanes::all(simd, h),
-            Lanes::all(simd, i),
-            Lanes::all(simd, j),
-            Lanes::all(simd, k),
-            Lanes::all(simd, l),
-            Lanes::all(simd, m),
-            Lanes::all(simd, n),
-            Lanes::all(simd, o),
-            Lanes::all(simd, p),
-            Lanes::all(simd, q),
-            Lanes::all(simd, r),
-            Lanes::all(simd, s),
-        ])
+    pub fn edge<S: Simd>(&self, simd: S, [first, second]: [usize; 2]) -> EdgeMotions<Lanes<S>> {
+        let ((x2, d2, _), (x3, d3, _)) = (self.particle(simd, first), self.particle(simd, second));
+        EdgeMotions::new(x2, d2, x3, d3)
     }
-}
-
-/// How an edge moves.
-fn motion(setting: Setting<'_>, edge: usize) -> EdgeMotions<f64> {
-    let Setting { bodies, q_start, displacements, .. } = setting;
-    let [first, second] = bodies.edges[edge];
-    let [x2, x3] = [at(q_start, first).into(), at(q_start, second).into()];
-    EdgeMotions::new(x2, at(displacements, first).into(), x3, at(displacements, second).into())
 }
 
 /// Whether all are numbers that are not too large.

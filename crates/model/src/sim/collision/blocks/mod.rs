@@ -12,7 +12,7 @@ mod rows;
 mod settle;
 
 use super::super::{
-    bodies::Bodies, observer::Impulse, pairs::Place, polynomial_bytes::PolynomialBytes, search::SearchCounts,
+    bodies::Bodies, observer::Impulse, pairs::PassCursor, polynomial_bytes::PolynomialBytes, search::SearchCounts,
     step_error::StepError,
 };
 use fosssim_num::lanes::Instructions;
@@ -62,7 +62,7 @@ impl Blocks {
     pub fn next_hit(
         &mut self,
         setting: Setting<'_>,
-        place: &mut Place,
+        place: &mut PassCursor,
         counts: &mut SearchCounts,
         bytes: Option<&mut PolynomialBytes>,
     ) -> Result<Option<Impulse>, StepError> {

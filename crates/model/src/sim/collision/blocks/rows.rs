@@ -7,7 +7,7 @@ use super::{
 use crate::sim::{
     observer::Impulse,
     pair::{Pair, PairKind, pair},
-    pairs::Place,
+    pairs::PassCursor,
     polynomial_bytes::PolynomialBytes,
     search::SearchCounts,
     step_error::StepError,
@@ -20,7 +20,7 @@ pub(super) struct Pairs<'a> {
     pub lists: &'a Lists,
     pub group: &'a mut Group,
     pub setting: Setting<'a>,
-    pub place: &'a mut Place,
+    pub place: &'a mut PassCursor,
     pub counts: &'a mut SearchCounts,
     pub bytes: Option<&'a mut PolynomialBytes>,
 }
@@ -40,14 +40,8 @@ impl Work for Pairs<'_> {
             let first = self.place.first;
             let pairs = TWO_BYTES * (particles - first + bodies.points.len()) + EDGE_BYTES * bodies.edges.len();
             let mut bytes = self.bytes.take();
-            let (room, searched) = match &mut bytes {
-                Some(bytes) => {
-                    let (room, searched) = bytes.parts(pairs);
-                    (room, Some(searched))
-                }
-                None => (&mut [][..], None),
-            };
-            let mut output = Output::new(room, searched);
+            let room = bytes.as_mut().map_or(&mut [][..], |bytes| bytes.room(pairs));
+            let mut output = Output::new(room);
             let ends = self.row(simd, &mut rows, &mut output);
             let Output { used, polynomials, excluded, largest, found, .. } = output;
             self.counts.calls += excluded;
@@ -60,7 +54,7 @@ impl Work for Pairs<'_> {
             if ends {
                 return found;
             }
-            *self.place = Place::of(first + 1);
+            *self.place = PassCursor::of(first + 1);
         }
         Ok(None)
     }
@@ -159,7 +153,7 @@ fn of_edge(
     pair: Pair,
     row: &[f64; EDGE_ROW + BEHIND],
     with: (&Setting<'_>, &mut SearchCounts),
-    place: &mut Place,
+    place: &mut PassCursor,
     output: &mut Output<'_>,
 ) -> bool {
     let known = row[EDGE_KNOWN].to_bits();
@@ -177,7 +171,7 @@ fn of_two(
     pair: Pair,
     row: &[f64; TWO_ROW],
     with: (&Setting<'_>, &mut SearchCounts),
-    place: &mut Place,
+    place: &mut PassCursor,
     output: &mut Output<'_>,
 ) -> bool {
     let known = row[TWO_KNOWN].to_bits();

@@ -1,22 +1,17 @@
 //! Decides about single pairs whose coefficients are known, and writes their polynomials.
 use super::{
-    super::{impact::time_of_impact, particle_edge, particle_half_plane, particle_particle},
+    super::{impact::time_of_impact, motion::PairMotion},
     Setting,
     group::{BEHIND, EDGE_ROW, LINE, TWO_ROW},
 };
 use crate::sim::{
     observer::{Impulse, Time},
-    pair::{Pair, PairKind},
-    pairs::Place,
-    polynomial_bytes::Searched,
+    pair::Pair,
+    pairs::PassCursor,
     search::{RootSearch, SearchCounts},
     step_error::StepError,
 };
-use fosssim_num::{
-    lanes::copy_little_endian,
-    polynomial::Polynomial,
-    vector::{Vec2, at},
-};
+use fosssim_num::{lanes::copy_little_endian, polynomial::Polynomial};
 
 crate::drops_leading!();
 
@@ -36,8 +31,6 @@ pub(super) struct Output<'a> {
     pub excluded: u64,
     /// The largest modulus of coefficients.
     pub largest: f64,
-    /// Where it is noted whose zeros were searched; nowhere where nobody wants to know.
-    pub searched: Option<Searched<'a>>,
     /// The hit that was found, or why the search has no end. Handed on here, since it is seldom there and large.
     pub found: Result<Option<Impulse>, StepError>,
 }
@@ -45,8 +38,8 @@ pub(super) struct Output<'a> {
 impl<'a> Output<'a> {
     /// Nothing is written yet.
     #[inline(always)]
-    pub fn new(room: &'a mut [u8], searched: Option<Searched<'a>>) -> Self {
-        Self { room, used: 0, polynomials: 0, excluded: 0, largest: 0.0, searched, found: Ok(None) }
+    pub fn new(room: &'a mut [u8]) -> Self {
+        Self { room, used: 0, polynomials: 0, excluded: 0, largest: 0.0, found: Ok(None) }
     }
 
     /// Has a pair decided about. Whether that yields something, as [`Output::takes`] says.
@@ -56,22 +49,16 @@ impl<'a> Output<'a> {
         counts: &mut SearchCounts,
         decide: impl FnOnce(&mut SearchCounts) -> Result<Option<Impulse>, StepError>,
         pair: Pair,
-        place: &mut Place,
+        place: &mut PassCursor,
     ) -> bool {
-        let searched = counts.searched;
         let found = decide(counts);
-        if counts.searched > searched
-            && let Some(searched) = &mut self.searched
-        {
-            searched.note(self.polynomials);
-        }
         self.takes(found, pair, place)
     }
 
     /// Takes what was found of a pair. Whether this is a hit, behind which the place is then, or a search without end,
     /// which is not logged.
     #[inline(always)]
-    fn takes(&mut self, found: Result<Option<Impulse>, StepError>, pair: Pair, place: &mut Place) -> bool {
+    fn takes(&mut self, found: Result<Option<Impulse>, StepError>, pair: Pair, place: &mut PassCursor) -> bool {
         if matches!(found, Ok(None)) {
             return false;
         }
@@ -79,7 +66,7 @@ impl<'a> Output<'a> {
             self.room = &mut [];
         }
         self.found = found;
-        *place = Place::behind(pair.kind, pair.first as usize, pair.second as usize);
+        *place = PassCursor::behind(pair.kind, pair.first as usize, pair.second as usize);
         true
     }
 
@@ -165,25 +152,9 @@ fn decide<const COUNT: usize>(
     }
     let time = time_of_impact(RootSearch::WhereNeeded, counts, setting.step, pair, &polynomials)?;
     let Time::Found(time) = time else { return Ok(None) };
-    Ok((time <= 1.0).then(|| normal(setting, pair, time)).flatten().map(|normal| Impulse { pair, normal, time }))
-}
-
-/// The contact normal; none where it is zero and therefore no hit.
-fn normal(setting: &Setting<'_>, pair: Pair, time: f64) -> Option<Vec2> {
-    let Setting { bodies, q_start, displacements, .. } = *setting;
-    let (first, second) = (pair.first as usize, pair.second as usize);
-    let x = |particle: usize| at(q_start, particle);
-    let d = |particle: usize| at(displacements, particle);
-    match pair.kind {
-        PairKind::ParticleParticle => Some(particle_particle::normal(x(first), d(first), x(second), d(second), time)),
-        PairKind::ParticleEdge => {
-            let particles = [first, bodies.edges[second][0], bodies.edges[second][1]];
-            particle_edge::normal(particles.map(x), particles.map(d), time)
-        }
-        PairKind::ParticleHalfPlane => {
-            let (point, normal) = (bodies.points[second], bodies.normals[second]);
-            let squared = normal.dot(&normal);
-            Some(particle_half_plane::normal(x(first), d(first), point, normal, squared, time))
-        }
+    if !(time <= 1.0) {
+        return Ok(None);
     }
+    let motion = PairMotion::of_bodies(setting.bodies, pair, setting.q_start, setting.displacements);
+    Ok(motion.normal(time).map(|normal| Impulse { pair, normal, time }))
 }

@@ -1,9 +1,5 @@
 //! The detection polynomials of particle-edge pairs (collisions.md 2), of one pair or of several at a time.
-use super::super::two::Two;
-use fosssim_num::{
-    lanes::{Number, Plane},
-    polynomial::Polynomial,
-};
+use fosssim_num::lanes::{Number, Plane};
 use std::ops::Mul;
 
 /// What the polynomials of edges with every particle share: their motion, and the products that hold no particle.
@@ -36,36 +32,6 @@ impl<N: Number> EdgeMotions<N> {
         let (g, h, i) = (x32.dot(x32), d32.dot(x32), d32.dot(d32));
         Self { x2, d2, x3, d3, x32, d32, x23: x2 - x3, d23: d2 - d3, g, h, i }
     }
-
-    /// All values, always in the same order.
-    #[inline(always)]
-    pub fn values(&self) -> [N; 19] {
-        let Self { x2, d2, x3, d3, x32, d32, x23, d23, g, h, i } = *self;
-        [
-            x2.x, x2.y, d2.x, d2.y, x3.x, x3.y, d3.x, d3.y, x32.x, x32.y, d32.x, d32.y, x23.x, x23.y, d23.x, d23.y, g,
-            h, i,
-        ]
-    }
-
-    /// The motions of which these are the [values](Self::values).
-    #[inline(always)]
-    #[expect(clippy::many_single_char_names, reason = "sixteen coordinates in their order")]
-    pub fn of(values: [N; 19]) -> Self {
-        let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, square, mixed, speed] = values;
-        Self {
-            x2: Plane { x: a, y: b },
-            d2: Plane { x: c, y: d },
-            x3: Plane { x: e, y: f },
-            d3: Plane { x: g, y: h },
-            x32: Plane { x: i, y: j },
-            d32: Plane { x: k, y: l },
-            x23: Plane { x: m, y: n },
-            d23: Plane { x: o, y: p },
-            g: square,
-            h: mixed,
-            i: speed,
-        }
-    }
 }
 
 /// The coefficients of particle-edge pairs before the removal of small leading ones, highest power first.
@@ -79,19 +45,6 @@ pub struct Coefficients<N> {
     pub before_second: [N; 3],
     /// "Approaching".
     pub approach: [N; 6],
-}
-
-impl Coefficients<Two> {
-    /// Writes the four polynomials of both pairs, untrimmed.
-    #[inline]
-    pub fn write(&self, polynomials: &mut [[Polynomial; 4]; 2]) {
-        for (lane, [distance, beyond_first, before_second, approach]) in polynomials.iter_mut().enumerate() {
-            *distance = Polynomial::untrimmed(&self.distance.map(|c| c.0[lane]));
-            *beyond_first = Polynomial::untrimmed(&self.beyond_first.map(|c| c.0[lane]));
-            *before_second = Polynomial::untrimmed(&self.before_second.map(|c| c.0[lane]));
-            *approach = Polynomial::untrimmed(&self.approach.map(|c| c.0[lane]));
-        }
-    }
 }
 
 /// The coefficients for each of several edges with a disc that starts at `x1` and moves by `d1` in the step, and whose
@@ -188,19 +141,19 @@ fn less<N: Number, const COUNT: usize>(mut number: N, others: [N; COUNT]) -> N {
 
 #[cfg(test)]
 mod tests {
-    use super::{super::super::two::two, *};
+    use super::*;
     use crate::sim::samples::Numbers;
-    use fosssim_num::vector::Vec2;
+    use fosssim_num::{polynomial::Polynomial, vector::Vec2};
 
     fn vector((x, y): (f64, f64)) -> Vec2 {
         Vec2::new(x, y)
     }
 
-    fn polynomials(x1: Vec2, d1: Vec2, edges: &EdgeMotions<Two>, radii: [f64; 2]) -> [[Polynomial; 4]; 2] {
-        let mut polynomials = Default::default();
-        coefficients(two([x1; 2]), two([d1; 2]), edges, Two(radii)).write(&mut polynomials);
-        polynomials.as_flattened_mut().iter_mut().for_each(Polynomial::trim);
-        polynomials
+    fn polynomials([x1, d1]: [Vec2; 2], edge: [Vec2; 4], radii: f64) -> [Polynomial; 4] {
+        let [x2, d2, x3, d3] = edge.map(Plane::from);
+        let pair = coefficients(x1.into(), d1.into(), &EdgeMotions::new(x2, d2, x3, d3), radii);
+        let lists: [&[f64]; 4] = [&pair.distance, &pair.beyond_first, &pair.before_second, &pair.approach];
+        lists.map(Polynomial::trimmed)
     }
 
     /// The approach polynomial by the formulas of the specification, from differences of positions and displacements.
@@ -250,7 +203,7 @@ mod tests {
         terms.map(|terms| terms[1..].iter().fold(terms[0], |sum, term| sum - term))
     }
 
-    /// Sharing values and filling lanes change no bit: the formulas of the specification, parenthesised in full.
+    /// Sharing values changes no bit: the formulas of the specification, parenthesised in full.
     #[test]
     fn shared_values_are_those_of_the_formulas() {
         let mut numbers = Numbers(3);
@@ -290,20 +243,9 @@ mod tests {
                 Polynomial::trimmed(&ends[1]),
                 Polynomial::trimmed(&approach),
             ];
-            let (mut first, mut second) = ([x2, d2, x3, d3], [x3, d1, x1, d3]);
-            for lane in 0..2 {
-                let radii = if lane == 0 { [r, 0.5] } else { [0.5, r] };
-                let edges = EdgeMotions::new(
-                    two([first[0], second[0]]),
-                    two([first[1], second[1]]),
-                    two([first[2], second[2]]),
-                    two([first[3], second[3]]),
-                );
-                for (actual, expected) in polynomials(x1, d1, &edges, radii)[lane].iter().zip(&expected) {
-                    let bits = |p: &Polynomial| p.coefficients().iter().map(|c| c.to_bits()).collect::<Vec<_>>();
-                    assert_eq!(bits(actual), bits(expected), "lane {lane}");
-                }
-                std::mem::swap(&mut first, &mut second);
+            for (actual, expected) in polynomials([x1, d1], [x2, d2, x3, d3], r).iter().zip(&expected) {
+                let bits = |p: &Polynomial| p.coefficients().iter().map(|c| c.to_bits()).collect::<Vec<_>>();
+                assert_eq!(bits(actual), bits(expected));
             }
         }
     }
@@ -313,8 +255,7 @@ mod tests {
     fn a_translating_edge_gives_the_exact_polynomials() {
         let [x1, x2, x3] = [(0.0, 1.0), (-1.0, 0.0), (1.0, 0.0)].map(vector);
         let [d1, d2, d3] = [(0.0, -0.5), (0.0, 0.5), (0.0, 0.5)].map(vector);
-        let edges = EdgeMotions::new(two([x2; 2]), two([d2; 2]), two([x3; 2]), two([d3; 2]));
-        let [distance, first, second, approach] = polynomials(x1, d1, &edges, [0.25; 2])[0];
+        let [distance, first, second, approach] = polynomials([x1, d1], [x2, d2, x3, d3], 0.25);
         // The gap along y is 1 - t and the squared length 4: 4 (1/16 - (1 - t)^2).
         assert_eq!(distance.coefficients(), [-4.0, 8.0, -3.75]);
         // With no relative motion along the edge both ends stay at distance 1 of 2, times the length.

@@ -1,7 +1,7 @@
 //! The threads that judge what was read. Nothing of the results depends on how many there are.
 use super::{Batch, Shape, Slot, copy_state};
 use crate::{
-    fair::{self, Ahead, Records},
+    fair::{self, Records},
     options::Options,
     tally::{Buffers, Tally},
 };
@@ -20,25 +20,23 @@ struct Worker {
     buffers: Buffers,
     /// Root searches of the reference.
     searches: SearchCounts,
-    /// Looks at many calls at a time, unless each is to be looked at by itself.
-    ahead: Option<Ahead>,
 }
 
 /// The threads that judge steps, and what each of them needs; started when there is something to do.
-pub(super) struct Crew<'a> {
+pub(super) struct Workers<'a> {
     scene: &'a Scene,
     root_search: RootSearch,
     one_by_one: bool,
     /// How many are asked for; 0 leaves it to the machine.
     threads: usize,
-    workers: Vec<Worker>,
+    list: Vec<Worker>,
     pool: Option<rayon::ThreadPool>,
 }
 
-impl<'a> Crew<'a> {
+impl<'a> Workers<'a> {
     pub(super) fn new(scene: &'a Scene, options: &Options) -> Self {
         let Options { threads, root_search, one_by_one, .. } = *options;
-        Self { scene, root_search, one_by_one, threads: threads.min(MOST_THREADS), workers: Vec::new(), pool: None }
+        Self { scene, root_search, one_by_one, threads: threads.min(MOST_THREADS), list: Vec::new(), pool: None }
     }
 
     /// Has all threads started. Whether there is more than one.
@@ -47,31 +45,30 @@ impl<'a> Crew<'a> {
             0 => std::thread::available_parallelism().map_or(1, std::num::NonZero::get).min(MOST_THREADS),
             given => given,
         };
-        self.hire(threads);
+        self.grow_to(threads);
         if threads > 1 && self.pool.is_none() {
             self.pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok();
         }
         self.pool.is_some()
     }
 
-    fn hire(&mut self, workers: usize) {
+    fn grow_to(&mut self, workers: usize) {
         let worker = || {
             let mut simulation = Simulation::new(self.scene, self.root_search);
             if self.one_by_one {
                 simulation.forgo_lanes();
             }
-            let ahead = (!self.one_by_one).then(|| Ahead::new(self.scene));
-            Worker { simulation, buffers: Buffers::new(self.scene), searches: SearchCounts::default(), ahead }
+            Worker { simulation, buffers: Buffers::new(self.scene), searches: SearchCounts::default() }
         };
-        self.workers.resize_with(workers.max(self.workers.len()), worker);
+        self.list.resize_with(workers.max(self.list.len()), worker);
     }
 
     /// Judges a batch, beside which nothing is read; one that is the trace's last on one thread unless more are asked
     /// for.
     pub(super) fn judge(&mut self, batch: &Batch, shape: &Shape<'_>, rest: u64, is_last: bool) {
         if is_last && self.threads == 0 && self.pool.is_none() || !self.has_pool() {
-            self.hire(1);
-            judge_batch(batch, &mut self.workers[..1], shape, rest);
+            self.grow_to(1);
+            judge_batch(batch, &mut self.list[..1], shape, rest);
         } else {
             self.judge_beside(batch, shape, rest, || ());
         }
@@ -80,14 +77,14 @@ impl<'a> Crew<'a> {
     /// Judges a batch on all threads, and does something else meanwhile.
     pub(super) fn judge_beside(&mut self, batch: &Batch, shape: &Shape<'_>, rest: u64, other: impl FnOnce() + Send) {
         let Some(pool) = &self.pool else { return };
-        let workers = &mut self.workers[..];
+        let workers = &mut self.list[..];
         pool.install(|| rayon::join(|| judge_batch(batch, workers, shape, rest), other));
     }
 
     /// Counts of root searches of the reference.
     pub(super) fn searches(&self) -> SearchCounts {
         let mut sum = SearchCounts::default();
-        self.workers.iter().for_each(|worker| sum += worker.searches);
+        self.list.iter().for_each(|worker| sum += worker.searches);
         sum
     }
 }
@@ -129,7 +126,7 @@ fn judge_step(slot: &mut Slot, worker: &mut Worker, shape: &Shape<'_>) {
     let Slot {
         step, before, mid, end, result, fair: judged, is_extraordinary, is_put_off, error, beyond_limit, ..
     } = slot;
-    let Worker { simulation, buffers, searches, ahead } = worker;
+    let Worker { simulation, buffers, searches } = worker;
     copy_state(simulation.state_mut(), before);
     simulation.set_steps_done(*step - 1);
     let layout = shape.layout;
@@ -152,7 +149,7 @@ fn judge_step(slot: &mut Slot, worker: &mut Worker, shape: &Shape<'_>) {
         *is_extraordinary = !records.states().all(|state| context.ordinary.holds(state));
         *is_put_off = *is_extraordinary && !records.start_ordinarily(context);
         if !*is_put_off {
-            *judged = fair::judge(context, simulation, ahead.as_mut(), records, result.identical);
+            *judged = fair::judge(context, simulation, records, result.identical);
         }
     }
 }

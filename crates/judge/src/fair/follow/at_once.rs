@@ -1,0 +1,165 @@
+//! Calls whose polynomials are right at once: by the reference's own coefficients, without a look at their bounds.
+use super::Follower;
+use crate::fair::{
+    compare::{MOST, Match, Similarity},
+    formulas::extent,
+};
+use fosssim_model::{
+    scene::Scene,
+    sim::{
+        ByKind, Pair, PairKind,
+        formulas::{EdgeMotions, particle_edge_and_right_cubic, particle_half_plane, particle_particle},
+    },
+};
+use fosssim_num::{
+    bounded::{Bounded, Size, UNIT_ROUNDOFF},
+    lanes::Plane,
+    polynomial::{MAX_COEFFICIENTS, Polynomial},
+    tolerances::FAIR_UNITS,
+    vector::{Vec2, at},
+};
+
+/// How the polynomials of a call compare that are right at once.
+pub(super) type AtOnce = [Option<Match>; PairKind::MOST_POLYNOMIALS];
+
+/// For each polynomial of a kind of pair, a sum of moduli above which it is more than round-off.
+pub(super) type Floors = ByKind<[f64; PairKind::MOST_POLYNOMIALS]>;
+
+impl Follower<'_> {
+    /// What is known at once of a call's logged polynomials; [`compare`](crate::fair::compare::compare) says the same
+    /// of those that are right.
+    #[inline]
+    pub(super) fn right_at_once(
+        &mut self,
+        pair: Pair,
+        [q_start, q_end]: [&[f64]; 2],
+        index: usize,
+        own: &[Polynomial],
+    ) -> AtOnce {
+        let mut found = [None; PairKind::MOST_POLYNOMIALS];
+        // With wider bounds more is round-off.
+        if self.sensitivity.is_some() || self.context.looks_closely {
+            return found;
+        }
+        let floors = self.floors.get_or_insert_with(|| floors(self.context.scene, q_start, q_end))[pair.kind];
+        let lengths = pair.kind.coefficients();
+        for (number, own) in own.iter().enumerate() {
+            let (own, logged) = (own.coefficients(), self.records.end.polynomials.get(index + number));
+            if own.len() != logged.len() {
+                continue;
+            }
+            if own.is_empty() {
+                found[number] = Some(Match { scale: None, share: 0.0 });
+                continue;
+            }
+            let similarity = Similarity::of(own, logged);
+            if similarity.is_clear(own.len() == lengths[number]) && similarity.sum > floors[number] {
+                found[number] = Some(similarity.matched());
+            }
+        }
+        found
+    }
+}
+
+/// More than the round-off of the largest positions and displacements. Infinite, where that is not known.
+fn floors(scene: &Scene, q_start: &[f64], q_end: &[f64]) -> Floors {
+    let (mut size, mut shift) = (0.0_f64, 0.0_f64);
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    let mut widen = |place: Vec2| {
+        size = size.max(extent(place));
+        low = [low[0].min(place.x), low[1].min(place.y)];
+        high = [high[0].max(place.x), high[1].max(place.y)];
+    };
+    for particle in 0..scene.particles.len() {
+        let [start, end] = [q_start, q_end].map(|places| at(places, particle));
+        [start, end].into_iter().for_each(&mut widen);
+        shift = shift.max(extent(end - start));
+    }
+    for half_plane in &scene.half_planes {
+        widen(half_plane.point);
+    }
+    let spread = (high[0] - low[0]).max(high[1] - low[1]);
+    let largest = |sizes: &mut dyn Iterator<Item = f64>| sizes.fold(0.0_f64, |most, size| most.max(size.abs()));
+    let of_particles = largest(&mut scene.particles.iter().map(|particle| particle.radius));
+    let radius = of_particles + of_particles.max(largest(&mut scene.edges.iter().map(|edge| edge.radius)));
+    let normal = largest(&mut scene.half_planes.iter().map(|half_plane| extent(half_plane.normal)));
+    let both = |value: f64, bound: f64| {
+        let number = Bounded { value: Size(value), bound: Size(bound) };
+        Plane { x: number, y: number }
+    };
+    // Only differences of positions matter, which are not larger than the spread; what is too small of their moduli in
+    // the bounds is added.
+    let x = both(0.5 * spread, size + size);
+    let d = both(shift, 5.0 * size);
+    let radii = Bounded { value: Size(radius), bound: Size(radius) };
+    let of = |lists: [&[Bounded<Size>]; PairKind::MOST_POLYNOMIALS]| {
+        lists.map(|list| {
+            let norm: f64 = list.iter().map(|c| c.bound.0).sum();
+            let most = MAX_COEFFICIENTS as f64 * FAIR_UNITS * UNIT_ROUNDOFF * norm;
+            if norm < MOST { 1.01 * most } else { f64::INFINITY }
+        })
+    };
+    ByKind::from_fn(|kind| match kind {
+        PairKind::ParticleParticle => {
+            let (overlap, approach) = particle_particle(x, d, x, d, radii);
+            of([&overlap, &approach, &[], &[]])
+        }
+        PairKind::ParticleEdge => {
+            let (pair, right_cubic) = particle_edge_and_right_cubic(x, d, &EdgeMotions::new(x, d, x, d), radii);
+            let [a, b, c, d, e, f] = pair.approach;
+            let approach = [a, b, c, right_cubic, d, e, f];
+            of([&pair.distance, &pair.beyond_first, &pair.before_second, &approach])
+        }
+        PairKind::ParticleHalfPlane => {
+            let normal = both(normal, normal);
+            let (overlap, approach) = particle_half_plane(x, d, radii, x, normal, normal.dot(normal));
+            of([&overlap, &approach, &[], &[]])
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{fair::formulas::BoundedPairMotion, samples::scene};
+    use fosssim_model::sim::{Detection, Observer, RootSearch, Simulation};
+
+    /// Balls far from the origin, an edge and half-planes.
+    const CROWD: &str = r#"<scene>
+        <duration time="1"/><integrator type="explicit-euler" dt="0.1"/><collision type="hybrid" COR="0.7"/>
+        <particle m="1" px="10" py="0" vx="3" vy="-1" fixed="0" radius="0.1"/>
+        <particle m="2" px="11" py="0.1" vx="0.1" vy="13" fixed="0" radius="0.2"/>
+        <particle m="1" px="10.4" py="0.5" vx="0.2" vy="-2" fixed="0" radius="0.1"/>
+        <particle m="1" px="13" py="7" vx="-0.3" vy="-2" fixed="1" radius="0.1"/>
+        <edge i="0" j="1" radius="0.1"/><halfplane px="0" py="-3" nx="1" ny="2"/><halfplane px="2" py="0" nx="1" ny="0"/>
+    </scene>"#;
+
+    /// By how much the floors are above round-off at least.
+    struct Closest<'a>(&'a Scene, f64);
+
+    impl Observer for Closest<'_> {
+        fn detection(&mut self, detection: &Detection<'_>) {
+            let &Detection { pair, q_start, q_end, .. } = detection;
+            let floors = floors(self.0, q_start, q_end)[pair.kind];
+            let expected = BoundedPairMotion::of(self.0, pair, q_start, q_end).polynomials();
+            for (number, floor) in floors.into_iter().enumerate().take(pair.kind.polynomials()) {
+                for list in std::iter::once(expected.polynomial(number)).chain(expected.other_form(number)) {
+                    let norm: f64 = list.iter().map(|c| c.bound).sum();
+                    let round_off = MAX_COEFFICIENTS as f64 * FAIR_UNITS * UNIT_ROUNDOFF * norm;
+                    assert!(round_off <= floor, "{pair:?} {number}");
+                    self.1 = self.1.min(floor / round_off);
+                }
+            }
+        }
+    }
+
+    /// What is above the floor is never round-off; and the floor is no larger than it has to be by much.
+    #[test]
+    fn what_says_something_is_above_round_off() {
+        let scene = scene(CROWD);
+        let mut closest = Closest(&scene, f64::INFINITY);
+        let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
+        (0..scene.steps()).for_each(|_| simulation.step(&mut closest).expect("a step"));
+        assert!(closest.1 < 10.0, "{}", closest.1);
+    }
+}
