@@ -119,9 +119,9 @@ fn the_factor_and_the_form_of_the_polynomials_are_found() {
         let row = student::find(id).unwrap();
         judged(scene, &simulated(scene, Some(row)).unwrap(), 1).1
     };
-    let [low, high] = of("scale-1000").scale().expect("a factor");
+    let [low, high] = of("scale-1000").factor.expect("a factor");
     assert!((low - 1000.0).abs() < 1e-6 && (high - 1000.0).abs() < 1e-6, "{low} {high}");
-    assert_eq!(of("rearranged-pe").scale(), None);
+    assert_eq!(of("rearranged-pe").factor, None);
     assert_eq!(of("quintic-right").form, Form::Right);
     assert_eq!(of("scale-3").form, Form::Course);
 }

@@ -3,20 +3,26 @@
 use crate::tree::{files, root};
 
 /// The crates of the house and those that each may use, lowest first.
-const CRATES: [(&str, &[&str]); 16] = [
+const CRATES: [(&str, &[&str]); 18] = [
     ("num", &[]),
     ("textdiff", &[]),
     ("files", &[]),
-    ("sandbox", &["files"]),
+    ("ended", &[]),
+    ("sandbox", &["files", "ended"]),
     ("testing", &[]),
     ("model", &["num"]),
-    ("judge", &["num", "model"]),
+    ("findings", &["num", "ended", "model"]),
+    ("judge", &["num", "model", "findings"]),
     ("original", &["num", "files", "model", "judge"]),
-    ("mistakes", &["num", "model", "judge"]),
+    ("mistakes", &["num", "model", "findings", "judge"]),
     ("render", &["num", "model", "judge"]),
     ("evidence", &["model", "judge", "mistakes"]),
-    ("grading", &["num", "textdiff", "files", "testing", "sandbox", "model", "judge", "mistakes", "evidence"]),
-    ("report", &["num", "testing", "model", "judge", "mistakes", "render", "evidence", "grading"]),
+    (
+        "grading",
+        &["num", "textdiff", "files", "testing", "sandbox", "model", "findings", "judge", "mistakes", "evidence"],
+    ),
+    // Grading is there for its tests alone (`reports_know_no_processes`).
+    ("report", &["num", "testing", "model", "findings", "judge", "mistakes", "render", "evidence", "grading"]),
     (
         "oracle",
         &[
@@ -31,7 +37,7 @@ const CRATES: [(&str, &[&str]); 16] = [
 /// Rooms that share a crate, lowest first.
 const ROOMS: [(&str, &[&str]); 2] = [
     ("model", &["assignments", "scene", "sim", "trace"]),
-    ("mistakes", &["plain", "assignments", "student", "diagnose"]),
+    ("mistakes", &["plain", "assignments", "student", "diagnose", "together"]),
 ];
 
 /// The first segments after every `crate::`, also those of a group `crate::{a::b, c}`.
@@ -111,4 +117,24 @@ fn rooms_of_one_crate_import_only_from_lower_rooms() {
     }
     assert!(seen > 20, "only {seen} imports were recognised: the test no longer understands the sources");
     assert!(wrong.is_empty(), "imports that point upwards:\n{}", wrong.join("\n"));
+}
+
+/// What judges and what writes reports is good for machines without processes and files, such as a browser's.
+#[test]
+fn reports_know_no_processes() {
+    let mut wanted = vec!["report".to_owned()];
+    let mut seen = Vec::new();
+    while let Some(name) = wanted.pop() {
+        let manifest =
+            std::fs::read_to_string(root().join("crates").join(&name).join("Cargo.toml")).expect("a manifest");
+        let (built, _) = manifest.split_once("[dev-dependencies]").unwrap_or((&manifest, ""));
+        for line in built.lines().filter_map(|line| line.split_once(".workspace")).map(|(name, _)| name) {
+            assert!(!["libc", "zstd", "rustix", "tempfile"].contains(&line), "{name} asks for {line}");
+            wanted.extend(line.strip_prefix("fosssim-").map(str::to_owned));
+        }
+        seen.push(name);
+    }
+    let is_above = |name: &&String| ["grading", "sandbox", "files"].contains(&name.as_str());
+    assert_eq!(seen.iter().find(is_above), None);
+    assert!(seen.iter().any(|name| name == "num"), "{seen:?}");
 }

@@ -212,7 +212,7 @@ fn oddities_are_noted_and_read_over() {
     while reader.next(&mut frame).unwrap() {
         notes.extend(reader.notes().iter().map(|note| (note.offset, note.what.clone())));
     }
-    let outside = Malformation::IndexOutOfRange { impulse: 0, object: "particle", index: 9, count: 1 };
+    let outside = Malformation::IndexOutOfRange { impulse: 0, object: "particle".into(), index: 9, count: 1 };
     assert_eq!(notes, [(76, Malformation::UnknownKind { impulse: 0, kind: 7 }), (192, outside)]);
 }
 

@@ -4,7 +4,7 @@ use crate::{
     rulings::StepRuling,
     track::{Track, Window},
 };
-use fosssim_judge::{Finding, FindingDetail, Outcome, budget::Budget};
+use fosssim_judge::{Finding, Outcome, budget::Budget};
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{Detection, Observer, Pair, Pass, Resume, RootSearch, Simulation, State},
@@ -83,22 +83,7 @@ impl Focus {
 
 impl From<&Finding> for Focus {
     fn from(finding: &Finding) -> Self {
-        let (pass, pair) = match &finding.detail {
-            FindingDetail::PassPositions { place }
-            | FindingDetail::TrimmedDecision { place, .. }
-            | FindingDetail::MixedForms { place }
-            | FindingDetail::PolynomialDegree { place, .. }
-            | FindingDetail::VanishingPolynomial { place, .. }
-            | FindingDetail::Coefficient { place, .. } => (Some(place.pass), Some(place.pair)),
-            FindingDetail::MissedCollision { expected }
-            | FindingDetail::WrongNormal { expected, .. }
-            | FindingDetail::ContactTime { expected, .. } => (None, Some(expected.pair)),
-            FindingDetail::SuperfluousCollision { actual } | FindingDetail::RepeatedCollision { actual } => {
-                (None, actual.pair())
-            }
-            _ => (None, None),
-        };
-        Self { step: finding.step, pass, pair }
+        Self { step: finding.step, pass: finding.detail.pass(), pair: finding.detail.pair() }
     }
 }
 

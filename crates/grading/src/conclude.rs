@@ -4,7 +4,8 @@
 //! clean exit does not excuse a wrong trace.
 use super::{
     config::{Hints, RunLimits},
-    result::{BadTrace, Limit, Reached, Reason, SceneResult, Wrong},
+    hints::cut,
+    result::{BadTrace, Limit, Measurements, Reached, Reason, SceneResult, Wrong},
     verdict::Verdict,
 };
 use fosssim_judge::{
@@ -75,14 +76,16 @@ pub fn conclude(run: &Run<'_>, explain: impl FnOnce(Look) -> Vec<Explanation>) -
         reason,
         ended: Some(program.ended.clone()),
         differs,
-        told: hints.tell(judged, rules),
-        explanations: if is_explained { hints.cut(explain(look)) } else { Vec::new() },
+        disclosure: hints.tell(judged, rules),
+        explanations: if is_explained { cut(hints, explain(look)) } else { Vec::new() },
         right_steps: judged.right_steps(rules.official()),
         steps: judged.steps,
-        cpu: program.cpu,
-        wall: program.wall,
-        judging: std::time::Duration::ZERO,
-        memory: Some(program.peak_memory),
+        measured: Measurements {
+            cpu: program.cpu,
+            wall: program.wall,
+            memory: Some(program.peak_memory),
+            ..Measurements::default()
+        },
         stdout: kept(&program.stdout),
         stderr: kept(&program.stderr),
         card: None,
@@ -138,8 +141,8 @@ fn verdict_of_trace(run: &Run<'_>) -> (Verdict, Reason) {
     }
     match (&judged.stop, judged.ruling(rules.official())) {
         (Some(Stop::Trace { .. }), _) if trace_bytes == 0 => (Verdict::NoOutput, Reason::NoTrace),
-        (Some(Stop::Trace { frame, step, cause, offset, message }), _) => {
-            let (frame, step, cause, offset, damage) = (*frame, *step, *cause, *offset, message.clone());
+        (Some(Stop::Trace { frame, step, cause, offset, what }), _) => {
+            let (frame, step, cause, offset, damage) = (*frame, *step, *cause, *offset, what.clone());
             let unreadable = BadTrace::Unreadable { frame, step, cause, offset, damage };
             (Verdict::BadTrace, Reason::Trace(unreadable))
         }

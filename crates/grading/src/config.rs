@@ -2,10 +2,11 @@
 //!
 //! Reading yields every problem at once, each with line and column. The file's grammar is documented by the template
 //! that `suite init` writes ([`TEMPLATE`]).
+pub use super::patience::Patience;
 use super::shape;
-pub use super::{hints::Hints, patience::Patience};
+pub use fosssim_findings::{Hints, Visibility};
 use fosssim_judge::Rules;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use std::{ops::Range, time::Duration};
 use toml::Spanned;
 
@@ -121,33 +122,6 @@ pub enum Credit {
     Steps,
     /// All or nothing.
     All,
-}
-
-/// The visibility of a group's results, in Gradescope's words.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Visibility {
-    /// Everybody, at once.
-    Visible,
-    /// Staff only.
-    Hidden,
-    /// Students, after the due date.
-    AfterDueDate,
-    /// Students, after grades are published.
-    AfterPublished,
-}
-
-impl Visibility {
-    /// Gradescope's key.
-    #[must_use]
-    pub const fn key(self) -> &'static str {
-        match self {
-            Self::Visible => "visible",
-            Self::Hidden => "hidden",
-            Self::AfterDueDate => "after_due_date",
-            Self::AfterPublished => "after_published",
-        }
-    }
 }
 
 /// A place in the file.

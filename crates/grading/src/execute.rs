@@ -163,7 +163,7 @@ impl Runner<'_> {
         if let Some(fault) = explaining {
             return Ok(failed(Activity::Explaining, &fault));
         }
-        result.judging = begin.elapsed().saturating_sub(result.wall);
+        result.measured.judging = begin.elapsed().saturating_sub(result.measured.wall);
         if let Some(cards) = self.cards
             && !(result.verdict.is_accepted() && result.differs.is_none())
         {

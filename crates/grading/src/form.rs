@@ -1,35 +1,20 @@
 //! The one serialised form of results: what every place that keeps results writes.
 //!
-//! [`VERSION`] rises when anything here or in `mirror`, which holds the parts, changes its meaning.
+//! [`VERSION`] rises when anything changes its meaning that results are made of: here or in
+//! `fosssim_findings`.
 use super::{key::Key, result::SceneResult};
 use serde::{Deserialize, Serialize};
 
 /// The version of the form.
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 
-/// What is written: the form's version before all that depends on it.
-#[derive(Serialize)]
-struct Written<'a> {
-    form: u32,
-    key: &'a Key,
-    submission: &'a str,
-    result: &'a SceneResult,
-}
-
-#[derive(Deserialize)]
-struct Read {
-    form: u32,
-    key: Key,
-    submission: String,
-    result: SceneResult,
-}
-
-/// A result as it was kept.
-#[derive(Debug, Clone, PartialEq)]
+/// A result as it is kept: the form's version stands before all that depends on it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Entry {
-    /// Under what it is found.
+    form: u32,
+    /// The key under which it is found.
     pub key: Key,
-    /// Whose it is, for people.
+    /// The submission's name, for people.
     pub submission: String,
     /// The result.
     pub result: SceneResult,
@@ -39,14 +24,14 @@ pub struct Entry {
 /// people.
 #[must_use]
 pub fn write(key: &Key, submission: &str, result: &SceneResult) -> Vec<u8> {
-    serde_json::to_vec(&Written { form: VERSION, key, submission, result }).unwrap_or_default()
+    let (key, submission, result) = (key.clone(), submission.to_owned(), result.clone());
+    serde_json::to_vec(&Entry { form: VERSION, key, submission, result }).unwrap_or_default()
 }
 
 /// What [`write`] wrote; `None` where it is damaged or of another version.
 #[must_use]
 pub fn read(bytes: &[u8]) -> Option<Entry> {
-    let Read { form, key, submission, result } = serde_json::from_slice(bytes).ok()?;
-    (form == VERSION).then_some(Entry { key, submission, result })
+    serde_json::from_slice(bytes).ok().filter(|entry: &Entry| entry.form == VERSION)
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ use super::{
     execute::Runner,
     guard::guarded,
     key::Key,
-    located::{Content, Contents},
+    located::{ContentIndex, Contents},
     one_file::OneFile,
     patience,
     plan::Plan,
@@ -128,7 +128,7 @@ impl<'a> Shared<'a> {
 
     /// The contents of the reference's run of each scene. A scene without an end has none.
     pub(super) fn contents(&self, plan: &Plan) -> &[Contents] {
-        let of = |task: &SceneTask| Coverage::of(&task.scene).map(|seen| Content::of(&seen)).unwrap_or_default();
+        let of = |task: &SceneTask| Coverage::of(&task.scene).map(|seen| ContentIndex::of(&seen)).unwrap_or_default();
         self.contents.get_or_init(|| plan.scenes().map(of).collect())
     }
 
@@ -331,7 +331,7 @@ impl<'a> Grading<'a> {
     /// Notes a result, and whether it is the end.
     fn note(&self, scene: usize, result: &SceneResult) {
         let mut known = lock(&self.known);
-        known.done[scene] = Some((result.verdict, result.wall + result.judging));
+        known.done[scene] = Some((result.verdict, result.measured.wall + result.measured.judging));
         if known.end.is_none_or(|(end, _)| scene < end) {
             let end = patience::end(&self.grader.plan.patience, self.grader.options.fail_fast, &known.done);
             known.end = end.or(known.end);

@@ -4,14 +4,13 @@
 //! values of their properties. A value is told where every scene that fails contains it, where it is as good as any
 //! other by Ochiai's measure, and where chance would not bring that about: Fisher's exact test, for as many values as
 //! are looked at. Values that the scenes can't tell apart are told together.
-use super::coverage::Coverage;
-use fosssim_sandbox::Ended;
-use serde::{Deserialize, Serialize};
+use super::coverage::{Coverage, FAMILIES};
+pub use fosssim_findings::located::{Content, Failing, Located};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A kind of event, or one value of one of its properties, by their numbers in [`FAMILIES`](crate::coverage::FAMILIES).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub struct Content {
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct ContentIndex {
     /// The kind of event.
     pub family: usize,
     /// A property and its value.
@@ -19,43 +18,7 @@ pub struct Content {
 }
 
 /// The contents of scenes: their spectrum.
-pub type Contents = BTreeSet<Content>;
-
-/// How programs fail.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Failing {
-    /// By a signal.
-    Crash,
-    /// By an exit code of their own.
-    Error,
-    /// By the limit of time.
-    Time,
-    /// By the limit of memory.
-    Memory,
-    /// By a limit of what they may write.
-    Output,
-    /// By several of these.
-    Several,
-}
-
-/// The contents that the failing scenes have in common.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Located {
-    /// How it fails.
-    pub failing: Failing,
-    /// The contents of all these scenes, the most general first; the scenes can't tell them apart.
-    pub contents: Vec<Content>,
-    /// The number of scenes in which it fails; all of them contain it.
-    pub failed: usize,
-    /// The number of scenes that contain it.
-    pub with: usize,
-    /// The number of scenes that were run and do not contain it; the program fails in none of these.
-    pub without: usize,
-    /// The first scene in which it fails.
-    pub first: String,
-    /// The step of the last complete record there; 0 for the first record.
-    pub step: u32,
-}
+pub type Contents = BTreeSet<ContentIndex>;
 
 /// One scene that was run: whether its program failed, and how.
 #[derive(Debug, Clone, Copy)]
@@ -73,29 +36,23 @@ pub struct Tried<'a> {
 /// Chance must bring the like about less often than this, over all values that are looked at.
 const SIGNIFICANT: f64 = 0.01;
 
-impl Failing {
-    /// How a program failed that ended so; nothing where it ended well, or where that says nothing of it.
-    #[must_use]
-    pub const fn of(ended: &Ended) -> Option<Self> {
-        match ended {
-            Ended::Signalled(_) => Some(Self::Crash),
-            Ended::Exited(0) | Ended::CouldNotStart(_) | Ended::Cancelled => None,
-            Ended::Exited(_) => Some(Self::Error),
-            Ended::CpuLimit | Ended::WallLimit => Some(Self::Time),
-            Ended::MemoryLimit => Some(Self::Memory),
-            Ended::OutputLimit(_) | Ended::FolderLimit => Some(Self::Output),
-            Ended::ProcessLimit | Ended::Violation { .. } => None,
-        }
-    }
-}
-
-impl Content {
+impl ContentIndex {
     /// All that a scene contains.
     #[must_use]
     pub fn of(coverage: &Coverage) -> Contents {
         let values = coverage.values().map(|(family, axis, value)| Self { family, value: Some((axis, value)) });
         let kinds = coverage.values().map(|(family, ..)| Self { family, value: None });
         values.chain(kinds).collect()
+    }
+
+    /// With its names.
+    fn named(self) -> Content {
+        let family = &FAMILIES[self.family];
+        let value = |(axis, value): (usize, usize)| {
+            let axis = &family.axes[axis];
+            [axis.name.into(), axis.values[value].into()]
+        };
+        Content { family: family.name.into(), value: self.value.map(value) }
     }
 
     /// The rank of a content: a later place in a step is narrower (zones, then contacts, then the step as a whole), and
@@ -118,7 +75,7 @@ pub fn locate(tried: &[Tried<'_>]) -> Option<Located> {
     let first = failed.first()?;
     let mut shared = first.contents.clone();
     failed.iter().for_each(|one| shared.retain(|content| one.contents.contains(content)));
-    let mut with: BTreeMap<usize, Vec<Content>> = BTreeMap::new();
+    let mut with: BTreeMap<usize, Vec<ContentIndex>> = BTreeMap::new();
     for content in shared {
         let scenes = tried.iter().filter(|one| one.contents.contains(&content)).count();
         with.entry(scenes).or_default().push(content);
@@ -149,7 +106,7 @@ pub fn locate(tried: &[Tried<'_>]) -> Option<Located> {
     })?;
     Some(Located {
         failing,
-        contents,
+        contents: contents.into_iter().map(ContentIndex::named).collect(),
         failed: failed.len(),
         with,
         without: tried.len() - with,
@@ -169,8 +126,8 @@ fn chance(failed: usize, with: usize, all: usize) -> f64 {
 mod tests {
     use super::*;
 
-    fn content(family: usize, value: Option<(usize, usize)>) -> Content {
-        Content { family, value }
+    fn content(family: usize, value: Option<(usize, usize)>) -> ContentIndex {
+        ContentIndex { family, value }
     }
 
     /// Scenes by what they contain: a contact each; some a zone, of which some are held by a half-plane.
@@ -201,9 +158,9 @@ mod tests {
         assert_eq!((found.failed, found.with, found.without, found.step), (24, 24, 61, 7));
         // The kind of event, and a property of the step that the same scenes have; the zones' own values are no other
         // place.
-        assert_eq!(found.contents, [content(4, None), content(6, Some((1, 1)))]);
+        assert_eq!(found.contents, [content(4, None), content(6, Some((1, 1)))].map(ContentIndex::named));
         let narrower = located(&contents, |number| (number < 9).then_some(Failing::Time)).expect("a place");
-        assert_eq!((narrower.contents, narrower.with), (vec![content(4, Some((1, 1)))], 9));
+        assert_eq!((narrower.contents, narrower.with), (vec![content(4, Some((1, 1))).named()], 9));
         let most =
             located(&contents, |number| (number < 24 && number != 5).then_some(Failing::Crash)).expect("a place");
         assert_eq!((most.failed, most.with, most.without), (23, 24, 61));

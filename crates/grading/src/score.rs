@@ -8,9 +8,12 @@ use super::{
     result::{Reason, SceneResult},
     verdict::Verdict,
 };
-use fosssim_mistakes::diagnose::{self, Explanation};
+use fosssim_findings::result::Ended;
+use fosssim_mistakes::{
+    diagnose::{self, Explanation},
+    together::settle,
+};
 use fosssim_model::scene::Scene;
-use fosssim_sandbox::Ended;
 
 /// Shares a group's points evenly among its scenes and adds up what was reached. The results come with the word whether
 /// they were taken from an earlier run.
@@ -113,15 +116,17 @@ impl Grading<'_> {
             Some(Ok(staged)) => staged.build.clone(),
             _ => None,
         };
-        // Scenes behind the end that ran beside it do not count: the grade must not depend on the number of jobs.
-        let known: Vec<_> =
-            results.iter().map(|(result, _)| Some((result.verdict, result.wall + result.judging))).collect();
+        // What ran beside the scene that was the end does not count, or the number of jobs would.
+        let known: Vec<_> = results
+            .iter()
+            .map(|(result, _)| Some((result.verdict, result.measured.wall + result.measured.judging)))
+            .collect();
         if let Some((end, why)) = patience::end(&plan.patience, options.fail_fast, &known) {
             for (result, scene) in results.iter_mut().zip(plan.scenes()).skip(end) {
                 *result = (patience::left_out(scene, why), false);
             }
         }
-        let wall = results.iter().map(|(result, _)| result.wall).sum();
+        let wall = results.iter().map(|(result, _)| result.measured.wall).sum();
         let mut results = results.into_iter();
         let groups: Vec<_> = plan
             .groups
@@ -151,9 +156,9 @@ impl Grading<'_> {
             located: None,
         };
         if plan.hints.explains() {
-            grade.located = grade.locate(|| self.shared.contents(plan));
+            grade.located = common(&grade, || self.shared.contents(plan));
         }
-        grade.settle();
+        settle(&mut grade);
         grade
     }
 
@@ -177,32 +182,33 @@ impl Grading<'_> {
     }
 }
 
-impl Grade {
-    /// The contents that the failing scenes have in common. `contents` are those of all scenes in their order, computed
-    /// only where some fail and some do not.
-    fn locate<'a>(&self, contents: impl FnOnce() -> &'a [Contents]) -> Option<Located> {
-        let failing = |ended: &Option<Ended>| ended.as_ref().and_then(Failing::of);
-        let was_run = |reason: &Reason| !matches!(reason, Reason::LeftOut(_) | Reason::Stopped | Reason::Failed(_));
-        let run = || self.scenes().filter(|scene| was_run(&scene.reason) && scene.ended.is_some());
-        let failed = run().filter(|scene| failing(&scene.ended).is_some()).count();
-        if failed == 0 || failed == run().count() {
-            return None;
-        }
-        let tried: Vec<Tried<'_>> = self
-            .scenes()
-            .zip(contents())
-            .filter(|(scene, _)| was_run(&scene.reason) && scene.ended.is_some() && scene.verdict != Verdict::NotRun)
-            .map(|(scene, contents)| {
-                let steps = match scene.reason {
-                    Reason::Program(reached) => reached.steps,
-                    _ => 0,
-                };
-                Tried { scene: &scene.scene, failing: failing(&scene.ended), steps, contents }
-            })
-            .collect();
-        locate(&tried)
+/// The contents that the failing scenes have in common. `contents` are those of all scenes in their order, computed
+/// only where some fail and some do not.
+fn common<'a>(grade: &Grade, contents: impl FnOnce() -> &'a [Contents]) -> Option<Located> {
+    let failing = |ended: &Option<Ended>| ended.as_ref().and_then(Failing::of);
+    let was_run = |reason: &Reason| !matches!(reason, Reason::LeftOut(_) | Reason::Stopped | Reason::Failed(_));
+    let run = || grade.scenes().filter(|scene| was_run(&scene.reason) && scene.ended.is_some());
+    let failed = run().filter(|scene| failing(&scene.ended).is_some()).count();
+    if failed == 0 || failed == run().count() {
+        return None;
     }
+    let tried: Vec<Tried<'_>> = grade
+        .scenes()
+        .zip(contents())
+        .filter(|(scene, _)| was_run(&scene.reason) && scene.ended.is_some() && scene.verdict != Verdict::NotRun)
+        .map(|(scene, contents)| {
+            let steps = match scene.reason {
+                Reason::Program(reached) => reached.steps,
+                _ => 0,
+            };
+            Tried { scene: &scene.scene, failing: failing(&scene.ended), steps, contents }
+        })
+        .collect();
+    locate(&tried)
 }
+
+#[cfg(test)]
+mod together_tests;
 
 #[cfg(test)]
 mod tests {

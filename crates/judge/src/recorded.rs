@@ -70,12 +70,12 @@ fn compare(
             progress.step_begins(step);
         }
         if let Err(stop) = trace.next(&mut actual) {
-            let (offset, message) = (stop.at.offset, stop.at.what.to_string());
-            outcome.stop = Some(Stop::Trace { frame, step, cause: stop.cause, offset, message });
+            let (offset, what) = (stop.at.offset, stop.at.what);
+            outcome.stop = Some(Stop::Trace { frame, step, cause: stop.cause, offset, what });
             break;
         }
         if let (None, Some(note)) = (&outcome.damage, actual.note.take()) {
-            outcome.damage = Some(Damage { frame, step, offset: note.offset, message: note.what.to_string() });
+            outcome.damage = Some(Damage { frame, step, offset: note.offset, what: note.what });
         }
         let damaged = outcome.damage.is_some();
         outcome.damaged_steps += u32::from(damaged && is_end);

@@ -13,7 +13,7 @@ pub use super::{
 
 use super::{
     budget::Budget,
-    fair::{self, Context, Reach, Records, StepJudgement},
+    fair::{self, Context, Judging, Reach, Records, StepJudgement},
     identical::Identical,
     outcome::{Damage, Outcome, Stop},
     rules::Book,
@@ -23,7 +23,7 @@ use fosssim_model::{
     assignments::ImpulseList,
     scene::Scene,
     sim::{RootSearch, State, StepError},
-    trace::{Layout, Lenient, LenientFrame, LoggedImpulse, Unreadable, record_memory},
+    trace::{Layout, Lenient, LenientFrame, LoggedImpulse, Malformation, TraceError, Unreadable, record_memory},
 };
 use std::{io::Read, sync::Mutex};
 use workers::Workers;
@@ -154,6 +154,8 @@ struct Replay<'a, R> {
     damage: Option<Damage>,
     /// Whether a record of the steps delivered so far, or the first one, is damaged.
     damaged: bool,
+    /// What the fair rules say so far, if they are asked.
+    judging: Option<Box<Judging>>,
     outcome: Outcome,
 }
 
@@ -163,8 +165,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         if let Err(stop) = self.read_initial() {
             self.outcome.damage = self.damage.take();
             self.outcome.stop = Some(stop);
-            self.outcome.conclude();
-            return self.outcome;
+            return self.conclude();
         }
         self.outcome.damage = self.damage.take();
         progress.begins();
@@ -208,6 +209,12 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         }
         self.outcome.searches = self.identical.searches();
         self.outcome.searches += workers.searches();
+        self.conclude()
+    }
+
+    /// Draws the verdicts.
+    fn conclude(mut self) -> Outcome {
+        self.outcome.fair = self.judging.take().map(|judging| Box::new(judging.conclude(&self.outcome)));
         self.outcome.conclude();
         self.outcome
     }
@@ -227,11 +234,8 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             identical: Identical::new(scene, root_search),
             damage: None,
             damaged: false,
-            outcome: Outcome {
-                fair: fair.then(Box::default),
-                records_per_step: layout.records_per_step(),
-                ..Outcome::empty(layout.steps)
-            },
+            judging: fair.then(Box::default),
+            outcome: Outcome { records_per_step: layout.records_per_step(), ..Outcome::empty(layout.steps) },
         }
     }
 
@@ -246,7 +250,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         self.damaged = damage.is_some();
         self.damage = damage;
         if let (Ok(()), false, Some(context), Some(judgement)) =
-            (&read, self.damaged, self.shape.fair, &mut self.outcome.fair)
+            (&read, self.damaged, self.shape.fair, &mut self.judging)
         {
             judgement.add_initial(&fair::judge_initial(&context, &frame));
         }
@@ -259,14 +263,13 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         match self.reader.next(frame) {
             Ok(()) => {
                 if let (None, Some(note)) = (&damage, frame.note.take()) {
-                    let (offset, message) = (note.offset, note.what.to_string());
-                    *damage = Some(Damage { frame: note.frame, step, offset, message });
+                    *damage = Some(Damage { frame: note.frame, step, offset: note.offset, what: note.what });
                 }
                 Ok(())
             }
             Err(stop) => {
-                let (offset, message) = (stop.at.offset, stop.at.what.to_string());
-                Err(Stop::Trace { frame: stop.at.frame, step, cause: stop.cause, offset, message })
+                let TraceError { frame, offset, what, .. } = stop.at;
+                Err(Stop::Trace { frame, step, cause: stop.cause, offset, what })
             }
         }
     }
@@ -379,7 +382,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             if !self.damaged {
                 slot.result.firsts.iter().for_each(|first| outcome.parity.findings.keep_first(first));
                 if let (Some(judgement), Some(context), Some(reach)) =
-                    (&mut outcome.fair, &self.shape.fair, &mut self.reach)
+                    (&mut self.judging, &self.shape.fair, &mut self.reach)
                 {
                     if slot.is_extraordinary {
                         let frame = u64::from(slot.step) * u64::from(self.shape.layout.records_per_step());
@@ -418,7 +421,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             slot.mid.shrink();
             slot.end.shrink();
             let is_hopeless = match options.stop_by {
-                Book::Fair if outcome.fair.is_some() => !slot.fair.findings.is_empty() || slot.fair.endless,
+                Book::Fair if self.judging.is_some() => !slot.fair.findings.is_empty() || slot.fair.endless,
                 Book::Parity | Book::Fair => slot.result.counts.total() > 0,
             };
             if is_hopeless && options.stop_at_first {
@@ -433,17 +436,17 @@ impl<'a, R: Read + Send> Replay<'a, R> {
 fn not_finite(slot: &Slot, layout: Layout) -> Option<Damage> {
     let State { positions, velocities } = &slot.before;
     let (index, value) = positions.iter().chain(velocities).enumerate().find(|(_, value)| !value.is_finite())?;
-    let (prefix, place) = match index.checked_sub(positions.len()) {
-        None => ("", index),
-        Some(place) => ("velocity ", place),
+    let (names, place) = match index.checked_sub(positions.len()) {
+        None => (["x", "y"], index),
+        Some(place) => (["velocity x", "velocity y"], place),
     };
-    let axis = if place.is_multiple_of(2) { 'x' } else { 'y' };
+    let quantity = names[place % 2].into();
     let step = slot.step - 1;
     Some(Damage {
         frame: u64::from(step) * u64::from(layout.records_per_step()),
         step,
         offset: slot.before_at + 8 * index as u64,
-        message: format!("{prefix}{axis} of particle {} is {value}", place / 2),
+        what: Malformation::NotFinite { quantity, particle: place / 2, value: *value },
     })
 }
 
@@ -455,10 +458,7 @@ fn beyond_limit(slot: &Slot, layout: Layout) -> Stop {
         step: slot.step,
         cause: Unreadable::Limit,
         offset: slot.end_at,
-        message: format!(
-            "the record has {logged} polynomials, as many as it should have, but this program compares the first \
-             {kept} of a record of this scene only"
-        ),
+        what: Malformation::BeyondKept { logged, kept },
     }
 }
 

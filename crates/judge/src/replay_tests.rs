@@ -81,11 +81,10 @@ fn a_record_beyond_the_memory_is_wrong_by_its_length_or_not_judged() {
         let judge = |memory, trace: &[u8]| judge_within(memory, None, &scene, trace, &options, &mut ());
         let whole = judge(usize::MAX, &right);
         assert!(whole.stop.is_none() && whole.parity.findings.counts.total() == 0, "{whole:?}");
-        let Some(Stop::Trace { step: 1, frame: 2, cause: Unreadable::Limit, message, .. }) = judge(0, &right).stop
-        else {
+        let Some(Stop::Trace { step: 1, frame: 2, cause: Unreadable::Limit, what, .. }) = judge(0, &right).stop else {
             panic!("not judged")
         };
-        assert!(message.contains("14280 polynomials, as many as it should have"), "{message}");
+        assert!(what.to_string().contains("14280 polynomials, as many as it should have"), "{what}");
         let wrong = judge(0, &longer);
         assert!(wrong.stop.is_none() && wrong.parity.findings.wrong_steps == 2, "{wrong:?}");
         assert!(wrong.parity.findings.examples[0].to_string().contains("14281 polynomials"), "{wrong:?}");

@@ -6,5 +6,6 @@ pub mod plain;
 pub mod assignments;
 
 pub mod student;
+pub mod together;
 
 pub mod diagnose;

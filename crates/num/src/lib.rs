@@ -22,3 +22,4 @@ pub mod printed;
 pub mod rpoly;
 pub mod tolerances;
 pub mod vector;
+pub mod written;

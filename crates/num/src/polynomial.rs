@@ -1,4 +1,6 @@
 //! Polynomials of degree at most five (six while searching zeros), in fixed storage, highest power first.
+use super::written::Number;
+use serde::{Deserialize, Serialize};
 
 /// The largest number of coefficients of a detection polynomial (degree 5).
 pub const MAX_COEFFICIENTS: usize = 6;
@@ -6,10 +8,27 @@ pub const MAX_COEFFICIENTS: usize = 6;
 /// A real polynomial, **highest power first**, after removal of the small leading coefficients.
 ///
 /// The coefficients stand at the end of the storage, behind zeros.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(into = "Vec<Number>", try_from = "Vec<Number>")]
 pub struct Polynomial {
     length: u8,
     storage: [f64; MAX_COEFFICIENTS],
+}
+
+impl From<Polynomial> for Vec<Number> {
+    fn from(polynomial: Polynomial) -> Self {
+        polynomial.coefficients().iter().copied().map(Number).collect()
+    }
+}
+
+impl TryFrom<Vec<Number>> for Polynomial {
+    type Error = &'static str;
+
+    fn try_from(form: Vec<Number>) -> Result<Self, Self::Error> {
+        let coefficients: Vec<f64> = form.into_iter().map(|number| number.0).collect();
+        let fits = coefficients.len() <= MAX_COEFFICIENTS;
+        fits.then(|| Self::untrimmed(&coefficients)).ok_or("a polynomial of the detection has six coefficients at most")
+    }
 }
 
 impl Polynomial {

@@ -229,8 +229,8 @@ fn grade(
             frame,
             step,
             offset,
-            message,
-        }) => complain(&format!("the trace can't be read at byte {offset} (record {frame}, step {step}): {message}\n")),
+            what,
+        }) => complain(&format!("the trace can't be read at byte {offset} (record {frame}, step {step}): {what}\n")),
     }
 }
 

@@ -220,6 +220,7 @@ mod tests {
     use fosssim_model::{
         scene::Collision,
         sim::{Impulse, Pair, PairKind, SearchCounts},
+        trace::Malformation,
     };
     use fosssim_num::vector::Vec2;
 
@@ -339,7 +340,7 @@ mod tests {
     fn an_unreadable_first_record_leaves_no_banner() {
         let scene = scene(3);
         let cause = Unreadable::State;
-        let stop = Stop::Trace { frame: 0, step: 0, cause, offset: 0, message: "the file is empty".to_owned() };
+        let stop = Stop::Trace { frame: 0, step: 0, cause, offset: 0, what: Malformation::Empty };
         let text = after_heading(&scene, Task::Grade(b"e"), |transcript| {
             transcript.graded(&outcome(Overall::None, Some(stop)));
         });

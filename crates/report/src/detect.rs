@@ -4,7 +4,7 @@ use super::{
     number::exact,
     style::{Look, Style},
     table::{Align, Cell, Table},
-    view::{Number, PairView, PassView, numbers},
+    view::{Number, numbers},
 };
 use fosssim_evidence::Logged;
 use fosssim_judge::{
@@ -160,8 +160,8 @@ impl Detect<'_> {
                 "scene": place.scene,
                 "trace": place.trace,
                 "step": place.step,
-                "pair": PairView::from(place.pair),
-                "pass": place.pass.map(PassView::from),
+                "pair": place.pair,
+                "pass": place.pass,
                 "passes": place.passes,
                 "logged": match place.logged {
                     Logged::These(logged) => Some(logged.iter().map(|list| numbers(list)).collect::<Vec<_>>()),
@@ -339,7 +339,7 @@ fn motion_view(motion: &PairMotion) -> Value {
 
 fn curve_view(curve: &Curve) -> Value {
     json!({
-        "role": curve.role.key(),
+        "role": curve.role,
         "coefficients": numbers(curve.logged.coefficients()),
         "untrimmed": numbers(curve.untrimmed.coefficients()),
         "zeros": curve.zeros.iter().map(|&(real, imaginary)| [Number(real), Number(imaginary)]).collect::<Vec<_>>(),

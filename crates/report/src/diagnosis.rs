@@ -5,8 +5,8 @@ use super::{
     style::{Look, Style},
     words::{first_divergence, located},
 };
-use fosssim_grading::{located::Located, told::ToldFinding};
-use fosssim_mistakes::diagnose::Explanation;
+use fosssim_findings::{disclosure::DisclosedFinding, located::Located};
+use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -25,7 +25,7 @@ pub struct Case {
     /// What else is to be said of it, such as how its program ended, or why it can't be read.
     pub note: Option<String>,
     /// The first thing that is wrong, as far as it may be told.
-    pub first: Option<ToldFinding>,
+    pub first: Option<DisclosedFinding>,
     /// Likely mistakes, the likeliest first.
     pub explanations: Vec<Explanation>,
 }
@@ -64,7 +64,7 @@ impl Diagnosis {
         }
         let mut likely = 0;
         for common in &self.common {
-            let explained = self.cases.iter().filter(|case| common.is_named_in(&case.explanations)).count();
+            let explained = self.cases.iter().filter(|case| is_named_in(common, &case.explanations)).count();
             let most = if common.is_not_finite() {
                 "Where numbers end"
             } else {
@@ -92,7 +92,7 @@ impl Diagnosis {
 
     fn is_common(&self, explanation: &Explanation) -> bool {
         let is_said = |common: &&Explanation| !common.is_unexplained();
-        self.common.iter().filter(is_said).any(|common| common.is_named_in(std::slice::from_ref(explanation)))
+        self.common.iter().filter(is_said).any(|common| is_named_in(common, std::slice::from_ref(explanation)))
     }
 
     /// For programs.
@@ -107,13 +107,13 @@ impl Diagnosis {
                 .first
                 .as_ref()
                 .and_then(|first| match first {
-                    ToldFinding::Full(finding) => Some(finding),
-                    ToldFinding::Place { .. } => None,
+                    DisclosedFinding::Full(finding) => Some(finding),
+                    DisclosedFinding::Place { .. } => None,
                 })
                 .map(super::view::FindingView::fair),
             explanations: case.explanations.iter().map(ExplanationView::from).collect(),
         });
-        let view = View {
+        let view = DiagnosisView {
             schema: SCHEMA,
             accepted: self.accepted(),
             located: self.located.as_ref().map(located),
@@ -167,7 +167,7 @@ fn indented(explanations: &[Explanation]) -> String {
 }
 
 #[derive(Serialize)]
-struct View<'a> {
+struct DiagnosisView<'a> {
     schema: u32,
     accepted: bool,
     located: Option<String>,

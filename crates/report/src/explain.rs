@@ -1,13 +1,12 @@
 //! Explanations of mistakes: lines for people, a view for programs.
 //!
-//! They show what they are given: how much that is, [`Hints::cut`](fosssim_grading::config::Hints::cut) decides. Words
+//! They show what they are given: how much that is, [`Hints::cut`](fosssim_findings::Hints::cut) decides. Words
 //! may come from a submission only as numbers.
 use super::{
     number::{counted, exact},
-    view::Number,
     words::explanation::{details, known, place, what},
 };
-use fosssim_mistakes::diagnose::{About, Example, Explanation};
+use fosssim_mistakes::diagnose::{About, Example, ExampleValue, Explanation};
 use serde::Serialize;
 
 /// The greatest number of other mistakes listed that can't be told apart.
@@ -97,7 +96,7 @@ fn list(values: &[f64]) -> String {
     values.iter().map(|value| exact(*value)).collect::<Vec<_>>().join(", ")
 }
 
-/// An explanation in JSON.
+/// An explanation in JSON: its key and its evidence, with sentences.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ExplanationView {
     /// A stable key.
@@ -123,21 +122,21 @@ pub struct ExampleView {
     pub step: u32,
     /// Where, in words.
     pub place: String,
-    /// What went in.
-    pub given: Vec<InputView>,
-    /// What should have come out.
-    pub expected: Vec<Number>,
-    /// What did.
-    pub actual: Vec<Number>,
+    /// The inputs.
+    pub given: Vec<ExampleValue>,
+    /// The expected result.
+    #[serde(with = "fosssim_num::written")]
+    pub expected: Vec<f64>,
+    /// The actual result.
+    #[serde(with = "fosssim_num::written")]
+    pub actual: Vec<f64>,
 }
 
-/// A named input in JSON.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct InputView {
-    /// Its name.
-    pub name: String,
-    /// Its components.
-    pub value: Vec<Number>,
+impl From<&Example> for ExampleView {
+    fn from(example: &Example) -> Self {
+        let Example { step, place: at, given, expected, actual } = example.clone();
+        Self { step, place: place(&at), given, expected, actual }
+    }
 }
 
 impl From<&Explanation> for ExplanationView {
@@ -154,31 +153,15 @@ impl From<&Explanation> for ExplanationView {
     }
 }
 
-impl From<&Example> for ExampleView {
-    fn from(example: &Example) -> Self {
-        let numbers = |values: &[f64]| values.iter().copied().map(Number).collect();
-        Self {
-            step: example.step,
-            place: place(&example.place),
-            given: example
-                .given
-                .iter()
-                .map(|input| InputView { name: input.input.letter().to_owned(), value: numbers(&input.value) })
-                .collect(),
-            expected: numbers(&example.expected),
-            actual: numbers(&example.actual),
-        }
-    }
-}
-
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use fosssim_grading::config::Hints;
+    use fosssim_findings::Hints;
+    use fosssim_grading::cut;
     use fosssim_judge::Role;
     use fosssim_mistakes::{
         assignments::t2m2::{Input, Reading, Subject},
-        diagnose::{Detail, ExamplePlace, ExampleValue, OfPolynomials, PolynomialDetail, Weight, explain, formula_in},
+        diagnose::{Detail, ExamplePlace, OfPolynomials, PolynomialDetail, Weight, explain, formula_in},
         student::{self, CATALOGUE, RowKind, Student, find},
     };
     use fosssim_model::{
@@ -192,7 +175,7 @@ pub(crate) mod tests {
         let input = |input, value: &[f64]| ExampleValue { input, value: value.to_vec() };
         let pair = Pair { kind: PairKind::ParticleEdge, first: 3, second: 1 };
         let subject = Subject::EdgeOverlap;
-        let (reading, letters) = (Reading { subject, number: 0 }, vec!["i", "R^2"]);
+        let (reading, letters) = (Reading { subject, number: 0 }, vec!["i".into(), "R^2".into()]);
         let weight = Weight { reading, power: 2, letters, expected: 1.0, actual: 0.0 };
         vec![
             Explanation {
@@ -260,7 +243,7 @@ pub(crate) mod tests {
 
     #[test]
     fn hints_decide_what_is_there_to_be_shown() {
-        let told = |hints: Hints| lines(&hints.cut(explanations()));
+        let told = |hints: Hints| lines(&cut(hints, explanations()));
         assert!(told(Hints::Where).is_empty());
         let what = told(Hints::What);
         assert_eq!(what.len(), 2);
@@ -283,7 +266,7 @@ pub(crate) mod tests {
         let mut told = 0;
         for row in CATALOGUE.iter().filter(|row| row.kind == RowKind::Wrong) {
             let trace = student::trace(&scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
-            for one in Hints::What.cut(explain(&scene, &trace)) {
+            for one in cut(Hints::What, explain(&scene, &trace)) {
                 let others = one.same_as.iter().map(|key| find(key).expect("a known mistake").sentence());
                 for sentence in others.chain([what(&one)]) {
                     assert_eq!(formula_in(&sentence), None, "{}: {one:?}", row.id);

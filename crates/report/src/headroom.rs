@@ -6,7 +6,7 @@ use super::{
     table::{Align, Cell, Table},
     view::{FindingView, Number},
 };
-use fosssim_grading::headroom::{FAIR_DOUBLINGS, FAIR_ROOM, FirstFailure, Headroom, MOST_DOUBLINGS};
+use fosssim_findings::headroom::{FAIR_DOUBLINGS, FAIR_ROOM, FirstFailure, Headroom, MOST_DOUBLINGS};
 use serde::Serialize;
 
 /// The version of the JSON's shape.
@@ -71,7 +71,7 @@ fn rounded(room: f64) -> String {
 /// One JSON object, indented, with a line feed at its end.
 #[must_use]
 pub fn json(measured: &[Measured]) -> String {
-    let view = View {
+    let view = HeadroomView {
         schema: SCHEMA,
         largest_factor: 1 << MOST_DOUBLINGS,
         fair_factor: 1 << FAIR_DOUBLINGS,
@@ -83,7 +83,7 @@ pub fn json(measured: &[Measured]) -> String {
 }
 
 #[derive(Serialize)]
-struct View {
+struct HeadroomView {
     schema: u32,
     largest_factor: u64,
     fair_factor: u64,

@@ -1,7 +1,7 @@
 //! Results to bytes: text, JSON and the formats of learning platforms.
 //!
 //! Every renderer is a pure function from results to text; nothing here opens a file, reads a clock or computes a
-//! verdict. Core types are not `Serialize`: `view` owns the serialised shapes and their schema version.
+//! verdict. Values serialise themselves; `view` has the versions of their schemas.
 #![forbid(unsafe_code)]
 
 pub mod check;
@@ -17,7 +17,6 @@ pub mod problems;
 pub mod scene;
 pub mod simulate;
 pub mod style;
-pub mod suite;
 pub mod table;
 pub mod trace;
 pub mod view;

@@ -6,15 +6,16 @@ mod located;
 use crate::number::counted;
 pub use located::located;
 
-use fosssim_grading::{
-    Grade, Unfit, Verdict,
+use fosssim_findings::{
+    FindingPlace, Grade, Unfit, Verdict,
+    disclosure::{DisclosedBook, DisclosedFinding},
     result::{
         Activity, BadTrace, BuildEnd, Ended, Failure, FolderContents, KeptTrace, Limit, NotRunReason, Reached, Reason,
         SceneResult, Unusable, Wrong,
     },
-    told::{ToldBook, ToldFinding, ToldPlace},
 };
 use fosssim_judge::{FindingKind, PairWords, Unreadable, share};
+use fosssim_mistakes::together::likely_mistakes;
 
 /// The exit code of shells and loaders that did not find what they were to run.
 const NOT_FOUND: i32 = 127;
@@ -60,11 +61,11 @@ pub fn details(result: &SceneResult) -> Vec<String> {
                 .to_owned(),
         );
     }
-    if let Some(told) = &result.told {
+    if let Some(told) = &result.disclosure {
         lines.extend(told.official().first_divergence.as_ref().map(first_divergence));
         lines.extend(counts(told.official()));
         if let Some(damage) = &told.damage {
-            lines.push(format!("damaged at byte {} (frame {}): {}", damage.offset, damage.frame, damage.message));
+            lines.push(format!("damaged at byte {} (frame {}): {}", damage.offset, damage.frame, damage.what));
         }
         if told.trailing_bytes {
             lines.push("bytes follow the last record".to_owned());
@@ -97,7 +98,7 @@ pub fn unfit(grade: &Grade) -> Option<String> {
 /// told.
 fn unwritten(grade: &Grade) -> String {
     let scenes = counted(grade.scenes().count() as u64, "scene");
-    let missing = match grade.likely_mistakes().first() {
+    let missing = match likely_mistakes(grade).first() {
         Some((likely, _)) if likely.is_unfinished() => explanation::what(likely),
         _ => "Not written yet: the detection.".to_owned(),
     };
@@ -234,16 +235,16 @@ fn of_failure(failure: &Failure) -> String {
 }
 
 /// Where a trace parts from the reference, as far as it may be told.
-pub(crate) fn first_divergence(first: &ToldFinding) -> String {
+pub(crate) fn first_divergence(first: &DisclosedFinding) -> String {
     match first {
-        ToldFinding::Full(finding) => format!("first divergence: {finding}"),
-        ToldFinding::Place { step, kind, place } => {
+        DisclosedFinding::Full(finding) => format!("first divergence: {finding}"),
+        DisclosedFinding::Place { step, kind, place } => {
             let place = match place {
-                ToldPlace::Step => String::new(),
-                ToldPlace::Pair(pair) => format!(", {}", PairWords(*pair)),
-                ToldPlace::Polynomial(place) => format!(", {place}"),
-                ToldPlace::Particle(particle) => format!(", particle {particle}"),
-                ToldPlace::Objects(first, second) => format!(", objects {first} and {second}"),
+                FindingPlace::Step => String::new(),
+                FindingPlace::Pair(pair) => format!(", {}", PairWords(*pair)),
+                FindingPlace::Polynomial(place) => format!(", {place}"),
+                FindingPlace::Particle(particle) => format!(", particle {particle}"),
+                FindingPlace::Objects(first, second) => format!(", objects {first} and {second}"),
             };
             format!("first divergence: step {step}{place}: {kind}")
         }
@@ -251,7 +252,7 @@ pub(crate) fn first_divergence(first: &ToldFinding) -> String {
 }
 
 /// `12 wrong coefficients, 3 missed collisions`, when there is more than the first finding tells.
-fn counts(account: &ToldBook) -> Option<String> {
+fn counts(account: &DisclosedBook) -> Option<String> {
     let counts = &account.counts;
     // What is found in damaged records alone has no example, and says nothing about the program.
     let has_example = |kind: FindingKind| account.examples.iter().any(|example| example.kind() == kind);

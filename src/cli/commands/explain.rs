@@ -27,7 +27,8 @@ use crate::{
         Folders, Runner, SceneTask,
         config::{Hints, RunLimits},
         coverage::Coverage,
-        located::{Content, Contents, Failing, Located, Tried, locate},
+        cut,
+        located::{ContentIndex, Contents, Failing, Located, Tried, locate},
         plan,
     },
 };
@@ -107,7 +108,7 @@ fn case(
     let is_explained = fair.verdict != FairVerdict::Accepted && is_wrong && hints.explains();
     let explanations = if is_explained { examined.explain() } else { Vec::new() };
     let first = fair.findings.first_divergence.as_ref().and_then(|first| hints.finding(first));
-    let explanations = hints.cut(explanations);
+    let explanations = cut(hints, explanations);
     let draws = arguments.format == ExplainFormat::Html && !accepted;
     let card = draws.then(|| {
         pages::card(&Source {
@@ -201,8 +202,10 @@ fn located(tasks: &[SceneTask], ends: &[(Option<Failing>, u32)]) -> Option<Locat
     if ends.iter().all(|(failing, _)| failing.is_none()) {
         return None;
     }
-    let contents: Vec<Contents> =
-        tasks.iter().map(|task| Coverage::of(&task.scene).map(|seen| Content::of(&seen)).unwrap_or_default()).collect();
+    let contents: Vec<Contents> = tasks
+        .iter()
+        .map(|task| Coverage::of(&task.scene).map(|seen| ContentIndex::of(&seen)).unwrap_or_default())
+        .collect();
     let tried = tasks.iter().zip(&contents).zip(ends);
     let tried =
         tried.map(|((task, contents), &(failing, steps))| Tried { scene: &task.name, failing, steps, contents });

@@ -22,6 +22,7 @@ mod shell;
 mod simulate;
 mod submissions;
 mod suite;
+mod suite_report;
 mod trace;
 mod traces;
 

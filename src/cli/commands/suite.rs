@@ -1,5 +1,8 @@
 //! `suite`: writes, checks and explains suites.
-use super::scene;
+use super::{
+    scene,
+    suite_report::{Contents, Undecided, list, list_json, text},
+};
 use crate::{
     cli::{
         console, exit,
@@ -8,7 +11,6 @@ use crate::{
         values::TextOrJson,
     },
     judge::fair::borderline,
-    report::suite::{Contents, Undecided, list, list_json, text},
     suite::{config, coverage::Coverage, plan},
 };
 use anyhow::{Context, Result};

@@ -19,11 +19,12 @@ use crate::{
         cards::{Cards, Judged},
         conclude, guarded,
         plan::Plan,
-        result::Failure,
+        result::{Failure, Measurements},
         score,
     },
 };
 use anyhow::{Context, Result, bail};
+use fosssim_mistakes::together::settle;
 use rayon::prelude::*;
 use std::{
     ffi::OsStr,
@@ -116,7 +117,7 @@ fn grade(plan: &Plan, folder: &Path, submission: String, pages: Option<&Pages>) 
         refuted,
         located: None,
     };
-    grade.settle();
+    settle(&mut grade);
     grade
 }
 
@@ -161,7 +162,7 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) 
         Look::NotFinite => diagnose::not_finite(&examined.trace),
         Look::Mistakes => examined.explain(),
     });
-    let mut result = SceneResult { ended: None, memory: None, ..explained };
+    let mut result = SceneResult { ended: None, measured: Measurements::default(), ..explained };
     if let Some(pages) = pages
         && !(result.verdict.is_accepted() && result.differs.is_none())
     {

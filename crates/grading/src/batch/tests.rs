@@ -1,12 +1,12 @@
 use super::*;
 use crate::{
     cast::{SMALL_TRACE, Stage, right_trace, small_plan},
+    disclosure::DisclosedFinding,
     grader::Options,
     located::Failing,
     plan::{self, Plan},
     result::{Activity, BadTrace, Failure, KeptTrace, NotRunReason, Reason, Wrong},
     results::FolderResults,
-    told::ToldFinding,
     verdict::Verdict,
 };
 use fosssim_judge::{FindingDetail, Rules, fair::Cause};
@@ -15,9 +15,9 @@ use std::{path::Path, time::Duration};
 
 /// Step and particle of a wrong position that is the first divergence.
 fn first_divergence(result: &SceneResult) -> (u32, usize) {
-    let told = result.told.as_ref().expect("full hints");
+    let told = result.disclosure.as_ref().expect("full hints");
     match &told.official().first_divergence {
-        Some(ToldFinding::Full(finding)) => match finding.detail {
+        Some(DisclosedFinding::Full(finding)) => match finding.detail {
             FindingDetail::Position { particle, .. } => (finding.step, particle),
             other => panic!("{other:?}"),
         },
@@ -235,11 +235,7 @@ fn a_program_that_crashes_in_the_failsafe_is_told_so() {
     let crashed: Vec<_> = grade.scenes().filter(|scene| scene.verdict == Verdict::RuntimeError).collect();
     let others = grade.scenes().count() - crashed.len();
     assert_eq!((located.failed, located.with, located.without), (crashed.len(), crashed.len(), others), "{located:?}");
-    assert_eq!(
-        (located.failing, located.contents[0].family),
-        (Failing::Crash, 4),
-        "the failsafe moves a zone: {located:?}"
-    );
+    assert_eq!((located.failing, located.contents[0].family.as_ref()), (Failing::Crash, "the failsafe moves a zone"));
     let Reason::Program(reached) = crashed[0].reason else { panic!("{:?}", crashed[0].reason) };
     assert_eq!((&located.first, located.step), (&crashed[0].scene, reached.steps));
     let silent = stage.grade_by(&suite("where"), &["crashes-in-the-failsafe"]).remove(0);

@@ -3,6 +3,7 @@ use crate::{
     batch::{Event, GradeFault},
     cast::{Stage, small_plan},
     grade::Grade,
+    result::Measurements,
     results::{FolderResults, MemoryResults},
 };
 
@@ -22,7 +23,10 @@ fn grade(
 
 /// What a grade says, but for whether its results were found and how long judging took.
 fn says(grade: &Grade) -> (Verdict, Option<f64>, Vec<SceneResult>) {
-    let timeless = |result: &SceneResult| SceneResult { judging: Duration::ZERO, ..result.clone() };
+    let timeless = |result: &SceneResult| SceneResult {
+        measured: Measurements { judging: Duration::ZERO, ..result.measured },
+        ..result.clone()
+    };
     (grade.verdict, grade.points, grade.scenes().map(|scene| timeless(&scene.result)).collect())
 }
 

@@ -2,7 +2,8 @@
 //!
 //! It simulates and certifies, no more; a trace is not needed. Collision handling `simple` decides without polynomials
 //! and is not looked at.
-use super::{contact, formulas::BoundedPairMotion, step_judgement::Borderline};
+use super::{contact, formulas::BoundedPairMotion};
+use fosssim_findings::fair::Borderline;
 use fosssim_model::{
     scene::Scene,
     sim::{Decision, Detection, Observer, Pass, RootSearch, Simulation, Stage, StepError},

@@ -1,12 +1,12 @@
 //! The fair verdict on one trace.
 use super::{
     factors::{Factors, Scales},
-    pending::{Form, Pending},
-    step_judgement::{Borderline, Shares, StepJudgement},
+    pending::Pending,
+    step_judgement::StepJudgement,
 };
-use crate::{
-    book_findings::BookFindings,
-    finding::{Finding, FindingDetail, FindingKind},
+use fosssim_findings::{
+    Finding, FindingDetail, FindingKind, Outcome,
+    fair::{FairRefusal, FairVerdict, Form, Judgement},
 };
 use fosssim_model::sim::{ByKind, PairKind};
 
@@ -16,54 +16,12 @@ const EXAMPLES: usize = 8;
 /// So few decisions, though they may be most of a trace's, can be all that a small scene has.
 const FEW: u64 = 64;
 
-/// The verdict of the fair rules.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum FairVerdict {
-    /// Nothing is wrong.
-    Accepted,
-    /// Something is.
-    Rejected,
-    /// Judging was cut short before its end, and nothing was wrong so far.
-    #[default]
-    None,
-}
-
-/// Why a trace is refused as a whole.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FairRefusal {
-    /// It can't be read to its end, or a step of its states has no result.
-    Stopped,
-    /// It can be read only as the original reads damaged files.
-    Damaged,
-    /// Bytes follow the last record.
-    TrailingBytes,
-    /// Most of its decisions are such that round-off may flip them, and differ from the reference's: it shows nothing.
-    Undecided,
-}
-
-/// Everything that the fair rules say about a trace.
-#[derive(Debug, Clone, Default)]
-pub struct Judgement {
-    /// The verdict.
-    pub verdict: FairVerdict,
-    /// Why the trace is refused as a whole, whatever its steps hold.
-    pub refusal: Option<FairRefusal>,
-    /// What was found.
-    pub findings: BookFindings,
-    /// How many decisions about pairs the trace holds, in all steps and passes.
-    pub decisions: u64,
-    /// How many borderline decisions the trace has the other way.
-    pub borderline: u64,
-    /// The first ones.
-    pub borderline_examples: Vec<Borderline>,
+/// What the fair rules say about a trace, as far as it is judged, and what hangs on the rest of it.
+#[derive(Debug, Default)]
+pub(crate) struct Judging {
+    said: Judgement,
     /// The factors of polynomials.
-    pub scales: Scales,
-    /// The form of the approach polynomial.
-    pub form: Form,
-    /// Polynomials that have lost other coefficients as too small than the reference's.
-    pub lost: u64,
-    /// Used shares of the tolerances.
-    pub shares: Shares,
+    scales: Scales,
     /// The factors that single coefficients claim.
     claimed: Scales,
     /// How many polynomials are the reference's bit for bit; approaches, which say nothing of objects at rest, count
@@ -81,19 +39,11 @@ struct PendingOfStep {
     is_wrong: bool,
 }
 
-impl Judgement {
-    /// The factor of all polynomials of all kinds as an interval, where it is not 1.
-    #[must_use]
-    pub fn scale(&self) -> Option<[f64; 2]> {
-        let all = self.scales.values().flatten().filter_map(Factors::range);
-        let range = all.reduce(|[low, high], [l, h]| [low.min(l), high.max(h)])?;
-        (range.iter().any(|factor| (factor - 1.0).abs() > 1e-9)).then_some(range)
-    }
-
+impl Judging {
     /// Adds what the initial record says.
     pub(crate) fn add_initial(&mut self, initial: &StepJudgement) {
         self.add(initial);
-        self.findings.wrong_steps = 0;
+        self.said.findings.wrong_steps = 0;
     }
 
     /// Adds a step, in the order of the steps.
@@ -101,25 +51,25 @@ impl Judgement {
         for finding in &step.findings {
             self.charge(*finding);
         }
-        self.findings.counts += step.more;
-        self.decisions += step.decisions;
-        self.borderline += step.borderline.len() as u64;
-        let room = EXAMPLES.saturating_sub(self.borderline_examples.len());
-        self.borderline_examples.extend(step.borderline.iter().take(room));
+        self.said.findings.counts += step.more;
+        self.said.decisions += step.decisions;
+        self.said.borderline += step.borderline.len() as u64;
+        let room = EXAMPLES.saturating_sub(self.said.borderline_examples.len());
+        self.said.borderline_examples.extend(step.borderline.iter().take(room));
         for (all, new) in self.scales.values_mut().flatten().zip(step.scales.values().flatten()) {
             all.add(new);
         }
-        self.lost += step.lost;
+        self.said.lost += step.lost;
         if step.endless {
-            self.refusal = Some(FairRefusal::Stopped);
+            self.said.refusal = Some(FairRefusal::Stopped);
         }
-        self.shares.widen(&step.shares);
+        self.said.shares.widen(&step.shares);
         let mut is_wrong = !step.findings.is_empty() || step.endless;
         for (form, place) in [(Form::Course, step.course_form), (Form::Right, step.right_form)] {
             let Some(place) = place else { continue };
-            if self.form == Form::Either {
-                self.form = form;
-            } else if self.form != form {
+            if self.said.form == Form::Either {
+                self.said.form = form;
+            } else if self.said.form != form {
                 is_wrong = true;
                 self.charge(Finding {
                     step: step.step,
@@ -128,7 +78,7 @@ impl Judgement {
                 });
             }
         }
-        self.findings.wrong_steps += u64::from(is_wrong);
+        self.said.findings.wrong_steps += u64::from(is_wrong);
         for (kind, &calls) in step.same.iter() {
             let approach = kind.polynomials() - 1;
             for (number, same) in self.same[kind].iter_mut().enumerate() {
@@ -142,7 +92,7 @@ impl Judgement {
         // What fits already is settled, and so is what counts in the other form only.
         let hangs = |pending: &&Pending| {
             let (kind, number) = pending.place;
-            let is_of_other_form = self.form != Form::Either && !pending.is_of(self.form);
+            let is_of_other_form = self.said.form != Form::Either && !pending.is_of(self.said.form);
             // A claim does not vouch for itself as long as others may come.
             let is_told = self.scales[kind][number].range().is_some() || self.same[kind][number] > 0;
             !is_of_other_form && (!is_told || self.finding(pending).is_some())
@@ -165,8 +115,8 @@ impl Judgement {
 
     /// Adds a finding.
     pub(crate) fn charge(&mut self, finding: Finding) {
-        self.findings.counts.add(finding.kind(), 1);
-        self.findings.keep_first(&finding);
+        self.said.findings.counts.add(finding.kind(), 1);
+        self.said.findings.keep_first(&finding);
     }
 
     /// Charges what is no round-off with the factors that are usual for polynomials of the same kind, in the form that
@@ -175,47 +125,61 @@ impl Judgement {
         let all = std::mem::take(&mut self.pending);
         let fails =
             |form| all.iter().any(|step| step.polynomials.is_of(form) && self.finding(&step.polynomials).is_some());
-        if self.form == Form::Either && fails(Form::Course) {
+        if self.said.form == Form::Either && fails(Form::Course) {
             // What is gone may tell the form all the same: that in which nothing is gone that counts.
-            self.form = if fails(Form::Right) { Form::Course } else { Form::Right };
+            self.said.form = if fails(Form::Right) { Form::Course } else { Form::Right };
         }
-        let (form, mut last_wrong) = (self.form, 0);
+        let (form, mut last_wrong) = (self.said.form, 0);
         for PendingOfStep { polynomials, is_wrong } in all.iter().filter(|step| step.polynomials.is_of(form)) {
             let Some(finding) = self.finding(polynomials) else { continue };
             // Steps come in their order, so the polynomials of one stand together.
-            self.findings.wrong_steps += u64::from(!is_wrong && finding.step != last_wrong);
+            self.said.findings.wrong_steps += u64::from(!is_wrong && finding.step != last_wrong);
             last_wrong = finding.step;
             // In a step polynomials come before what they decide.
-            if self.findings.first_divergence.is_some_and(|first| follows(&first, &finding)) {
-                self.findings.first_divergence = None;
+            if self.said.findings.first_divergence.is_some_and(|first| follows(&first, &finding)) {
+                self.said.findings.first_divergence = None;
             }
-            if let Some(place) = self.findings.examples.iter().position(|known| known.kind() == finding.kind())
-                && self.findings.examples[place].step > finding.step
+            if let Some(place) = self.said.findings.examples.iter().position(|known| known.kind() == finding.kind())
+                && self.said.findings.examples[place].step > finding.step
             {
-                self.findings.examples.remove(place);
+                self.said.findings.examples.remove(place);
             }
             self.charge(finding);
-            self.findings.counts.add(finding.kind(), polynomials.count - 1);
+            self.said.findings.counts.add(finding.kind(), polynomials.count - 1);
         }
     }
 
     /// Whether most decisions are borderline and not the reference's: some are in every correct program, most in none.
     fn is_undecided(&self) -> bool {
-        self.borderline >= FEW && self.borderline > self.decisions / 2
+        self.said.borderline >= FEW && self.said.borderline > self.said.decisions / 2
     }
 
     /// Draws the verdict.
-    pub(crate) fn conclude(&mut self, refusal: Option<FairRefusal>, complete: bool) {
-        self.refusal = self.refusal.or(refusal).or(self.is_undecided().then_some(FairRefusal::Undecided));
+    pub(crate) fn conclude(mut self, outcome: &Outcome) -> Judgement {
+        let refusal = if outcome.stop.is_some() {
+            Some(FairRefusal::Stopped)
+        } else if outcome.damage.is_some() {
+            Some(FairRefusal::Damaged)
+        } else if outcome.trailing_bytes {
+            Some(FairRefusal::TrailingBytes)
+        } else {
+            self.is_undecided().then_some(FairRefusal::Undecided)
+        };
+        self.said.refusal = self.said.refusal.or(refusal);
         self.settle_pending();
-        self.findings.conclude();
-        self.verdict = if self.refusal.is_some() || self.findings.counts.total() > 0 {
+        let factors = self.scales.values().flatten().filter_map(Factors::range);
+        let factor = factors.reduce(|[low, high], [l, h]| [low.min(l), high.max(h)]);
+        let mut said = self.said;
+        said.factor = factor.filter(|range| range.iter().any(|factor| (factor - 1.0).abs() > 1e-9));
+        said.findings.conclude();
+        said.verdict = if said.refusal.is_some() || said.findings.counts.total() > 0 {
             FairVerdict::Rejected
-        } else if complete {
+        } else if outcome.steps_judged == outcome.steps {
             FairVerdict::Accepted
         } else {
             FairVerdict::None
         };
+        said
     }
 }
 

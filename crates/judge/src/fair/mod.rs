@@ -51,12 +51,14 @@ mod step;
 mod step_judgement;
 
 pub use borderline::borderline;
-pub use cause::{Cause, cause};
+pub use cause::cause;
 pub use contact::decides;
 pub(super) use context::{Context, Records};
-pub use judgement::{FairRefusal, FairVerdict, Judgement};
-pub use pending::Form;
+pub use fosssim_findings::{
+    Cause,
+    fair::{Borderline, FairRefusal, FairVerdict, Form, Judgement, Shares},
+};
+pub(super) use judgement::Judging;
 pub(super) use reach::Reach;
 pub(super) use step::{judge, judge_initial};
 pub(super) use step_judgement::StepJudgement;
-pub use step_judgement::{Borderline, Shares};

@@ -1,18 +1,6 @@
 //! Polynomials that are right with some factors only, or in one of two forms only.
-use crate::finding::Finding;
+use fosssim_findings::{Finding, fair::Form};
 use fosssim_model::sim::PairKind;
-
-/// Which of the two accepted forms of the particle-edge approach polynomial a trace uses.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Form {
-    /// Nothing tells them apart.
-    #[default]
-    Either,
-    /// The course's formula, with its slip in t^3.
-    Course,
-    /// What the definition gives.
-    Right,
-}
 
 /// The factors of a polynomial that none makes right: it is so in the other form only.
 pub(super) const NONE: [f64; 2] = [f64::INFINITY, 0.0];

@@ -3,10 +3,11 @@
 use super::{
     compare::{Match, Mismatch, claimed_factors, compare, compare_with_one, fits_with_no_factor, possible_factors},
     formulas::Expected,
-    pending::{Form, NONE, Pending},
+    pending::{NONE, Pending},
     step_judgement::StepJudgement,
 };
 use crate::finding::{Finding, FindingDetail, PolynomialPlace};
+use fosssim_findings::fair::Form;
 use fosssim_model::sim::PairKind;
 use fosssim_num::{
     bounded::Bounded,

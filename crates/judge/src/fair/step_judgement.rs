@@ -4,47 +4,11 @@ use super::{
     factors::Scales,
     pending::Pending,
 };
-use crate::{
-    counts::FindingCounts,
-    finding::{Finding, FindingDetail, FindingKind, PolynomialPlace},
+use fosssim_findings::{
+    Finding, FindingCounts, FindingDetail, FindingKind, PolynomialPlace,
+    fair::{Borderline, Shares},
 };
 use fosssim_model::sim::{ByKind, Pair, PairKind, Pass};
-
-/// A decision that round-off may flip, and that the trace has the other way.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Borderline {
-    /// The step, from 1.
-    pub step: u32,
-    /// The detection pass.
-    pub pass: Pass,
-    /// The pair.
-    pub pair: Pair,
-    /// Whether the trace takes it for a collision.
-    pub collides: bool,
-}
-
-/// The largest shares of their tolerances that were used by what is right, 0 to 1; 0 where nothing differed.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Shares {
-    /// Polynomial coefficients.
-    pub coefficient: f64,
-    /// Contact normals.
-    pub normal: f64,
-    /// Positions.
-    pub position: f64,
-    /// Velocities.
-    pub velocity: f64,
-}
-
-impl Shares {
-    /// The larger one of each.
-    pub(super) fn widen(&mut self, other: &Self) {
-        self.coefficient = self.coefficient.max(other.coefficient);
-        self.normal = self.normal.max(other.normal);
-        self.position = self.position.max(other.position);
-        self.velocity = self.velocity.max(other.velocity);
-    }
-}
 
 /// What judging one step yields.
 #[derive(Debug, Clone, Default)]

@@ -445,7 +445,6 @@ pub fn multiply(stage: &Stage, random: &mut Random) -> Option<String> {
     let counts = &judged.findings.counts;
     let lost = counts.get(FindingKind::TrimmedDecision);
     let gone = counts.get(FindingKind::Coefficient);
-    let tells_none = judged.scales.values().flatten().any(|factors| factors.range().is_none());
     // So large numbers overflow in the course's root finder, which decides otherwise then.
     let largest =
         frames.iter().flat_map(|frame| frame.polynomials.iter().flatten()).fold(0.0_f64, |most, c| most.max(c.abs()));
@@ -454,7 +453,7 @@ pub fn multiply(stage: &Stage, random: &mut Random) -> Option<String> {
     }
     // Who misses a collision may end where two balls are one.
     let beyond = counts.get(FindingKind::Position).min(lost);
-    let is_explained = lost + gone + beyond == counts.total() && (gone == 0 || tells_none);
+    let is_explained = lost + gone + beyond == counts.total();
     let is_documented = judged.refusal.is_none() && is_explained;
     (judged.verdict != FairVerdict::Accepted && !is_documented).then(|| {
         let first = judged.findings.first_divergence.map(|first| first.to_string());

@@ -94,7 +94,7 @@ fn reason(fair: &Judgement) -> String {
             .collect();
         parts.push(format!("{first} [{}; {} steps]", kinds.join(", "), fair.findings.wrong_steps));
     }
-    if let Some([low, high]) = fair.scale() {
+    if let Some([low, high]) = fair.factor {
         parts.push(format!("factor {low:.3e}..{high:.3e}"));
     }
     if fair.borderline > 0 {

@@ -3,6 +3,7 @@ use super::{
     Detail, Explanation,
     about::About,
     known::{Known, is_empty_stage, known_or_open},
+    naming::is_in_other_words,
     not_finite, polynomial,
     sampling::{KeptStep, Sampled, Source, sampled},
     stages,
@@ -100,8 +101,9 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     }
     // Where another mistake keeps it from explaining whole steps, it may still explain all polynomials.
     known.retain(|one| {
-        let is_told =
-            |other: &Explanation| other.is_complete() && find(&one.key).is_some_and(|row| other.is_in_other_words(row));
+        let is_told = |other: &Explanation| {
+            other.is_complete() && find(&one.key).is_some_and(|row| is_in_other_words(other, row))
+        };
         one.is_complete() || !polynomials.iter().any(is_told)
     });
     let stage = open.and_then(|scan| {

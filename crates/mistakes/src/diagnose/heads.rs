@@ -9,6 +9,7 @@ use super::{
     explain::is_formula,
     fault::StepStage,
     known::{is_empty_stage, shows},
+    naming::{bears_out, bears_out_wholly, is_in_other_words, is_named_in},
 };
 use crate::{
     assignments::t2m2::Subject,
@@ -53,9 +54,9 @@ fn united(told: &Explanation, traces: &[&[Explanation]]) -> Explanation {
     let mut told = told.clone();
     let said = told.said();
     // Of what speaks against it, nothing is reproduced.
-    let against = traces.iter().filter(|list| list.iter().all(|one| !one.bears_out(&said, Some(&told))));
+    let against = traces.iter().filter(|list| list.iter().all(|one| !bears_out(one, &said, Some(&told))));
     let missed: u64 =
-        against.flat_map(|list| list.iter()).filter(|one| one.speaks_against(&told)).map(|one| one.samples).sum();
+        against.flat_map(|list| list.iter()).filter(|one| speaks_against(one, &told)).map(|one| one.samples).sum();
     told.samples += missed;
     if let About::Polynomials { subjects, .. } = &mut told.about {
         for other in traces.iter().copied().flatten().filter(|other| other.said() == said) {
@@ -112,12 +113,12 @@ fn votes<'a>(traces: &[&'a [Explanation]]) -> BTreeMap<String, Vote<'a>> {
         for list in traces {
             let is_kin = |told: &Explanation| list.iter().any(|one| one.is_of_stage() && one.key == told.key);
             vote.kin += usize::from(vote.told.is_some_and(|told| told.is_of_stage() && is_kin(told)));
-            let mut named = list.iter().enumerate().filter(|(_, one)| one.bears_out(said, vote.told));
+            let mut named = list.iter().enumerate().filter(|(_, one)| bears_out(one, said, vote.told));
             if let Some((place, one)) = named.next() {
                 vote.traces += 1;
-                vote.complete += usize::from(one.bears_out_wholly(said, vote.told));
+                vote.complete += usize::from(bears_out_wholly(one, said, vote.told));
                 vote.first += usize::from(place == 0 && one.said() == *said);
-            } else if vote.told.is_some_and(|told| list.iter().any(|one| one.speaks_against(told))) {
+            } else if vote.told.is_some_and(|told| list.iter().any(|one| speaks_against(one, told))) {
                 vote.against += 1;
             }
         }
@@ -125,39 +126,16 @@ fn votes<'a>(traces: &[&'a [Explanation]]) -> BTreeMap<String, Vote<'a>> {
     votes
 }
 
-impl Explanation {
-    /// Whether it says something of the program that other traces may say, too.
-    fn is_vote(&self) -> bool {
-        let is_nothing = matches!(
-            self.about,
-            About::Scene { .. }
-                | About::NotFinite(_)
-                | About::Polynomials { found: OfPolynomials::Nothing | OfPolynomials::NearlyRight, .. }
-        );
-        !is_nothing
-    }
-
-    /// Whether it explains all that it is about, as far as that can be.
-    fn is_settled(&self) -> bool {
-        self.is_complete() || self.is_of_stage()
-    }
-
-    /// Whether it speaks for what is said with all that it is about.
-    fn bears_out_wholly(&self, said: &str, told: Option<&Self>) -> bool {
-        self.is_made_by(said, told) || (self.is_settled() && self.bears_out(said, told))
-    }
-
-    /// Whether a trace's explanation, which does not bear it out, speaks against what is told of polynomials: the same
-    /// ones are wrong.
-    fn speaks_against(&self, told: &Self) -> bool {
-        let is_of_formula = match &told.about {
-            About::Polynomials { found, .. } => matches!(found, OfPolynomials::Guess(_)),
-            About::Mistake => find(&told.key).is_some_and(|row| row.kind_of_pair().is_some() && is_formula(row.area)),
-            _ => false,
-        };
-        let subjects = told.subjects();
-        is_of_formula && self.subjects().iter().any(|subject| subjects.contains(subject))
-    }
+/// Whether a trace's explanation, which does not bear it out, speaks against what is told of polynomials: the same
+/// ones are wrong.
+fn speaks_against(one: &Explanation, told: &Explanation) -> bool {
+    let is_of_formula = match &told.about {
+        About::Polynomials { found, .. } => matches!(found, OfPolynomials::Guess(_)),
+        About::Mistake => find(&told.key).is_some_and(|row| row.kind_of_pair().is_some() && is_formula(row.area)),
+        _ => false,
+    };
+    let subjects = told.subjects();
+    is_of_formula && one.subjects().iter().any(|subject| subjects.contains(subject))
 }
 
 /// The likely mistakes of a program that left several traces, at most three: greedily, each the one that explains most
@@ -178,7 +156,7 @@ pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted:
             let key = keys.next()?.clone();
             let same_as = keys.cloned().collect();
             if let Some(row) =
-                named.iter().find(|row| explanation.is_in_other_words(row) && !is_refuted(&row.id.to_owned()))
+                named.iter().find(|row| is_in_other_words(explanation, row) && !is_refuted(&row.id.to_owned()))
             {
                 let (key, about) = (row.id.to_owned(), About::Mistake);
                 return Some(Explanation { key, about, ..explanation.clone() });
@@ -251,7 +229,7 @@ fn wrong_polynomials(traces: &[Vec<Explanation>], found: &[Explanation]) -> Opti
         subjects.into_iter().for_each(|subject| *wrong.entry(subject).or_default() += 1);
     }
     let most = wrong.values().copied().max()?;
-    let named_in = |one: &Explanation| traces.iter().filter(|list| one.is_named_in(list)).count();
+    let named_in = |one: &Explanation| traces.iter().filter(|list| is_named_in(one, list)).count();
     let is_told = found.iter().any(|one| !one.subjects().is_empty())
         || found.first().is_some_and(|first| named_in(first) >= most);
     // What few traces show may follow from something else.
@@ -375,7 +353,7 @@ fn is_supported(open: &[Vec<Explanation>], covered: &[bool], next: &Explanation)
     let said = next.said();
     let naming = |wanted: bool| {
         let of_sort = open.iter().zip(covered).filter(|(_, covered)| **covered == wanted);
-        of_sort.filter(|(list, _)| list.iter().any(|one| one.bears_out_wholly(&said, Some(next)))).count()
+        of_sort.filter(|(list, _)| list.iter().any(|one| bears_out_wholly(one, &said, Some(next)))).count()
     };
     if next.is_of_stage() {
         return naming(false) > 1 && !next.is_vague();
@@ -385,15 +363,15 @@ fn is_supported(open: &[Vec<Explanation>], covered: &[bool], next: &Explanation)
 
 /// Whether a trace's explanations name a mistake, told or as not to be told apart, that reproduces everything.
 fn names_completely(list: &[Explanation], key: &str) -> bool {
-    list.iter().any(|one| one.is_complete() && one.bears_out(key, None))
+    list.iter().any(|one| one.is_complete() && bears_out(one, key, None))
 }
 
 /// Leaves what this doesn't explain: of a trace that it explains only what is complete besides.
 fn leave_open(open: &mut [Vec<Explanation>], covered: &mut [bool], said: &str, told: Option<&Explanation>) {
     for (list, covered) in open.iter_mut().zip(covered) {
-        if list.iter().any(|one| one.bears_out(said, told)) {
+        if list.iter().any(|one| bears_out(one, said, told)) {
             *covered = true;
-            list.retain(|one| !one.bears_out(said, told) && one.is_complete());
+            list.retain(|one| !bears_out(one, said, told) && one.is_complete());
         }
     }
 }

@@ -1,5 +1,5 @@
 //! What a trace alone says, in the light of what all traces of its program say together.
-use super::{About, Explanation};
+use super::{About, Explanation, is_named_in};
 
 /// What is to be said of one trace, once all traces of its program have been heard.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -36,7 +36,7 @@ fn agreed(own: &[Explanation], likely: &Explanation) -> Vec<Explanation> {
         // Each stage for itself: not every trace shows all of them.
         return own.iter().filter(|one| likely.same_as.contains(&one.key)).cloned().collect();
     }
-    let shown = own.iter().find(|one| likely.is_named_in(std::slice::from_ref(one)));
+    let shown = own.iter().find(|one| is_named_in(likely, std::slice::from_ref(one)));
     let as_shown = |one: &Explanation| {
         // Steps are counted for known mistakes, and polynomials for guesses about these.
         let has_same_counts = matches!(one.about, About::Mistake) == matches!(likely.about, About::Mistake);

@@ -1,7 +1,9 @@
 //! The kinds of pairs that detections look at (collisions.md 1).
+use serde::{Deserialize, Serialize};
 
 /// The kind of a pair; the numbers are those of the trace format.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum PairKind {
     /// Two particles (0).
     ParticleParticle,

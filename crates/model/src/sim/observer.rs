@@ -1,6 +1,7 @@
 //! What the simulator tells while it computes: every detection call, pass, impulse and zone.
 use super::{pair::Pair, polynomial_bytes::PolynomialBytes, state::State};
 use fosssim_num::{polynomial::Polynomial, vector::Vec2};
+use serde::{Deserialize, Serialize};
 
 /// Hears what happens inside a step. Every method does nothing by default.
 ///
@@ -180,7 +181,8 @@ pub enum Resume {
 }
 
 /// One detection pass over all pairs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(from = "PassForm", into = "PassForm")]
 pub struct Pass {
     /// Which part of the handling asks.
     pub stage: Stage,
@@ -205,6 +207,47 @@ pub enum Stage {
         /// The round.
         round: u32,
     },
+}
+
+/// A pass in its serialised form: the round is 0 in stages that have one pass.
+#[derive(Serialize, Deserialize)]
+struct PassForm {
+    index: u32,
+    stage: StageName,
+    round: u32,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum StageName {
+    Simple,
+    ContinuousTime,
+    Impulses,
+    Geometric,
+}
+
+impl From<Pass> for PassForm {
+    fn from(Pass { stage, index }: Pass) -> Self {
+        let (stage, round) = match stage {
+            Stage::Simple => (StageName::Simple, 0),
+            Stage::ContinuousTime => (StageName::ContinuousTime, 0),
+            Stage::Impulses { round } => (StageName::Impulses, round),
+            Stage::Geometric { round } => (StageName::Geometric, round),
+        };
+        Self { index, stage, round }
+    }
+}
+
+impl From<PassForm> for Pass {
+    fn from(PassForm { index, stage, round }: PassForm) -> Self {
+        let stage = match stage {
+            StageName::Simple => Stage::Simple,
+            StageName::ContinuousTime => Stage::ContinuousTime,
+            StageName::Impulses => Stage::Impulses { round },
+            StageName::Geometric => Stage::Geometric { round },
+        };
+        Self { stage, index }
+    }
 }
 
 /// What one detection call saw and decided.
@@ -251,13 +294,15 @@ pub enum Time {
 }
 
 /// An applied response; in `simple` and `continuous-time` also what the trace logs.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Impulse {
     /// The pair.
     pub pair: Pair,
     /// Contact normal, not normalised.
+    #[serde(with = "fosssim_num::written")]
     pub normal: Vec2,
     /// Time of impact as a fraction of the step.
+    #[serde(with = "fosssim_num::written")]
     pub time: f64,
 }
 

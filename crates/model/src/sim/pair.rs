@@ -1,9 +1,10 @@
 //! A pair of objects that detection looks at, and values for each kind of pair.
 pub use crate::assignments::PairKind;
+use serde::{Deserialize, Serialize};
 use std::ops::{Index, IndexMut};
 
 /// Two objects that detection looks at: a particle, and a particle, edge or half-plane.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Pair {
     /// What the second object is.
     pub kind: PairKind,

@@ -1,4 +1,5 @@
 //! Root searches: whether they may be left out, and how many there were.
+use serde::Serialize;
 
 /// Whether a certificate may stand in for a root search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -13,7 +14,7 @@ pub enum RootSearch {
 }
 
 /// Counts of the root searches so far.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct SearchCounts {
     /// Detection calls.
     pub calls: u64,
@@ -24,6 +25,7 @@ pub struct SearchCounts {
     /// Audit only: a certificate excluded an impact that the root finder found. Must stay zero.
     pub disagreements: u64,
     /// Steps of root searches ([`Zeros::steps`](fosssim_num::rpoly::Zeros::steps)).
+    #[serde(skip)]
     pub steps: u64,
     /// The additional work of passes over subnormal numbers, beyond the counted one.
     pub subnormal: u64,

@@ -67,7 +67,7 @@ fn finish(digest: Sha256) -> Sha {
 /// 1 0b5ed3c9a2f7b1aa
 /// 288 bytes, 3 records, sha256 ...
 /// ```
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Digests {
     /// Digest of each step's records, the initial record as step 0. An incomplete step has none.
     pub steps: Vec<Short>,

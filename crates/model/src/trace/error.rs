@@ -2,10 +2,11 @@
 //!
 //! One type for all readers: the strict [`Reader`](super::Reader) stops at it, the [`Lenient`](super::Lenient) one
 //! notes it and goes on as the original does.
-use std::{fmt, io};
+use serde::{Deserialize, Serialize};
+use std::{borrow::Cow, fmt, io};
 
 /// Something wrong with a trace, and its place.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("byte {offset}, {}: {what}", RecordName(*.frame, *.step))]
 pub struct TraceError {
     /// Byte offset from the beginning of the trace: where the value begins that is wrong or not there.
@@ -31,7 +32,7 @@ impl fmt::Display for RecordName {
 }
 
 /// One of the two lists of a record.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum List {
     /// The impulse list.
     Impulses,
@@ -60,7 +61,7 @@ impl fmt::Display for List {
 }
 
 /// The ways in which a trace can be malformed (trace-format.md 1, 2).
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, thiserror::Error)]
 pub enum Malformation {
     /// No byte at all.
     #[error("the trace is empty; was the program started with -o, and did it run?")]
@@ -166,7 +167,7 @@ pub enum Malformation {
         /// Number of the impulse in the list, from 0.
         impulse: u64,
         /// The kind of object that it names: `particle`, `edge` or `half-plane`.
-        object: &'static str,
+        object: Cow<'static, str>,
         /// The index.
         index: i32,
         /// How many of them there are.
@@ -190,14 +191,42 @@ pub enum Malformation {
         /// The limit in bytes.
         limit: u64,
     },
+    /// A number that is not finite, in a state that leads nowhere.
+    #[error("{quantity} of particle {particle} is {value}")]
+    NotFinite {
+        /// The coordinate: `x`, `y`, `velocity x` or `velocity y`.
+        quantity: Cow<'static, str>,
+        /// The particle.
+        particle: usize,
+        /// The number.
+        #[serde(with = "fosssim_num::written")]
+        value: f64,
+    },
+    /// A record that is as long as it should be, and longer than what is kept of one.
+    #[error(
+        "the record has {logged} polynomials, as many as it should have, but this program compares the first {kept} of \
+         a record of this scene only"
+    )]
+    BeyondKept {
+        /// The number of polynomials in the record.
+        logged: usize,
+        /// The number of those that were kept.
+        kept: usize,
+    },
     /// The stream reported an error.
     #[error("reading failed: {message}")]
     Io {
         /// The kind of the error.
+        #[serde(skip, default = "other")]
         kind: io::ErrorKind,
         /// Its text.
         message: String,
     },
+}
+
+/// The kind of an error that was kept: its text says the rest.
+const fn other() -> io::ErrorKind {
+    io::ErrorKind::Other
 }
 
 #[cfg(test)]

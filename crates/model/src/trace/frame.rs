@@ -1,7 +1,8 @@
 //! One record in memory.
 use crate::sim::{Impulse, Pair, PairKind, State};
 use fosssim_num::vector::Vec2;
-use std::fmt;
+use serde::{Deserialize, Serialize};
+use std::{borrow::Cow, fmt};
 
 /// A frame: one saved state with its logs. Buffers are reused from record to record.
 #[derive(Debug, Clone, Default)]
@@ -15,7 +16,8 @@ pub struct Frame {
 }
 
 /// An impulse as a trace holds it: nothing about it is checked.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "ImpulseForm", into = "ImpulseForm")]
 pub struct LoggedImpulse {
     /// 0 particle-particle, 1 particle-edge, 2 particle-half-plane; anything else in a damaged trace.
     pub kind: i32,
@@ -27,6 +29,59 @@ pub struct LoggedImpulse {
     pub normal: Vec2,
     /// Time of impact as a fraction of the step.
     pub time: f64,
+}
+
+/// The objects that a logged impulse names.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ImpulsePair {
+    /// The name of the kind; `unknown` in a damaged trace.
+    kind: Cow<'static, str>,
+    /// The number in place of an unknown kind.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    code: Option<i32>,
+    first: i64,
+    second: i64,
+}
+
+/// A logged impulse in its serialised form, which is that of an [`Impulse`].
+#[derive(Serialize, Deserialize)]
+struct ImpulseForm {
+    pair: ImpulsePair,
+    #[serde(with = "fosssim_num::written")]
+    normal: Vec2,
+    #[serde(with = "fosssim_num::written")]
+    time: f64,
+}
+
+impl From<&LoggedImpulse> for ImpulsePair {
+    fn from(impulse: &LoggedImpulse) -> Self {
+        let (kind, code) = impulse.kind().map_or(("unknown", Some(impulse.kind)), |kind| (kind.name(), None));
+        Self { kind: kind.into(), code, first: impulse.first.into(), second: impulse.second.into() }
+    }
+}
+
+impl From<Pair> for ImpulsePair {
+    fn from(Pair { kind, first, second }: Pair) -> Self {
+        Self { kind: kind.name().into(), code: None, first: first.into(), second: second.into() }
+    }
+}
+
+impl From<LoggedImpulse> for ImpulseForm {
+    fn from(impulse: LoggedImpulse) -> Self {
+        Self { pair: (&impulse).into(), normal: impulse.normal, time: impulse.time }
+    }
+}
+
+impl TryFrom<ImpulseForm> for LoggedImpulse {
+    type Error = &'static str;
+
+    fn try_from(ImpulseForm { pair, normal, time }: ImpulseForm) -> Result<Self, Self::Error> {
+        let known = PairKind::ALL.into_iter().find(|kind| kind.name() == pair.kind).map(PairKind::code);
+        let kind = known.or(pair.code).ok_or("there is no such kind of pair")?;
+        let [first, second] =
+            [pair.first, pair.second].map(|index| i32::try_from(index).map_err(|_| "an index is too large"));
+        Ok(Self { kind, first: first?, second: second?, normal, time })
+    }
 }
 
 impl LoggedImpulse {

@@ -19,6 +19,7 @@ use crate::{
     sim::State,
 };
 use fosssim_num::{polynomial::MAX_COEFFICIENTS, tolerances::LEADING_COEFFICIENT};
+use serde::{Deserialize, Serialize};
 use std::io::Read;
 
 crate::drops_leading!();
@@ -111,7 +112,7 @@ impl LenientFrame {
 }
 
 /// Why the original goes no further.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{at}")]
 pub struct ReadStop {
     /// What could not be read.
@@ -121,7 +122,7 @@ pub struct ReadStop {
 }
 
 /// Which part of a record could not be read, or why; the original has a message for each of the first two.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Unreadable {
     /// "Failed to load timestep": the bytes end before or inside positions and velocities.
     State,

@@ -26,7 +26,7 @@ pub use counts::EventCounts;
 pub use diff::{Block, Comparison, Difference, compare, difference};
 pub use digest::{Digests, Sha, Short};
 pub use error::{List, Malformation, TraceError};
-pub use frame::{Frame, LoggedImpulse, PolynomialLog};
+pub use frame::{Frame, ImpulsePair, LoggedImpulse, PolynomialLog};
 pub use histogram::Histogram;
 pub use labels::{Label, labels};
 pub use layout::Layout;

@@ -318,7 +318,7 @@ impl<R: Read> Reader<R> {
         let second = (object, impulse.second, count.unwrap_or(usize::MAX));
         [first, second].into_iter().find_map(|(object, index, count)| {
             let inside = usize::try_from(index).is_ok_and(|index| index < count);
-            let what = Malformation::IndexOutOfRange { impulse: number, object, index, count };
+            let what = Malformation::IndexOutOfRange { impulse: number, object: object.into(), index, count };
             (!inside).then_some(what)
         })
     }

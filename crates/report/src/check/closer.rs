@@ -1,7 +1,6 @@
 //! Commands that look closer at the first thing that is wrong.
-use super::{super::view::FindingView, Check, first};
-use fosssim_judge::FindingDetail;
-use fosssim_model::sim::PairKind;
+use super::{Check, first};
+use fosssim_model::sim::Pair;
 
 /// The commands, ready to be typed; none where nothing is wrong, or where the trace came from standard input and is
 /// gone.
@@ -9,21 +8,12 @@ pub(super) fn commands(check: &Check<'_>) -> Vec<String> {
     let Some(first) = first::first(check).filter(|_| check.trace != "-") else { return Vec::new() };
     let (scene, trace, step) = (quoted(check.scene), quoted(check.trace), first.step);
     let mut commands = Vec::new();
-    let view = FindingView::from(first);
-    let kind = view.pair.and_then(|pair| PairKind::ALL.into_iter().find(|kind| kind.name() == pair.kind));
-    if let (Some(pair), Some(kind), 1..) = (view.pair, kind, step) {
-        let pass = match first.detail {
-            FindingDetail::PassPositions { place }
-            | FindingDetail::TrimmedDecision { place, .. }
-            | FindingDetail::TrimmedTime { place, .. }
-            | FindingDetail::MixedForms { place } => place.pass.index,
-            _ => view.polynomial.map_or(0, |polynomial| polynomial.pass.index),
-        };
-        let pass = match pass {
+    if let (Some(Pair { kind, first: particle, second }), 1..) = (first.detail.pair(), step) {
+        let pass = match first.detail.pass().map_or(0, |pass| pass.index) {
             0 => String::new(),
             index => format!(" --pass {}", index + 1),
         };
-        let pair = format!("{}:{},{}", kind.short(), pair.first, pair.second);
+        let pair = format!("{}:{particle},{second}", kind.short());
         commands
             .push(format!("fosssim-oracle detect --scene {scene} --trace {trace} --step {step} --pair {pair}{pass}"));
     }

@@ -87,9 +87,7 @@ fn side_by_side(detail: &FindingDetail, style: Style) -> String {
         | FindingDetail::TrimmedDecision { place, .. }
         | FindingDetail::TrimmedTime { place, .. }
         | FindingDetail::MixedForms { place } => logged_by(place),
-        FindingDetail::BeyondReach { .. } | FindingDetail::RecordsDiffer { .. } | FindingDetail::ImpossibleLog => {
-            String::new()
-        }
+        _ => String::new(),
     }
 }
 

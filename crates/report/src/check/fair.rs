@@ -17,7 +17,7 @@ pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
     let (look, word) = verdict(fair);
     let mut line = |words: String| text += &format!("  {words}\n");
     line(format!("{}: {}", style.paint(look, word), summary(fair, outcome)));
-    if let Some([low, high]) = fair.scale() {
+    if let Some([low, high]) = fair.factor {
         let range = if high / low - 1.0 < 1e-9 {
             general(low)
         } else {

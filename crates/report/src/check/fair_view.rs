@@ -1,23 +1,24 @@
 //! The fair rules' part of the check report, for programs.
-use super::super::view::{FindingView, Number, PairView, PassView};
-use fosssim_judge::{
-    Outcome,
-    fair::{Borderline, Cause, FairRefusal, FairVerdict, Form, Judgement, Shares, cause},
+use super::super::view::FindingView;
+use fosssim_findings::{
+    BookFindings, Cause, Finding,
+    fair::{Borderline, FairRefusal, FairVerdict, Form, Judgement, Shares},
 };
 use serde::Serialize;
 
-/// What the fair rules say.
+/// The fair rules' judgement.
 #[derive(Debug, Serialize)]
-pub(super) struct FairView {
-    verdict: &'static str,
-    refusal: Option<&'static str>,
+pub(super) struct FairView<'a> {
+    verdict: FairVerdict,
+    refusal: Option<FairRefusal>,
     wrong_steps: u64,
     first_divergence: Option<FindingView>,
     findings: Vec<CountedView>,
-    factor: Option<[Number; 2]>,
-    approach_form: &'static str,
-    borderline: BorderlineView,
-    used_tolerance: SharesView,
+    #[serde(with = "fosssim_num::written")]
+    factor: Option<[f64; 2]>,
+    approach_form: Form,
+    borderline: BorderlineView<'a>,
+    used_tolerance: &'a Shares,
 }
 
 /// All findings of one kind: how many, and the first.
@@ -28,100 +29,44 @@ pub(super) struct CountedView {
     pub(super) first: FindingView,
 }
 
-#[derive(Debug, Serialize)]
-struct BorderlineView {
-    count: u64,
-    examples: Vec<DecisionView>,
-}
-
-/// A decision that round-off may flip.
-#[derive(Debug, Serialize)]
-struct DecisionView {
-    step: u32,
-    pass: PassView,
-    pair: PairView,
-    collides: bool,
-}
-
-#[derive(Debug, Serialize)]
-struct SharesView {
-    coefficients: Number,
-    normals: Number,
-    positions: Number,
-    velocities: Number,
-}
-
-/// Why the two rule books differ.
-#[derive(Debug, Serialize)]
-pub(super) struct CauseView {
-    key: &'static str,
-    text: String,
-}
-
-impl CauseView {
-    /// The cause, where the books differ.
-    pub(super) fn of(outcome: &Outcome) -> Option<Self> {
-        cause(outcome).map(Self::from)
+impl CountedView {
+    /// The findings of a book.
+    pub(super) fn all(found: &BookFindings, view: impl Fn(&Finding) -> FindingView) -> Vec<Self> {
+        found.examples.iter().map(|first| Self { count: found.counts.get(first.kind()), first: view(first) }).collect()
     }
+}
+
+#[derive(Debug, Serialize)]
+struct BorderlineView<'a> {
+    count: u64,
+    examples: &'a [Borderline],
+}
+
+/// The reason why the two rule books differ.
+#[derive(Debug, Serialize)]
+pub(crate) struct CauseView {
+    key: Cause,
+    text: String,
 }
 
 impl From<Cause> for CauseView {
     fn from(cause: Cause) -> Self {
-        Self { key: cause.key(), text: cause.to_string() }
+        Self { key: cause, text: cause.to_string() }
     }
 }
 
-impl From<&Judgement> for FairView {
-    fn from(fair: &Judgement) -> Self {
+impl<'a> From<&'a Judgement> for FairView<'a> {
+    fn from(fair: &'a Judgement) -> Self {
         Self {
-            verdict: match fair.verdict {
-                FairVerdict::Accepted => "accepted",
-                FairVerdict::Rejected => "rejected",
-                FairVerdict::None => "none",
-            },
-            refusal: fair.refusal.map(|refusal| match refusal {
-                FairRefusal::Stopped => "stopped",
-                FairRefusal::Damaged => "damaged",
-                FairRefusal::TrailingBytes => "trailing_bytes",
-                FairRefusal::Undecided => "undecided",
-            }),
+            verdict: fair.verdict,
+            refusal: fair.refusal,
             wrong_steps: fair.findings.wrong_steps,
             first_divergence: fair.findings.first_divergence.as_ref().map(FindingView::fair),
-            findings: fair
-                .findings
-                .examples
-                .iter()
-                .map(|first| CountedView {
-                    count: fair.findings.counts.get(first.kind()),
-                    first: FindingView::fair(first),
-                })
-                .collect(),
-            factor: fair.scale().map(|range| range.map(Number)),
-            approach_form: match fair.form {
-                Form::Either => "either",
-                Form::Course => "course",
-                Form::Right => "right",
-            },
-            borderline: BorderlineView {
-                count: fair.borderline,
-                examples: fair.borderline_examples.iter().map(DecisionView::from).collect(),
-            },
-            used_tolerance: SharesView::from(&fair.shares),
+            findings: CountedView::all(&fair.findings, FindingView::fair),
+            factor: fair.factor,
+            approach_form: fair.form,
+            borderline: BorderlineView { count: fair.borderline, examples: &fair.borderline_examples },
+            used_tolerance: &fair.shares,
         }
-    }
-}
-
-impl From<&Borderline> for DecisionView {
-    fn from(decision: &Borderline) -> Self {
-        let Borderline { step, pass, pair, collides } = *decision;
-        Self { step, pass: pass.into(), pair: pair.into(), collides }
-    }
-}
-
-impl From<&Shares> for SharesView {
-    fn from(shares: &Shares) -> Self {
-        let [coefficients, normals, positions, velocities] =
-            [shares.coefficient, shares.normal, shares.position, shares.velocity].map(Number);
-        Self { coefficients, normals, positions, velocities }
     }
 }

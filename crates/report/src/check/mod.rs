@@ -25,11 +25,14 @@ use super::{
     explain::{self, ExplanationView},
     grade::annotation,
     style::Style,
-    view::{CHECK_SCHEMA, FindingView, Number},
+    view::{CHECK_SCHEMA, FindingView},
 };
-use fair_view::{CauseView, CountedView, FairView};
-use fosssim_judge::{Book, FindingKind, Outcome, Overall, Rules, Ruling, Stop, Unreadable, fair::cause};
+pub(crate) use fair_view::CauseView;
+use fair_view::{CountedView, FairView};
+use fosssim_findings::{Book, Damage, Finding, FindingKind, Outcome, Overall, Residuals, Rules, Ruling, Stop};
+use fosssim_judge::{Unreadable, fair::cause};
 use fosssim_mistakes::diagnose::Explanation;
+use fosssim_model::sim::SearchCounts;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use steps::StepView;
@@ -58,7 +61,7 @@ pub struct Check<'a> {
 }
 
 /// The block about one finding, without colours.
-pub(crate) fn divergence_text(finding: &fosssim_judge::Finding, steps: u32) -> String {
+pub(crate) fn divergence_text(finding: &fosssim_findings::Finding, steps: u32) -> String {
     divergence::render(finding, steps, Style::Plain)
 }
 
@@ -117,43 +120,31 @@ impl Check<'_> {
         serde_json::to_string_pretty(&self.view()).unwrap_or_default() + "\n"
     }
 
-    fn view(&self) -> View<'_> {
+    fn view(&self) -> CheckView<'_> {
         let outcome = self.outcome;
-        let residuals = outcome.parity.residuals;
         let account = outcome.findings_by(self.book());
-        let finding = |finding| match self.book() {
+        let finding = |finding: &Finding| match self.book() {
             Book::Parity => FindingView::from(finding),
             Book::Fair => FindingView::fair(finding),
         };
-        View {
+        CheckView {
             schema: CHECK_SCHEMA,
             scene: self.scene,
             trace: self.trace,
-            rules: self.rules.name(),
-            official: self.book().name(),
+            rules: self.rules,
+            official: self.book(),
             verdict: self.verdict(),
             summary: text::headline(self),
             parity: Parity {
-                overall: match outcome.parity.overall {
-                    Overall::Passed => "passed",
-                    Overall::Failed => "failed",
-                    Overall::None => "none",
-                },
-                accumulated_position_residual: Number(residuals.accumulated_position),
-                accumulated_velocity_residual: Number(residuals.accumulated_velocity),
-                maximum_position_residual: Number(residuals.maximum_position),
-                maximum_velocity_residual: Number(residuals.maximum_velocity),
+                overall: outcome.parity.overall,
+                residuals: outcome.parity.residuals,
                 collisions_passed: outcome.parity.collisions_passed,
                 messages: messages(outcome),
             },
             fair: outcome.fair.as_deref().map(FairView::from),
-            difference: CauseView::of(outcome),
+            difference: cause(outcome).map(CauseView::from),
             first_divergence: account.first_divergence.as_ref().map(finding),
-            findings: account
-                .examples
-                .iter()
-                .map(|first| CountedView { count: account.counts.get(first.kind()), first: finding(first) })
-                .collect(),
+            findings: CountedView::all(account, finding),
             advice: advice::lines(self),
             commands: closer::commands(self),
             notes: text::notes(self),
@@ -163,20 +154,10 @@ impl Check<'_> {
             wrong_steps: account.wrong_steps,
             wrong_step_numbers: steps::numbers(self),
             shown_steps: steps::views(self),
-            problem: outcome.stop.as_ref().map(Problem::from),
-            damage: outcome.damage.as_ref().map(|damage| Place {
-                step: damage.step,
-                frame: Some(damage.frame),
-                offset: Some(damage.offset),
-                message: damage.message.clone(),
-            }),
+            problem: outcome.stop.as_ref().map(StopView::from),
+            damage: outcome.damage.as_ref().map(DamageView::from),
             trailing_bytes: outcome.trailing_bytes,
-            root_searches: self.audit.then_some(Searches {
-                calls: outcome.searches.calls,
-                searched: outcome.searches.searched,
-                excluded: outcome.searches.excluded,
-                disagreements: outcome.searches.disagreements,
-            }),
+            root_searches: self.audit.then_some(outcome.searches),
         }
     }
 }
@@ -204,16 +185,16 @@ fn messages(outcome: &Outcome) -> BTreeMap<&'static str, u64> {
 }
 
 #[derive(Serialize)]
-struct View<'a> {
+struct CheckView<'a> {
     schema: u32,
     scene: &'a str,
     trace: &'a str,
-    rules: &'static str,
-    official: &'static str,
+    rules: Rules,
+    official: Book,
     verdict: &'static str,
     summary: String,
     parity: Parity,
-    fair: Option<FairView>,
+    fair: Option<FairView<'a>>,
     difference: Option<CauseView>,
     first_divergence: Option<FindingView>,
     findings: Vec<CountedView>,
@@ -226,52 +207,49 @@ struct View<'a> {
     wrong_steps: u64,
     wrong_step_numbers: Vec<u32>,
     shown_steps: Option<Vec<StepView>>,
-    problem: Option<Problem>,
-    damage: Option<Place>,
+    problem: Option<StopView>,
+    damage: Option<DamageView>,
     trailing_bytes: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
-    root_searches: Option<Searches>,
+    root_searches: Option<SearchCounts>,
 }
 
 #[derive(Serialize)]
 struct Parity {
-    overall: &'static str,
-    accumulated_position_residual: Number,
-    accumulated_velocity_residual: Number,
-    maximum_position_residual: Number,
-    maximum_velocity_residual: Number,
+    overall: Overall,
+    #[serde(flatten)]
+    residuals: Residuals,
     collisions_passed: Option<bool>,
     messages: BTreeMap<&'static str, u64>,
 }
 
 /// Why judging stopped early.
 #[derive(Serialize)]
-struct Problem {
+struct StopView {
     kind: &'static str,
     #[serde(flatten)]
-    place: Place,
+    place: DamageView,
 }
 
 #[derive(Serialize)]
-struct Place {
+struct DamageView {
     step: u32,
     frame: Option<u64>,
     offset: Option<u64>,
     message: String,
 }
 
-#[derive(Serialize)]
-struct Searches {
-    calls: u64,
-    searched: u64,
-    excluded: u64,
-    disagreements: u64,
+impl From<&Damage> for DamageView {
+    fn from(damage: &Damage) -> Self {
+        let Damage { frame, step, offset, ref what } = *damage;
+        Self { step, frame: Some(frame), offset: Some(offset), message: what.to_string() }
+    }
 }
 
-impl From<&Stop> for Problem {
+impl From<&Stop> for StopView {
     fn from(stop: &Stop) -> Self {
         match stop {
-            Stop::Trace { frame, step, cause, offset, message } => {
+            Stop::Trace { frame, step, cause, offset, what } => {
                 let kind = match cause {
                     Unreadable::State => "state_unreadable",
                     Unreadable::Impulses => "impulses_unreadable",
@@ -279,13 +257,12 @@ impl From<&Stop> for Problem {
                     Unreadable::Limit => "beyond_limit",
                     Unreadable::Io => "read_error",
                 };
-                let place = Place { step: *step, frame: Some(*frame), offset: Some(*offset), message: message.clone() };
-                Self { kind, place }
+                let (frame, offset, message) = (Some(*frame), Some(*offset), what.to_string());
+                Self { kind, place: DamageView { step: *step, frame, offset, message } }
             }
             Stop::Step(error) => {
                 let (step, message) = step_error(error);
-                let place = Place { step, frame: None, offset: None, message };
-                Self { kind: "step_without_result", place }
+                Self { kind: "step_without_result", place: DamageView { step, frame: None, offset: None, message } }
             }
         }
     }

@@ -164,7 +164,7 @@ fn problem(stop: &Stop, outcome: &Outcome, style: Style) -> String {
 /// Where it is, what is the matter, and what to look at.
 fn parts(stop: &Stop, outcome: &Outcome) -> (String, String, &'static str) {
     match stop {
-        Stop::Trace { frame, step, cause, offset, message } => {
+        Stop::Trace { frame, step, cause, offset, what } => {
             let advice = match cause {
                 Unreadable::Io => "the file could not be read on; check the disk, or who else writes to it",
                 Unreadable::Limit => {
@@ -186,7 +186,7 @@ fn parts(stop: &Stop, outcome: &Outcome) -> (String, String, &'static str) {
             } else {
                 format!("step {step} of {}, frame {frame}, byte {offset}", outcome.steps)
             };
-            (place, message.clone(), advice)
+            (place, what.to_string(), advice)
         }
         Stop::Step(error) => {
             let (step, message) = step_error(error);
@@ -268,7 +268,7 @@ pub(super) fn notes(check: &Check<'_>) -> Vec<String> {
         };
         notes.push(format!(
             "frame {} (step {}), byte {}: {}{silence}",
-            damage.frame, damage.step, damage.offset, damage.message
+            damage.frame, damage.step, damage.offset, damage.what
         ));
         if outcome.damaged_steps > 0 && outcome.parity.findings.counts.total() > 0 {
             notes.push(

@@ -6,7 +6,7 @@ use crate::{
     table::{Align, Table},
     words,
 };
-use fosssim_grading::{Grade, Verdict};
+use fosssim_findings::{Grade, Verdict};
 use std::{collections::BTreeMap, fmt::Write};
 
 /// How many submissions were run on a scene, and how many of these it was accepted for.

@@ -1,8 +1,8 @@
 //! CSV for spreadsheets. A cell that a spreadsheet would take for a formula gets an apostrophe in front.
 use super::{likely_mistakes, no_points, one_line, phrases::NOT_GRADED, points};
+use crate::view::key;
 use crate::words;
-use fosssim_grading::{Grade, PassedOver};
-use fosssim_judge::fair::Cause;
+use fosssim_findings::{Grade, PassedOver};
 
 /// One row per scene.
 pub(super) fn scenes(grades: &[Grade], passed_over: &[PassedOver]) -> String {
@@ -19,10 +19,10 @@ pub(super) fn scenes(grades: &[Grade], passed_over: &[PassedOver]) -> String {
                     points(scene.max_points),
                     scene.right_steps.to_string(),
                     scene.steps.to_string(),
-                    format!("{:.3}", scene.cpu.as_secs_f64()),
-                    format!("{:.3}", scene.wall.as_secs_f64()),
+                    format!("{:.3}", scene.measured.cpu.as_secs_f64()),
+                    format!("{:.3}", scene.measured.wall.as_secs_f64()),
                     safe(&words::summary(scene)),
-                    scene.differs.map_or("", Cause::key).to_owned(),
+                    scene.differs.map(|cause| key(&cause)).unwrap_or_default(),
                     scene.settled.first().map(|likeliest| safe(&likeliest.key)).unwrap_or_default(),
                 ]
             })

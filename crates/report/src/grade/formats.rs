@@ -9,6 +9,7 @@ use fosssim_grading::{
 };
 use fosssim_judge::{FindingKind, fair::Cause};
 use fosssim_mistakes::diagnose::{About, Explanation};
+use fosssim_mistakes::together::settle;
 use fosssim_testing::{Need, skip};
 use std::{path::Path, slice, time::Duration};
 
@@ -175,7 +176,7 @@ fn what_all_scenes_settle_stands_in_every_scene_of_every_format() {
     }
     grade.groups.iter_mut().for_each(|group| group.visibility = Visibility::Visible);
     grade.verdict = Verdict::WrongAnswer;
-    grade.settle();
+    settle(&mut grade);
     for format in Format::ALL {
         let document = format.render(std::slice::from_ref(&grade));
         let said = if *format == Format::Csv { "loop-one-fewer" } else { "one round fewer" };
@@ -193,7 +194,7 @@ fn what_failing_scenes_have_in_common_is_told_in_every_format() {
     grade.verdict = Verdict::RuntimeError;
     grade.located = Some(Located {
         failing: Failing::Crash,
-        contents: vec![Content { family: 4, value: None }],
+        contents: vec![Content { family: "the failsafe moves a zone".into(), value: None }],
         failed: 24,
         with: 24,
         without: 61,
@@ -288,8 +289,9 @@ fn with_hidden_groups_students_are_told_nothing_that_a_program_chose() {
             result.ended = Some(Ended::Exited(choice.cast_signed()));
             result.differs = (choice == 1).then_some(Cause::AbsoluteCoefficients);
             result.right_steps = choice;
-            (result.cpu, result.wall) = (Duration::from_secs(choice.into()), Duration::from_secs(choice.into()));
-            result.memory = Some(u64::from(choice) << 20);
+            (result.measured.cpu, result.measured.wall) =
+                (Duration::from_secs(choice.into()), Duration::from_secs(choice.into()));
+            result.measured.memory = Some(u64::from(choice) << 20);
             (result.stdout, result.stderr) = (format!("choice {choice}"), format!("choice {choice}"));
             result.card = Some(format!("choice {choice}"));
             scene.settled = crate::explain::tests::explanations();

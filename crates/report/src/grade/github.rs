@@ -4,7 +4,7 @@ use super::{
     wrong_first,
 };
 use crate::words;
-use fosssim_grading::{Grade, PassedOver, Verdict};
+use fosssim_findings::{Grade, PassedOver, Verdict};
 use std::fmt::Write;
 
 /// Annotations; the words are escaped as workflow commands want it.

@@ -1,7 +1,8 @@
 //! Gradescope's results.json. A fault of ours has no score: the harness exits with an error instead of a zero.
 use super::{super::explain, difference, head_lines, plain, points, printed, see_above};
 use crate::{number::counted, words};
-use fosssim_grading::{Grade, SceneGrade, Verdict, config::Visibility};
+use fosssim_findings::{Grade, SceneGrade, Verdict, Visibility};
+use fosssim_mistakes::together::for_students;
 use serde::Serialize;
 use std::{borrow::Cow, fmt::Write};
 
@@ -107,7 +108,7 @@ fn overall(grade: &Grade) -> String {
     // What is wrong with the upload itself tells of no scene.
     let told = grade.build.as_ref().is_some_and(|build| !build.end.is_success());
     if !told {
-        let shown = if grade.unfit().is_some() { Cow::Borrowed(grade) } else { grade.for_students() };
+        let shown = if grade.unfit().is_some() { Cow::Borrowed(grade) } else { for_students(grade) };
         lines.extend(head_lines(&shown).iter().map(|line| plain(line)));
     }
     lines.extend(grade.warnings.iter().map(|warning| format!("Warning: {}", plain(warning))));
@@ -124,12 +125,12 @@ fn out_of_time(grade: &Grade) -> String {
     let scenes = grade.groups.iter().flat_map(|group| group.scenes.iter().map(move |scene| (group, scene)));
     let longest = if grade.shows_output || grade.is_visible() { Some(scenes) } else { None };
     let longest = longest
-        .and_then(|scenes| scenes.max_by_key(|(_, scene)| scene.wall))
-        .filter(|(_, scene)| !scene.wall.is_zero());
+        .and_then(|scenes| scenes.max_by_key(|(_, scene)| scene.measured.wall))
+        .filter(|(_, scene)| !scene.measured.wall.is_zero());
     if let Some((group, longest)) = longest {
         let _ = write!(text, " Your program took {:.1} s", grade.wall.as_secs_f64());
         let (seconds, scene, summary) =
-            (longest.wall.as_secs_f64(), plain(&longest.scene), plain(&words::summary(longest)));
+            (longest.measured.wall.as_secs_f64(), plain(&longest.scene), plain(&words::summary(longest)));
         let _ = match group.visibility {
             Visibility::Visible => write!(text, ", {seconds:.1} s of it in scene {scene}: {summary}."),
             _ => write!(text, ", {seconds:.1} s of it in one scene."),

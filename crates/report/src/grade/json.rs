@@ -1,7 +1,8 @@
 //! Our own JSON (`schemas/grade.schema.json`): everything a grade holds.
 use super::{super::explain::ExplanationView, phrases::NOT_GRADED, plain, printed};
-use crate::words;
-use fosssim_grading::{Grade, GroupGrade, PassedOver, SceneGrade};
+use crate::{check::CauseView, words};
+use fosssim_findings::{Book, Grade, GroupGrade, PassedOver, Rules, SceneGrade, Visibility};
+use fosssim_mistakes::together::{likely_mistake, likely_mistakes};
 use serde::Serialize;
 
 /// The version of the schema; it rises when a reader of the old one would misunderstand the new one.
@@ -27,9 +28,9 @@ struct PassedOverView {
 struct GradeView {
     submission: String,
     suite: String,
-    rules: &'static str,
+    rules: Rules,
     /// The book that gives verdicts and points.
-    official: &'static str,
+    official: Book,
     verdict: &'static str,
     code: &'static str,
     /// `null` when the grader failed or was stopped: that is nobody's zero.
@@ -68,7 +69,7 @@ struct BuildView {
 #[derive(Serialize)]
 struct GroupView {
     name: String,
-    visibility: &'static str,
+    visibility: Visibility,
     verdict: &'static str,
     points: Option<f64>,
     max_points: f64,
@@ -81,7 +82,7 @@ struct SceneView {
     verdict: &'static str,
     code: &'static str,
     summary: String,
-    difference: Option<DifferenceView>,
+    difference: Option<CauseView>,
     details: Vec<String>,
     explanations: Vec<ExplanationView>,
     points: Option<f64>,
@@ -94,13 +95,6 @@ struct SceneView {
     stdout: String,
     stderr: String,
     cached: bool,
-}
-
-/// Why the two rule books judge a scene differently.
-#[derive(Serialize)]
-struct DifferenceView {
-    key: &'static str,
-    text: String,
 }
 
 /// All grades in one document.
@@ -132,8 +126,8 @@ fn view(grade: &Grade) -> GradeView {
     GradeView {
         submission: plain(&grade.submission),
         suite: plain(&grade.suite),
-        rules: grade.rules.name(),
-        official: grade.rules.official().name(),
+        rules: grade.rules,
+        official: grade.rules.official(),
         verdict: grade.verdict.words(),
         code: grade.verdict.code(),
         points: grade.points,
@@ -154,8 +148,8 @@ fn view(grade: &Grade) -> GradeView {
             first_scene: plain(&found.first),
             last_complete_step: found.step,
         }),
-        likely_mistake: grade.likely_mistake().as_ref().map(ExplanationView::from),
-        likely_mistakes: grade.likely_mistakes().iter().map(|(mistake, _)| ExplanationView::from(mistake)).collect(),
+        likely_mistake: likely_mistake(grade).as_ref().map(ExplanationView::from),
+        likely_mistakes: likely_mistakes(grade).iter().map(|(mistake, _)| ExplanationView::from(mistake)).collect(),
         groups: grade.groups.iter().map(group).collect(),
     }
 }
@@ -163,7 +157,7 @@ fn view(grade: &Grade) -> GradeView {
 fn group(group: &GroupGrade) -> GroupView {
     GroupView {
         name: plain(&group.name),
-        visibility: group.visibility.key(),
+        visibility: group.visibility,
         verdict: group.verdict.words(),
         points: group.points,
         max_points: group.max_points,
@@ -177,16 +171,16 @@ fn scene(scene: &SceneGrade) -> SceneView {
         verdict: scene.verdict.words(),
         code: scene.verdict.code(),
         summary: plain(&words::summary(scene)),
-        difference: scene.differs.map(|cause| DifferenceView { key: cause.key(), text: cause.to_string() }),
+        difference: scene.differs.map(CauseView::from),
         details: words::details(scene).iter().map(|detail| plain(detail)).collect(),
         explanations: scene.settled.iter().map(ExplanationView::from).collect(),
         points: scene.points,
         max_points: scene.max_points,
         right_steps: scene.right_steps,
         steps: scene.steps,
-        cpu_seconds: scene.cpu.as_secs_f64(),
-        wall_seconds: scene.wall.as_secs_f64(),
-        memory_bytes: scene.memory,
+        cpu_seconds: scene.measured.cpu.as_secs_f64(),
+        wall_seconds: scene.measured.wall.as_secs_f64(),
+        memory_bytes: scene.measured.memory,
         stdout: printed(&scene.stdout),
         stderr: printed(&scene.stderr),
         cached: scene.cached,

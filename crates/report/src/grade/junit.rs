@@ -1,7 +1,7 @@
 //! JUnit XML: a suite per group, a case per scene. Wrong programs are failures, faults of ours are errors.
 use super::{super::explain, difference, head_lines, phrases::NOT_GRADED, plain, printed, wrong_first};
 use crate::words;
-use fosssim_grading::{Grade, PassedOver, SceneGrade, Verdict};
+use fosssim_findings::{Grade, PassedOver, SceneGrade, Verdict};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
 /// All grades in one report.
@@ -80,7 +80,7 @@ fn case(grade: &Grade, scene: &SceneGrade) -> TestCase {
     };
     let mut case = TestCase::new(plain(&scene.scene), status);
     case.set_classname(plain(&grade.submission));
-    case.set_time(scene.wall);
+    case.set_time(scene.measured.wall);
     if !scene.stdout.is_empty() {
         case.set_system_out(printed(&scene.stdout));
     }

@@ -16,16 +16,8 @@ mod prairielearn;
 mod text;
 
 use crate::page::{Audience, GradePage};
-use fosssim_grading::{
-    Grade, SceneResult,
-    config::{Credit, Marking, Visibility},
-    score,
-};
-use fosssim_judge::Rules;
-use std::{
-    sync::{Mutex, PoisonError},
-    time::Duration,
-};
+use fosssim_findings::{Grade, GroupGrade, Rules, SceneGrade, SceneResult, Visibility, result::Measurements};
+use std::sync::{Mutex, PoisonError};
 
 /// Whether a format's document holds the grades of several submissions, and how it comes about then.
 macro_rules! takes {
@@ -164,8 +156,7 @@ pub fn rehearse(result: &SceneResult) {
 /// plain text.
 fn without_the_harmless(result: &SceneResult) -> SceneResult {
     let mut kind = result.clone();
-    (kind.cpu, kind.wall, kind.judging, kind.memory) =
-        (Duration::ZERO, Duration::ZERO, Duration::ZERO, kind.memory.map(|_| 0));
+    kind.measured = Measurements { memory: kind.measured.memory.map(|_| 0), ..Measurements::default() };
     if kind.right_steps == kind.steps {
         (kind.right_steps, kind.steps) = (kind.steps.min(1), kind.steps.min(1));
     }
@@ -180,8 +171,22 @@ fn without_the_harmless(result: &SceneResult) -> SceneResult {
 }
 
 fn render_in_every_format(result: &SceneResult) {
-    let marking = Marking { points: 1.0, credit: Credit::Steps, visibility: Visibility::Visible };
-    let group = score::group("group", marking, vec![(result.clone(), false)]);
+    let scene = SceneGrade {
+        settled: result.explanations.clone(),
+        result: result.clone(),
+        points: Some(0.0),
+        max_points: 1.0,
+        cached: false,
+        agreed: 0,
+    };
+    let group = GroupGrade {
+        name: "group".to_owned(),
+        visibility: Visibility::Visible,
+        points: Some(0.0),
+        max_points: 1.0,
+        verdict: result.verdict,
+        scenes: vec![scene],
+    };
     let grade = Grade {
         submission: "submission".to_owned(),
         suite: "suite".to_owned(),
@@ -196,7 +201,7 @@ fn render_in_every_format(result: &SceneResult) {
         build: None,
         warnings: Vec::new(),
         layers: Vec::new(),
-        wall: result.wall,
+        wall: result.measured.wall,
     };
     let grades = [grade];
     for format in Format::ALL {

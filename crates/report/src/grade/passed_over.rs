@@ -4,7 +4,7 @@ use crate::{
     style::{Look, Style},
     table::{Align, Table},
 };
-use fosssim_grading::{Grade, PassedOver};
+use fosssim_findings::{Grade, PassedOver};
 
 /// A grading of one submission has no list of others: its grade says what was passed over beside it.
 pub fn warn_of(grades: &mut [Grade], passed_over: &[PassedOver]) {

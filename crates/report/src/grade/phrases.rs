@@ -1,7 +1,8 @@
 //! What several formats say of a grade in the same words.
 use crate::{number::counted, words};
-use fosssim_grading::{Grade, GroupGrade, SceneGrade, Verdict};
+use fosssim_findings::{Grade, GroupGrade, SceneGrade, Verdict};
 use fosssim_mistakes::diagnose::Explanation;
+pub use fosssim_mistakes::together::likely_mistakes;
 use std::borrow::Cow;
 
 /// A terminal's codes for colours, cursors and titles are left out, as a log of FOSSSim's own holds them in every line:
@@ -85,12 +86,6 @@ pub fn plain(text: &str) -> String {
 
 /// The text in place of a verdict where an entry is no submission.
 pub(super) const NOT_GRADED: &str = "not graded";
-
-/// The likely mistakes, the one that explains most wrong scenes first, and how many scenes each explains.
-#[must_use]
-pub fn likely_mistakes(grade: &Grade) -> Vec<(Explanation, usize)> {
-    grade.likely_mistakes()
-}
 
 /// What stands above all scenes in a report for one reader: what is wrong with the submission itself, or where it
 /// fails and what its likely mistakes are.

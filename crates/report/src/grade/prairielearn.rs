@@ -1,7 +1,8 @@
 //! PrairieLearn's results.json: a score in [0, 1]; `gradable: false` for faults of ours, which charge no attempt.
 use super::{super::explain, difference, head_lines, one_line, plain, printed, see_above, wrong_first};
 use crate::words;
-use fosssim_grading::{Grade, SceneGrade, Verdict};
+use fosssim_findings::{Grade, SceneGrade, Verdict};
+use fosssim_mistakes::together::for_students;
 use serde::Serialize;
 
 /// PrairieLearn refuses more than a megabyte; texts are cut long before.
@@ -30,7 +31,7 @@ struct Test {
 
 /// The results of one submission.
 pub(super) fn render(grade: &Grade) -> String {
-    let shown = grade.for_students();
+    let shown = for_students(grade);
     let tests = wrong_first(shown.groups.iter())
         .into_iter()
         .map(|scene| Test {

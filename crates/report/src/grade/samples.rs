@@ -1,13 +1,15 @@
 //! Grades for tests: one good, one bad in every way, with hostile words in it.
+use fosssim_findings::FindingPlace;
 use fosssim_grading::{
     Build, Grade, GroupGrade, Reason, SceneResult, Verdict,
     config::{Credit, Marking, Visibility},
-    result::{BuildEnd, Ended, Failure, FolderContents, Unusable, Wrong},
+    disclosure::{DisclosedBook, DisclosedFinding, Disclosure},
+    result::{BuildEnd, Ended, Failure, FolderContents, Measurements, Unusable, Wrong},
     score,
-    told::{Told, ToldBook, ToldFinding, ToldPlace},
 };
 use fosssim_judge::{Book, FindingCounts, FindingKind, PolynomialPlace, Role, Rules, Ruling, fair::Cause};
 use fosssim_mistakes::diagnose::{About, Explanation};
+use fosssim_mistakes::together::settle;
 use fosssim_model::sim::{Pair, PairKind, Pass, Stage};
 use std::time::Duration;
 
@@ -19,9 +21,12 @@ pub(crate) fn saying(words: &str) -> Reason {
 fn scene(name: &str, verdict: Verdict, summary: &str) -> SceneResult {
     SceneResult {
         right_steps: if verdict.is_accepted() { 100 } else { 60 },
-        cpu: Duration::from_millis(120),
-        wall: Duration::from_millis(150),
-        memory: Some(7 << 20),
+        measured: Measurements {
+            cpu: Duration::from_millis(120),
+            wall: Duration::from_millis(150),
+            memory: Some(7 << 20),
+            ..Measurements::default()
+        },
         ..SceneResult::without_run(name, 100, verdict, saying(summary))
     }
 }
@@ -73,13 +78,13 @@ pub(crate) fn bad() -> Grade {
     wrong.explanations = crate::explain::tests::explanations();
     let pair = Pair { kind: PairKind::ParticleParticle, first: 0, second: 1 };
     let pass = Pass { stage: Stage::Impulses { round: 0 }, index: 0 };
-    let place = ToldPlace::Polynomial(PolynomialPlace { pass, pair, role: Role::Overlap, index: 0 });
-    let first = ToldFinding::Place { step: 3, kind: FindingKind::Coefficient, place };
+    let place = FindingPlace::Polynomial(PolynomialPlace { pass, pair, role: Role::Overlap, index: 0 });
+    let first = DisclosedFinding::Place { step: 3, kind: FindingKind::Coefficient, place };
     let mut counts = FindingCounts::default();
     counts.add(FindingKind::Coefficient, 1);
-    wrong.told = Some(Told {
+    wrong.disclosure = Some(Disclosure {
         official: Book::Parity,
-        parity: ToldBook {
+        parity: DisclosedBook {
             ruling: Ruling::WrongAnswer,
             wrong_steps: 40,
             counts,
@@ -133,7 +138,7 @@ pub(crate) fn unfit() -> Grade {
 /// Stopped while its second scene ran.
 pub(crate) fn stopped() -> Grade {
     let mut running = scene("Detection/b", Verdict::NotRun, "the program was stopped by the grader");
-    running.wall = Duration::from_secs(14);
+    running.measured.wall = Duration::from_secs(14);
     let scenes =
         vec![scene("Detection/a", Verdict::Accepted, "all 100 steps are right"), running, missing("Detection/c")];
     grade("kim", vec![group("Detection", Visibility::Visible, scenes)])
@@ -177,6 +182,6 @@ pub(crate) fn unwritten() -> Grade {
             group("Impulses", Visibility::Visible, scenes("Impulses")),
         ],
     );
-    grade.settle();
+    settle(&mut grade);
     grade
 }

@@ -1,7 +1,7 @@
 //! The card of a scene: what is drawn of a wrong trace while it is at hand, for pages that are put together later.
 use super::{Case, data, packed::Precision};
 use crate::check::plots;
-use fosssim_grading::config::Hints;
+use fosssim_findings::Hints;
 use serde::{Deserialize, Serialize};
 
 /// The placeholder for the key of a card until its page is known. No text holds it: text has no control characters.

@@ -6,7 +6,7 @@ use crate::{
     number::count,
 };
 use fosssim_evidence::{Evidence, Focus, InspectedCall};
-use fosssim_grading::config::Hints;
+use fosssim_findings::Hints;
 use fosssim_judge::{Book, BookFindings, Outcome, Ruling};
 use fosssim_mistakes::diagnose::Explanation;
 use fosssim_num::tolerances::PARITY_MAXIMUM;

@@ -5,7 +5,7 @@ use crate::{
     number::counted,
     words,
 };
-use fosssim_grading::{Grade, PassedOver, SceneGrade, Verdict};
+use fosssim_findings::{Grade, PassedOver, SceneGrade, Verdict};
 use std::{collections::BTreeMap, fmt::Write};
 
 const SCRIPT: &str = include_str!("class.js");

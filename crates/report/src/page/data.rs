@@ -4,7 +4,7 @@ use super::{
     packed::{Packed, Precision, Rounded},
 };
 use fosssim_evidence::{Evidence, InspectedPass, InspectedStep, Track};
-use fosssim_grading::config::Hints;
+use fosssim_findings::Hints;
 use fosssim_judge::PassWords;
 use fosssim_model::{
     scene::{self, Scene},

@@ -5,7 +5,7 @@ use crate::{
     grade::one_line,
     words::{self, first_divergence},
 };
-use fosssim_mistakes::diagnose::Explanation;
+use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 use std::fmt::Write;
 
 /// One trace with what was drawn of it.
@@ -22,7 +22,7 @@ impl ExplainedCase<'_> {
     /// that can't be told apart, and how large the motion is. The least is the most telling.
     fn telling(&self, common: &[Explanation]) -> (bool, usize, usize, usize) {
         let own = &self.case.explanations;
-        let rank = common.iter().position(|one| one.is_named_in(own));
+        let rank = common.iter().position(|one| is_named_in(one, own));
         let rank = rank.unwrap_or(common.len() + usize::from(own.is_empty()));
         (self.card.is_none(), rank, own.len(), self.card.map_or(0, |card| card.sizes().1))
     }
@@ -55,7 +55,7 @@ impl Explained<'_> {
             let _ = writeln!(body, "<h2>Where it fails</h2>\n<div class=\"mistake\"><p>{words}</p></div>");
         }
         for one in common {
-            let explained = cases.iter().filter(|case| one.is_named_in(&case.explanations)).count();
+            let explained = cases.iter().filter(|case| is_named_in(one, &case.explanations)).count();
             let _ = writeln!(body, "<h2>What explains {explained} of {wrong} wrong traces</h2>");
             body += &mistakes(std::slice::from_ref(one));
         }

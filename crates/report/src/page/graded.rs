@@ -12,8 +12,9 @@ use crate::{
     number::counted,
     words,
 };
-use fosssim_grading::{Grade, GroupGrade, SceneGrade, Verdict, config::Visibility};
-use fosssim_mistakes::diagnose::Explanation;
+use fosssim_findings::{Grade, GroupGrade, SceneGrade, Verdict, Visibility};
+use fosssim_mistakes::diagnose::{Explanation, is_named_in};
+use fosssim_mistakes::together::for_students;
 use sha2::{Digest, Sha256};
 use std::{borrow::Cow, fmt::Write};
 
@@ -48,7 +49,7 @@ impl GradePage<'_> {
     #[must_use]
     pub fn html(&self) -> String {
         let shown = match self.reader {
-            Audience::Student => self.grade.for_students(),
+            Audience::Student => for_students(self.grade),
             Audience::Staff => Cow::Borrowed(self.grade),
         };
         let grade = shown.as_ref();
@@ -116,7 +117,8 @@ impl GradePage<'_> {
             let plural = if likely.len() == 1 { "" } else { "s" };
             let _ = writeln!(out, "<h2>Likely mistake{plural}</h2>");
             for (mistake, explained) in likely {
-                let named: Vec<_> = told.iter().filter(|(scene, _)| mistake.is_named_in(&scene.explanations)).collect();
+                let named: Vec<_> =
+                    told.iter().filter(|(scene, _)| is_named_in(&mistake, &scene.explanations)).collect();
                 let shows = named
                     .iter()
                     .min_by_key(|(scene, card)| telling(scene, card.as_ref(), std::slice::from_ref(&mistake)));
@@ -142,7 +144,7 @@ fn likely(grade: &Grade) -> Vec<Explanation> {
 /// explains it, if any; how many other mistakes would do the same there; how large its motion is.
 fn telling(scene: &SceneGrade, card: Option<&Card>, likely: &[Explanation]) -> (bool, bool, usize, usize, usize) {
     let own = &scene.explanations;
-    let rank = likely.iter().position(|one| one.is_named_in(own));
+    let rank = likely.iter().position(|one| is_named_in(one, own));
     let rank = rank.unwrap_or(likely.len() + usize::from(own.is_empty()));
     (card.is_none(), scene.differs.is_some(), rank, own.len(), card.map_or(0, |card| card.sizes().1))
 }

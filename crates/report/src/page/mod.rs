@@ -25,7 +25,7 @@ pub use graded::{Audience, GradePage};
 
 use super::check::Check;
 use fosssim_evidence::{Evidence, Track};
-use fosssim_grading::config::Hints;
+use fosssim_findings::Hints;
 use fosssim_model::scene::Scene;
 use sha2::{Digest, Sha256};
 use std::sync::LazyLock;

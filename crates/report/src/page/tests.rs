@@ -3,6 +3,7 @@ use fosssim_evidence::{BUDGET, Focus, StepRulings, gather};
 use fosssim_grading::{
     Grade, Reason, SceneResult, Verdict,
     config::{Credit, Marking, Visibility},
+    cut,
     result::Wrong,
     score,
 };
@@ -27,7 +28,7 @@ fn told(scene: &Scene, scene_name: &str, trace_name: &str, trace: &[u8], hints: 
     let mut nobody = ();
     let mut rulings = StepRulings::new(&mut nobody);
     let outcome: Outcome = replay::judge(scene, trace, &options, &mut rulings);
-    let explanations = hints.cut(diagnose::explain(scene, trace));
+    let explanations = cut(hints, diagnose::explain(scene, trace));
     let focus: Vec<Focus> = outcome.parity.findings.examples.iter().map(Focus::from).collect();
     let evidence = gather(scene, &mut &trace[..], &rulings.into_steps(&outcome), true, &focus, BUDGET);
     let check = Check {
@@ -130,7 +131,7 @@ fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
     let outcome = replay::judge(scene, &trace[..], &options, &mut rulings);
     let focus: Vec<Focus> = outcome.parity.findings.examples.iter().map(Focus::from).collect();
     let evidence = gather(scene, &mut &trace[..], &rulings.into_steps(&outcome), true, &focus, BUDGET);
-    let explanations = hints.cut(diagnose::explain(scene, &trace));
+    let explanations = cut(hints, diagnose::explain(scene, &trace));
     let what_if = WhatIf {
         id: id.to_owned(),
         sentence: student::find(id).expect("a mistake").what.to_owned(),
@@ -153,7 +154,7 @@ fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
     let card = Card::of(&case, 3).and_then(|card| Card::from_kept(&card.kept()));
     let why = Reason::Wrong(Wrong::Untold);
     let mut result = SceneResult::without_run("Group/scene", scene.steps(), Verdict::WrongAnswer, why);
-    result.told = hints.tell(&outcome, Rules::Fair);
+    result.disclosure = hints.tell(&outcome, Rules::Fair);
     result.explanations = explanations;
     (card, result)
 }

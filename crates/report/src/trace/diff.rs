@@ -4,7 +4,7 @@ use super::{
         number::{count, counted, exact},
         style::{Look, Style},
         table::{Align, Table},
-        view::{CollisionView, Number, SCHEMA},
+        view::{Number, SCHEMA},
     },
     info::place,
 };
@@ -151,9 +151,7 @@ fn values(block: &Block) -> (&'static str, Value, Value) {
     match *block {
         Block::Position { left, right, .. } => ("position", json!(Number(left)), json!(Number(right))),
         Block::Velocity { left, right, .. } => ("velocity", json!(Number(left)), json!(Number(right))),
-        Block::Impulse { left, right, .. } => {
-            ("impulse", json!(CollisionView::from(&left)), json!(CollisionView::from(&right)))
-        }
+        Block::Impulse { left, right, .. } => ("impulse", json!(left), json!(right)),
         Block::ImpulseCount { left, right } => ("impulse_count", json!(left), json!(right)),
         Block::PolynomialSize { left, right, .. } => ("polynomial_size", json!(left), json!(right)),
         Block::Coefficient { left, right, .. } => ("coefficient", json!(Number(left)), json!(Number(right))),

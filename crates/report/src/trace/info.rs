@@ -7,7 +7,8 @@ use serde_json::{Value, json};
 #[must_use]
 pub fn info_json(scene: &str, trace: &str, summary: &Summary) -> String {
     let layout = summary.layout;
-    let collision = |(step, impulse): &(u32, fosssim_model::trace::LoggedImpulse)| json!({ "step": step, "collision": super::super::view::CollisionView::from(impulse) });
+    let collision =
+        |(step, impulse): &(u32, fosssim_model::trace::LoggedImpulse)| json!({ "step": step, "collision": impulse });
     let value = json!({
         "schema": SCHEMA,
         "scene": scene,

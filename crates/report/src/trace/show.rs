@@ -4,7 +4,7 @@ use super::super::{
     number::exact,
     style::{Look, Style},
     table::{Align, Table},
-    view::{CollisionView, PairView, PassView, SCHEMA, numbers},
+    view::{SCHEMA, numbers},
 };
 use fosssim_judge::{PairWords, PassWords, Role};
 use fosssim_model::trace::{Frame, Label};
@@ -130,9 +130,9 @@ impl ShownStep<'_> {
             let label = self.labels.get(index);
             json!({
                 "index": index,
-                "pass": label.map(|label| PassView::from(label.pass)),
-                "pair": label.map(|label| PairView::from(label.pair)),
-                "role": label.map(|label| Role::of(label.pair.kind, label.number).key()),
+                "pass": label.map(|label| label.pass),
+                "pair": label.map(|label| label.pair),
+                "role": label.map(|label| Role::of(label.pair.kind, label.number)),
                 "coefficients": numbers(coefficients),
             })
         };
@@ -142,7 +142,7 @@ impl ShownStep<'_> {
             "mid": record.mid,
             "positions": numbers(&frame.state.positions),
             "velocities": numbers(&frame.state.velocities),
-            "impulses": frame.impulses.iter().map(CollisionView::from).collect::<Vec<_>>(),
+            "impulses": frame.impulses,
             "polynomials": frame.polynomials.iter().enumerate().map(polynomial).collect::<Vec<_>>(),
             "oddities": record.notes,
         })

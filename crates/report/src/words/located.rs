@@ -1,8 +1,5 @@
 //! What the scenes have in common in which a program crashes or runs into a limit.
-use fosssim_grading::{
-    coverage::FAMILIES,
-    located::{Content, Failing, Located},
-};
+use fosssim_findings::located::{Content, Failing, Located};
 
 /// The greatest number of other contents named that the scenes can't tell from the first one.
 const NAMED: usize = 2;
@@ -12,7 +9,7 @@ const NAMED: usize = 2;
 pub fn located(found: &Located) -> String {
     let Located { failing, contents, failed, with, without, first, step } = found;
     let Some((place, others)) = contents.split_first() else { return String::new() };
-    let scenes = format!("{with} scenes {}", place_of(*place));
+    let scenes = format!("{with} scenes {}", place_of(place));
     let which = if failed == with { format!("All {scenes}") } else { format!("{failed} of the {scenes}") };
     let verb = match failing {
         Failing::Crash => "crash",
@@ -31,7 +28,7 @@ pub fn located(found: &Located) -> String {
     );
     if !others.is_empty() {
         let (shown, more) = others.split_at(others.len().min(NAMED));
-        let shown: Vec<String> = shown.iter().map(|other| place_of(*other)).collect();
+        let shown: Vec<String> = shown.iter().map(place_of).collect();
         let more = if more.is_empty() { String::new() } else { format!("; and {} more", more.len()) };
         text += &format!(" Just as likely: those {}{more}.", shown.join("; those "));
     }
@@ -39,14 +36,11 @@ pub fn located(found: &Located) -> String {
 }
 
 /// `in which the failsafe moves a zone (held by: a half-plane)`.
-fn place_of(content: Content) -> String {
-    let family = &FAMILIES[content.family];
-    let value = content.value.map(|(axis, value)| {
-        let axis = &family.axes[axis];
-        format!(" ({}: {})", axis.name, axis.values[value])
-    });
-    let is_step = family.name.starts_with("a step ");
-    format!("{} {}{}", if is_step { "with" } else { "in which" }, family.name, value.unwrap_or_default())
+fn place_of(content: &Content) -> String {
+    let Content { family, value } = content;
+    let value = value.as_ref().map(|[axis, value]| format!(" ({axis}: {value})"));
+    let is_step = family.starts_with("a step ");
+    format!("{} {family}{}", if is_step { "with" } else { "in which" }, value.unwrap_or_default())
 }
 
 #[cfg(test)]
@@ -55,10 +49,16 @@ mod tests {
 
     #[test]
     fn counts_and_ties_are_told() {
-        let content = |family, value| Content { family, value };
+        let content = |family: &'static str, value: Option<[&'static str; 2]>| Content {
+            family: family.into(),
+            value: value.map(|words| words.map(Into::into)),
+        };
         let found = Located {
             failing: Failing::Crash,
-            contents: vec![content(4, None), content(6, Some((1, 1)))],
+            contents: vec![
+                content("the failsafe moves a zone", None),
+                content("a step of hybrid", Some(["zones", "one"])),
+            ],
             failed: 24,
             with: 24,
             without: 61,
@@ -73,7 +73,7 @@ mod tests {
         );
         let some = Located {
             failing: Failing::Several,
-            contents: vec![content(4, Some((1, 2)))],
+            contents: vec![content("the failsafe moves a zone", Some(["held by", "a half-plane"]))],
             failed: 7,
             with: 9,
             step: 0,

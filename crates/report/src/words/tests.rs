@@ -1,6 +1,7 @@
 use super::*;
-use fosssim_grading::told::Told;
+use fosssim_findings::disclosure::Disclosure;
 use fosssim_judge::{Book, Damage, FindingCounts, Ruling};
+use fosssim_model::trace::Malformation;
 use std::time::Duration;
 
 fn says(reason: Reason) -> String {
@@ -59,17 +60,20 @@ fn a_wrong_trace_says_how_many_steps_and_where_first() {
 fn details_are_what_is_told_and_nothing_else() {
     let result = SceneResult::without_run("a/b", 15, Verdict::WrongAnswer, Reason::Wrong(Wrong::Untold));
     assert_eq!(details(&result), [""; 0]);
-    let first = ToldFinding::Place { step: 4, kind: FindingKind::Position, place: ToldPlace::Particle(2) };
-    let objects =
-        ToldFinding::Place { step: 5, kind: FindingKind::SuperfluousCollision, place: ToldPlace::Objects(1, 2) };
+    let first = DisclosedFinding::Place { step: 4, kind: FindingKind::Position, place: FindingPlace::Particle(2) };
+    let objects = DisclosedFinding::Place {
+        step: 5,
+        kind: FindingKind::SuperfluousCollision,
+        place: FindingPlace::Objects(1, 2),
+    };
     let mut counts = FindingCounts::default();
     counts.add(FindingKind::Position, 7);
     counts.add(FindingKind::SuperfluousCollision, 2);
     // What is found in damaged records alone has no example.
     counts.add(FindingKind::Velocity, 1);
-    let told = Told {
+    let told = Disclosure {
         official: Book::Fair,
-        parity: ToldBook {
+        parity: DisclosedBook {
             ruling: Ruling::WrongAnswer,
             wrong_steps: 7,
             counts,
@@ -78,10 +82,15 @@ fn details_are_what_is_told_and_nothing_else() {
         },
         fair: None,
         residuals: None,
-        damage: Some(Damage { frame: 1, step: 1, offset: 77, message: "an odd count".to_owned() }),
+        damage: Some(Damage {
+            frame: 1,
+            step: 1,
+            offset: 77,
+            what: Malformation::NegativeSize { polynomial: 3, size: -1 },
+        }),
         trailing_bytes: true,
     };
-    let result = SceneResult { told: Some(told), ended: Some(Ended::Exited(127)), ..result };
+    let result = SceneResult { disclosure: Some(told), ended: Some(Ended::Exited(127)), ..result };
     let lines = details(&result);
     assert!(lines[0].starts_with("exit code 127 usually means"));
     assert_eq!(
@@ -89,7 +98,7 @@ fn details_are_what_is_told_and_nothing_else() {
         [
             "first divergence: step 4, particle 2: wrong position",
             "counts: superfluous collision: 2, wrong position: 7",
-            "damaged at byte 77 (frame 1): an odd count",
+            "damaged at byte 77 (frame 1): polynomial 3 has the negative size -1",
             "bytes follow the last record",
         ]
     );

@@ -16,8 +16,8 @@ use fosssim_model::sim::PairKind;
 pub(super) fn all() -> Vec<Explanation> {
     let guesses = [
         Guess::List(ListGuess::ReversedNegated),
-        Guess::Exchange("end-positions"),
-        Guess::Special("constant-alpha"),
+        Guess::Exchange("end-positions".into()),
+        Guess::Special("constant-alpha".into()),
         Guess::Quantity(QuantityGuess::Other),
         Guess::Coefficients { powers: vec![3, 0], wrong: CoefficientGuess::Several },
     ];
@@ -83,9 +83,14 @@ fn faults() -> Vec<StageFault> {
 
 fn details() -> Vec<Detail> {
     let reading = Reading { subject: Subject::EdgeOverlap, number: 0 };
-    let weight =
-        |actual| Weight { reading, power: 2, letters: vec!["(x12.d32)", "R^2"], expected: f64::INFINITY, actual };
-    let stands = |stand| PolynomialDetail::StandsFor { reading, letter: "R^2", stand };
+    let weight = |actual| Weight {
+        reading,
+        power: 2,
+        letters: vec!["(x12.d32)".into(), "R^2".into()],
+        expected: f64::INFINITY,
+        actual,
+    };
+    let stands = |stand| PolynomialDetail::StandsFor { reading, letter: "R^2".into(), stand };
     let polynomials = [
         PolynomialDetail::Logged { logged: 0, of: 4 },
         PolynomialDetail::RightUpTo(5e-324),
@@ -98,11 +103,11 @@ fn details() -> Vec<Detail> {
         PolynomialDetail::LastOnly(1),
         PolynomialDetail::FirstOnly(2),
         PolynomialDetail::Displacements(1.0 / 3.0),
-        PolynomialDetail::Exchange { key: "end-positions", of_edges: true },
-        PolynomialDetail::Special("one-unscaled"),
+        PolynomialDetail::Exchange { key: "end-positions".into(), of_edges: true },
+        PolynomialDetail::Special("one-unscaled".into()),
         stands(Stand::Scaled(-0.0)),
-        stands(Stand::Letter("a")),
-        stands(Stand::Dot { vectors: ["x21", "(p-x-dx)"], negated: true }),
+        stands(Stand::Letter("a".into())),
+        stands(Stand::Dot { vectors: ["x21".into(), "(p-x-dx)".into()], negated: true }),
         stands(Stand::One),
         PolynomialDetail::Factor { power: 3, factor: 0.1 },
         PolynomialDetail::Unknown { power: 0 },
@@ -131,7 +136,7 @@ fn details() -> Vec<Detail> {
         StageDetail::Velocities(Ratios::All(0.5)),
     ];
     let known = [
-        Detail::Term("pp-no-two"),
+        Detail::Term("pp-no-two".into()),
         Detail::Look(Area::Failsafe),
         Detail::Letters(vec![PairKind::ParticleEdge, PairKind::ParticleParticle]),
     ];
@@ -154,7 +159,7 @@ fn examples() -> Vec<Example> {
         ExamplePlace::MidParticle(4),
         ExamplePlace::MidLists,
     ];
-    let given = Input::ALL.map(|input| ExampleValue { input, value: vec![0.1, -1e-300] });
+    let given = [Input::X1, Input::Re, Input::P].map(|input| ExampleValue { input, value: vec![0.1, -1e-300] });
     let example = |place| Example {
         step: 7,
         place,

@@ -3,6 +3,7 @@
 //! Three kinds: `wrong` programs misunderstand something and leave another trace; `variant`s are correct but for
 //! round-off or a positive factor; `hostile` ones try the harness, not the physics. The place in the simulation where
 //! a mistake is made asks [`Student::makes`](crate::student::Student::makes).
+pub use fosssim_findings::explanation::Area;
 use fosssim_model::sim::PairKind;
 
 /// What is to be thought of a row.
@@ -16,37 +17,6 @@ pub enum RowKind {
     Hostile,
 }
 
-/// The part of the assignment that a row belongs to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Area {
-    /// Polynomials of two particles.
-    ParticleParticle,
-    /// Polynomials of a particle and an edge.
-    ParticleEdge,
-    /// Polynomials of a particle and a half-plane.
-    ParticleHalfPlane,
-    /// What all three detections have in common: how polynomials reach the root finder.
-    Handover,
-    /// The vector between the objects at the time of impact.
-    ContactVector,
-    /// Which times count, and which pairs are looked at.
-    Decision,
-    /// The impulse of one contact.
-    Response,
-    /// The single pass of `continuous-time`.
-    ContinuousTime,
-    /// The impulse rounds of `hybrid`.
-    ImpulseLoop,
-    /// Impact zones and their growth.
-    ImpactZones,
-    /// The rigid motion of one zone.
-    Failsafe,
-    /// What is written to the trace.
-    Trace,
-    /// How the program behaves as a process.
-    Process,
-}
-
 impl RowKind {
     /// Its name in listings.
     #[must_use]
@@ -55,28 +25,6 @@ impl RowKind {
             Self::Wrong => "wrong",
             Self::Variant => "variant",
             Self::Hostile => "hostile",
-        }
-    }
-}
-
-impl Area {
-    /// Its name in listings.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::ParticleParticle => "particle-particle",
-            Self::ParticleEdge => "particle-edge",
-            Self::ParticleHalfPlane => "particle-half-plane",
-            Self::Handover => "handover",
-            Self::ContactVector => "contact-vector",
-            Self::Decision => "decision",
-            Self::Response => "response",
-            Self::ContinuousTime => "continuous-time",
-            Self::ImpulseLoop => "impulse-loop",
-            Self::ImpactZones => "impact-zones",
-            Self::Failsafe => "failsafe",
-            Self::Trace => "trace",
-            Self::Process => "process",
         }
     }
 }

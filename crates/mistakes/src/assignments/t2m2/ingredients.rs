@@ -61,10 +61,3 @@ pub(crate) const fn ingredients(kind: PairKind) -> &'static [Ingredient] {
         PairKind::ParticleHalfPlane => HALF_PLANE,
     }
 }
-
-/// The name, as the tables have it, of a vector that a detection has at hand.
-#[must_use]
-pub fn ingredient_name(name: &str) -> Option<&'static str> {
-    let all = PairKind::ALL.into_iter().flat_map(ingredients);
-    all.map(|ingredient| ingredient.name).find(|other| *other == name)
-}

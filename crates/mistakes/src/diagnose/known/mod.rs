@@ -207,7 +207,7 @@ fn plausibility(row: &Row) -> u8 {
 /// The explanation that names a row, without an example.
 fn explain(row: &Row, (reproduced, samples): (u64, u64)) -> Explanation {
     Explanation {
-        details: vec![Detail::Term(row.id), Detail::Look(row.area)],
+        details: vec![Detail::Term(row.id.into()), Detail::Look(row.area)],
         reproduced,
         samples,
         ..Explanation::about(row.id, About::Mistake)

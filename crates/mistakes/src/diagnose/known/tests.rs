@@ -1,5 +1,6 @@
 //! Traces with mistakes, made in memory, and what is said of them.
 use super::{known, shows};
+use crate::diagnose::is_named_in;
 use crate::{
     diagnose::{About, ExamplePlace, Explanation, explain, several},
     student::{self, Student, find},
@@ -224,7 +225,7 @@ fn mistakes_of_several_scenes_are_settled_together() {
         (&found[0].about, &found[0].same_as[..]),
         (&About::Unfinished, &["pp-empty", "pe-empty", "ph-empty"].map(str::to_owned)[..])
     );
-    assert!(found[0].is_named_in(&alone) && found[0].is_named_in(&other));
+    assert!(is_named_in(&found[0], &alone) && is_named_in(&found[0], &other));
     let (one, two) =
         (explain(&scene(), &made(&scene(), &["pp-no-two"])), explain(&scene(), &made(&scene(), &["response-sign"])));
     let found: Vec<String> =

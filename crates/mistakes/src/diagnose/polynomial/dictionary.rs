@@ -5,6 +5,7 @@ use crate::assignments::t2m2::{
     formulas::{Formula, Letter, product},
 };
 use fosssim_num::bounded::Bounded;
+use std::borrow::Cow;
 
 /// A product of letters.
 pub(super) struct Product {
@@ -68,8 +69,8 @@ impl Dictionary {
     }
 
     /// The names of a product's letters, such as `e` and `h`.
-    pub fn names(&self, product: usize) -> Vec<&'static str> {
-        self.products[product].letters.iter().map(|&index| self.letters[index].name).collect()
+    pub fn names(&self, product: usize) -> Vec<Cow<'static, str>> {
+        self.products[product].letters.iter().map(|&index| self.letters[index].name.into()).collect()
     }
 }
 

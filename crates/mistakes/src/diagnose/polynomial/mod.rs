@@ -70,7 +70,7 @@ pub fn explain(samples: &[Sample]) -> Vec<Explanation> {
     while let Some(key) = best_shared_key(&open) {
         let (covered, rest): (Vec<Suspect>, Vec<Suspect>) =
             open.into_iter().partition(|suspect| suspect.full().any(|candidate| candidate.guess.key() == key));
-        explanations.push(shared(&covered, key));
+        explanations.push(shared(&covered, &key));
         open = rest;
     }
     let (hopeless, open): (Vec<Suspect>, Vec<Suspect>) =
@@ -225,8 +225,8 @@ fn exchanged_inputs(study: &Study) -> Vec<Candidate> {
             formula.polynomial(&inputs)
         })?;
         Some(Candidate {
-            guess: Guess::Exchange(exchange.key),
-            details: vec![PolynomialDetail::Exchange { key: exchange.key, of_edges: false }],
+            guess: Guess::Exchange(exchange.key.into()),
+            details: vec![PolynomialDetail::Exchange { key: exchange.key.into(), of_edges: false }],
             cost: exchange.cost + if scaled { 1.5 } else { 0.0 },
             reproduced,
             general: true,
@@ -274,8 +274,8 @@ fn unexplained(hopeless: &[Suspect]) -> Option<Explanation> {
 
 /// The key of general guesses that reproduces all samples of the most polynomials, among equals the likeliest; a
 /// polynomial's own likeliest guess counts for that polynomial. `None` if nothing reproduces all samples of any.
-fn best_shared_key(open: &[Suspect]) -> Option<&'static str> {
-    let mut keys: BTreeMap<&'static str, (usize, f64)> = BTreeMap::new();
+fn best_shared_key(open: &[Suspect]) -> Option<String> {
+    let mut keys: BTreeMap<&str, (usize, f64)> = BTreeMap::new();
     for suspect in open {
         let mut seen: Vec<&str> = Vec::new();
         for candidate in suspect.full().filter(|candidate| candidate.general) {
@@ -288,7 +288,7 @@ fn best_shared_key(open: &[Suspect]) -> Option<&'static str> {
         }
     }
     let best = keys.into_iter().max_by(|one, two| one.1.0.cmp(&two.1.0).then(two.1.1.total_cmp(&one.1.1)))?;
-    (best.1.0 > 1).then_some(best.0)
+    (best.1.0 > 1).then(|| best.0.to_owned())
 }
 
 /// One explanation for several polynomials.

@@ -33,8 +33,10 @@ impl Trial<'_> {
     fn told(&self, letters: &[Letter]) -> Stand {
         match self {
             Self::Scaled(factor) => Stand::Scaled(*factor),
-            Self::Letter(other) => Stand::Letter(letters[*other].name),
-            Self::Dot(one, two, sign) => Stand::Dot { vectors: [one.name, two.name], negated: *sign < 0.0 },
+            Self::Letter(other) => Stand::Letter(letters[*other].name.into()),
+            Self::Dot(one, two, sign) => {
+                Stand::Dot { vectors: [one.name, two.name].map(Into::into), negated: *sign < 0.0 }
+            }
             Self::One => Stand::One,
         }
     }
@@ -87,7 +89,7 @@ fn in_formula(study: &Study, formula: &Formula, reading: Reading) -> Vec<Candida
             let stand = trial.told(formula.letters);
             found.push(Candidate {
                 guess: Guess::Quantity(trial.guess()),
-                details: vec![PolynomialDetail::StandsFor { reading, letter: letter.name, stand }],
+                details: vec![PolynomialDetail::StandsFor { reading, letter: letter.name.into(), stand }],
                 cost: trial.cost() + if rescaled { 2.0 } else { 0.0 } + 0.1 * reading.number as f64,
                 reproduced,
                 general: false,

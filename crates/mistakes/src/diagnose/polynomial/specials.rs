@@ -8,8 +8,8 @@ pub(super) fn candidates(study: &Study) -> Vec<Candidate> {
     let of = |special: &Special| {
         let (reproduced, scaled) = study.count(|case| (special.polynomial)(&case.inputs))?;
         Some(Candidate {
-            guess: Guess::Special(special.key),
-            details: vec![PolynomialDetail::Special(special.key)],
+            guess: Guess::Special(special.key.into()),
+            details: vec![PolynomialDetail::Special(special.key.into())],
             cost: if scaled { 3.5 } else { 2.5 },
             reproduced,
             general: true,

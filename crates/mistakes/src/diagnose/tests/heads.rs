@@ -1,6 +1,7 @@
 //! What several traces say together, over made-up lists of what each says.
 use crate::{
     assignments::t2m2::Subject,
+    diagnose::is_named_in,
     diagnose::{
         About, Explanation, Guess, NanStage, NotFinite, OfPolynomials, QuantityGuess, StageFault, WrongMotion,
         WrongVectors, settled, several,
@@ -49,7 +50,7 @@ fn stage(fault: StageFault) -> Explanation {
 /// The words of all heads, each with the number of traces that agree.
 fn heads(traces: &[Vec<Explanation>]) -> Vec<(String, usize)> {
     let heads = several(traces.iter().map(Vec::as_slice), &[]);
-    let count = |head: &Explanation| traces.iter().filter(|list| head.is_named_in(list)).count();
+    let count = |head: &Explanation| traces.iter().filter(|list| is_named_in(head, list)).count();
     heads.iter().map(|head| (head.said(), count(head))).collect()
 }
 

@@ -1,4 +1,5 @@
 //! Programs with several mistakes, asked about on the probe scenes.
+use super::naming::is_in_other_words;
 use super::{About, Explanation, explain, explain_kept, probe_scenes, several};
 use crate::student::{self, Row, Student};
 use fosssim_judge::{
@@ -25,7 +26,7 @@ fn a_mistake_beside_another_is_told_once() {
         explain(&scene, &student::trace(&scene, author).unwrap_or_else(|(bytes, _)| bytes))
     });
     for list in &explained {
-        let twice = |one: &&Explanation| rows.iter().any(|row| one.is_in_other_words(row));
+        let twice = |one: &&Explanation| rows.iter().any(|row| is_in_other_words(one, row));
         let named = list.iter().filter(|one| one.key == rows[0].id).chain(list.iter().filter(twice)).count();
         assert!(named <= 1, "{list:#?}");
     }

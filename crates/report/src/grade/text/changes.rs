@@ -4,7 +4,7 @@ use crate::{
     number::counted,
     style::{Look, Style},
 };
-use fosssim_grading::{Grade, SceneGrade, Verdict};
+use fosssim_findings::{Grade, SceneGrade, Verdict};
 use std::collections::BTreeMap;
 
 /// The greatest number of scenes that are named.

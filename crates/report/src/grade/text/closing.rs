@@ -7,7 +7,7 @@ use crate::{
     table::{Align, Cell, Table},
     words,
 };
-use fosssim_grading::{Grade, GroupGrade, SceneGrade, Verdict};
+use fosssim_findings::{Grade, GroupGrade, SceneGrade, Verdict};
 use std::fmt::Write;
 
 /// The greatest number of groups that are listed; with more of them, those that are not accepted come first.

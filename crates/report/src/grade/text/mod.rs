@@ -10,7 +10,7 @@ pub use table::{shortened, table};
 
 use super::{super::style::Style, no_points, one_line, plain, points, printed};
 use crate::{number::counted, style::Look, words};
-use fosssim_grading::{Grade, SceneGrade, Verdict};
+use fosssim_findings::{Grade, SceneGrade, Verdict};
 use fosssim_judge::Rules;
 use std::fmt::Write;
 

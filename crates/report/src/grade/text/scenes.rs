@@ -9,7 +9,7 @@ use crate::{
     words,
     wrap::columns,
 };
-use fosssim_grading::{Grade, GroupGrade, SceneGrade, Verdict};
+use fosssim_findings::{Grade, GroupGrade, SceneGrade, Verdict};
 use std::{collections::BTreeMap, fmt::Write};
 
 /// The greatest number of scenes named that end the same way.

@@ -4,7 +4,7 @@ use crate::{
     style::{Look, Style},
     wrap::columns,
 };
-use fosssim_grading::{Grade, GroupGrade};
+use fosssim_findings::{Grade, GroupGrade};
 
 /// A column's cells, its heading first, and where they stand.
 struct Column {

@@ -1,7 +1,7 @@
 //! What is said of wrong polynomials.
 use super::{capitalised, letters};
 use fosssim_mistakes::{
-    assignments::t2m2::{Letter, Reading, Subject, find_exchange, find_special},
+    assignments::t2m2::{Letter, Reading, Subject, find_exchange, find_special, letter},
     diagnose::{CoefficientGuess, Guess, ListGuess, OfPolynomials, PolynomialDetail, QuantityGuess, Stand, Weight},
 };
 
@@ -26,8 +26,8 @@ pub(super) fn what(subjects: &[Subject], found: &OfPolynomials) -> String {
 fn of_guess(guess: &Guess) -> String {
     match guess {
         Guess::List(guess) => of_list(*guess).to_owned(),
-        Guess::Exchange(key) => find_exchange(key).map_or(*key, |exchange| exchange.sentence).to_owned(),
-        Guess::Special(key) => find_special(key).map_or(*key, |special| special.sentence).to_owned(),
+        Guess::Exchange(key) => find_exchange(key).map_or(key.as_ref(), |exchange| exchange.sentence).to_owned(),
+        Guess::Special(key) => find_special(key).map_or(key.as_ref(), |special| special.sentence).to_owned(),
         Guess::Quantity(guess) => of_quantity(*guess).to_owned(),
         Guess::Coefficients { powers, wrong } => {
             let names: Vec<&str> = powers.iter().map(|power| power_name(*power)).collect();
@@ -119,9 +119,9 @@ pub(super) fn detail(detail: &PolynomialDetail) -> String {
         PolynomialDetail::FirstOnly(length) => format!("only the first {length} coefficients are there"),
         PolynomialDetail::Displacements(factor) => format!("every displacement is multiplied by {factor}"),
         PolynomialDetail::Exchange { key, of_edges } => {
-            letters::radii(find_exchange(key).map_or(*key, |exchange| exchange.detail), *of_edges)
+            letters::radii(find_exchange(key).map_or(key.as_ref(), |exchange| exchange.detail), *of_edges)
         }
-        PolynomialDetail::Special(key) => find_special(key).map_or(*key, |special| special.detail).to_owned(),
+        PolynomialDetail::Special(key) => find_special(key).map_or(key.as_ref(), |special| special.detail).to_owned(),
         PolynomialDetail::StandsFor { reading, letter, stand } => stands_for(*reading, letter, stand),
         PolynomialDetail::Factor { power, factor } if *factor == 0.0 => format!("t^{power}: the coefficient is 0"),
         PolynomialDetail::Factor { power, factor } => format!("t^{power}: multiplied by {factor}, expected 1"),
@@ -136,7 +136,7 @@ pub(super) fn detail(detail: &PolynomialDetail) -> String {
 
 /// What a letter means; nothing where its name says it.
 fn meaning(reading: Reading, name: &str) -> Option<&'static str> {
-    reading.letter(name).map(|Letter { meaning, .. }| *meaning).filter(|meaning| !meaning.is_empty())
+    letter(reading, name).map(|Letter { meaning, .. }| *meaning).filter(|meaning| !meaning.is_empty())
 }
 
 /// A letter with what it means.

@@ -11,6 +11,7 @@ use fosssim_mistakes::{
     student::CATALOGUE,
 };
 use fosssim_model::sim::PairKind;
+use std::borrow::Cow;
 
 const EDGE: Option<PairKind> = Some(PairKind::ParticleEdge);
 const TWO: Ratios = Ratios::All(2.0);
@@ -70,8 +71,8 @@ fn guesses() -> Vec<Guess> {
         .chain(quantities.map(Guess::Quantity))
         .chain(coefficients.map(|wrong| Guess::Coefficients { powers: vec![3, 2], wrong }))
         .chain((0..=5).map(of_power))
-        .chain(EXCHANGES.iter().map(|exchange| Guess::Exchange(exchange.key)))
-        .chain(SPECIALS.iter().map(|special| Guess::Special(special.key)))
+        .chain(EXCHANGES.iter().map(|exchange| Guess::Exchange(exchange.key.into())))
+        .chain(SPECIALS.iter().map(|special| Guess::Special(special.key.into())))
         .collect()
 }
 
@@ -198,11 +199,11 @@ fn lines_of_all_sorts() -> Vec<Detail> {
     let weight = |letters: &[&'static str], power| Weight {
         reading: OVERLAP,
         power,
-        letters: letters.to_vec(),
+        letters: letters.iter().map(|&letter| letter.into()).collect(),
         expected: 1.0,
         actual: -0.25,
     };
-    let stands = |letter, stand| PolynomialDetail::StandsFor { reading: OVERLAP, letter, stand };
+    let stands = |letter, stand| PolynomialDetail::StandsFor { reading: OVERLAP, letter: Cow::Borrowed(letter), stand };
     let polynomials = [
         PolynomialDetail::Logged { logged: 3, of: 4 },
         PolynomialDetail::RightUpTo(3.4e-12),
@@ -216,12 +217,12 @@ fn lines_of_all_sorts() -> Vec<Detail> {
         PolynomialDetail::LastOnly(2),
         PolynomialDetail::FirstOnly(2),
         PolynomialDetail::Displacements(100.0),
-        PolynomialDetail::Exchange { key: "first-radius-only", of_edges: true },
-        PolynomialDetail::Exchange { key: "first-radius-only", of_edges: false },
-        PolynomialDetail::Special("radius-unscaled"),
+        PolynomialDetail::Exchange { key: "first-radius-only".into(), of_edges: true },
+        PolynomialDetail::Exchange { key: "first-radius-only".into(), of_edges: false },
+        PolynomialDetail::Special("radius-unscaled".into()),
         stands("h", Stand::Scaled(0.5)),
-        stands("R^2", Stand::Letter("a")),
-        stands("d", Stand::Dot { vectors: ["x21", "d21"], negated: true }),
+        stands("R^2", Stand::Letter("a".into())),
+        stands("d", Stand::Dot { vectors: ["x21".into(), "d21".into()], negated: true }),
         stands("R^2", Stand::One),
         PolynomialDetail::Factor { power: 3, factor: 0.0 },
         PolynomialDetail::Factor { power: 3, factor: 1.5 },
@@ -282,7 +283,7 @@ fn every_finding_has_its_sentence() {
 fn a_known_mistake_is_told_by_its_row() {
     let row = find("pe-square-no-eh").expect("a row");
     let details_of_row =
-        vec![Detail::Term(row.id), Detail::Letters(vec![PairKind::ParticleEdge]), Detail::Look(row.area)];
+        vec![Detail::Term(row.id.into()), Detail::Letters(vec![PairKind::ParticleEdge]), Detail::Look(row.area)];
     let one = explanation(row.id, About::Mistake, details_of_row);
     assert_eq!(what(&one), row.sentence());
     let lines = details(&one);

@@ -199,7 +199,7 @@ fn weight(power: usize, letters: &str, actual: f64, expected: f64) -> impl Fn(&P
 /// That something stands for this letter of the assignment's formula.
 fn stands(subject: Subject, letter: &'static str, stand: Stand) -> impl Fn(&PolynomialDetail) -> bool {
     let reading = Reading { subject, number: 0 };
-    move |detail| *detail == PolynomialDetail::StandsFor { reading, letter, stand: stand.clone() }
+    move |detail| *detail == PolynomialDetail::StandsFor { reading, letter: letter.into(), stand: stand.clone() }
 }
 
 /// Exactly this.
@@ -318,7 +318,7 @@ fn a_scale_of_its_own_for_every_polynomial_hides_no_term() {
 
 #[test]
 fn one_wrong_letter_is_named() {
-    let square = Stand::Dot { vectors: ["x21", "x21"], negated: false };
+    let square = Stand::Dot { vectors: ["x21".into(), "x21".into()], negated: false };
     only(PairKind::ParticleEdge, "letter", stands(Subject::EdgeApproach, "d", square), |motion| {
         let l = letters(motion);
         let mut lists = edge_lists(motion);
@@ -346,18 +346,28 @@ fn wrong_radii_are_named() {
         ("diameters", |r1, r2| 4.0 * (r1 + r2) * (r1 + r2)),
     ];
     for (key, square) in squares {
-        only(PairKind::ParticleEdge, key, is(PolynomialDetail::Exchange { key, of_edges: true }), |motion| {
-            let PairMotion::Edge { radii: [r1, re], .. } = motion else { panic!("no edge") };
-            let mut lists = edge_lists(motion);
-            lists[0] = quartic(&Letters { s: square(*r1, *re), ..letters(motion) });
-            lists
-        });
-        only(PairKind::ParticleParticle, key, is(PolynomialDetail::Exchange { key, of_edges: false }), |motion| {
-            let PairMotion::Particles { radii: [r1, r2], .. } = motion else { panic!("no particles") };
-            let mut lists = particle_lists(motion);
-            lists[0][2] += square(*r1, *r2) - (r1 + r2) * (r1 + r2);
-            lists
-        });
+        only(
+            PairKind::ParticleEdge,
+            key,
+            is(PolynomialDetail::Exchange { key: key.into(), of_edges: true }),
+            |motion| {
+                let PairMotion::Edge { radii: [r1, re], .. } = motion else { panic!("no edge") };
+                let mut lists = edge_lists(motion);
+                lists[0] = quartic(&Letters { s: square(*r1, *re), ..letters(motion) });
+                lists
+            },
+        );
+        only(
+            PairKind::ParticleParticle,
+            key,
+            is(PolynomialDetail::Exchange { key: key.into(), of_edges: false }),
+            |motion| {
+                let PairMotion::Particles { radii: [r1, r2], .. } = motion else { panic!("no particles") };
+                let mut lists = particle_lists(motion);
+                lists[0][2] += square(*r1, *r2) - (r1 + r2) * (r1 + r2);
+                lists
+            },
+        );
     }
 }
 
@@ -491,7 +501,7 @@ fn small_slips_in_quadratics_are_named() {
         PairMotion::HalfPlane { normal, radius, .. } => (normal.dot(normal), radius * radius),
         _ => panic!("no half-plane"),
     };
-    let exchange = |key| is(PolynomialDetail::Exchange { key, of_edges: false });
+    let exchange = |key: &'static str| is(PolynomialDetail::Exchange { key: key.into(), of_edges: false });
     half_plane("no-normal-square", &exchange("no-normal-square"), &|motion, lists| {
         let (n, r) = n_square(motion);
         lists[0][2] += r - r * n;
@@ -510,7 +520,7 @@ fn small_slips_in_quadratics_are_named() {
         lists[2][1] = (one.start - three.start).dot(&(two.shift - three.shift));
         lists
     });
-    only(PairKind::ParticleEdge, "one-unscaled", is(PolynomialDetail::Special("one-unscaled")), |motion| {
+    only(PairKind::ParticleEdge, "one-unscaled", is(PolynomialDetail::Special("one-unscaled".into())), |motion| {
         let mut lists = edge_lists(motion);
         lists[2] = lists[1].iter().map(|value| -value).collect();
         lists[2][2] += 1.0;

@@ -1,14 +1,14 @@
 //! The exact form of what is wrong, as values. May give a right formula away.
-use super::fault::Changed;
-use crate::assignments::t2m2::{Reading, Subject};
-use crate::student::Area;
+use super::{area::Area, fault::Changed, reading::Reading, subject::Subject};
 use fosssim_model::sim::PairKind;
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// One line of the exact form.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Detail {
     /// The exact form of the catalogue's mistake with this key.
-    Term(&'static str),
+    Term(Cow<'static, str>),
     /// Where to look for mistakes of this part of the assignment.
     Look(Area),
     /// What the letters mean that stand in the lines before, which speak of pairs of these kinds. None where none needs
@@ -21,7 +21,7 @@ pub enum Detail {
 }
 
 /// The exact form of what is wrong with polynomials.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum PolynomialDetail {
     /// Each detection logs another number of polynomials than it should.
     Logged {
@@ -31,7 +31,7 @@ pub enum PolynomialDetail {
         of: usize,
     },
     /// They are right up to this error, relative to the size of their terms.
-    RightUpTo(f64),
+    RightUpTo(#[serde(with = "fosssim_num::written")] f64),
     /// A coefficient differs in some samples.
     Differs {
         /// Of which polynomial, where several are told about.
@@ -44,9 +44,9 @@ pub enum PolynomialDetail {
         of: usize,
     },
     /// The list holds this number alone.
-    Holds(f64),
+    Holds(#[serde(with = "fosssim_num::written")] f64),
     /// Every coefficient is this number.
-    Every(f64),
+    Every(#[serde(with = "fosssim_num::written")] f64),
     /// Every coefficient is a number of single precision.
     SinglePrecision,
     /// A polynomial stands in another one's place.
@@ -61,22 +61,22 @@ pub enum PolynomialDetail {
     /// Only this number of coefficients is there, the first ones.
     FirstOnly(usize),
     /// Every displacement carries this factor.
-    Displacements(f64),
+    Displacements(#[serde(with = "fosssim_num::written")] f64),
     /// The exact form of the exchange with this key.
     Exchange {
         /// The key.
-        key: &'static str,
+        key: Cow<'static, str>,
         /// Whether all these pairs are a particle's and an edge's, whose radii have names of their own.
         of_edges: bool,
     },
     /// The exact form of the misunderstanding with this key.
-    Special(&'static str),
+    Special(Cow<'static, str>),
     /// Something else stands for a letter of a formula.
     StandsFor {
         /// The formula.
         reading: Reading,
         /// The letter.
-        letter: &'static str,
+        letter: Cow<'static, str>,
         /// The thing in its place.
         stand: Stand,
     },
@@ -85,6 +85,7 @@ pub enum PolynomialDetail {
         /// Its power of t.
         power: usize,
         /// The factor.
+        #[serde(with = "fosssim_num::written")]
         factor: f64,
     },
     /// No simple change explains a coefficient.
@@ -99,16 +100,16 @@ pub enum PolynomialDetail {
 }
 
 /// The value in place of a letter of a formula.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Stand {
     /// The letter itself with this factor.
-    Scaled(f64),
+    Scaled(#[serde(with = "fosssim_num::written")] f64),
     /// Another letter of the formula.
-    Letter(&'static str),
+    Letter(Cow<'static, str>),
     /// A dot product of vectors that a detection has at hand.
     Dot {
         /// The vectors' names.
-        vectors: [&'static str; 2],
+        vectors: [Cow<'static, str>; 2],
         /// Whether its sign is the other one.
         negated: bool,
     },
@@ -117,22 +118,24 @@ pub enum Stand {
 }
 
 /// A product of letters in a coefficient, with a wrong weight.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Weight {
     /// The formula whose letters it takes, besides some that do not belong there.
     pub reading: Reading,
     /// The coefficient's power of t.
     pub power: usize,
     /// The names of its letters.
-    pub letters: Vec<&'static str>,
+    pub letters: Vec<Cow<'static, str>>,
     /// The weight that it should have.
+    #[serde(with = "fosssim_num::written")]
     pub expected: f64,
     /// The weight that it has.
+    #[serde(with = "fosssim_num::written")]
     pub actual: f64,
 }
 
 /// The exact form of what is wrong with a stage.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum StageDetail {
     /// The order of the pairs.
     Order,
@@ -143,18 +146,20 @@ pub enum StageDetail {
         /// How many contacts.
         count: usize,
         /// The first time.
+        #[serde(with = "fosssim_num::written")]
         low: f64,
         /// The last one.
+        #[serde(with = "fosssim_num::written")]
         high: f64,
     },
     /// Contact vectors along the right ones, over what they should be.
     Vectors(Ratios),
     /// By how much of their length contact vectors are off at most.
-    VectorsOff(f64),
+    VectorsOff(#[serde(with = "fosssim_num::written")] f64),
     /// Times of impact over what they should be.
     Times(Ratios),
     /// By how much times of impact are off, in steps.
-    TimesOff(f64),
+    TimesOff(#[serde(with = "fosssim_num::written")] f64),
     /// The use of times of impact.
     TimesUsed,
     /// Detection passes of impulse rounds.
@@ -199,7 +204,7 @@ pub enum StageDetail {
 }
 
 /// By how much a contact changes something.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Amount {
     /// It should not change.
     Unwanted,
@@ -210,10 +215,10 @@ pub enum Amount {
 }
 
 /// Ratios of what is to what should be.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Ratios {
     /// All are this.
-    All(f64),
+    All(#[serde(with = "fosssim_num::written")] f64),
     /// They lie between the first and the second.
-    Between(f64, f64),
+    Between(#[serde(with = "fosssim_num::written")] f64, #[serde(with = "fosssim_num::written")] f64),
 }

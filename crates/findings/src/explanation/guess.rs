@@ -1,15 +1,17 @@
 //! Guesses about wrong polynomials, without what would give a formula away
 //! ([`PolynomialDetail`](super::PolynomialDetail)).
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// A guess about wrong polynomials.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Guess {
     /// Something about the whole list of coefficients.
     List(ListGuess),
     /// Another input stands where one belongs: the exchange of this key, which the assignment has words for.
-    Exchange(&'static str),
+    Exchange(Cow<'static, str>),
     /// A misunderstanding with a formula of its own: the one of this key, which the assignment has words for.
-    Special(&'static str),
+    Special(Cow<'static, str>),
     /// Something about one quantity of the formula.
     Quantity(QuantityGuess),
     /// Something about the coefficients of some powers of t.
@@ -23,18 +25,20 @@ pub enum Guess {
 
 impl Guess {
     /// Its key as claims have it, which may be the name of a formula: a digest.
-    pub(super) fn word(&self) -> String {
+    #[must_use]
+    pub fn word(&self) -> String {
         format!("{:08x}", digest(self.key()) >> 32)
     }
 
     /// Whether it may be made of several polynomials, as one mistake.
     #[must_use]
-    pub(super) const fn is_general(&self) -> bool {
+    pub const fn is_general(&self) -> bool {
         matches!(self, Self::List(_) | Self::Exchange(_) | Self::Special(_))
     }
 
     /// The explanation's key.
-    pub(super) const fn key(&self) -> &'static str {
+    #[must_use]
+    pub fn key(&self) -> &str {
         match self {
             Self::List(guess) => guess.key(),
             Self::Exchange(key) | Self::Special(key) => key,
@@ -46,12 +50,13 @@ impl Guess {
 }
 
 /// A digest of a text, the same on every machine (FNV-1a).
-pub(super) fn digest(text: &str) -> u64 {
+#[must_use]
+pub fn digest(text: &str) -> u64 {
     text.bytes().fold(0xcbf2_9ce4_8422_2325, |digest, byte| (digest ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
 /// A guess about a whole list of coefficients.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ListGuess {
     /// All are zero, or none is there.
     AllZero,
@@ -110,7 +115,7 @@ impl ListGuess {
 }
 
 /// A guess about one quantity of a formula, in all its places.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum QuantityGuess {
     /// Its sign.
     Sign,
@@ -123,7 +128,7 @@ pub enum QuantityGuess {
 }
 
 /// A guess about coefficients.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum CoefficientGuess {
     /// Several are wrong, each for itself.
     Several,

@@ -16,7 +16,7 @@ pub struct BookFindings {
 
 impl BookFindings {
     /// Keeps a finding if it is the first, or the first of its kind.
-    pub(super) fn keep_first(&mut self, first: &Finding) {
+    pub fn keep_first(&mut self, first: &Finding) {
         if self.first_divergence.is_none() {
             self.first_divergence = Some(*first);
         }
@@ -26,7 +26,7 @@ impl BookFindings {
     }
 
     /// Brings the examples into their order, when all are there.
-    pub(super) fn conclude(&mut self) {
+    pub fn conclude(&mut self) {
         self.examples.sort_by_key(Finding::kind);
     }
 }

@@ -2,9 +2,11 @@
 //!
 //! The parity book is always computed, because everything else builds on its replay; the fair one only on demand.
 use super::{book_findings::BookFindings, fair, outcome::Outcome, parity::Overall};
+use serde::{Deserialize, Serialize};
 
 /// A rule book.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Book {
     /// The original's rules (oracle-behaviour.md 4 to 6).
     #[default]
@@ -25,7 +27,8 @@ impl Book {
 }
 
 /// Which rule books are asked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Rules {
     /// The original's alone.
     Parity,
@@ -73,7 +76,7 @@ impl Rules {
 }
 
 /// The verdict of one book, in words that both share.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Ruling {
     /// Everything is right.
     Accepted,
@@ -170,8 +173,7 @@ mod tests {
         outcome.parity.overall = Overall::Failed;
         assert_eq!(outcome.ruling(Book::Fair), Ruling::WrongAnswer);
         assert_eq!(outcome.findings_by(Book::Fair).wrong_steps, 2);
-        let mut judgement = fair::Judgement::default();
-        judgement.verdict = fair::FairVerdict::Accepted;
+        let judgement = fair::Judgement { verdict: fair::FairVerdict::Accepted, ..Default::default() };
         outcome.fair = Some(Box::new(judgement));
         assert_eq!(outcome.ruling(Book::Fair), Ruling::Accepted);
         assert_eq!(outcome.findings_by(Book::Fair).wrong_steps, 0);

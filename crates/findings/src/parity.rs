@@ -1,9 +1,11 @@
 //! What the original's rule book says of a trace: lock-step comparison (oracle-behaviour.md 4 to 6).
 use super::book_findings::BookFindings;
 use fosssim_num::tolerances::{PARITY_ACCUMULATED, PARITY_MAXIMUM};
+use serde::{Deserialize, Serialize};
 
 /// The original's overall verdict.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Overall {
     /// All five conditions hold.
     Passed,
@@ -15,15 +17,19 @@ pub enum Overall {
 }
 
 /// The four residuals (oracle-behaviour.md 6.3), in scene units.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Residuals {
     /// Sum of all position residuals.
+    #[serde(rename = "accumulated_position_residual", with = "fosssim_num::written")]
     pub accumulated_position: f64,
     /// Sum of all velocity residuals.
+    #[serde(rename = "accumulated_velocity_residual", with = "fosssim_num::written")]
     pub accumulated_velocity: f64,
     /// Largest position residual; NaN never raises it.
+    #[serde(rename = "maximum_position_residual", with = "fosssim_num::written")]
     pub maximum_position: f64,
     /// Largest velocity residual; NaN never raises it.
+    #[serde(rename = "maximum_velocity_residual", with = "fosssim_num::written")]
     pub maximum_velocity: f64,
 }
 
@@ -56,7 +62,7 @@ pub struct Judgement {
 
 impl Judgement {
     /// Draws the verdict, when nothing stopped judging (oracle-behaviour.md 6).
-    pub(super) fn conclude(&mut self, is_stopped: bool, is_complete: bool) {
+    pub fn conclude(&mut self, is_stopped: bool, is_complete: bool) {
         self.findings.conclude();
         if is_stopped {
             return;

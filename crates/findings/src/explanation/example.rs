@@ -1,10 +1,11 @@
 //! A small example of a mistake.
-use crate::assignments::t2m2::{Input, Subject};
-use fosssim_judge::Role;
+use super::{input::Input, subject::Subject};
+use crate::finding::Role;
 use fosssim_model::sim::{Pair, PairKind};
+use serde::{Deserialize, Serialize};
 
 /// A small instance of the mistake.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Example {
     /// Step, from 1.
     pub step: u32,
@@ -13,13 +14,15 @@ pub struct Example {
     /// The inputs, in the assignment's notation.
     pub given: Vec<ExampleValue>,
     /// The expected result.
+    #[serde(with = "fosssim_num::written")]
     pub expected: Vec<f64>,
     /// The actual result.
+    #[serde(with = "fosssim_num::written")]
     pub actual: Vec<f64>,
 }
 
 /// Where in its step an example lies, and so what its numbers are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ExamplePlace {
     /// A polynomial whose inputs are given: its coefficients.
     Given {
@@ -68,7 +71,7 @@ pub enum ExamplePlace {
 }
 
 /// A record of a step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum StepRecord {
     /// The one in the middle.
     Mid,
@@ -77,10 +80,12 @@ pub enum StepRecord {
 }
 
 /// An input of an example.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ExampleValue {
     /// Which.
+    #[serde(rename = "name")]
     pub input: Input,
     /// Its components.
+    #[serde(with = "fosssim_num::written")]
     pub value: Vec<f64>,
 }

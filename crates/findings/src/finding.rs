@@ -4,9 +4,11 @@ use fosssim_model::{
     trace::LoggedImpulse,
 };
 use fosssim_num::polynomial::Polynomial;
+use serde::{Deserialize, Serialize};
 
 /// The kinds of findings, in the order in which reports list them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum FindingKind {
     /// A collision of the reference is not in the trace.
     MissedCollision,
@@ -63,29 +65,6 @@ impl FindingKind {
         Self::MixedForms,
     ];
 
-    /// The key under which JSON and other machine-readable reports know it.
-    #[must_use]
-    pub const fn key(self) -> &'static str {
-        match self {
-            Self::MissedCollision => "missed_collision",
-            Self::SuperfluousCollision => "superfluous_collision",
-            Self::WrongNormal => "wrong_normal",
-            Self::PolynomialCount => "polynomial_count",
-            Self::PolynomialDegree => "polynomial_degree",
-            Self::VanishingPolynomial => "vanishing_polynomial",
-            Self::Coefficient => "coefficient",
-            Self::Position => "position",
-            Self::Velocity => "velocity",
-            Self::ContactTime => "contact_time",
-            Self::RepeatedCollision => "repeated_collision",
-            Self::PassPositions => "pass_positions",
-            Self::RecordsDiffer => "records_differ",
-            Self::ImpossibleLog => "impossible_log",
-            Self::TrimmedDecision => "trimmed_decision",
-            Self::MixedForms => "mixed_forms",
-        }
-    }
-
     /// The original's message for it; positions and velocities have none, they only raise residuals, and what it does
     /// not look at has none either.
     #[must_use]
@@ -112,7 +91,7 @@ impl FindingKind {
 }
 
 /// One thing that is wrong.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Finding {
     /// The step, from 1.
     pub step: u32,
@@ -148,7 +127,7 @@ impl Finding {
 }
 
 /// A fault, with expected (reference) and actual (trace) values.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum FindingDetail {
     /// The reference collides here, the trace does not.
     MissedCollision {
@@ -167,6 +146,7 @@ pub enum FindingDetail {
         /// The trace's first collision of the same pair.
         actual: LoggedImpulse,
         /// Euclidean distance of the normals.
+        #[serde(with = "fosssim_num::written")]
         residual: f64,
     },
     /// Another number of polynomials.
@@ -214,10 +194,13 @@ pub enum FindingDetail {
         /// The highest power of t whose coefficient differs once the factor on which most agree is taken out.
         power: usize,
         /// The reference's coefficient times that factor.
+        #[serde(with = "fosssim_num::written")]
         expected: f64,
         /// The trace's coefficient.
+        #[serde(with = "fosssim_num::written")]
         actual: f64,
         /// Their distance.
+        #[serde(with = "fosssim_num::written")]
         residual: f64,
         /// The values that the original compares; `None` from the fair rules.
         rescaled: Option<Rescaled>,
@@ -231,10 +214,13 @@ pub enum FindingDetail {
         /// The particle.
         particle: usize,
         /// The reference's position (x, y).
+        #[serde(with = "fosssim_num::written")]
         expected: [f64; 2],
         /// The trace's position (x, y).
+        #[serde(with = "fosssim_num::written")]
         actual: [f64; 2],
         /// Euclidean distance.
+        #[serde(with = "fosssim_num::written")]
         residual: f64,
     },
     /// A velocity differs by more than the bound of the maximum residual.
@@ -242,10 +228,13 @@ pub enum FindingDetail {
         /// The particle.
         particle: usize,
         /// The reference's velocity (x, y).
+        #[serde(with = "fosssim_num::written")]
         expected: [f64; 2],
         /// The trace's velocity (x, y).
+        #[serde(with = "fosssim_num::written")]
         actual: [f64; 2],
         /// Euclidean distance.
+        #[serde(with = "fosssim_num::written")]
         residual: f64,
     },
     /// The time of impact is not where the polynomials turn positive (fair rules).
@@ -288,8 +277,10 @@ pub enum FindingDetail {
         /// The pair's first polynomial.
         place: PolynomialPlace,
         /// The time of impact without the loss.
+        #[serde(with = "fosssim_num::written")]
         expected: f64,
         /// The time of impact that the trace's polynomials have.
+        #[serde(with = "fosssim_num::written")]
         actual: f64,
     },
     /// A state from which nothing can be right or wrong any more: without numbers, or of another size altogether than
@@ -298,8 +289,10 @@ pub enum FindingDetail {
         /// The particle.
         particle: usize,
         /// Its position (x, y).
+        #[serde(with = "fosssim_num::written")]
         position: [f64; 2],
         /// Its velocity (x, y).
+        #[serde(with = "fosssim_num::written")]
         velocity: [f64; 2],
     },
     /// The approach polynomial has the other of its two accepted forms than before (fair rules).
@@ -309,22 +302,90 @@ pub enum FindingDetail {
     },
 }
 
+impl FindingDetail {
+    /// Its place in the step.
+    #[must_use]
+    pub const fn place(&self) -> FindingPlace {
+        match self {
+            Self::MissedCollision { expected }
+            | Self::WrongNormal { expected, .. }
+            | Self::ContactTime { expected, .. } => FindingPlace::Pair(expected.pair),
+            Self::PolynomialDegree { place, .. }
+            | Self::VanishingPolynomial { place, .. }
+            | Self::Coefficient { place, .. }
+            | Self::PassPositions { place }
+            | Self::TrimmedDecision { place, .. }
+            | Self::TrimmedTime { place, .. }
+            | Self::MixedForms { place } => FindingPlace::Polynomial(*place),
+            Self::Position { particle, .. } | Self::Velocity { particle, .. } | Self::BeyondReach { particle, .. } => {
+                FindingPlace::Particle(*particle)
+            }
+            Self::SuperfluousCollision { actual } | Self::RepeatedCollision { actual } => {
+                FindingPlace::Objects(actual.first, actual.second)
+            }
+            Self::PolynomialCount { .. }
+            | Self::PassCount { .. }
+            | Self::RecordsDiffer { .. }
+            | Self::ImpossibleLog => FindingPlace::Step,
+        }
+    }
+
+    /// The pair that it is about; none where it is about none, or the trace names no such pair.
+    #[must_use]
+    pub fn pair(&self) -> Option<Pair> {
+        match (self, self.place()) {
+            (Self::SuperfluousCollision { actual } | Self::RepeatedCollision { actual }, _) => actual.pair(),
+            (_, FindingPlace::Pair(pair)) => Some(pair),
+            (_, FindingPlace::Polynomial(place)) => Some(place.pair),
+            _ => None,
+        }
+    }
+
+    /// The detection pass that it is about.
+    #[must_use]
+    pub const fn pass(&self) -> Option<Pass> {
+        match self.place() {
+            FindingPlace::Polynomial(place) => Some(place.pass),
+            _ => None,
+        }
+    }
+}
+
+/// Where in its step a finding lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum FindingPlace {
+    /// In no place that could be named.
+    Step,
+    /// At a pair of the scene.
+    Pair(Pair),
+    /// At a polynomial.
+    Polynomial(PolynomialPlace),
+    /// At a particle.
+    Particle(usize),
+    /// At the objects with these numbers, of which the trace alone speaks.
+    Objects(i32, i32),
+}
+
 /// A coefficient as the original compares it: rescaled by sums of moduli, so that one wrong coefficient moves all
 /// others.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Rescaled {
     /// The highest power of t whose coefficient is beyond the original's bound.
+    #[serde(rename = "coefficient")]
     pub power: usize,
     /// The reference's coefficient, rescaled to the trace's magnitude.
+    #[serde(with = "fosssim_num::written")]
     pub expected: f64,
     /// The trace's coefficient.
+    #[serde(with = "fosssim_num::written")]
     pub actual: f64,
     /// Their distance.
+    #[serde(with = "fosssim_num::written")]
     pub residual: f64,
 }
 
 /// A part of a step's collision handling.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Part {
     /// The part before the mid record: the only pass, or the impulse rounds.
     Impulses,
@@ -333,7 +394,7 @@ pub enum Part {
 }
 
 /// The part in which two records of a step contradict each other.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum RecordPart {
     /// Positions or velocities.
     State,
@@ -344,7 +405,7 @@ pub enum RecordPart {
 }
 
 /// Which polynomial of a step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PolynomialPlace {
     /// The detection pass.
     pub pass: Pass,
@@ -357,7 +418,8 @@ pub struct PolynomialPlace {
 }
 
 /// The meaning of a detection polynomial that is positive (collisions.md 2).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Role {
     /// The objects overlap (the distance is below the sum of radii).
     Overlap,
@@ -378,17 +440,6 @@ impl Role {
             (PairKind::ParticleEdge, 1) => Self::AlphaAboveZero,
             (PairKind::ParticleEdge, 2) => Self::AlphaBelowOne,
             _ => Self::Approach,
-        }
-    }
-
-    /// The key in machine-readable reports.
-    #[must_use]
-    pub const fn key(self) -> &'static str {
-        match self {
-            Self::Overlap => "overlap",
-            Self::AlphaAboveZero => "alpha_above_zero",
-            Self::AlphaBelowOne => "alpha_below_one",
-            Self::Approach => "approach",
         }
     }
 }

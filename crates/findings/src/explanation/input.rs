@@ -1,7 +1,9 @@
 //! The inputs of a detection, as the assignment's notation calls them.
+use serde::{Deserialize, Serialize};
 
 /// An input of a detection.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Input {
     /// Where the first body is at the start of the step; of an edge and a particle, the particle.
     X1,
@@ -34,24 +36,6 @@ pub enum Input {
 }
 
 impl Input {
-    /// All of them.
-    pub const ALL: [Self; 14] = [
-        Self::X1,
-        Self::X2,
-        Self::X3,
-        Self::Dx1,
-        Self::Dx2,
-        Self::Dx3,
-        Self::R1,
-        Self::R2,
-        Self::Re,
-        Self::X,
-        Self::Dx,
-        Self::P,
-        Self::N,
-        Self::R,
-    ];
-
     /// Its letter.
     #[must_use]
     pub const fn letter(self) -> &'static str {

@@ -1,19 +1,33 @@
 //! What an explanation says, as values: sentences are made of it where reports are.
-use super::{
-    about::{About, OfPolynomials},
-    detail::Detail,
-    example::Example,
-    fault::{self, StageFault, StepStage},
+pub mod about;
+mod area;
+pub mod detail;
+pub mod example;
+pub mod fault;
+pub mod guess;
+mod input;
+mod reading;
+mod subject;
+
+pub use about::{About, OfPolynomials};
+pub use area::Area;
+pub use detail::{Amount, Detail, PolynomialDetail, Ratios, StageDetail, Stand, Weight};
+pub use example::{Example, ExamplePlace, ExampleValue, StepRecord};
+pub use fault::{
+    Changed, LoopEnd, NanStage, NotFinite, Quantity, StageFault, StepStage, WrongDecisions, WrongGeometric,
+    WrongMotion, WrongNumber, WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
 };
-use crate::{
-    assignments::t2m2::Subject,
-    student::{Row, find},
-};
+pub use guess::{CoefficientGuess, Guess, ListGuess, QuantityGuess};
+pub use input::Input;
+pub use reading::Reading;
+pub use subject::Subject;
+
 use fosssim_model::sim::PairKind;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// A likely mistake, with the evidence for it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Explanation {
     /// A stable key for machines: the id of a known mistake (`pe-square-no-eh`) or of a general finding (`reversed`).
     pub key: String,
@@ -41,23 +55,24 @@ impl Explanation {
     /// The key of the question whether a trace is of its scene, which is no explanation: nothing else is said then.
     pub const OTHER_SCENE: &'static str = "other-scene";
 
-    /// The key of stages that are still empty, told as one ([`several`](super::several)).
+    /// The key of stages that are still empty, told as one.
     pub const UNFINISHED: &'static str = "unfinished";
 
     /// The key of pairs that are looked at in another order.
-    pub const ORDER: &'static str = fault::ORDER;
+    pub const ORDER: &'static str = StageFault::Order.key();
 
     /// The key of what is no finite number.
     pub const NOT_FINITE: &'static str = "not-a-number";
 
     /// The key of what nothing is known to explain.
-    pub(super) const UNEXPLAINED: &'static str = "unexplained";
+    pub const UNEXPLAINED: &'static str = "unexplained";
 
     /// The key of what is right but for too much round-off.
     pub const NEARLY_RIGHT: &'static str = "nearly-right";
 
     /// An explanation without any evidence for it yet.
-    pub(super) fn about(key: impl Into<String>, about: About) -> Self {
+    #[must_use]
+    pub fn about(key: impl Into<String>, about: About) -> Self {
         Self {
             key: key.into(),
             about,
@@ -72,12 +87,14 @@ impl Explanation {
     }
 
     /// The question whether a trace is of its scene; `has_length` says that at least the number of records is right.
-    pub(super) fn of_other_scene(has_length: bool) -> Self {
+    #[must_use]
+    pub fn of_other_scene(has_length: bool) -> Self {
         Self::about(Self::OTHER_SCENE, About::Scene { has_length })
     }
 
     /// These polynomials are wrong, and no exact form of what is found holds in most traces.
-    pub(super) fn of_wrong(subjects: Vec<Subject>, found: OfPolynomials) -> Self {
+    #[must_use]
+    pub fn of_wrong(subjects: Vec<Subject>, found: OfPolynomials) -> Self {
         Self::about(Self::UNEXPLAINED, About::Polynomials { subjects, found })
     }
 
@@ -107,7 +124,7 @@ impl Explanation {
 
     /// Whether it says that polynomials are not handed over.
     #[must_use]
-    pub(super) fn is_of_missing(&self) -> bool {
+    pub fn is_of_missing(&self) -> bool {
         matches!(self.about, About::Polynomials { found: OfPolynomials::Missing, .. })
     }
 
@@ -125,7 +142,8 @@ impl Explanation {
     }
 
     /// The polynomials that it is about, as far as it is about polynomials.
-    pub(super) fn subjects(&self) -> Vec<Subject> {
+    #[must_use]
+    pub fn subjects(&self) -> Vec<Subject> {
         if let About::Polynomials { subjects, .. } = &self.about {
             return subjects.clone();
         }
@@ -135,7 +153,8 @@ impl Explanation {
     }
 
     /// For each of its polynomials, all that would make it: the guess or the known mistake, and the whole word.
-    pub(super) fn claims_by_subject(&self) -> BTreeMap<&str, Vec<(&str, &str)>> {
+    #[must_use]
+    pub fn claims_by_subject(&self) -> BTreeMap<&str, Vec<(&str, &str)>> {
         let mut all: BTreeMap<&str, Vec<(&str, &str)>> = BTreeMap::new();
         // What it tells and what reproduces only a part makes nothing.
         let is_part =
@@ -151,61 +170,6 @@ impl Explanation {
         all
     }
 
-    /// Whether these explanations of a trace name it, told or as not to be told apart; of what is not written yet, one
-    /// stage.
-    #[must_use]
-    pub fn is_named_in(&self, explanations: &[Self]) -> bool {
-        if self.is_unfinished() {
-            let is_stage = |key: &String| self.same_as.contains(key);
-            return explanations.iter().any(|one| is_stage(&one.key) || one.same_as.iter().any(is_stage));
-        }
-        if let (true, About::Polynomials { subjects, found }) = (self.is_unexplained(), &self.about) {
-            let says_so = |one: &Self| match (found, &one.about) {
-                (OfPolynomials::Guess(guess), About::Polynomials { found: OfPolynomials::Guess(theirs), .. }) => {
-                    guess == theirs
-                }
-                (found, _) => *found == OfPolynomials::Nothing,
-            };
-            let is_about = |one: &Self| one.subjects().iter().any(|subject| subjects.contains(subject));
-            return explanations.iter().any(|one| is_about(one) && says_so(one));
-        }
-        let said = self.said();
-        explanations.iter().any(|one| one.bears_out(&said, Some(self)))
-    }
-
-    /// Whether a trace's explanation speaks for what is said, as told by another one: it says the same, or something
-    /// that it can't tell apart, or its polynomials are those that it would make.
-    pub(super) fn bears_out(&self, said: &str, told: Option<&Self>) -> bool {
-        let is_same = self.said() == said || self.same_as.iter().any(|key| key == said);
-        let is_in_other_words = || find(said).is_some_and(|row| self.is_in_other_words(row) && self.is_complete());
-        is_same || is_in_other_words() || self.is_made_by(said, told)
-    }
-
-    /// Whether all its polynomials are those that this would make.
-    pub(super) fn is_made_by(&self, said: &str, told: Option<&Self>) -> bool {
-        let claims = self.claims_by_subject();
-        let is_made = |own: &dyn Fn(&str, &str) -> bool| {
-            !claims.is_empty() && claims.values().all(|of| of.iter().any(|(guess, claim)| own(guess, claim)))
-        };
-        match told.map(|told| &told.about) {
-            None | Some(About::Mistake) => find(said).is_some() && is_made(&|guess, _| guess == said),
-            Some(About::Polynomials { found: OfPolynomials::Guess(guess), .. }) if guess.is_general() => {
-                let word = guess.word();
-                is_made(&|own, _| own == word)
-            }
-            Some(About::Polynomials { found: OfPolynomials::Guess(_), .. }) => is_made(&|_, claim| claim == said),
-            _ => false,
-        }
-    }
-
-    /// Whether this, found in the polynomials of one kind alone, is this known mistake: `radii-squared-apart` of
-    /// particles and edges is `pe-radii-squared-apart`.
-    pub(super) fn is_in_other_words(&self, row: &Row) -> bool {
-        let is_called_so = row.id.split_once('-').is_some_and(|(_, own)| own == self.key);
-        let About::Polynomials { subjects, .. } = &self.about else { return false };
-        is_called_so && subjects.first().is_some_and(|first| Some(first.kind()) == row.kind_of_pair())
-    }
-
     /// Whether it says which stage of a step is wrong, which is an observation and no guess.
     #[must_use]
     pub fn is_of_stage(&self) -> bool {
@@ -213,7 +177,8 @@ impl Explanation {
     }
 
     /// Whether it says no more than that something is wrong with a stage.
-    pub(super) const fn is_vague(&self) -> bool {
+    #[must_use]
+    pub const fn is_vague(&self) -> bool {
         matches!(self.about, About::Stage(StageFault::AfterRounds | StageFault::FirstRound | StageFault::ManyContacts))
     }
 
@@ -230,5 +195,23 @@ impl Explanation {
     #[must_use]
     pub const fn is_complete(&self) -> bool {
         self.reproduced == self.samples && self.samples > 0
+    }
+
+    /// Whether it says something of the program that other traces may say, too.
+    #[must_use]
+    pub fn is_vote(&self) -> bool {
+        let is_nothing = matches!(
+            self.about,
+            About::Scene { .. }
+                | About::NotFinite(_)
+                | About::Polynomials { found: OfPolynomials::Nothing | OfPolynomials::NearlyRight, .. }
+        );
+        !is_nothing
+    }
+
+    /// Whether it explains all that it is about, as far as that can be.
+    #[must_use]
+    pub fn is_settled(&self) -> bool {
+        self.is_complete() || self.is_of_stage()
     }
 }

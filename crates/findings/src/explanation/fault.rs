@@ -1,13 +1,11 @@
 //! What is wrong with a stage of a step, where no mistake that is known explains it; without what is measured of it
 //! ([`StageDetail`](super::StageDetail)).
-use crate::student::Area;
+use super::area::Area;
 use fosssim_model::sim::PairKind;
-
-/// The key of pairs that are looked at in another order.
-pub(super) const ORDER: &str = "stage-order";
+use serde::{Deserialize, Serialize};
 
 /// The stages of a step that can be told apart, in their order.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum StepStage {
     /// Which pairs collide, and when.
     Detection,
@@ -20,7 +18,7 @@ pub enum StepStage {
 }
 
 /// The fault of a stage whose inputs are right.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum StageFault {
     /// The pairs are looked at in another order.
     Order,
@@ -95,7 +93,7 @@ pub enum StageFault {
 }
 
 /// Which decisions about contacts are wrong.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum WrongDecisions {
     /// Contacts are missed.
     Missed,
@@ -106,7 +104,7 @@ pub enum WrongDecisions {
 }
 
 /// A fault of contact vectors.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum WrongVectors {
     /// They are perpendicular to the right ones.
     Perpendicular,
@@ -123,7 +121,7 @@ pub enum WrongVectors {
 }
 
 /// A fault of the changes by isolated contacts.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum WrongResponses {
     /// They change nothing.
     Nothing,
@@ -136,7 +134,7 @@ pub enum WrongResponses {
 }
 
 /// A quantity that a contact changes, and its owner.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Changed {
     /// The kind of the contact's pair.
     pub kind: PairKind,
@@ -148,7 +146,7 @@ pub struct Changed {
 }
 
 /// A quantity of a body in a state.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Quantity {
     /// Where it is.
     Position,
@@ -157,7 +155,7 @@ pub enum Quantity {
 }
 
 /// How a number of rounds is wrong.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum WrongNumber {
     /// Too few.
     Fewer,
@@ -168,7 +166,7 @@ pub enum WrongNumber {
 }
 
 /// Whether the geometric part follows where it should not, or does not where it should.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum WrongGeometric {
     /// It makes no pass though the rounds have run out.
     Left {
@@ -180,7 +178,7 @@ pub enum WrongGeometric {
 }
 
 /// At which positions the geometric part looks, wrongly.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum WrongPositions {
     /// First of all at those of the integrator.
     Prediction,
@@ -191,7 +189,7 @@ pub enum WrongPositions {
 }
 
 /// Why impulse rounds end.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum LoopEnd {
     /// All that there may be were made.
     RanOut,
@@ -200,7 +198,7 @@ pub enum LoopEnd {
 }
 
 /// A fault of the rounds in which zones grow.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum WrongZoneRounds {
     /// The zones themselves.
     Growth,
@@ -213,7 +211,7 @@ pub enum WrongZoneRounds {
 }
 
 /// A fault of the choice of zones that are moved or stopped.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum WrongZones {
     /// Some particles of a zone are not moved with it.
     Partly,
@@ -238,7 +236,7 @@ pub enum WrongZones {
 }
 
 /// A fault of the motion of zones.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum WrongMotion {
     /// Where their centre of mass goes.
     Centre,
@@ -332,9 +330,9 @@ impl StageFault {
     }
 
     /// The explanation's key.
-    pub(super) const fn key(&self) -> &'static str {
+    pub const fn key(&self) -> &'static str {
         match self {
-            Self::Order => ORDER,
+            Self::Order => "stage-order",
             Self::Decisions { wrong: WrongDecisions::Missed, .. } => "stage-contacts-missed",
             Self::Decisions { wrong: WrongDecisions::Superfluous, .. } => "stage-contacts-superfluous",
             Self::Decisions { wrong: WrongDecisions::Both, .. } => "stage-decisions",
@@ -364,7 +362,7 @@ impl StageFault {
 }
 
 /// The values of a trace that are not finite, and their first place.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct NotFinite {
     /// The step, from 1; 0 is the first record. None where several traces are told about.
     pub step: Option<u32>,
@@ -375,7 +373,7 @@ pub struct NotFinite {
 }
 
 /// The first stage of a step whose input is numbers and whose output is not.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum NanStage {
     /// None: it is in the first record.
     FirstRecord,

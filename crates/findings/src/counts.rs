@@ -1,8 +1,11 @@
 //! How often something was found.
 use super::finding::FindingKind;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// How often each kind of finding occurred.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(into = "BTreeMap<FindingKind, u64>", from = "BTreeMap<FindingKind, u64>")]
 pub struct FindingCounts([u64; FindingKind::ALL.len()]);
 
 impl FindingCounts {
@@ -27,6 +30,18 @@ impl FindingCounts {
     #[must_use]
     pub fn total(&self) -> u64 {
         self.0.iter().sum()
+    }
+}
+
+impl From<FindingCounts> for BTreeMap<FindingKind, u64> {
+    fn from(counts: FindingCounts) -> Self {
+        FindingKind::ALL.into_iter().zip(counts.0).filter(|(_, count)| *count > 0).collect()
+    }
+}
+
+impl From<BTreeMap<FindingKind, u64>> for FindingCounts {
+    fn from(found: BTreeMap<FindingKind, u64>) -> Self {
+        Self(FindingKind::ALL.map(|kind| found.get(&kind).copied().unwrap_or_default()))
     }
 }
 

@@ -1,12 +1,19 @@
-//! What happened on one scene, as values: renderers make the words of it (`fosssim_report::words`), scoring the points.
-use super::{mirror, told::Told, verdict::Verdict};
-use fosssim_judge::{FindingKind, Unreadable, fair::Cause};
-use fosssim_mistakes::diagnose::{About, Explanation};
-use fosssim_model::sim::StepError;
+//! What happened on one scene, as values: `report::words` makes sentences of it, `grading::score` the points.
+use super::{
+    cause::Cause,
+    disclosure::Disclosure,
+    explanation::{About, Explanation},
+    finding::FindingKind,
+    verdict::Verdict,
+};
+use fosssim_model::{
+    sim::StepError,
+    trace::{Malformation, Unreadable},
+};
 use serde::{Deserialize, Serialize};
 use std::{path::PathBuf, time::Duration};
 
-pub use fosssim_sandbox::{Ended, StartProblem};
+pub use fosssim_ended::{Ended, StartProblem, Stream};
 
 /// What happened on one scene: everything but its points, which follow from the suite. It holds no more than the
 /// suite's hints let through, so that nothing that is made of it can give away more.
@@ -21,31 +28,22 @@ pub struct SceneResult {
     /// How the program ended, if it was run.
     pub ended: Option<Ended>,
     /// Where the two rule books come to different verdicts about the trace: the rule of the original that is the cause.
-    #[serde(with = "mirror::cause")]
     pub differs: Option<Cause>,
     /// What may be told of the trace.
-    pub told: Option<Told>,
+    pub disclosure: Option<Disclosure>,
     /// Likely mistakes, the likeliest first; no more of them than the suite's hints let through.
-    #[serde(with = "mirror::explanations")]
     pub explanations: Vec<Explanation>,
     /// Steps without a finding, of all steps.
     pub right_steps: u32,
     /// Steps of the scene.
     pub steps: u32,
-    /// Processor time of the program.
-    pub cpu: Duration,
-    /// Wall time of the run.
-    pub wall: Duration,
-    /// What judging and explaining took beyond that.
-    #[serde(default)]
-    pub judging: Duration,
-    /// Peak memory of the program in bytes, when known.
-    pub memory: Option<u64>,
+    /// What was measured, which differs from run to run.
+    pub measured: Measurements,
     /// What the program wrote to its standard output, capped; raw text that a report has to escape.
     pub stdout: String,
     /// What the program wrote to its standard error, capped; raw text that a report has to escape.
     pub stderr: String,
-    /// The name of the card that was drawn of its trace ([`cards`](crate::cards)).
+    /// The name of the card that was drawn of its trace.
     pub card: Option<String>,
 }
 
@@ -59,14 +57,11 @@ impl SceneResult {
             reason,
             ended: None,
             differs: None,
-            told: None,
+            disclosure: None,
             explanations: Vec::new(),
             right_steps: 0,
             steps,
-            cpu: Duration::ZERO,
-            wall: Duration::ZERO,
-            judging: Duration::ZERO,
-            memory: None,
+            measured: Measurements::default(),
             stdout: String::new(),
             stderr: String::new(),
             card: None,
@@ -92,6 +87,19 @@ impl SceneResult {
             ..Self::without_run(&self.scene, self.steps, self.verdict, Reason::Withheld)
         };
     }
+}
+
+/// What was measured of a run; all else that a result says follows from the program and the scene.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Measurements {
+    /// Processor time of the program.
+    pub cpu: Duration,
+    /// Wall time of the run.
+    pub wall: Duration,
+    /// What judging and explaining took beyond that.
+    pub judging: Duration,
+    /// Peak memory of the program in bytes, when known.
+    pub memory: Option<u64>,
 }
 
 /// Why a scene has its verdict.
@@ -129,7 +137,7 @@ pub enum Wrong {
     /// In that nothing is logged: no polynomial and no collision.
     Nothing,
     /// In its first record alone.
-    FirstRecord(#[serde(with = "mirror::kind")] FindingKind),
+    FirstRecord(FindingKind),
     /// In steps.
     Steps {
         /// Their number.
@@ -137,7 +145,6 @@ pub enum Wrong {
         /// The first one.
         first: u32,
         /// What is wrong there first.
-        #[serde(with = "mirror::kind")]
         kind: FindingKind,
     },
     /// Only in that its records are damaged.
@@ -156,15 +163,14 @@ pub enum BadTrace {
         /// The step it belongs to; 0 for the first record.
         step: u32,
         /// Which part of the record, or why not.
-        #[serde(with = "mirror::UnreadableForm")]
         cause: Unreadable,
         /// Byte offset of the damage.
         offset: u64,
         /// The damage, as the reader tells it.
-        damage: String,
+        damage: Malformation,
     },
     /// The trace's own states lead into a step without result.
-    NoResult(#[serde(with = "mirror::StepErrorForm")] StepError),
+    NoResult(StepError),
     /// By the fair rules: the trace's own polynomials lead into a search without end.
     NoEnd,
     /// By the fair rules: it is damaged.

@@ -2,12 +2,13 @@
 use super::{
     fault::{NotFinite, StageFault},
     guess::Guess,
+    subject::Subject,
 };
-use crate::assignments::t2m2::Subject;
 use fosssim_model::sim::PairKind;
+use serde::{Deserialize, Serialize};
 
 /// The subject of an explanation.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum About {
     /// A mistake of the catalogue, the one of this key.
     Mistake,
@@ -41,7 +42,7 @@ impl About {
 }
 
 /// What is found out about wrong polynomials.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum OfPolynomials {
     /// A guess that reproduces them, or a part.
     Guess(Guess),

@@ -1,8 +1,9 @@
 //! The polynomials of a detection.
 use fosssim_model::sim::PairKind;
+use serde::{Deserialize, Serialize};
 
 /// The meaning of a polynomial of a detection (collisions.md 2).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Subject {
     /// Two particles overlap.
     ParticleOverlap,

@@ -1,12 +1,10 @@
 //! The verdict on one trace.
-use super::{
-    fair::{self, FairRefusal},
-    parity,
-};
+use super::{fair, parity};
 use fosssim_model::{
     sim::{SearchCounts, StepError},
-    trace::Unreadable,
+    trace::{Malformation, Unreadable},
 };
+use serde::{Deserialize, Serialize};
 
 /// Why grading stopped before its end.
 #[derive(Debug)]
@@ -21,8 +19,8 @@ pub enum Stop {
         cause: Unreadable,
         /// Byte offset of the damage.
         offset: u64,
-        /// The damage in words, without position.
-        message: String,
+        /// The damage.
+        what: Malformation,
     },
     /// The trace's own states lead the reference into a computation without end or result; the original hangs.
     Step(StepError),
@@ -30,7 +28,7 @@ pub enum Stop {
 
 /// Damage that the original's reading passes over in silence; before a step without result also a number in the trace's
 /// state that is not finite.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Damage {
     /// The frame, from 0.
     pub frame: u64,
@@ -38,8 +36,8 @@ pub struct Damage {
     pub step: u32,
     /// Byte offset.
     pub offset: u64,
-    /// The damage in words, without position.
-    pub message: String,
+    /// The damage itself.
+    pub what: Malformation,
 }
 
 /// Everything that judging one trace yields.
@@ -70,7 +68,8 @@ pub struct Outcome {
 
 impl Outcome {
     /// Nothing judged yet.
-    pub(super) fn empty(steps: u32) -> Self {
+    #[must_use]
+    pub fn empty(steps: u32) -> Self {
         Self {
             parity: parity::Judgement::default(),
             fair: None,
@@ -85,23 +84,8 @@ impl Outcome {
         }
     }
 
-    fn conclude_fair(&mut self) {
-        let Some(fair) = &mut self.fair else { return };
-        let refusal = if self.stop.is_some() {
-            Some(FairRefusal::Stopped)
-        } else if self.damage.is_some() {
-            Some(FairRefusal::Damaged)
-        } else if self.trailing_bytes {
-            Some(FairRefusal::TrailingBytes)
-        } else {
-            None
-        };
-        fair.conclude(refusal, self.steps_judged == self.steps);
-    }
-
-    /// Draws the verdicts.
-    pub(super) fn conclude(&mut self) {
-        self.conclude_fair();
+    /// Draws the verdict of the original's rules.
+    pub fn conclude(&mut self) {
         self.parity.conclude(self.stop.is_some(), self.steps_judged == self.steps);
     }
 }

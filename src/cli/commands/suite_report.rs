@@ -1,38 +1,39 @@
 //! What a suite would grade, and what is worth knowing before it does: the text of `suite check`. And which suites
 //! there are.
-use super::{
-    grade::{one_line, points},
-    number::counted,
-    style::{Look, Style},
+use crate::{
+    judge::{PairWords, PassWords, Rules, fair::Borderline},
+    report::{
+        grade::{one_line, points},
+        number::counted,
+        style::{Look, Style},
+    },
+    sim::StepError,
+    suite::{
+        config::Credit,
+        coverage::{Coverage, FAMILIES},
+        plan::{Plan, PlannedGroup, default_name},
+    },
 };
-use fosssim_grading::{
-    config::Credit,
-    coverage::{Coverage, FAMILIES},
-    plan::{Plan, PlannedGroup, default_name},
-};
-use fosssim_judge::{PairWords, PassWords, Rules, fair::Borderline};
-use fosssim_model::sim::StepError;
 use serde_json::json;
 use std::fmt::Write;
 
 /// A scene and those of the reference's decisions that round-off may flip, or why it has no run.
-pub type Undecided = (String, Result<Vec<Borderline>, StepError>);
+pub(super) type Undecided = (String, Result<Vec<Borderline>, StepError>);
 
 /// The greatest number of decisions listed of a scene.
 const LISTED: usize = 3;
 
 /// The contents of a suite's scenes, with or without a list of the missing ones.
 #[derive(Debug)]
-pub struct Contents {
+pub(super) struct Contents {
     /// The measured coverage.
-    pub coverage: Coverage,
+    pub(super) coverage: Coverage,
     /// Whether each missing pair of properties has a line.
-    pub lists_missing: bool,
+    pub(super) lists_missing: bool,
 }
 
 /// The whole report; `undecided` holds the scenes of which there is something to say.
-#[must_use]
-pub fn text(plan: &Plan, contents: &Contents, undecided: &[Undecided], style: Style) -> String {
+pub(super) fn text(plan: &Plan, contents: &Contents, undecided: &[Undecided], style: Style) -> String {
     let mut text = head(plan, style);
     for group in &plan.groups {
         text += &of_group(group, style);
@@ -53,8 +54,7 @@ pub fn text(plan: &Plan, contents: &Contents, undecided: &[Undecided], style: St
 const SCHEMA: u32 = 2;
 
 /// The suites that come with the program, a line on each.
-#[must_use]
-pub fn list(suites: &[(String, Plan)], style: Style) -> String {
+pub(super) fn list(suites: &[(String, Plan)], style: Style) -> String {
     let width = suites.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     let line = |(name, plan): &(String, Plan)| {
         let size = style.paint(Look::Faint, &format!("({})", size(plan)));
@@ -65,8 +65,7 @@ pub fn list(suites: &[(String, Plan)], style: Style) -> String {
 }
 
 /// The same as one JSON object: `name` is what `--suite` takes, `default` says which one is meant where none is named.
-#[must_use]
-pub fn list_json(suites: &[(String, Plan)]) -> String {
+pub(super) fn list_json(suites: &[(String, Plan)]) -> String {
     let entry = |(name, plan): &(String, Plan)| {
         let (suite, version) = name.split_once('@').unwrap_or((name, "1"));
         json!({
@@ -90,8 +89,7 @@ fn size(plan: &Plan) -> String {
 }
 
 /// `1 point`, `12.5 points`.
-#[must_use]
-pub fn counted_points(value: f64) -> String {
+fn counted_points(value: f64) -> String {
     let words = points(value);
     let plural = if words == "1" { "" } else { "s" };
     format!("{words} point{plural}")

@@ -1,0 +1,207 @@
+//! How the run of a program ended, as a value: what the sandbox says, grades keep and reports put into words.
+#![forbid(unsafe_code)]
+
+use serde::{Deserialize, Serialize};
+use std::{borrow::Cow, fmt};
+
+/// One of the streams that a program writes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Stream {
+    /// Standard output.
+    Stdout,
+    /// Standard error.
+    Stderr,
+    /// The trace pipe.
+    Trace,
+}
+
+impl fmt::Display for Stream {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::Stdout => "standard output",
+            Self::Stderr => "standard error",
+            Self::Trace => "the trace",
+        })
+    }
+}
+
+/// How a run ended. Every variant but [`Ended::Exited`] and [`Ended::Signalled`] is a decision of the sandbox.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Ended {
+    /// It ended by itself with this exit code.
+    Exited(i32),
+    /// It was ended by this signal, of its own making (a crash, an abort).
+    Signalled(i32),
+    /// It used up its processor time.
+    CpuLimit,
+    /// It used up its time on the clock.
+    WallLimit,
+    /// It held more memory than allowed, or gave up because it was refused memory that it asked for.
+    MemoryLimit,
+    /// It wrote more than allowed to one stream.
+    OutputLimit(Stream),
+    /// It had more threads and processes than allowed.
+    ProcessLimit,
+    /// It put more bytes or files into its working folder than allowed.
+    FolderLimit,
+    /// It used a system call that no submission needs.
+    Violation {
+        /// The call, by its usual name (`ptrace`), or words when the name is not known.
+        call: String,
+    },
+    /// It never ran.
+    CouldNotStart(StartProblem),
+    /// The grader stopped it.
+    Cancelled,
+}
+
+impl Ended {
+    /// The variant's name for machines and for the attack suite: `exited`, `cpu`, `violation` and so on.
+    #[must_use]
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Exited(_) => "exited",
+            Self::Signalled(_) => "signalled",
+            Self::CpuLimit => "cpu",
+            Self::WallLimit => "wall",
+            Self::MemoryLimit => "memory",
+            Self::OutputLimit(_) => "output",
+            Self::ProcessLimit => "processes",
+            Self::FolderLimit => "folder",
+            Self::Violation { .. } => "violation",
+            Self::CouldNotStart(_) => "could-not-start",
+            Self::Cancelled => "cancelled",
+        }
+    }
+}
+
+impl fmt::Display for Ended {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Exited(code) => write!(formatter, "exited with code {code}"),
+            Self::Signalled(signal) => write!(formatter, "ended by signal {signal} ({})", signal_name(*signal)),
+            Self::CpuLimit => formatter.write_str("used up its processor time"),
+            Self::WallLimit => formatter.write_str("used up its time on the clock"),
+            Self::MemoryLimit => formatter.write_str("needed more memory than allowed"),
+            Self::OutputLimit(stream) => write!(formatter, "wrote more than allowed to {stream}"),
+            Self::ProcessLimit => formatter.write_str("had more threads and processes than allowed"),
+            Self::FolderLimit => formatter.write_str("put more into its working folder than allowed"),
+            Self::Violation { call } => write!(formatter, "used a forbidden system call: {call}"),
+            Self::CouldNotStart(problem) => write!(formatter, "could not start: {problem}"),
+            Self::Cancelled => formatter.write_str("was stopped by the grader"),
+        }
+    }
+}
+
+/// The usual name and meaning of a signal that ends programs, by its number in Linux.
+#[must_use]
+pub fn signal_name(signal: i32) -> &'static str {
+    match signal {
+        11 => "SIGSEGV: it used memory that is not its own",
+        6 => "SIGABRT: it gave up, by a failed assertion or an uncaught exception",
+        8 => "SIGFPE: an integer division by zero",
+        4 => "SIGILL: an instruction that this processor does not have",
+        7 => "SIGBUS: it used memory that is not there",
+        13 => "SIGPIPE: it wrote where nobody reads",
+        5 => "SIGTRAP: a breakpoint",
+        15 => "SIGTERM: it ended itself",
+        9 => "SIGKILL: killed by itself or by the system",
+        24 => "SIGXCPU: processor time",
+        25 => "SIGXFSZ: file size",
+        31 => "SIGSYS: a forbidden system call",
+        1 => "SIGHUP",
+        2 => "SIGINT",
+        14 => "SIGALRM: a timer of its own",
+        _ => "unnamed",
+    }
+}
+
+/// The reason why a program never ran. The text names the fault and the remedy.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error, Serialize, Deserialize)]
+pub enum StartProblem {
+    /// There is no such file.
+    #[error("there is no such program; check the path and build the program first")]
+    NotFound,
+    /// The path names a folder.
+    #[error("this is a folder, not a program; name the program inside it")]
+    IsFolder,
+    /// The path names something that is neither a file nor a folder.
+    #[error("this is not a regular file")]
+    NotAFile,
+    /// The file has no execute permission.
+    #[error("the file is not executable; if it is the program, run chmod +x on it")]
+    NotExecutable,
+    /// The user the program runs as may not reach the file.
+    #[error("permission denied; put the program where every user may read and execute it")]
+    NotPermitted,
+    /// The file is neither an ELF program nor a script.
+    #[error("the file is not a program: neither ELF nor a script that begins with #!; upload what the linker wrote")]
+    NotAProgram,
+    /// An ELF file that is not a program, for example an object file or a core dump.
+    #[error("the file is {what}, not a linked program; upload what the linker wrote")]
+    NotLinked {
+        /// The kind of thing found instead.
+        what: Cow<'static, str>,
+    },
+    /// A 32-bit program.
+    #[error("this is a 32-bit program; build it for 64 bits (without -m32)")]
+    ThirtyTwoBit,
+    /// A program for another processor.
+    #[error("this program was built for {machine}, but this machine is {here}; build it on the grading platform")]
+    WrongMachine {
+        /// The machine for which it was built.
+        machine: String,
+        /// The kind of this machine.
+        here: Cow<'static, str>,
+    },
+    /// The program names a dynamic loader that is not here.
+    #[error("the program needs the loader {loader}, which is not on this machine; build it on the grading platform")]
+    MissingLoader {
+        /// The loader's path.
+        loader: String,
+    },
+    /// A shared library is missing.
+    #[error("the shared library {library} is missing; install it, or link it statically")]
+    MissingLibrary {
+        /// The library's file name, as the loader printed it.
+        library: String,
+    },
+    /// A script whose `#!` line is empty.
+    #[error("the script's first line names no interpreter; it must look like #!/bin/sh")]
+    NoInterpreter,
+    /// A script whose interpreter is missing.
+    #[error("the script's interpreter {interpreter} is not on this machine{hint}")]
+    MissingInterpreter {
+        /// The interpreter's path.
+        interpreter: String,
+        /// Advice, or nothing.
+        hint: Cow<'static, str>,
+    },
+    /// The loader or interpreter is not one of the system's.
+    #[error(
+        "it asks to be run by {path}, which is not an interpreter or loader of the system; \
+         begin a script with #!/usr/bin/env NAME or #!/bin/sh, and link a program with the system's compiler"
+    )]
+    NotTheSystems {
+        /// The path that the program names.
+        path: String,
+    },
+    /// The program was built with a sanitiser, and nobody has said that such programs may run.
+    #[error(
+        "the program was built with a sanitiser (-fsanitize), for which memory can't be limited; build it without, \
+         or allow it in the suite"
+    )]
+    Sanitised,
+    /// The file is the grader itself.
+    #[error("this is the grader's own program, not a submission; name the submission's program")]
+    GradersOwn,
+    /// Somebody has the file open for writing.
+    #[error("the file is still being written (text file busy); wait for the build or the copy to end")]
+    Busy,
+    /// It wanted a window.
+    #[error("the program needs a display; run it without one: pass -d 0")]
+    NeedsDisplay,
+    /// Another answer of the kernel.
+    #[error("the system refused to execute it: {0}")]
+    Refused(String),
+}

@@ -1,0 +1,109 @@
+//! What the fair rule book says of a trace (numerics.md 2).
+use super::book_findings::BookFindings;
+use fosssim_model::sim::{Pair, Pass};
+use serde::{Deserialize, Serialize};
+
+/// The verdict of the fair rules.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FairVerdict {
+    /// Nothing is wrong.
+    Accepted,
+    /// Something is.
+    Rejected,
+    /// Judging was cut short before its end, and nothing was wrong so far.
+    #[default]
+    None,
+}
+
+/// Why a trace is refused as a whole.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FairRefusal {
+    /// It can't be read to its end, or a step of its states has no result.
+    Stopped,
+    /// It can be read only as the original reads damaged files.
+    Damaged,
+    /// Bytes follow the last record.
+    TrailingBytes,
+    /// Most of its decisions are such that round-off may flip them, and differ from the reference's: it shows nothing.
+    Undecided,
+}
+
+/// Which of the two accepted forms of the particle-edge approach polynomial a trace uses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Form {
+    /// Nothing tells them apart.
+    #[default]
+    Either,
+    /// The course's formula, with its slip in t^3.
+    Course,
+    /// What the definition gives.
+    Right,
+}
+
+/// A decision that round-off may flip, and that the trace has the other way.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Borderline {
+    /// The step, from 1.
+    pub step: u32,
+    /// The detection pass.
+    pub pass: Pass,
+    /// The pair.
+    pub pair: Pair,
+    /// Whether the trace takes it for a collision.
+    pub collides: bool,
+}
+
+/// The largest shares of their tolerances that were used by what is right, 0 to 1; 0 where nothing differed.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Shares {
+    /// Polynomial coefficients.
+    #[serde(rename = "coefficients", with = "fosssim_num::written")]
+    pub coefficient: f64,
+    /// Contact normals.
+    #[serde(rename = "normals", with = "fosssim_num::written")]
+    pub normal: f64,
+    /// Positions.
+    #[serde(rename = "positions", with = "fosssim_num::written")]
+    pub position: f64,
+    /// Velocities.
+    #[serde(rename = "velocities", with = "fosssim_num::written")]
+    pub velocity: f64,
+}
+
+impl Shares {
+    /// The larger one of each.
+    pub fn widen(&mut self, other: &Self) {
+        self.coefficient = self.coefficient.max(other.coefficient);
+        self.normal = self.normal.max(other.normal);
+        self.position = self.position.max(other.position);
+        self.velocity = self.velocity.max(other.velocity);
+    }
+}
+
+/// Everything that the fair rules say about a trace.
+#[derive(Debug, Clone, Default)]
+pub struct Judgement {
+    /// The verdict.
+    pub verdict: FairVerdict,
+    /// Why the trace is refused as a whole, whatever its steps hold.
+    pub refusal: Option<FairRefusal>,
+    /// What was found.
+    pub findings: BookFindings,
+    /// How many decisions about pairs the trace holds, in all steps and passes.
+    pub decisions: u64,
+    /// How many borderline decisions the trace has the other way.
+    pub borderline: u64,
+    /// The first ones.
+    pub borderline_examples: Vec<Borderline>,
+    /// The factor of all polynomials of all kinds as an interval, where it is not 1.
+    pub factor: Option<[f64; 2]>,
+    /// The form of the approach polynomial.
+    pub form: Form,
+    /// Polynomials that have lost other coefficients as too small than the reference's.
+    pub lost: u64,
+    /// Used shares of the tolerances.
+    pub shares: Shares,
+}

@@ -1,0 +1,217 @@
+//! The grade: what one submission got, scene by scene.
+use super::{
+    Rules,
+    explanation::Explanation,
+    located::Located,
+    result::{BuildEnd, SceneResult},
+    verdict::Verdict,
+};
+use serde::{Deserialize, Serialize};
+use std::{ops::Deref, time::Duration};
+
+/// The visibility of a group's results, in Gradescope's words.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Visibility {
+    /// Everybody, at once.
+    Visible,
+    /// Staff only.
+    Hidden,
+    /// Students, after the due date.
+    AfterDueDate,
+    /// Students, after grades are published.
+    AfterPublished,
+}
+
+impl Visibility {
+    /// Gradescope's key.
+    #[must_use]
+    pub const fn key(self) -> &'static str {
+        match self {
+            Self::Visible => "visible",
+            Self::Hidden => "hidden",
+            Self::AfterDueDate => "after_due_date",
+            Self::AfterPublished => "after_published",
+        }
+    }
+}
+
+/// The grade of one submission on one suite.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Grade {
+    /// The submission's name: its file or folder name.
+    pub submission: String,
+    /// The suite's name.
+    pub suite: String,
+    /// The rule books that were asked; verdicts and points are by the official one.
+    pub rules: Rules,
+    /// The worst verdict of all scenes.
+    pub verdict: Verdict,
+    /// Points reached; `None` when the grader failed or was stopped before the last scene, which is nobody's zero.
+    pub points: Option<f64>,
+    /// Points that can be reached.
+    pub max_points: f64,
+    /// Groups in the suite's order.
+    pub groups: Vec<GroupGrade>,
+    /// Whether reports for students show of a scene what the program could have chosen, as what it printed: not where
+    /// groups are hidden, unless the suite says so.
+    pub shows_output: bool,
+    /// How the build ended, when the suite builds.
+    pub build: Option<Build>,
+    /// What weakened the sandbox, in words; empty when every required layer held.
+    pub warnings: Vec<String>,
+    /// Layers of the sandbox that were active.
+    pub layers: Vec<String>,
+    /// Wall time of all runs together, those taken from an earlier grading included.
+    pub wall: Duration,
+    /// Keys of mistakes that accepted scenes speak against.
+    pub refuted: Vec<String>,
+    /// What the scenes have in common in which the program crashes or runs into a limit, where hints let it through.
+    pub located: Option<Located>,
+}
+
+impl Grade {
+    /// Whether all groups are for students' eyes.
+    #[must_use]
+    pub fn is_visible(&self) -> bool {
+        self.groups.iter().all(|group| group.visibility == Visibility::Visible)
+    }
+
+    /// All scenes in order.
+    pub fn scenes(&self) -> impl Iterator<Item = &SceneGrade> {
+        self.groups.iter().flat_map(|group| &group.scenes)
+    }
+
+    /// Whether the grader failed somewhere, so that the grade must not reach a student.
+    #[must_use]
+    pub fn is_our_fault(&self) -> bool {
+        self.verdict == Verdict::JudgeError
+    }
+
+    /// Whether scenes were not run, so that there are no points yet.
+    #[must_use]
+    pub fn is_incomplete(&self) -> bool {
+        self.count(Verdict::NotRun) > 0
+    }
+
+    /// What is wrong with the submission itself, and the reason of each of its scenes: no program that can be run is in
+    /// it, its sources do not build, or nothing is written yet.
+    #[must_use]
+    pub fn unfit(&self) -> Option<Unfit<'_>> {
+        let first = self.scenes().next()?;
+        let is_unfit = matches!(first.verdict, Verdict::Unusable | Verdict::CompileError | Verdict::Unwritten);
+        let why = |scene: &SceneGrade| (scene.verdict, scene.reason.clone(), scene.ended.clone());
+        let same = |scene: &SceneGrade| why(scene) == why(first);
+        let build = self.build.as_ref().filter(|build| !build.end.is_success());
+        (is_unfit && self.scenes().all(same))
+            .then(|| build.map_or(Unfit::Scene(&first.result), |build| Unfit::Build(&build.end)))
+    }
+
+    /// Whether two grades are of one suite: of the same scenes, in the same groups, for the same points.
+    #[must_use]
+    pub fn is_of_the_suite_of(&self, other: &Self) -> bool {
+        let alike = |(own, other): (&GroupGrade, &GroupGrade)| {
+            (&own.name, own.visibility, own.max_points) == (&other.name, other.visibility, other.max_points)
+                && own.scenes.iter().map(|scene| &scene.scene).eq(other.scenes.iter().map(|scene| &scene.scene))
+        };
+        (&self.suite, self.rules, self.shows_output) == (&other.suite, other.rules, other.shows_output)
+            && self.groups.len() == other.groups.len()
+            && self.groups.iter().zip(&other.groups).all(alike)
+    }
+
+    /// How many of the results were taken from an earlier run.
+    #[must_use]
+    pub fn taken_over(&self) -> usize {
+        self.scenes().filter(|scene| scene.cached).count()
+    }
+
+    /// How many scenes the two rule books judge differently.
+    #[must_use]
+    pub fn differing(&self) -> usize {
+        self.scenes().filter(|scene| scene.differs.is_some()).count()
+    }
+
+    /// How many scenes have this verdict.
+    #[must_use]
+    pub fn count(&self, verdict: Verdict) -> usize {
+        self.scenes().filter(|scene| scene.verdict == verdict).count()
+    }
+}
+
+/// An entry of a class's folder that is no submission, and why: nobody is left out in silence.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PassedOver {
+    /// Its name, as that of a submission.
+    pub name: String,
+    /// Why, in words.
+    pub why: String,
+}
+
+/// The build step's end.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Build {
+    /// How it ended.
+    pub end: BuildEnd,
+    /// The compiler's output, capped; raw text that a report has to escape.
+    pub output: String,
+}
+
+/// What is wrong with a submission itself.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Unfit<'a> {
+    /// Its build.
+    Build(&'a BuildEnd),
+    /// What its first scene says, and all others with it.
+    Scene(&'a SceneResult),
+}
+
+/// One group of scenes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct GroupGrade {
+    /// Its name.
+    pub name: String,
+    /// Who sees it.
+    pub visibility: Visibility,
+    /// Points reached; `None` when a scene has none.
+    pub points: Option<f64>,
+    /// Points that can be reached.
+    pub max_points: f64,
+    /// The worst verdict of its scenes.
+    pub verdict: Verdict,
+    /// Its scenes.
+    pub scenes: Vec<SceneGrade>,
+}
+
+/// One scene with its points.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SceneGrade {
+    /// What happened.
+    pub result: SceneResult,
+    /// Points reached; `None` when the grader failed or did not come to run it, which is nobody's zero.
+    pub points: Option<f64>,
+    /// Points that can be reached.
+    pub max_points: f64,
+    /// Whether the result was taken from an earlier run.
+    pub cached: bool,
+    /// What is likely wrong here, the likeliest first: what all scenes together say of this one, else what it says
+    /// alone (made of [`SceneResult::explanations`]). This is what reports tell.
+    pub settled: Vec<Explanation>,
+    /// The number of explanations, the first of [`settled`](Self::settled), that all scenes together give.
+    pub agreed: usize,
+}
+
+impl SceneGrade {
+    /// Leaves what students may know where groups are hidden from them ([`SceneResult::withhold`]).
+    pub fn withhold(&mut self) {
+        self.result.withhold();
+        (self.settled, self.agreed) = (Vec::new(), 0);
+    }
+}
+
+impl Deref for SceneGrade {
+    type Target = SceneResult;
+
+    fn deref(&self) -> &SceneResult {
+        &self.result
+    }
+}

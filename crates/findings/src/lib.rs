@@ -1,0 +1,41 @@
+//! What is said of a submission, as values: findings, the outcome of judging a trace by both rule books, explanations,
+//! results of scenes and grades.
+//!
+//! A fact has one type here, from where it arises to where somebody reads it: `judge` and `mistakes` fill these values,
+//! `grading` keeps them, `report` and `server` read them. They serialise themselves, and read back bit for bit. What
+//! stands in the data of an assignment (known mistakes, formulas, letters) is named by its key.
+#![forbid(unsafe_code)]
+#![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
+
+mod book_findings;
+mod cause;
+pub mod counts;
+pub mod disclosure;
+pub mod explanation;
+pub mod fair;
+pub mod finding;
+pub mod grade;
+pub mod headroom;
+mod hints;
+pub mod located;
+pub mod outcome;
+pub mod parity;
+pub mod result;
+pub mod rules;
+pub mod verdict;
+mod words;
+
+pub use book_findings::BookFindings;
+pub use cause::Cause;
+pub use counts::FindingCounts;
+pub use finding::{
+    Finding, FindingDetail, FindingKind, FindingPlace, Part, PolynomialPlace, RecordPart, Rescaled, Role,
+};
+pub use grade::{Build, Grade, GroupGrade, PassedOver, SceneGrade, Unfit, Visibility};
+pub use hints::Hints;
+pub use outcome::{Damage, Outcome, Stop};
+pub use parity::{Overall, Residuals};
+pub use result::{Reason, SceneResult};
+pub use rules::{Book, Rules, Ruling};
+pub use verdict::Verdict;
+pub use words::{PairWords, PassWords, Power, passes};

@@ -1,0 +1,85 @@
+//! What all scenes together say.
+use crate::{
+    Grade, SceneResult, Verdict,
+    config::{Credit, Marking, Visibility},
+    result::Reason,
+    score,
+};
+use fosssim_findings::{
+    Rules,
+    explanation::{About, Explanation, NanStage, NotFinite},
+};
+use fosssim_mistakes::together::{likely_mistakes, settle};
+use std::time::Duration;
+
+fn told(key: &str, about: About, reproduced: u64) -> Explanation {
+    Explanation {
+        key: key.to_owned(),
+        about,
+        details: Vec::new(),
+        reproduced,
+        samples: reproduced,
+        example: None,
+        same_as: Vec::new(),
+        denies: Vec::new(),
+        claims: Vec::new(),
+    }
+}
+
+fn grade(scenes: Vec<Vec<Explanation>>) -> Grade {
+    let wrong = |(number, explanations): (usize, Vec<Explanation>)| {
+        let run = SceneResult::without_run(&format!("a/{number}"), 9, Verdict::WrongAnswer, Reason::Right);
+        (SceneResult { explanations, ..run }, false)
+    };
+    let marking = Marking { points: 1.0, credit: Credit::Scenes, visibility: Visibility::Visible };
+    let results = scenes.into_iter().enumerate().map(wrong).collect();
+    let mut grade = Grade {
+        submission: String::new(),
+        suite: String::new(),
+        rules: Rules::Fair,
+        verdict: Verdict::WrongAnswer,
+        points: Some(0.0),
+        max_points: 1.0,
+        groups: vec![score::group("a", marking, results)],
+        shows_output: true,
+        build: None,
+        warnings: Vec::new(),
+        layers: Vec::new(),
+        wall: Duration::ZERO,
+        refuted: Vec::new(),
+        located: None,
+    };
+    settle(&mut grade);
+    grade
+}
+
+/// What all scenes together say stands with each that it explains; where numbers end is told of each by itself.
+#[test]
+fn each_scene_says_what_all_together_say() {
+    let end = |step, stage| {
+        told(Explanation::NOT_FINITE, About::NotFinite(NotFinite { step: Some(step), stage, is_nan: true }), 0)
+    };
+    let short = told("loop-one-fewer", About::Mistake, 4);
+    let empty = Explanation { same_as: vec!["loop-one-fewer".to_owned()], ..told("loop-empty", About::Mistake, 2) };
+    let grade = grade(vec![
+        vec![empty],
+        vec![end(7, NanStage::Zones), short.clone()],
+        vec![end(3, NanStage::Zones), short],
+        vec![end(5, NanStage::Responses)],
+    ]);
+    let heads: Vec<(String, usize)> =
+        likely_mistakes(&grade).into_iter().map(|(one, count)| (one.key, count)).collect();
+    assert_eq!(heads, [(Explanation::NOT_FINITE.to_owned(), 2), ("loop-one-fewer".to_owned(), 3)]);
+    let said: Vec<Vec<&str>> =
+        grade.scenes().map(|scene| scene.settled.iter().map(|one| one.key.as_str()).collect()).collect();
+    let both = [Explanation::NOT_FINITE, "loop-one-fewer"];
+    assert_eq!(said, [&both[1..], &both, &both, &both[..1]]);
+    let steps: Vec<Option<u32>> = grade
+        .scenes()
+        .filter_map(|scene| match &scene.settled[0].about {
+            About::NotFinite(found) => Some(found.step),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(steps, [Some(7), Some(3), Some(5)]);
+}

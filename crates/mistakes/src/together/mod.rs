@@ -1,0 +1,79 @@
+//! What the scenes of one submission say together about its likely mistakes.
+#![forbid(unsafe_code)]
+
+use crate::diagnose::{is_named_in, settled, several};
+use fosssim_findings::{
+    Verdict, Visibility,
+    explanation::Explanation,
+    grade::{Grade, GroupGrade},
+};
+use std::{borrow::Cow, time::Duration};
+
+/// The grade with nothing in it but what students see at once: points and verdict are those of the groups that are
+/// left. Unless the suite shows all that programs print, scenes tell their verdicts only
+/// ([`SceneResult::withhold`]).
+#[must_use]
+pub fn for_students(grade: &Grade) -> Cow<'_, Grade> {
+    if grade.is_visible() {
+        return Cow::Borrowed(grade);
+    }
+    let is_visible = |group: &&GroupGrade| group.visibility == Visibility::Visible;
+    let groups: Vec<GroupGrade> = grade.groups.iter().filter(is_visible).cloned().collect();
+    let mut visible = Grade {
+        verdict: groups.iter().map(|group| group.verdict).max().unwrap_or(Verdict::NotRun),
+        points: groups.iter().map(|group| group.points).sum(),
+        max_points: groups.iter().map(|group| group.max_points).sum(),
+        groups,
+        // It counts scenes that are not here.
+        located: None,
+        wall: Duration::ZERO,
+        ..grade.clone()
+    };
+    if grade.shows_output {
+        settle(&mut visible);
+    } else {
+        for scene in visible.groups.iter_mut().flat_map(|group| &mut group.scenes) {
+            scene.withhold();
+        }
+    }
+    Cow::Owned(visible)
+}
+
+/// The mistake that explains most wrong scenes, where several have explanations: together they nearly always tell
+/// mistakes apart that one scene can't.
+#[must_use]
+pub fn likely_mistake(grade: &Grade) -> Option<Explanation> {
+    let explained = grade.scenes().filter(|scene| !scene.explanations.is_empty()).count();
+    if explained > 1 { likely_mistakes(grade).into_iter().next().map(|(likely, _)| likely) } else { None }
+}
+
+/// The likely mistakes, at most three, with the number of wrong scenes that each explains: the one that explains
+/// most, then of what is left the one that explains most of it, provided that it explains it completely
+/// ([`several`]).
+#[must_use]
+pub fn likely_mistakes(grade: &Grade) -> Vec<(Explanation, usize)> {
+    several(grade.scenes().map(|scene| scene.explanations.as_slice()), &grade.refuted)
+        .into_iter()
+        .filter(|likely| likely.reproduced > 0 || likely.is_of_stage() || likely.is_not_finite())
+        .map(|likely| (likely.clone(), explained_by(grade, &likely)))
+        .collect()
+}
+
+/// How many scenes' explanations name this mistake, or a stage of what is not written yet.
+#[must_use]
+pub fn explained_by(grade: &Grade, mistake: &Explanation) -> usize {
+    grade.scenes().filter(|scene| is_named_in(mistake, &scene.explanations)).count()
+}
+
+/// Settles by all scenes together what is said of each. A caller that leaves groups out of a grade asks again, so
+/// that nothing of them is told.
+pub fn settle(grade: &mut Grade) {
+    let likely: Vec<Explanation> = match likely_mistake(grade) {
+        Some(_) => likely_mistakes(grade).into_iter().map(|(one, _)| one).collect(),
+        None => Vec::new(),
+    };
+    for scene in grade.groups.iter_mut().flat_map(|group| &mut group.scenes) {
+        let of_scene = settled(&scene.result.explanations, &likely);
+        (scene.settled, scene.agreed) = (of_scene.explanations, of_scene.agreed);
+    }
+}

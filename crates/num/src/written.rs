@@ -1,0 +1,110 @@
+//! Numbers in serialised values: they read back bit for bit, but for the bits of a NaN.
+//!
+//! Formats such as JSON have no number for what is not finite, which is written as C++ prints it ([`general`]). Fields
+//! of numbers say `#[serde(with = "fosssim_num::written")]`.
+use super::{printed::general, vector::Vec2};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de::DeserializeOwned, de::Error};
+
+/// A number in its serialised form: `nan`, `-nan`, `inf` and `-inf` are texts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Number(pub f64);
+
+impl Serialize for Number {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self.0.is_finite() {
+            true => serializer.serialize_f64(self.0),
+            false => serializer.serialize_str(&general(self.0)),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Number {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        #[derive(Deserialize)]
+        #[serde(untagged)]
+        enum Either {
+            Number(f64),
+            Text(String),
+        }
+        match Either::deserialize(deserializer)? {
+            Either::Number(number) => Ok(Self(number)),
+            Either::Text(text) => text.parse().map(Self).map_err(D::Error::custom),
+        }
+    }
+}
+
+/// What is made of numbers and written as such.
+pub trait Written: Sized {
+    /// Its serialised form.
+    type Form: Serialize + DeserializeOwned;
+    /// In its form.
+    fn write(&self) -> Self::Form;
+    /// Out of its form.
+    fn read(form: Self::Form) -> Self;
+}
+
+impl Written for f64 {
+    type Form = Number;
+    fn write(&self) -> Number {
+        Number(*self)
+    }
+    fn read(form: Number) -> Self {
+        form.0
+    }
+}
+
+impl Written for [f64; 2] {
+    type Form = [Number; 2];
+    fn write(&self) -> [Number; 2] {
+        self.map(Number)
+    }
+    fn read(form: [Number; 2]) -> Self {
+        form.map(|number| number.0)
+    }
+}
+
+impl Written for Vec2 {
+    type Form = [Number; 2];
+    fn write(&self) -> [Number; 2] {
+        [Number(self.x), Number(self.y)]
+    }
+    fn read([x, y]: [Number; 2]) -> Self {
+        Self::new(x.0, y.0)
+    }
+}
+
+impl Written for Vec<f64> {
+    type Form = Vec<Number>;
+    fn write(&self) -> Vec<Number> {
+        self.iter().copied().map(Number).collect()
+    }
+    fn read(form: Vec<Number>) -> Self {
+        form.into_iter().map(|number| number.0).collect()
+    }
+}
+
+impl<T: Written> Written for Option<T> {
+    type Form = Option<T::Form>;
+    fn write(&self) -> Self::Form {
+        self.as_ref().map(T::write)
+    }
+    fn read(form: Self::Form) -> Self {
+        form.map(T::read)
+    }
+}
+
+/// For serde's `with`.
+///
+/// # Errors
+/// Those of the serialiser.
+pub fn serialize<T: Written, S: Serializer>(value: &T, serializer: S) -> Result<S::Ok, S::Error> {
+    value.write().serialize(serializer)
+}
+
+/// For serde's `with`.
+///
+/// # Errors
+/// Those of the deserialiser, and where a text is no number.
+pub fn deserialize<'de, T: Written, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
+    T::Form::deserialize(deserializer).map(T::read)
+}
