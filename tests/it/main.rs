@@ -9,6 +9,7 @@ mod corpus;
 mod dependencies;
 mod detect;
 mod drop_in;
+mod examples;
 mod explain;
 mod fair;
 mod files;

@@ -86,7 +86,12 @@ fn read_anything(layout: Layout, bytes: &[u8]) -> Result<(), TestCaseError> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 300, rng_seed: RngSeed::Fixed(1), failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: 300,
+        rng_seed: RngSeed::Fixed(1),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
 
     #[test]
     fn what_is_written_is_read_again((layout, frames) in trace(), trailing in vec(any::<u8>(), 0..40)) {
@@ -121,7 +126,8 @@ proptest! {
             prop_assert_eq!(&trimmed, &actual);
             let kept = frame.polynomials.iter().zip(&trimmed).all(|(a, b)| a.len() == b.len());
             prop_assert_eq!(read.plain, kept);
-            let again = Frame { state: read.state.clone(), impulses: read.impulses.clone(), polynomials: frame.polynomials.clone() };
+            let (state, impulses) = (read.state.clone(), read.impulses.clone());
+            let again = Frame { state, impulses, polynomials: frame.polynomials.clone() };
             prop_assert_eq!(write(layout, &[again]), write(layout, std::slice::from_ref(frame)));
         }
         prop_assert!(!lenient.has_more());

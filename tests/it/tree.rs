@@ -5,7 +5,7 @@ use std::{
 };
 
 /// The folders in which Rust sources lie.
-const SOURCES: [&str; 5] = ["src", "crates", "tests", "benches", "fuzz"];
+const SOURCES: [&str; 6] = ["src", "crates", "tests", "benches", "examples", "fuzz"];
 
 /// Folders that tools fill.
 const FILLED_BY_TOOLS: [&str; 2] = ["target", "node_modules"];

@@ -7,6 +7,16 @@
 //! - **No link is followed beneath a [`Folder`]**, neither to read nor to write: a user who fills a folder, or fills it
 //!   meanwhile, leads nobody elsewhere.
 //! - **What is written appears whole** ([`Replacement`]), in place of whatever has the name.
+//!
+//! ```
+//! use fosssim_files::Place;
+//!
+//! let folder = tempfile::tempdir()?;
+//! let place = Place::new(folder.path(), "report.txt");
+//! place.write(b"right")?;
+//! assert_eq!(place.read(1024)?, b"right");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 #![forbid(unsafe_code)]
 
 mod error;

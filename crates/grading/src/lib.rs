@@ -2,6 +2,14 @@
 //!
 //! The only place that knows both traces and programs. Yields a [`Grade`]; it writes no markup, speaks no HTTP and
 //! parses no arguments.
+//!
+//! ```
+//! use fosssim_grading::plan;
+//!
+//! let plan = plan::find("t2m2")?;
+//! assert!(plan.scenes().count() > 100);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 #![forbid(unsafe_code)]
 
 mod assignments;

@@ -3,6 +3,26 @@
 //!
 //! Knows nothing of processes and reports; it takes a scene and a reader, and yields typed findings. The rules are
 //! those of `oracle-behaviour.md`, sections 4 to 6.
+//!
+//! ```
+//! use fosssim_judge::{Book, Ruling, replay};
+//! # use fosssim_model::{scene, sim::{RootSearch, Simulation}, trace::{Layout, Recorder}};
+//! # let text = br#"<scene>
+//! #   <duration time="1"/> <integrator type="symplectic-euler" dt="0.25"/> <collision type="none"/>
+//! #   <particle m="1" px="0" py="0" vx="2" vy="0" fixed="0"/>
+//! # </scene>"#;
+//! # let scene = scene::read("a ball", text)?.scene;
+//! # let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
+//! # let mut recorder = Recorder::start(Vec::new(), Layout::of(&scene), simulation.state());
+//! # for _ in 0..scene.steps() {
+//! #     simulation.step(&mut recorder)?;
+//! # }
+//! # let (trace, _) = recorder.finish()?;
+//!
+//! let outcome = replay::judge(&scene, &trace[..], &replay::Options::default(), &mut ());
+//! assert_eq!(outcome.ruling(Book::Parity), Ruling::Accepted);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 #![forbid(unsafe_code)]
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 

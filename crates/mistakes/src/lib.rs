@@ -1,4 +1,24 @@
 //! Known mistakes and how they are found again: [`student`] makes them, [`diagnose`] names them.
+//!
+//! ```
+//! use fosssim_mistakes::diagnose;
+//! # use fosssim_model::{scene, sim::{RootSearch, Simulation}, trace::{Layout, Recorder}};
+//! # let text = br#"<scene>
+//! #   <duration time="1"/> <integrator type="symplectic-euler" dt="0.25"/> <collision type="none"/>
+//! #   <particle m="1" px="0" py="0" vx="2" vy="0" fixed="0"/>
+//! # </scene>"#;
+//! # let scene = scene::read("a ball", text)?.scene;
+//! # let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
+//! # let mut recorder = Recorder::start(Vec::new(), Layout::of(&scene), simulation.state());
+//! # for _ in 0..scene.steps() {
+//! #     simulation.step(&mut recorder)?;
+//! # }
+//! # let (trace, _) = recorder.finish()?;
+//!
+//! // There is nothing to explain about a right trace.
+//! assert!(diagnose::explain(&scene, &trace).is_empty());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 #![forbid(unsafe_code)]
 
 pub mod plain;

@@ -6,6 +6,14 @@
 //! functions that run per pair (but for the integers of [`decision::exact`], the last resort). The mathematics is that
 //! of `root-finder.md` (Jenkins and Traub, SIAM J. Numer. Anal. 7, 1970; Jenkins, Algorithm 493, ACM TOMS 1, 1975),
 //! evaluated in the order in which the original does.
+//!
+//! ```
+//! use fosssim_num::{first_time::first_time, polynomial::Polynomial};
+//!
+//! // When are both t - 1/4 and 1 - t positive for the first time?
+//! let both = [Polynomial::trimmed(&[1.0, -0.25]), Polynomial::trimmed(&[-1.0, 1.0])];
+//! assert_eq!(first_time(&both).expect("a search that ends"), 0.25);
+//! ```
 #![forbid(unsafe_code)]
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
@@ -17,6 +25,8 @@ pub mod first_time;
 pub mod interval;
 pub mod lanes;
 pub mod linear;
+#[cfg(any(test, feature = "nalgebra"))]
+pub mod matrices;
 pub mod polynomial;
 pub mod printed;
 pub mod rpoly;

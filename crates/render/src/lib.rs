@@ -7,6 +7,22 @@
 //!
 //! A motion goes `Painter` (positions to [`shape::Shape`]s) to `svg` or `raster`, and from there to a `film`. Plots are
 //! SVG made of numbers; they tell series apart by dash and marker and not by colour alone, and need no script.
+//!
+//! ```
+//! use fosssim_render::{Extent, Painter, PictureOptions, Size, svg};
+//! # use fosssim_model::{scene, sim::State};
+//! # let text = br#"<scene>
+//! #   <duration time="1"/> <integrator type="symplectic-euler" dt="0.25"/> <collision type="none"/>
+//! #   <particle m="1" px="0" py="0" vx="2" vy="0" fixed="0"/>
+//! # </scene>"#;
+//! # let scene = scene::read("a ball", text)?.scene;
+//! # let positions = [0.0, 0.0];
+//! let (extent, size) = (Extent::of(&scene, &positions), Size::new(320, 240)?);
+//! let mut painter = Painter::new(&scene, &extent, PictureOptions { size, label: false });
+//! let shapes = painter.picture(0, &positions, None);
+//! assert!(svg::document(size, painter.background(), "a ball", &shapes).contains("<circle"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 #![forbid(unsafe_code)]
 
 mod clip;

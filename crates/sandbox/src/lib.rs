@@ -18,6 +18,14 @@
 //!
 //! What it never does: trust a path the program could change, read a result while the program lives, or go on
 //! silently when a required layer is missing ([`Backend::best`] refuses).
+//!
+//! ```no_run
+//! use fosssim_sandbox::{Backend, Job, Supervisor};
+//!
+//! let backend = Backend::best(Supervisor::this_program())?;
+//! let running = backend.start(&Job::new("./FOSSSim", "/tmp/work"))?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod backend;
 mod bubblewrap;

@@ -2,6 +2,11 @@
 //!
 //! It stands in a crate of its own so that the algorithms are compiled once, and not with every change of what calls
 //! them.
+//!
+//! ```
+//! let shown = fosssim_textdiff::unified(("then", "a\nb\n"), ("now", "a\nc\n"));
+//! assert_eq!(shown, "--- then\n+++ now\n@@ -1,2 +1,2 @@\n a\n-b\n+c\n");
+//! ```
 #![forbid(unsafe_code)]
 
 use similar::TextDiff;

@@ -17,8 +17,8 @@
 //! * **Degree three and above: measured.** Its search is iterative, and what deflation does to zeros is not bounded
 //!   here. The polynomial is negative with margin; no zeros coincide or nearly so, which makes all zeros
 //!   well-conditioned and keeps samples off double zeros (without this, grids of integers have shown a disagreement in
-//!   some hundred thousand); the zeros are not far away. `crates/lab/src/bin/audit` compares certificate and search, for lists
-//!   and for each polynomial alone; no disagreement is left.
+//!   some hundred thousand); the zeros are not far away. `crates/lab/src/bin/audit` compares
+//!   certificate and search, for lists and for each polynomial alone; no disagreement is left.
 //! * **Termination: measured** for degree three and above, within the range of coefficients that is admitted.
 
 mod bernstein;

@@ -1,0 +1,28 @@
+//! Draws where a scene ends as SVG: `cargo run --example render -- SCENE.xml > end.svg`.
+#![forbid(unsafe_code)]
+use fosssim_oracle::{
+    render::{Extent, Painter, PictureOptions, Size, svg},
+    scene,
+    sim::{RootSearch, Simulation},
+};
+use std::{env, error::Error, fs};
+
+/// The reference's last step as a picture.
+pub fn run(scene: &[u8]) -> Result<String, Box<dyn Error>> {
+    let scene = scene::read("scene", scene)?.scene;
+    let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
+    let mut extent = Extent::of(&scene, &simulation.state().positions);
+    for _ in 0..scene.steps() {
+        simulation.step(&mut ())?;
+        extent.add(&scene, &simulation.state().positions);
+    }
+    let size = Size::new(640, 480)?;
+    let mut painter = Painter::new(&scene, &extent, PictureOptions { size, label: true });
+    let shapes = painter.picture(scene.steps(), &simulation.state().positions, None);
+    Ok(svg::document(size, painter.background(), "the last step", &shapes))
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    print!("{}", run(&fs::read(env::args().nth(1).unwrap_or_default())?)?);
+    Ok(())
+}
