@@ -6,13 +6,13 @@ use std::{
 };
 
 /// Lines wider than rustfmt makes code, which are comments and texts.
-const MOST_WIDE_LINES: usize = 568;
+const MOST_WIDE_LINES: usize = 538;
 
 /// A line is as wide as rustfmt makes code (`rustfmt.toml`).
 const WIDTH: usize = 120;
 
 /// Types whose name stands in a second crate, too.
-const MOST_SHARED_NAMES: usize = 169;
+const MOST_SHARED_NAMES: usize = 168;
 
 /// A file that is longer holds a second noun.
 const LONGEST_FILE: usize = 600;
@@ -24,14 +24,13 @@ const LONGEST_FUNCTION: usize = 80;
 const LONG_FILES: [(&str, usize); 1] = [("crates/mistakes/src/assignments/t2m2/catalogue.rs", 626)];
 
 /// Functions that are longer, by the names of their files, and how long they may be.
-const LONG_FUNCTIONS: [(&str, usize); 12] = [
+const LONG_FUNCTIONS: [(&str, usize); 11] = [
     ("execute.rs attempt", 101),
     ("words.rs fmt", 106),
     ("places.rs places", 99),
     ("stages.rs of_fault", 95),
     ("tests.rs faults", 82),
-    ("serve.rs run", 107),
-    ("ledger.rs write_result", 81),
+    ("serve.rs run", 100),
     ("program.rs grade", 82),
     ("servers.rs two_servers_lose_nothing", 127),
     ("rows.rs fill", 99),

@@ -38,7 +38,7 @@ pub fn read(text: &str) -> Option<i64> {
     Some(moment.timestamp_millis())
 }
 
-/// A moment as a form's field says it, `2026-12-01T23:59`, so many minutes east of UTC.
+/// A moment as a form's field says it, `2026-12-01T23:59`, this many minutes east of UTC.
 pub fn read_field(text: &str, east: i64) -> Option<i64> {
     let seconds = if text.len() == 16 { ":00Z" } else { "Z" };
     Some(read(&format!("{text}{seconds}"))? - east * 60_000)

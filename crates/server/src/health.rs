@@ -7,13 +7,13 @@ use crate::{
 };
 use std::time::Duration;
 
-/// After so many faults in a row a worker leaves jobs to others that had none since their last result.
+/// After this many faults in a row a worker leaves jobs to others that had none since their last result.
 const STEPS_ASIDE: i64 = 3;
 
 /// For so long, at most; it doubles from a second on.
 const LONGEST_ASIDE: Duration = Duration::from_secs(60);
 
-/// When so many submissions failed, and none was ever graded by the same suite, the suite is taken for broken.
+/// When this many submissions failed, and none was ever graded by the same suite, the suite is taken for broken.
 const BROKEN: i64 = 5;
 
 /// How long after its last sign of life a worker counts as alive, in milliseconds.
@@ -34,21 +34,14 @@ pub async fn seen(
 ) -> Result<(), DbError> {
     let slots = i64::try_from(slots).unwrap_or(i64::MAX);
     let fault = fault.map(without_paths);
-    transaction
-        .execute(
-            "INSERT INTO worker (name, version, slots, started_at, seen_at, token) VALUES (?, ?, ?, {now}, {now}, ?)
-             ON CONFLICT (name) DO UPDATE SET slots = excluded.slots, seen_at = excluded.seen_at",
-            values![worker, env!("CARGO_PKG_VERSION"), slots, token],
-        )
-        .await?;
+    let statement =
+        "INSERT INTO worker (name, version, slots, started_at, seen_at, token) VALUES (?, ?, ?, {now}, {now}, ?)
+        ON CONFLICT (name) DO UPDATE SET slots = excluded.slots, seen_at = excluded.seen_at";
+    transaction.execute(statement, values![worker, env!("CARGO_PKG_VERSION"), slots, token]).await?;
     if let Some(fault) = &fault {
-        transaction
-            .execute(
-                "UPDATE worker SET fault = ?, fault_at = {now}, aside_since = coalesce(aside_since, {now}),
-                    faults = faults + CASE WHEN aside_since IS NULL THEN 1 ELSE 0 END WHERE name = ?",
-                values![fault, worker],
-            )
-            .await?;
+        let statement = "UPDATE worker SET fault = ?, fault_at = {now}, aside_since = coalesce(aside_since, {now}),
+            faults = faults + CASE WHEN aside_since IS NULL THEN 1 ELSE 0 END WHERE name = ?";
+        transaction.execute(statement, values![fault, worker]).await?;
     } else if slots > 0 {
         transaction
             .execute("UPDATE worker SET aside_since = NULL WHERE name = ? AND aside_since IS NOT NULL", values![worker])
@@ -71,24 +64,16 @@ pub async fn may_claim(
     if let Some(token) = claimant.token {
         // One after another, so that the count holds.
         transaction.row("SELECT id FROM token WHERE id = ? {for update}", values![token]).await?;
-        let room = transaction
-            .one(
-                "SELECT CAST(coalesce(sum(slots), 0) AS {int}) AS slots,
-                    (SELECT count(*) FROM job WHERE token = ? AND state = 'running') AS held
-                 FROM worker WHERE token = ? AND seen_at > {now} - ?",
-                values![token, token, recent],
-            )
-            .await?;
+        let statement = "SELECT CAST(coalesce(sum(slots), 0) AS {int}) AS slots,
+               (SELECT count(*) FROM job WHERE token = ? AND state = 'running') AS held
+            FROM worker WHERE token = ? AND seen_at > {now} - ?";
+        let room = transaction.one(statement, values![token, token, recent]).await?;
         if room.int("held")? >= room.int("slots")?.max(1) {
             return Ok(false);
         }
     }
-    let row = transaction
-        .row(
-            "SELECT in_a_row, {now} - fault_at AS since FROM worker WHERE name = ? AND in_a_row >= ?",
-            values![claimant.worker, STEPS_ASIDE],
-        )
-        .await?;
+    let statement = "SELECT in_a_row, {now} - fault_at AS since FROM worker WHERE name = ? AND in_a_row >= ?";
+    let row = transaction.row(statement, values![claimant.worker, STEPS_ASIDE]).await?;
     let Some(row) = row else { return Ok(true) };
     let steps = u32::try_from(row.int("in_a_row")? - STEPS_ASIDE).unwrap_or(0).min(16);
     let aside = Duration::from_secs(1).saturating_mul(1 << steps).min(LONGEST_ASIDE);
@@ -97,25 +82,17 @@ pub async fn may_claim(
     if since.is_none_or(|since| Duration::from_millis(since) >= aside) {
         return Ok(true);
     }
-    let better = transaction
-        .row(
-            "SELECT name FROM worker WHERE name <> ? AND slots > 0 AND in_a_row = 0 AND seen_at > {now} - ?
-                AND seen_at <= {now} + ? LIMIT 1",
-            values![claimant.worker, recent, recent],
-        )
-        .await?;
+    let statement = "SELECT name FROM worker WHERE name <> ? AND slots > 0 AND in_a_row = 0 AND seen_at > {now} - ?
+        AND seen_at <= {now} + ? LIMIT 1";
+    let better = transaction.row(statement, values![claimant.worker, recent, recent]).await?;
     Ok(better.is_none())
 }
 
 /// The grader failed in this worker, which says that it can grade.
 pub(crate) async fn failed(transaction: &mut Transaction, worker: &str, fault: &str) -> Result<(), DbError> {
-    transaction
-        .execute(
-            "UPDATE worker SET faults = faults + 1, in_a_row = in_a_row + 1, fault = ?, fault_at = {now}
-             WHERE name = ?",
-            values![fault, worker],
-        )
-        .await?;
+    let statement = "UPDATE worker SET faults = faults + 1, in_a_row = in_a_row + 1, fault = ?, fault_at = {now}
+        WHERE name = ?";
+    transaction.execute(statement, values![fault, worker]).await?;
     Ok(())
 }
 
@@ -136,25 +113,17 @@ pub(crate) async fn pause_broken(
     fault: &str,
 ) -> Result<bool, DbError> {
     let Some(suite) = suite_of(task) else { return Ok(false) };
-    let graded = transaction
-        .row(
-            "SELECT result.id FROM submission JOIN result ON result.submission = submission.id
-             WHERE submission.assignment = ? AND result.code <> 'JE' AND result.task LIKE ? LIMIT 1",
-            values![assignment, &suite],
-        )
-        .await?;
+    let statement = "SELECT result.id FROM submission JOIN result ON result.submission = submission.id
+        WHERE submission.assignment = ? AND result.code <> 'JE' AND result.task LIKE ? LIMIT 1";
+    let graded = transaction.row(statement, values![assignment, &suite]).await?;
     if graded.is_some() {
         return Ok(false);
     }
-    let failed = transaction
-        .one(
-            "SELECT count(*) AS jobs, count(DISTINCT job.failed_by) AS workers FROM submission
-             JOIN job ON job.submission = submission.id
-             WHERE submission.assignment = ? AND job.failures > 0 AND job.state IN ('waiting', 'running', 'buried')
-                AND job.payload LIKE ?",
-            values![assignment, &suite],
-        )
-        .await?;
+    let statement = "SELECT count(*) AS jobs, count(DISTINCT job.failed_by) AS workers FROM submission
+        JOIN job ON job.submission = submission.id
+        WHERE submission.assignment = ? AND job.failures > 0 AND job.state IN ('waiting', 'running', 'buried')
+           AND job.payload LIKE ?";
+    let failed = transaction.one(statement, values![assignment, &suite]).await?;
     if failed.int("jobs")? < BROKEN {
         return Ok(false);
     }
@@ -164,20 +133,12 @@ pub(crate) async fn pause_broken(
     if failed.int("workers")? < 2 && alive.int("n")? > 1 {
         return Ok(false);
     }
-    let newly = transaction
-        .execute(
-            "UPDATE assignment SET paused_at = {now}, paused_fault = ? WHERE id = ? AND paused_at IS NULL",
-            values![fault, assignment],
-        )
-        .await?;
-    transaction
-        .execute(
-            "WITH found AS (SELECT id FROM job WHERE lane = 'grading' AND state = 'waiting' AND payload LIKE ?
-                AND submission IN (SELECT id FROM submission WHERE assignment = ?) ORDER BY id {for update})
-             UPDATE job SET lane = 'paused' WHERE id IN (SELECT id FROM found)",
-            values![&suite, assignment],
-        )
-        .await?;
+    let statement = "UPDATE assignment SET paused_at = {now}, paused_fault = ? WHERE id = ? AND paused_at IS NULL";
+    let newly = transaction.execute(statement, values![fault, assignment]).await?;
+    let statement = "WITH found AS (SELECT id FROM job WHERE lane = 'grading' AND state = 'waiting' AND payload LIKE ?
+           AND submission IN (SELECT id FROM submission WHERE assignment = ?) ORDER BY id {for update})
+        UPDATE job SET lane = 'paused' WHERE id IN (SELECT id FROM found)";
+    transaction.execute(statement, values![&suite, assignment]).await?;
     Ok(newly > 0)
 }
 

@@ -1,8 +1,8 @@
-//! What the server counts about itself for a monitor (Prometheus): requests, and what its process, disk and connections
-//! to the database come to. What the database knows of the queue is asked of it.
+//! Numbers for a monitor, in Prometheus' text format: what the server counts about itself, what its process, disk and
+//! connections to the database come to, and what the database knows of the queue. They tell of nobody.
 use crate::{db::Database, storage::Storage};
 use prometheus::{
-    Gauge, GaugeVec, HistogramOpts, HistogramVec, IntCounter, IntCounterVec, IntGauge, Opts, Registry, TextEncoder,
+    CounterVec, GaugeVec, HistogramOpts, HistogramVec, IntCounterVec, IntGauge, Opts, Registry, TextEncoder,
     process_collector::ProcessCollector,
 };
 use std::time::Duration;
@@ -10,19 +10,12 @@ use std::time::Duration;
 /// Upper bounds of the histogram of latencies, in seconds: from a page to an upload over a slow line.
 const BUCKETS: [f64; 12] = [0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0];
 
-/// Counts and measures. Cloning it is cheap.
+/// Counts requests. Cloning it is cheap.
 #[derive(Debug, Clone)]
 pub struct Instruments {
-    registry: Registry,
     requests: IntCounterVec,
     seconds: HistogramVec,
     in_flight: IntGauge,
-    connections: GaugeVec,
-    most_connections: GaugeVec,
-    waiting: IntGauge,
-    timeouts: IntCounter,
-    free: Gauge,
-    size: Gauge,
 }
 
 /// A request that is being answered; it counts when it is told what came of it, or is dropped.
@@ -39,51 +32,19 @@ impl Instruments {
     /// Instruments that show zero.
     ///
     /// # Errors
-    /// When two of them have one name.
+    /// When a name is none that Prometheus allows.
     pub fn new() -> Result<Self, prometheus::Error> {
         let of_requests = ["method", "route", "status"];
         let duration = HistogramOpts::new(
             "http_request_duration_seconds",
             "Time from a request's head to the head of its answer, by route.",
         );
-        let this = Self {
-            registry: Registry::new(),
-            requests: IntCounterVec::new(
-                Opts::new("http_requests_total", "Requests that were answered."),
-                &of_requests,
-            )?,
+        let requests = Opts::new("http_requests_total", "Requests that were answered.");
+        Ok(Self {
+            requests: IntCounterVec::new(requests, &of_requests)?,
             seconds: HistogramVec::new(duration.buckets(BUCKETS.into()), &of_requests[..2])?,
             in_flight: IntGauge::new("http_requests_in_flight", "Requests that are being answered.")?,
-            connections: GaugeVec::new(
-                Opts::new("fosssim_database_connections", "Open connections to the database, by pool and state."),
-                &["pool", "state"],
-            )?,
-            most_connections: GaugeVec::new(
-                Opts::new("fosssim_database_connections_max", "The most connections that a pool opens."),
-                &["pool"],
-            )?,
-            waiting: IntGauge::new("fosssim_database_waiting", "Transactions that wait for a connection.")?,
-            timeouts: IntCounter::new(
-                "fosssim_database_timeouts_total",
-                "Transactions that were given up because no connection was free in time.",
-            )?,
-            free: Gauge::new("fosssim_disk_free_bytes", "Free room on the data folder's disk.")?,
-            size: Gauge::new("fosssim_disk_size_bytes", "The size of the data folder's disk.")?,
-        };
-        let build = GaugeVec::new(Opts::new("fosssim_build_info", "The version of the server."), &["version"])?;
-        build.with_label_values(&[env!("CARGO_PKG_VERSION")]).set(1.0);
-        this.registry.register(Box::new(build))?;
-        this.registry.register(Box::new(this.requests.clone()))?;
-        this.registry.register(Box::new(this.seconds.clone()))?;
-        this.registry.register(Box::new(this.in_flight.clone()))?;
-        this.registry.register(Box::new(this.connections.clone()))?;
-        this.registry.register(Box::new(this.most_connections.clone()))?;
-        this.registry.register(Box::new(this.waiting.clone()))?;
-        this.registry.register(Box::new(this.timeouts.clone()))?;
-        this.registry.register(Box::new(this.free.clone()))?;
-        this.registry.register(Box::new(this.size.clone()))?;
-        this.registry.register(Box::new(ProcessCollector::for_self()))?;
-        Ok(this)
+        })
     }
 
     /// A request begins.
@@ -99,24 +60,137 @@ impl Instruments {
         self.seconds.with_label_values(&[method, route]).observe(took.as_secs_f64());
     }
 
-    /// What they show, in Prometheus' text format.
+    /// What all of them show. Without a database that answers there is nothing about the queue.
     ///
     /// # Errors
     /// When it can't be written as text.
-    pub fn show(&self, database: &Database, storage: &Storage) -> Result<String, prometheus::Error> {
-        for pool in database.pools() {
-            let of = |state: &str| self.connections.with_label_values(&[pool.name, state]);
-            of("idle").set(f64::from(pool.idle));
-            of("used").set(f64::from(pool.size.saturating_sub(pool.idle)));
-            self.most_connections.with_label_values(&[pool.name]).set(f64::from(pool.most));
+    pub fn show(
+        &self,
+        database: &Database,
+        storage: &Storage,
+        queue: Option<&Metrics>,
+    ) -> Result<String, prometheus::Error> {
+        let page = Page(Registry::new());
+        page.0.register(Box::new(self.requests.clone()))?;
+        page.0.register(Box::new(self.seconds.clone()))?;
+        page.0.register(Box::new(self.in_flight.clone()))?;
+        page.0.register(Box::new(ProcessCollector::for_self()))?;
+        page.gauge("build_info", "The version of the server.", "version", &[(env!("CARGO_PKG_VERSION"), 1)])?;
+        let pools = database.pools();
+        let most: Vec<(&str, i64)> = pools.iter().map(|pool| (pool.name, pool.most.into())).collect();
+        page.gauge("database_connections_max", "The most connections that a pool opens.", "pool", &most)?;
+        let connections =
+            Opts::new("fosssim_database_connections", "Open connections to the database, by pool and state.");
+        let connections = GaugeVec::new(connections, &["pool", "state"])?;
+        for pool in &pools {
+            connections.with_label_values(&[pool.name, "idle"]).set(pool.idle.into());
+            connections.with_label_values(&[pool.name, "used"]).set(pool.size.saturating_sub(pool.idle).into());
         }
+        page.0.register(Box::new(connections))?;
         let (waiting, timeouts) = database.waits();
-        self.waiting.set(waiting);
-        self.timeouts.inc_by(timeouts.saturating_sub(self.timeouts.get()));
+        page.number("database_waiting", "Transactions that wait for a connection.", waiting)?;
+        let timeouts = i64::try_from(timeouts).unwrap_or(i64::MAX);
+        let help = "Transactions that were given up because no connection was free in time.";
+        page.counter("database_timeouts_total", help, "", &[("", timeouts)])?;
         if let Some((free, size)) = storage.disk() {
-            self.free.set(free as f64);
-            self.size.set(size as f64);
+            let bytes = |bytes: u64| i64::try_from(bytes).unwrap_or(i64::MAX);
+            page.number("disk_free_bytes", "Free room on the data folder's disk.", bytes(free))?;
+            page.number("disk_size_bytes", "The size of the data folder's disk.", bytes(size))?;
         }
-        TextEncoder::new().encode_to_string(&self.registry.gather())
+        page.number("database_up", "Whether the database answers.", queue.is_some().into())?;
+        if let Some(queue) = queue {
+            page.queue(queue)?;
+        }
+        TextEncoder::new().encode_to_string(&page.0.gather())
+    }
+}
+
+/// What may be counted without knowing anybody.
+#[derive(Debug, Clone, Default)]
+pub struct Metrics {
+    /// Jobs by state.
+    pub jobs: Vec<(String, i64)>,
+    /// Scores for learning platforms by state.
+    pub scores: Vec<(String, i64)>,
+    /// How long the oldest waiting job has waited, in milliseconds.
+    pub oldest: i64,
+    /// Workers that were seen lately.
+    pub workers: i64,
+    /// Their slots.
+    pub slots: i64,
+    /// Workers that take no jobs, because they can't grade.
+    pub aside: i64,
+    /// Workers that grade something.
+    pub working: i64,
+    /// Jobs of assignments by whose suite nothing can be graded; they wait for staff.
+    pub paused: i64,
+    /// Events by kind, of those kinds that somebody should look at.
+    pub events: Vec<(String, i64)>,
+    /// Submissions in all.
+    pub submissions: i64,
+    /// Scenes in which the reference is suspected and nobody has decided.
+    pub suspicions: i64,
+}
+
+/// What is shown at this moment; names begin with `fosssim_`, and a label without a name is none.
+struct Page(Registry);
+
+impl Page {
+    fn gauge(&self, name: &str, help: &str, label: &str, values: &[(&str, i64)]) -> Result<(), prometheus::Error> {
+        let labels: Vec<&str> = Some(label).filter(|label| !label.is_empty()).into_iter().collect();
+        let series = GaugeVec::new(Opts::new(format!("fosssim_{name}"), help), &labels)?;
+        for (of, value) in values {
+            series.with_label_values(&[*of][..labels.len()]).set(*value as f64);
+        }
+        self.0.register(Box::new(series))
+    }
+
+    fn counter(&self, name: &str, help: &str, label: &str, values: &[(&str, i64)]) -> Result<(), prometheus::Error> {
+        let labels: Vec<&str> = Some(label).filter(|label| !label.is_empty()).into_iter().collect();
+        let series = CounterVec::new(Opts::new(format!("fosssim_{name}"), help), &labels)?;
+        for (of, value) in values {
+            series.with_label_values(&[*of][..labels.len()]).inc_by(*value as f64);
+        }
+        self.0.register(Box::new(series))
+    }
+
+    fn number(&self, name: &str, help: &str, value: i64) -> Result<(), prometheus::Error> {
+        self.gauge(name, help, "", &[("", value)])
+    }
+
+    /// What the database knows of the queue.
+    fn queue(&self, queue: &Metrics) -> Result<(), prometheus::Error> {
+        let named = |counts: &'_ [(String, i64)], name: &str| {
+            counts.iter().find(|(known, _)| known == name).map_or(0, |(_, count)| *count)
+        };
+        for (name, help, counts) in [
+            ("jobs", "Gradings by state.", &queue.jobs),
+            ("scores", "Scores for learning platforms by state.", &queue.scores),
+        ] {
+            let states = ["waiting", "running", "done", "buried", "cancelled"];
+            self.gauge(name, help, "state", &states.map(|state| (state, named(counts, state))))?;
+        }
+        let help = "How long the oldest waiting upload has waited.";
+        let oldest = GaugeVec::new(Opts::new("fosssim_oldest_waiting_seconds", help), &[])?;
+        oldest.with_label_values::<&str>(&[]).set(queue.oldest.max(0) as f64 / 1000.0);
+        self.0.register(Box::new(oldest))?;
+        let idle = queue.workers - queue.working - queue.aside;
+        let by_state = [("working", queue.working), ("idle", idle), ("aside", queue.aside)];
+        let help = "Workers that were seen lately: they grade, wait for a job, or can't grade.";
+        self.gauge("workers_by_state", help, "state", &by_state)?;
+        for (name, help, value) in [
+            ("workers", "Workers that were seen lately.", queue.workers),
+            ("slots", "Their slots.", queue.slots),
+            ("workers_aside", "Workers that take no jobs, because they can't grade.", queue.aside),
+            ("jobs_paused", "Jobs that wait for staff: nothing can be graded by their suite.", queue.paused),
+            ("suspicions", "Scenes in which the reference may be wrong, undecided.", queue.suspicions),
+        ] {
+            self.number(name, help, value)?;
+        }
+        self.counter("submissions_total", "Submissions.", "", &[("", queue.submissions)])?;
+        let kinds = ["graded", "failed try", "late answer", "buried"];
+        let kinds = kinds.map(|kind| (kind.replace(' ', "_"), named(&queue.events, kind)));
+        let kinds: Vec<(&str, i64)> = kinds.iter().map(|(kind, count)| (kind.as_str(), *count)).collect();
+        self.counter("events_total", "Results, and what went wrong with jobs.", "kind", &kinds)
     }
 }

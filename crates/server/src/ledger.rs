@@ -55,13 +55,13 @@ pub async fn fail(
         let of_all = About { submission: None, task: String::new(), worker: String::new(), ..row };
         note(transaction, &of_all, "assignment paused", &text).await?;
     }
-    // Last, as when a job is finished: whoever holds a worker's row waits for no job.
+    // Last, as when a job is finished: anybody who holds a worker's row waits for no job.
     health::failed(transaction, &row.worker, fault).await?;
     Ok(failure)
 }
 
-/// Looks for silent workers, and writes the judge errors of jobs that were tried too often. In a transaction of its own:
-/// it locks jobs of others, and with these it must not wait for anything that their workers hold.
+/// Looks for silent workers, and writes the judge errors of jobs that were tried too often. In a transaction of its
+/// own: it locks jobs of others, and with these it must not wait for anything that their workers hold.
 ///
 /// # Errors
 /// What the database says.
@@ -105,18 +105,14 @@ struct About {
 }
 
 async fn about(transaction: &mut Transaction, job: i64) -> Result<About, DbError> {
-    let row = transaction
-        .one(
-            "SELECT job.submission, job.campaign, job.payload, coalesce(job.worker, job.failed_by) AS worker,
-                submission.assignment, assignment.course,
-                {now} - coalesce(job.started_at, {now}) AS took
-             FROM job
-             LEFT JOIN submission ON submission.id = job.submission
-             LEFT JOIN assignment ON assignment.id = submission.assignment
-             WHERE job.id = ?",
-            values![job],
-        )
-        .await?;
+    let statement = "SELECT job.submission, job.campaign, job.payload, coalesce(job.worker, job.failed_by) AS worker,
+           submission.assignment, assignment.course,
+           {now} - coalesce(job.started_at, {now}) AS took
+        FROM job
+        LEFT JOIN submission ON submission.id = job.submission
+        LEFT JOIN assignment ON assignment.id = submission.assignment
+        WHERE job.id = ?";
+    let row = transaction.one(statement, values![job]).await?;
     Ok(About {
         job,
         submission: row.maybe_int("submission")?,
@@ -131,12 +127,10 @@ async fn about(transaction: &mut Transaction, job: i64) -> Result<About, DbError
 
 /// Writes an event about a job.
 async fn note(transaction: &mut Transaction, about: &About, kind: &str, text: &str) -> Result<(), DbError> {
+    let statement = "INSERT INTO event (happened_at, kind, course, assignment, submission, job, text)
+        VALUES ({now}, ?, ?, ?, ?, ?, ?)";
     transaction
-        .execute(
-            "INSERT INTO event (happened_at, kind, course, assignment, submission, job, text)
-             VALUES ({now}, ?, ?, ?, ?, ?, ?)",
-            values![kind, about.course, about.assignment, about.submission, about.job, text],
-        )
+        .execute(statement, values![kind, about.course, about.assignment, about.submission, about.job, text])
         .await?;
     Ok(())
 }
@@ -178,11 +172,13 @@ async fn write_result(
     // Jobs of other lanes have no result.
     let Some(submission) = about.submission else { return Ok(about) };
     let seconds = if outcome.code == JUDGE_ERROR { about.seconds.to_string() } else { outcome.seconds.clone() };
+    let statement =
+        "INSERT INTO result (job, submission, campaign, attempt, worker, verdict, code, points, max_points, summary,
+           version, task, seconds, grader, essence, nearly_right, shown, created_at)
+        VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, {now}) RETURNING id";
     let result = transaction
         .one(
-            "INSERT INTO result (job, submission, campaign, attempt, worker, verdict, code, points, max_points, summary,
-                version, task, seconds, grader, essence, nearly_right, shown, created_at)
-             VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, {now}) RETURNING id",
+            statement,
             values![
                 job,
                 submission,
@@ -207,21 +203,15 @@ async fn write_result(
         .int("id")?;
     for file in &outcome.files {
         let size = i64::try_from(file.artefact.size).unwrap_or(i64::MAX);
+        let statement = "INSERT INTO result_file (result, name, media_type, digest, size) VALUES (?, ?, ?, ?, ?)";
         transaction
-            .execute(
-                "INSERT INTO result_file (result, name, media_type, digest, size) VALUES (?, ?, ?, ?, ?)",
-                values![result, &file.name, &file.media_type, file.artefact.digest.as_str(), size],
-            )
+            .execute(statement, values![result, &file.name, &file.media_type, file.artefact.digest.as_str(), size])
             .await?;
     }
     for wrong in &outcome.wrong {
-        transaction
-            .execute(
-                "INSERT INTO wrong_scene (result, scene, answer) VALUES (?, ?, ?)
-                 ON CONFLICT (result, scene) DO NOTHING",
-                values![result, &wrong.scene, &wrong.answer],
-            )
-            .await?;
+        let statement = "INSERT INTO wrong_scene (result, scene, answer) VALUES (?, ?, ?)
+            ON CONFLICT (result, scene) DO NOTHING";
+        transaction.execute(statement, values![result, &wrong.scene, &wrong.answer]).await?;
     }
     let counted = transaction.row("SELECT result FROM grade WHERE submission = ?", values![submission]).await?;
     // A grader that failed takes nobody's grade away.
@@ -274,19 +264,14 @@ pub async fn set_grade(transaction: &mut Transaction, change: &GradeChange<'_>) 
         .row("SELECT result FROM grade WHERE submission = ? {for update}", values![change.submission])
         .await?;
     let old = old.map(|row| row.int("result")).transpose()?;
+    let statement = "INSERT INTO grade (submission, result, set_at) VALUES (?, ?, {now})
+        ON CONFLICT (submission) DO UPDATE SET result = excluded.result, set_at = excluded.set_at";
+    transaction.execute(statement, values![change.submission, change.result]).await?;
+    let statement =
+        "INSERT INTO grade_change (submission, old_result, new_result, changed_by, campaign, reason, changed_at)
+        VALUES (?, ?, ?, ?, ?, ?, {now})";
     transaction
-        .execute(
-            "INSERT INTO grade (submission, result, set_at) VALUES (?, ?, {now})
-             ON CONFLICT (submission) DO UPDATE SET result = excluded.result, set_at = excluded.set_at",
-            values![change.submission, change.result],
-        )
-        .await?;
-    transaction
-        .execute(
-            "INSERT INTO grade_change (submission, old_result, new_result, changed_by, campaign, reason, changed_at)
-             VALUES (?, ?, ?, ?, ?, ?, {now})",
-            values![change.submission, old, change.result, change.by, change.campaign, change.reason],
-        )
+        .execute(statement, values![change.submission, old, change.result, change.by, change.campaign, change.reason])
         .await?;
     score::changed(transaction, change.submission).await
 }

@@ -19,8 +19,8 @@ pub struct Problem {
     pub remedy: String,
 }
 
-/// Why a request is refused: the status, a name for programs, words, what is wrong, and what to do about it. A detail or a
-/// remedy that the caller gives is an argument.
+/// Why a request is refused: the status, a name for programs, words, what is wrong, and what to do about it. A detail
+/// or a remedy that the caller gives is an argument.
 macro_rules! problems {
     ($($(#[doc = $doc:literal])* $name:ident($($argument:ident: $type:ty),*): $status:literal, $kind:literal, $title:literal,
         $detail:expr, $remedy:expr;)*) => {
@@ -72,7 +72,7 @@ problems! {
     platform_failed(detail: impl Into<String>): 502, "platform-failed", "The learning platform failed",
         detail,
         "try again later; if this comes again, show it to who runs this server";
-    /// There is no such thing, or none that whoever asks may know of.
+    /// There is no such thing, or none that the asker may know of.
     not_found(what: &str): 404, "not-found", "Not found",
         format!("there is no such {what}, or you may not see it"),
         "check the address";

@@ -1,5 +1,6 @@
 //! How long uploads and reports are kept. Grades and their history stay for ever; bytes that nothing names any more go
-//! away. All of it goes in batches: memory is the same for ten submissions and for a million, and nobody waits for long.
+//! away. All of it goes in batches: memory is the same for ten submissions and for a million, and nobody waits for
+//! long.
 use crate::{
     db::{Database, DbError, Transaction},
     store::{Digest, Names, Store, StoreError},
@@ -59,14 +60,10 @@ async fn give_up_submissions(database: &Database, keep: i64) -> Result<u64, DbEr
     loop {
         // Found outside of the transaction that writes, which keeps others from writing.
         let mut transaction = database.read().await?;
-        let found = transaction
-            .rows(
-                "SELECT id, created_at FROM submission
-                 WHERE removed_at IS NULL AND created_at <= {now} - ? AND (created_at, id) > (?, ?)
-                 ORDER BY created_at, id LIMIT ?",
-                values![keep, after, id, BATCH],
-            )
-            .await?;
+        let statement = "SELECT id, created_at FROM submission
+            WHERE removed_at IS NULL AND created_at <= {now} - ? AND (created_at, id) > (?, ?)
+            ORDER BY created_at, id LIMIT ?";
+        let found = transaction.rows(statement, values![keep, after, id, BATCH]).await?;
         drop(transaction);
         let Some(last) = found.last() else { break };
         (after, id) = (last.int("created_at")?, last.int("id")?);
@@ -109,24 +106,20 @@ impl Names for Named<'_> {
         let mut transaction = self.database.read().await?;
         let suites = suites(&mut transaction).await?;
         let wanted = serde_json::to_string(digests).unwrap_or_default();
-        let rows = transaction
-            .rows(
-                "SELECT wanted.value AS digest FROM {each}
-                 WHERE EXISTS (SELECT 1 FROM submission
-                        WHERE submission.digest = wanted.value AND submission.removed_at IS NULL)
-                    OR EXISTS (SELECT 1 FROM result_file
-                        JOIN result ON result.id = result_file.result
-                        JOIN submission ON submission.id = result.submission
-                        WHERE result_file.digest = wanted.value AND submission.removed_at IS NULL)
-                    OR EXISTS (SELECT 1 FROM job_file JOIN job ON job.id = job_file.job
-                        WHERE job_file.digest = wanted.value AND job.state IN ('waiting', 'running'))
-                    OR EXISTS (SELECT 1 FROM result JOIN submission ON submission.id = result.submission
-                        WHERE {strpos}(result.task, '\"archive\":\"') > 0
-                            AND substr(result.task, {strpos}(result.task, '\"archive\":\"') + 11, 64) = wanted.value
-                            AND submission.removed_at IS NULL)",
-                values![wanted],
-            )
-            .await?;
+        let statement = "SELECT wanted.value AS digest FROM {each}
+            WHERE EXISTS (SELECT 1 FROM submission
+                   WHERE submission.digest = wanted.value AND submission.removed_at IS NULL)
+               OR EXISTS (SELECT 1 FROM result_file
+                   JOIN result ON result.id = result_file.result
+                   JOIN submission ON submission.id = result.submission
+                   WHERE result_file.digest = wanted.value AND submission.removed_at IS NULL)
+               OR EXISTS (SELECT 1 FROM job_file JOIN job ON job.id = job_file.job
+                   WHERE job_file.digest = wanted.value AND job.state IN ('waiting', 'running'))
+               OR EXISTS (SELECT 1 FROM result JOIN submission ON submission.id = result.submission
+                   WHERE {strpos}(result.task, '\"archive\":\"') > 0
+                       AND substr(result.task, {strpos}(result.task, '\"archive\":\"') + 11, 64) = wanted.value
+                       AND submission.removed_at IS NULL)";
+        let rows = transaction.rows(statement, values![wanted]).await?;
         let mut named: HashSet<Digest> =
             digests.iter().filter(|digest| suites.contains(digest.as_str())).cloned().collect();
         for row in &rows {
@@ -138,14 +131,10 @@ impl Names for Named<'_> {
 
 /// Archives of suites that settings name, or jobs that are still to be done.
 async fn suites(transaction: &mut Transaction) -> Result<HashSet<String>, DbError> {
-    let texts = transaction
-        .rows(
-            "SELECT settings AS words FROM assignment UNION SELECT settings FROM campaign
-             UNION SELECT substr(payload, {strpos}(payload, '\"archive\":\"') + 11, 64) FROM job
-                WHERE state IN ('waiting', 'running') AND {strpos}(payload, '\"archive\":\"') > 0",
-            values![],
-        )
-        .await?;
+    let statement = "SELECT settings AS words FROM assignment UNION SELECT settings FROM campaign
+        UNION SELECT substr(payload, {strpos}(payload, '\"archive\":\"') + 11, 64) FROM job
+           WHERE state IN ('waiting', 'running') AND {strpos}(payload, '\"archive\":\"') > 0";
+    let texts = transaction.rows(statement, values![]).await?;
     let mut named = HashSet::new();
     for row in &texts {
         let words = row.text("words")?;

@@ -33,7 +33,7 @@ pub struct Storage {
 }
 
 impl Storage {
-    /// Storage that refuses uploads below so many free bytes.
+    /// Storage that refuses uploads below this many free bytes.
     pub fn new(database: Database, store: Store, incoming: PathBuf, low_water: u64) -> Self {
         Self { database, store, incoming, low_water, last: Mutex::default() }
     }

@@ -1,6 +1,6 @@
 //! The store of artefacts: submissions, reports, suites. Each lies under the SHA-256 of its bytes, is written once and
-//! never changed; whoever reads one gets the bytes that its name promises, or an error. A folder by default; a bucket
-//! of S3, or of what speaks like it, for several servers.
+//! never changed; anybody who reads one gets the bytes that its name promises, or an error. A folder by default; a
+//! bucket of S3, or of what speaks like it, for several servers.
 //!
 //! An artefact is safely stored before the database hears of it, so that what the database names is always there.
 mod read;
@@ -33,8 +33,8 @@ const CHUNK: usize = 256 * 1024;
 const KEPT: &str = "sha256";
 const ASIDE: &str = "aside";
 
-/// An artefact that is stored once more is written anew when it is older than this: whoever gives up what nobody names
-/// looks at its age, and must not take what somebody is about to name.
+/// An artefact that is stored once more is written anew when it is older than this: anybody who gives up what nobody
+/// names looks at its age, and must not take what somebody is about to name.
 const FRESH: Duration = Duration::from_secs(6 * 3600);
 
 /// The SHA-256 of an artefact's bytes, in lower-case hexadecimal.

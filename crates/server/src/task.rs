@@ -6,7 +6,7 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// One grading, complete: whoever has this and the artefacts that it names can do it again.
+/// One grading, complete: anybody who has this and the artefacts that it names can do it again.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Task {
     /// What was handed in.
@@ -21,7 +21,7 @@ pub struct Task {
     pub hints: Option<String>,
     /// The program's name within a folder of sources.
     pub program: String,
-    /// After so many seconds the grading is stopped, and what it has so far counts.
+    /// After this many seconds the grading is stopped, and what it has so far counts.
     pub seconds: u64,
 }
 
@@ -94,7 +94,7 @@ pub struct Outcome<F = OutputFile> {
     #[schema(pattern = "^([0-9a-f]{64})?$")]
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub grader: String,
-    /// The SHA-256 of what the grade says, without what was measured: whoever grades again by the same comes to the
+    /// The SHA-256 of what the grade says, without what was measured: anybody who grades again by the same comes to the
     /// same.
     #[schema(pattern = "^([0-9a-f]{64})?$")]
     #[serde(default, skip_serializing_if = "String::is_empty")]

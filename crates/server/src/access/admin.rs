@@ -1,6 +1,6 @@
 //! Administrators.
 use super::{
-    House, NewSecret, TokenInfo,
+    App, NewSecret, TokenInfo,
     account::Account,
     identity::{self, Way},
     view::{self, Course, Entry, Event, Queue},
@@ -13,21 +13,11 @@ use crate::{
 
 /// Somebody who may do everything.
 pub struct Admin {
-    pub(super) account: Account,
-    pub(super) house: House,
+    pub(crate) account: Account,
+    pub(crate) app: App,
 }
 
 impl Admin {
-    /// Who it is.
-    pub fn account(&self) -> &Account {
-        &self.account
-    }
-
-    /// The house.
-    pub fn house(&self) -> &House {
-        &self.house
-    }
-
     /// Writes into the audit log.
     pub(super) async fn note(
         &self,
@@ -45,13 +35,10 @@ impl Admin {
     pub async fn new_course(&self, slug: &str, title: &str) -> Result<Course, Problem> {
         identity::check_slug("a course's name", slug)?;
         identity::check_title("a title", title)?;
-        let mut transaction = self.house.0.database.begin().await?;
-        let made = transaction
-            .execute(
-                "INSERT INTO course (slug, title, created_at) VALUES (?, ?, {now}) ON CONFLICT (slug) DO NOTHING",
-                values![slug, title],
-            )
-            .await?;
+        let mut transaction = self.app.0.database.begin().await?;
+        let statement =
+            "INSERT INTO course (slug, title, created_at) VALUES (?, ?, {now}) ON CONFLICT (slug) DO NOTHING";
+        let made = transaction.execute(statement, values![slug, title]).await?;
         if made == 0 {
             return Err(Problem::conflict("there is a course of this name", "give it another name"));
         }
@@ -65,7 +52,7 @@ impl Admin {
     /// # Errors
     /// When the database does not answer.
     pub async fn accounts(&self) -> Result<Vec<Account>, Problem> {
-        let mut transaction = self.house.0.database.read().await?;
+        let mut transaction = self.app.0.database.read().await?;
         let statement = "SELECT id, login, name, is_admin FROM account WHERE disabled_at IS NULL ORDER BY login";
         Ok(transaction.all(statement, values![]).await?)
     }
@@ -81,20 +68,16 @@ impl Admin {
         if login == self.account.login && !is_admin {
             return Err(Problem::conflict("this is your own account", "ask another administrator"));
         }
-        let mut transaction = self.house.0.database.begin().await?;
+        let mut transaction = self.app.0.database.begin().await?;
         let was = transaction
             .row("SELECT id, login, name, is_admin FROM account WHERE login = ? {for update}", values![login])
             .await?;
         let was = was.as_ref().map(Account::from_row).transpose()?;
-        let row = transaction
-            .one(
-                "INSERT INTO account (login, name, is_admin, created_at) VALUES (?, ?, ?, {now})
-                 ON CONFLICT (login) DO UPDATE SET name = excluded.name, is_admin = excluded.is_admin,
-                    disabled_at = NULL
-                 RETURNING id",
-                values![login, name, is_admin],
-            )
-            .await?;
+        let statement = "INSERT INTO account (login, name, is_admin, created_at) VALUES (?, ?, ?, {now})
+            ON CONFLICT (login) DO UPDATE SET name = excluded.name, is_admin = excluded.is_admin,
+               disabled_at = NULL
+            RETURNING id";
+        let row = transaction.one(statement, values![login, name, is_admin]).await?;
         let account = row.int("id")?;
         if was.is_some_and(|was| was.is_admin != is_admin) {
             identity::end_all(&mut transaction, account).await?;
@@ -114,13 +97,9 @@ impl Admin {
         if login == self.account.login {
             return Err(Problem::conflict("this is your own account", "ask another administrator"));
         }
-        let mut transaction = self.house.0.database.begin().await?;
-        let row = transaction
-            .row(
-                "UPDATE account SET disabled_at = {now} WHERE login = ? AND disabled_at IS NULL RETURNING id",
-                values![login],
-            )
-            .await?;
+        let mut transaction = self.app.0.database.begin().await?;
+        let statement = "UPDATE account SET disabled_at = {now} WHERE login = ? AND disabled_at IS NULL RETURNING id";
+        let row = transaction.row(statement, values![login]).await?;
         let Some(row) = row else { return Err(Problem::not_found("account")) };
         identity::end_all(&mut transaction, row.int("id")?).await?;
         self.note(&mut transaction, "account", &format!("{login} is shut")).await?;
@@ -133,7 +112,7 @@ impl Admin {
     /// # Errors
     /// When the database does not answer.
     pub async fn worker_tokens(&self) -> Result<Vec<TokenInfo>, Problem> {
-        let mut transaction = self.house.0.database.read().await?;
+        let mut transaction = self.app.0.database.read().await?;
         let statement =
             "SELECT id, name, created_at FROM token WHERE account IS NULL AND revoked_at IS NULL ORDER BY id";
         Ok(transaction.all(statement, values![]).await?)
@@ -145,7 +124,7 @@ impl Admin {
     /// When its name is none.
     pub async fn new_worker_token(&self, name: &str) -> Result<(TokenInfo, NewSecret), Problem> {
         identity::check_slug("a worker's name", name)?;
-        let mut transaction = self.house.0.database.begin().await?;
+        let mut transaction = self.app.0.database.begin().await?;
         let (id, secret) = identity::new_token(&mut transaction, None, name, Some(self.account.id), Way::Own).await?;
         let row = transaction.one("SELECT id, name, created_at FROM token WHERE id = ?", values![id]).await?;
         let info = TokenInfo::from_row(&row)?;
@@ -159,13 +138,9 @@ impl Admin {
     /// # Errors
     /// When there is none of this number.
     pub async fn revoke_worker_token(&self, id: i64) -> Result<(), Problem> {
-        let mut transaction = self.house.0.database.begin().await?;
-        let revoked = transaction
-            .execute(
-                "UPDATE token SET revoked_at = {now} WHERE id = ? AND account IS NULL AND revoked_at IS NULL",
-                values![id],
-            )
-            .await?;
+        let mut transaction = self.app.0.database.begin().await?;
+        let statement = "UPDATE token SET revoked_at = {now} WHERE id = ? AND account IS NULL AND revoked_at IS NULL";
+        let revoked = transaction.execute(statement, values![id]).await?;
         if revoked == 0 {
             return Err(Problem::not_found("token"));
         }
@@ -179,8 +154,8 @@ impl Admin {
     /// # Errors
     /// When the database does not answer.
     pub async fn queue(&self) -> Result<Queue, Problem> {
-        let mut transaction = self.house.0.database.read().await?;
-        Ok(view::queue(&mut transaction, &self.house).await?)
+        let mut transaction = self.app.0.database.read().await?;
+        Ok(view::queue(&mut transaction, &self.app).await?)
     }
 
     /// Everything that happened before the event of this number, latest first.
@@ -188,34 +163,27 @@ impl Admin {
     /// # Errors
     /// When the database does not answer.
     pub async fn audit(&self, before: Option<i64>) -> Result<Vec<Event>, Problem> {
-        let mut transaction = self.house.0.database.read().await?;
+        let mut transaction = self.app.0.database.read().await?;
         let statement = "SELECT event.id, happened_at, kind, account.login, submission, text FROM event
             LEFT JOIN account ON account.id = event.actor WHERE event.id < ? ORDER BY event.id DESC LIMIT 200";
         Ok(transaction.all(statement, values![before.unwrap_or(i64::MAX)]).await?)
     }
 }
 
-impl House {
+impl App {
     /// The link of a fresh server: signs its first administrator in. Nothing once there is one who has signed in.
     ///
     /// # Errors
     /// When the database does not answer.
     pub async fn first_link(&self) -> Result<Option<NewSecret>, Problem> {
         let mut transaction = self.0.database.begin().await?;
-        transaction
-            .execute(
-                "INSERT INTO account (login, name, is_admin, created_at) VALUES ('admin', 'Administrator', 1, {now})
-                 ON CONFLICT (login) DO NOTHING",
-                values![],
-            )
-            .await?;
-        let known = transaction
-            .row(
-                "SELECT account.id FROM account JOIN sign_in_link ON sign_in_link.account = account.id
-                 WHERE account.is_admin = 1 AND sign_in_link.used_at IS NOT NULL",
-                values![],
-            )
-            .await?;
+        let statement =
+            "INSERT INTO account (login, name, is_admin, created_at) VALUES ('admin', 'Administrator', 1, {now})
+            ON CONFLICT (login) DO NOTHING";
+        transaction.execute(statement, values![]).await?;
+        let statement = "SELECT account.id FROM account JOIN sign_in_link ON sign_in_link.account = account.id
+            WHERE account.is_admin = 1 AND sign_in_link.used_at IS NOT NULL";
+        let known = transaction.row(statement, values![]).await?;
         if known.is_some() {
             return Ok(None);
         }
@@ -228,7 +196,7 @@ impl House {
         Ok(Some(link))
     }
 
-    /// A new link for an administrator, for whoever can run programs on the server: the way back in.
+    /// A new link for an administrator, for anybody who can run programs on the server: the way back in.
     ///
     /// # Errors
     /// When there is no such administrator.

@@ -4,7 +4,7 @@ use super::{
     bulk::{enqueue_replaced, resume},
     view,
 };
-use crate::{db::Transaction, problem::Problem, queue::Bell, values};
+use crate::{problem::Problem, values};
 
 impl Staff {
     /// Grades a submission once more, by the assignment's settings as they are.
@@ -12,20 +12,16 @@ impl Staff {
     /// # Errors
     /// When there is none of this number, it is being graded, or its bytes are not kept any longer.
     pub async fn grade_again(&self, id: i64) -> Result<i64, Problem> {
-        let submission = self.member().submission(id).await?;
-        let assignment = self.member().assignment(&submission.assignment).await?;
+        let submission = self.submission(id).await?;
+        let assignment = self.assignment(&submission.assignment).await?;
         if submission.removed_at.is_some() {
             return Err(Problem::removed());
         }
         let mut transaction = self.begin().await?;
         transaction.row("SELECT id FROM submission WHERE id = ? {for update}", values![id]).await?;
-        let replaced = transaction
-            .execute(
-                "UPDATE job SET replaced = 1 WHERE submission = ? AND campaign IS NULL AND replaced = 0
-                    AND state IN ('done', 'buried', 'cancelled')",
-                values![id],
-            )
-            .await?;
+        let statement = "UPDATE job SET replaced = 1 WHERE submission = ? AND campaign IS NULL AND replaced = 0
+            AND state IN ('done', 'buried', 'cancelled')";
+        let replaced = transaction.execute(statement, values![id]).await?;
         if replaced == 0 {
             return Err(Problem::conflict("it is being graded", "wait for its grade"));
         }
@@ -33,7 +29,7 @@ impl Staff {
         let mut entry = self.entry("graded again", Some(assignment.id), "one submission");
         entry.submission = Some(id);
         view::note(&mut transaction, &entry).await?;
-        self.rung(transaction).await?;
+        self.app.0.notifier.commit(transaction).await?;
         Ok(jobs)
     }
 
@@ -44,39 +40,28 @@ impl Staff {
     /// When there is no such assignment.
     pub async fn grade_errors_again(&self, assignment: Option<&str>) -> Result<i64, Problem> {
         let assignments = match assignment {
-            Some(slug) => vec![self.member().assignment(slug).await?],
-            None => self.member().assignments().await?,
+            Some(slug) => vec![self.assignment(slug).await?],
+            None => self.assignments().await?,
         };
         let mut jobs = 0;
         for assignment in assignments {
             let mut transaction = self.begin().await?;
             transaction.row("SELECT id FROM assignment WHERE id = ? {for update}", values![assignment.id]).await?;
             let mut found = resume(&mut transaction, &assignment).await?;
-            transaction
-                .execute(
-                    "UPDATE job SET replaced = 1 WHERE campaign IS NULL AND replaced = 0 AND state = 'buried'
-                        AND submission IN (SELECT submission.id FROM submission
-                            JOIN grade ON grade.submission = submission.id
-                            JOIN result ON result.id = grade.result AND result.code = 'JE'
-                            WHERE submission.assignment = ? AND submission.removed_at IS NULL)",
-                    values![assignment.id],
-                )
-                .await?;
+            let statement = "UPDATE job SET replaced = 1 WHERE campaign IS NULL AND replaced = 0 AND state = 'buried'
+                AND submission IN (SELECT submission.id FROM submission
+                    JOIN grade ON grade.submission = submission.id
+                    JOIN result ON result.id = grade.result AND result.code = 'JE'
+                    WHERE submission.assignment = ? AND submission.removed_at IS NULL)";
+            transaction.execute(statement, values![assignment.id]).await?;
             found += enqueue_replaced(&mut transaction, &assignment, 0..=i64::MAX).await?;
             if found > 0 {
                 let text = format!("{found} submissions on which the grader failed");
                 self.note(&mut transaction, "graded again", Some(assignment.id), &text).await?;
             }
-            self.rung(transaction).await?;
+            self.app.0.notifier.commit(transaction).await?;
             jobs += found;
         }
         Ok(jobs)
-    }
-
-    async fn rung(&self, mut transaction: Transaction) -> Result<(), Problem> {
-        Bell::ring(&mut transaction).await?;
-        transaction.commit().await?;
-        self.member().house.0.bell.strike();
-        Ok(())
     }
 }

@@ -1,5 +1,5 @@
 //! The work of regrades: set-based statements over some hundred submissions at a time, so that nobody who writes waits
-//! for long. Where a regrade is stands in its row: whoever looks goes on with it, also after the server died.
+//! for long. Where a regrade is stands in its row: anybody who looks goes on with it, also after the server died.
 use super::{
     Settings,
     bulk::{payload, pieces},
@@ -9,7 +9,7 @@ use crate::{
     db::{Database, DbError, Row, Transaction, Value},
     lti::score,
     problem::Problem,
-    queue::{Bell, Turn},
+    queue::{Notifier, Turn},
     task::JUDGE_ERROR,
     values,
 };
@@ -23,8 +23,8 @@ const BATCH: i64 = 500;
 const LOOK_EVERY: Duration = Duration::from_secs(2);
 
 /// Works on regrades until `stop` is cancelled.
-pub async fn run(database: Database, bell: Bell, stop: CancellationToken) {
-    let mut ear = bell.ear();
+pub async fn run(database: Database, notifier: Notifier, stop: CancellationToken) {
+    let mut subscription = notifier.subscribe();
     while !stop.is_cancelled() {
         match step(&database, None).await {
             // Others who write come in between.
@@ -34,7 +34,7 @@ pub async fn run(database: Database, bell: Bell, stop: CancellationToken) {
         }
         tokio::select! {
             () = stop.cancelled() => return,
-            _ = ear.wait(LOOK_EVERY) => {}
+            _ = subscription.wait(LOOK_EVERY) => {}
         }
     }
 }
@@ -84,20 +84,12 @@ async fn step(database: &Database, wanted: Option<i64>) -> Result<Step, Problem>
         return Ok(Step::Nothing);
     }
     let mut transaction = database.begin().await?;
-    let row = transaction
-        .row(
-            "SELECT id, doing, cursor, assignment, settings, reason, coalesce(decided_by, started_by) AS by
-             FROM campaign WHERE doing IS NOT NULL AND (id = ? OR ? = 0) ORDER BY id LIMIT 1 {skip locked}",
-            values![wanted, wanted],
-        )
-        .await?;
+    let statement = "SELECT id, doing, cursor, assignment, settings, reason, coalesce(decided_by, started_by) AS by
+        FROM campaign WHERE doing IS NOT NULL AND (id = ? OR ? = 0) ORDER BY id LIMIT 1 {skip locked}";
+    let row = transaction.row(statement, values![wanted, wanted]).await?;
     let Some(row) = row else { return Ok(Step::Busy) };
-    let of = transaction
-        .one(
-            "SELECT id, slug, title, visible, settings, published_at, course FROM assignment WHERE id = ?",
-            values![row.int("assignment")?],
-        )
-        .await?;
+    let statement = "SELECT id, slug, title, visible, settings, published_at, course FROM assignment WHERE id = ?";
+    let of = transaction.one(statement, values![row.int("assignment")?]).await?;
     let campaign = Campaign {
         id: row.int("id")?,
         cursor: row.int("cursor")?,
@@ -112,7 +104,7 @@ async fn step(database: &Database, wanted: Option<i64>) -> Result<Step, Problem>
         "undo" => undo(&mut transaction, &campaign).await?,
         _ => discard(&mut transaction, &campaign).await?,
     }
-    Bell::ring(&mut transaction).await?;
+    Notifier::notify(&mut transaction).await?;
     transaction.commit().await?;
     Ok(Step::Done)
 }
@@ -136,13 +128,9 @@ async fn finish(transaction: &mut Transaction, campaign: i64) -> Result<(), DbEr
 
 /// Enqueues submissions that the regrade does not know yet.
 async fn begin(transaction: &mut Transaction, campaign: &Campaign) -> Result<(), Problem> {
-    let row = transaction
-        .one(
-            "SELECT max(id) AS last, count(*) AS n FROM (SELECT id FROM submission
-                WHERE assignment = ? AND id > ? AND removed_at IS NULL ORDER BY id LIMIT ?) AS batch",
-            values![campaign.assignment.id, campaign.cursor, BATCH],
-        )
-        .await?;
+    let statement = "SELECT max(id) AS last, count(*) AS n FROM (SELECT id FROM submission
+        WHERE assignment = ? AND id > ? AND removed_at IS NULL ORDER BY id LIMIT ?) AS batch";
+    let row = transaction.one(statement, values![campaign.assignment.id, campaign.cursor, BATCH]).await?;
     let Some((last, count)) = batch(&row)? else { return Ok(finish(transaction, campaign.id).await?) };
     let turn = Turn::Campaign(campaign.id);
     let from = turn.next(transaction).await?;
@@ -171,13 +159,9 @@ async fn begin(transaction: &mut Transaction, campaign: &Campaign) -> Result<(),
 
 /// The next batch of a regrade's results.
 async fn results(transaction: &mut Transaction, campaign: &Campaign) -> Result<Row, DbError> {
-    transaction
-        .one(
-            "SELECT max(id) AS last, count(*) AS n FROM (SELECT id FROM result
-                WHERE campaign = ? AND id > ? ORDER BY id LIMIT ?) AS batch",
-            values![campaign.id, campaign.cursor, BATCH],
-        )
-        .await
+    let statement = "SELECT max(id) AS last, count(*) AS n FROM (SELECT id FROM result
+        WHERE campaign = ? AND id > ? ORDER BY id LIMIT ?) AS batch";
+    transaction.one(statement, values![campaign.id, campaign.cursor, BATCH]).await
 }
 
 /// Makes results count.
@@ -186,25 +170,28 @@ async fn apply(transaction: &mut Transaction, campaign: &Campaign) -> Result<(),
     let Some((last, count)) = batch(&row)? else {
         return Ok(decided(transaction, campaign, "applied", "applied").await?);
     };
+    let statement =
+        "INSERT INTO grade_change (submission, old_result, new_result, changed_by, campaign, reason, changed_at)
+        SELECT result.submission, grade.result, result.id, CAST(? AS {int}), CAST(? AS {int}), CAST(? AS TEXT), {now}
+        FROM result LEFT JOIN grade ON grade.submission = result.submission
+        WHERE result.campaign = ? AND result.id > ? AND result.id <= ? AND result.code <> ?";
     transaction
         .execute(
-            "INSERT INTO grade_change (submission, old_result, new_result, changed_by, campaign, reason, changed_at)
-             SELECT result.submission, grade.result, result.id, CAST(? AS {int}), CAST(? AS {int}), CAST(? AS TEXT), {now}
-             FROM result LEFT JOIN grade ON grade.submission = result.submission
-             WHERE result.campaign = ? AND result.id > ? AND result.id <= ? AND result.code <> ?",
+            statement,
             values![campaign.by, campaign.id, &campaign.reason, campaign.id, campaign.cursor, last, JUDGE_ERROR],
         )
         .await?;
+    let statement = "INSERT INTO event (happened_at, kind, actor, course, assignment, submission, text)
+        SELECT {now}, 'grade changed', CAST(? AS {int}), CAST(? AS {int}), CAST(? AS {int}), result.submission,
+           CAST(? AS TEXT)
+        FROM result LEFT JOIN grade ON grade.submission = result.submission
+        LEFT JOIN result AS old ON old.id = grade.result
+        WHERE result.campaign = ? AND result.id > ? AND result.id <= ? AND result.code <> ?
+           AND (old.id IS NULL OR old.code <> result.code
+               OR coalesce(old.points, '') <> coalesce(result.points, ''))";
     transaction
         .execute(
-            "INSERT INTO event (happened_at, kind, actor, course, assignment, submission, text)
-             SELECT {now}, 'grade changed', CAST(? AS {int}), CAST(? AS {int}), CAST(? AS {int}), result.submission,
-                CAST(? AS TEXT)
-             FROM result LEFT JOIN grade ON grade.submission = result.submission
-             LEFT JOIN result AS old ON old.id = grade.result
-             WHERE result.campaign = ? AND result.id > ? AND result.id <= ? AND result.code <> ?
-                AND (old.id IS NULL OR old.code <> result.code
-                    OR coalesce(old.points, '') <> coalesce(result.points, ''))",
+            statement,
             values![
                 campaign.by,
                 campaign.course,
@@ -217,15 +204,11 @@ async fn apply(transaction: &mut Transaction, campaign: &Campaign) -> Result<(),
             ],
         )
         .await?;
-    transaction
-        .execute(
-            "INSERT INTO grade (submission, result, set_at)
-             SELECT submission, id, {now} FROM result
-             WHERE campaign = ? AND id > ? AND id <= ? AND code <> ?
-             ON CONFLICT (submission) DO UPDATE SET result = excluded.result, set_at = excluded.set_at",
-            values![campaign.id, campaign.cursor, last, JUDGE_ERROR],
-        )
-        .await?;
+    let statement = "INSERT INTO grade (submission, result, set_at)
+        SELECT submission, id, {now} FROM result
+        WHERE campaign = ? AND id > ? AND id <= ? AND code <> ?
+        ON CONFLICT (submission) DO UPDATE SET result = excluded.result, set_at = excluded.set_at";
+    transaction.execute(statement, values![campaign.id, campaign.cursor, last, JUDGE_ERROR]).await?;
     score::changed_by(transaction, campaign.id, campaign.cursor, last).await?;
     Ok(advance(transaction, campaign.id, last, count).await?)
 }
@@ -299,26 +282,18 @@ async fn undo(transaction: &mut Transaction, campaign: &Campaign) -> Result<(), 
 
 async fn undone(transaction: &mut Transaction, campaign: &Campaign) -> Result<(), DbError> {
     // Unless somebody set others meanwhile.
-    transaction
-        .execute(
-            "UPDATE assignment SET settings = (SELECT settings_before FROM campaign WHERE id = ?)
-             WHERE id = ? AND settings = (SELECT settings FROM campaign WHERE id = ? AND settings_before IS NOT NULL)",
-            values![campaign.id, campaign.assignment.id, campaign.id],
-        )
-        .await?;
+    let statement = "UPDATE assignment SET settings = (SELECT settings_before FROM campaign WHERE id = ?)
+        WHERE id = ? AND settings = (SELECT settings FROM campaign WHERE id = ? AND settings_before IS NOT NULL)";
+    transaction.execute(statement, values![campaign.id, campaign.assignment.id, campaign.id]).await?;
     decided(transaction, campaign, "discarded", "taken back").await
 }
 
 /// Takes what is left of a regrade out of the queue.
 async fn discard(transaction: &mut Transaction, campaign: &Campaign) -> Result<(), DbError> {
-    let cancelled = transaction
-        .execute(
-            "WITH left_over AS (SELECT id FROM job WHERE campaign = ? AND state IN ('waiting', 'running')
-                ORDER BY id LIMIT ? {for update})
-             UPDATE job SET state = 'cancelled', finished_at = {now}, lease_key = NULL, lease_until = NULL
-             WHERE id IN (SELECT id FROM left_over)",
-            values![campaign.id, BATCH],
-        )
-        .await?;
+    let statement = "WITH left_over AS (SELECT id FROM job WHERE campaign = ? AND state IN ('waiting', 'running')
+           ORDER BY id LIMIT ? {for update})
+        UPDATE job SET state = 'cancelled', finished_at = {now}, lease_key = NULL, lease_until = NULL
+        WHERE id IN (SELECT id FROM left_over)";
+    let cancelled = transaction.execute(statement, values![campaign.id, BATCH]).await?;
     if cancelled == 0 { finish(transaction, campaign.id).await } else { Ok(()) }
 }

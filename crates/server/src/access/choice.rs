@@ -68,21 +68,17 @@ impl Person {
     /// # Errors
     /// When there is nothing of this secret for this person.
     pub async fn choice(&self, secret: &str) -> Result<Choice, Problem> {
-        let mut transaction = self.house.0.database.read().await?;
+        let mut transaction = self.app.0.database.read().await?;
         let pending = launch::pending(&mut transaction, self.account.id, secret).await?;
         let Some(place) = place(&mut transaction, &pending).await? else {
             let context = &pending.arrival.context;
             let title = context.title.clone().or(context.label.clone()).unwrap_or_else(|| context.id.clone());
             let title: String = title.chars().filter(|c| !c.is_control()).take(200).collect();
             let slug = slug_of(context.label.as_deref().unwrap_or(&title));
-            let courses = transaction
-                .all(
-                    "SELECT course.slug, course.title FROM course
-                     JOIN member ON member.course = course.id AND member.account = ? AND member.role = 'staff'
-                     ORDER BY course.slug",
-                    values![self.account.id],
-                )
-                .await?;
+            let statement = "SELECT course.slug, course.title FROM course
+                JOIN member ON member.course = course.id AND member.account = ? AND member.role = 'staff'
+                ORDER BY course.slug";
+            let courses = transaction.all(statement, values![self.account.id]).await?;
             return Ok(Choice::Course {
                 platform: pending.platform.name,
                 title: title.trim().to_owned(),
@@ -90,12 +86,9 @@ impl Person {
                 courses,
             });
         };
-        let rows = transaction
-            .rows(
-                "SELECT id, slug, title, visible, settings, published_at FROM assignment WHERE course = ? ORDER BY id",
-                values![place.course],
-            )
-            .await?;
+        let statement =
+            "SELECT id, slug, title, visible, settings, published_at FROM assignment WHERE course = ? ORDER BY id";
+        let rows = transaction.rows(statement, values![place.course]).await?;
         Ok(Choice::Assignment {
             course: Course { slug: place.slug, title: place.title },
             title: pending.arrival.resource.and_then(|resource| resource.title),
@@ -108,7 +101,7 @@ impl Person {
     /// # Errors
     /// When there is no such course, or one of the new one's name.
     pub async fn choose_course(&self, secret: &str, known: Option<&str>, new: (&str, &str)) -> Result<(), Problem> {
-        let mut transaction = self.house.0.database.begin().await?;
+        let mut transaction = self.app.0.database.begin().await?;
         let pending = launch::pending(&mut transaction, self.account.id, secret).await?;
         if place(&mut transaction, &pending).await?.is_some() {
             return Ok(());
@@ -128,10 +121,12 @@ impl Person {
         };
         let arrival = &pending.arrival;
         let title = arrival.context.title.as_deref().unwrap_or(&arrival.context.id);
+        let statement =
+            "INSERT INTO platform_course (platform, deployment, context, title, course, memberships, created_at)
+            VALUES (?, ?, ?, ?, ?, ?, {now}) RETURNING id";
         let made = transaction
             .one(
-                "INSERT INTO platform_course (platform, deployment, context, title, course, memberships, created_at)
-                 VALUES (?, ?, ?, ?, ?, ?, {now}) RETURNING id",
+                statement,
                 values![
                     pending.platform.id,
                     &arrival.deployment,
@@ -144,19 +139,13 @@ impl Person {
             .await?
             .int("id")?;
         // This session was begun by the platform's word, and ended all others of an account that was a student's.
+        let statement = "INSERT INTO platform_member (platform_course, account) VALUES (?, ?)
+            ON CONFLICT (platform_course, account) DO NOTHING";
+        transaction.execute(statement, values![made, self.account.id]).await?;
+        let statement = "INSERT INTO member (course, account, role, platform, created_at) VALUES (?, ?, ?, ?, {now})
+            ON CONFLICT (course, account) DO NOTHING";
         transaction
-            .execute(
-                "INSERT INTO platform_member (platform_course, account) VALUES (?, ?)
-                 ON CONFLICT (platform_course, account) DO NOTHING",
-                values![made, self.account.id],
-            )
-            .await?;
-        transaction
-            .execute(
-                "INSERT INTO member (course, account, role, platform, created_at) VALUES (?, ?, ?, ?, {now})
-                 ON CONFLICT (course, account) DO NOTHING",
-                values![course, self.account.id, Role::Staff.name(), pending.platform.id],
-            )
+            .execute(statement, values![course, self.account.id, Role::Staff.name(), pending.platform.id])
             .await?;
         let text = format!("{} of {} is this course", arrival.context.id, pending.platform.name);
         let entry = Entry { course: Some(course), ..Entry::new("platform", self.account.id, &text) };
@@ -168,13 +157,9 @@ impl Person {
     async fn new_course(&self, transaction: &mut Transaction, (slug, title): (&str, &str)) -> Result<i64, Problem> {
         identity::check_slug("a course's name", slug)?;
         identity::check_title("a title", title)?;
-        let made = transaction
-            .row(
-                "INSERT INTO course (slug, title, created_at) VALUES (?, ?, {now})
-                 ON CONFLICT (slug) DO NOTHING RETURNING id",
-                values![slug, title],
-            )
-            .await?;
+        let statement = "INSERT INTO course (slug, title, created_at) VALUES (?, ?, {now})
+            ON CONFLICT (slug) DO NOTHING RETURNING id";
+        let made = transaction.row(statement, values![slug, title]).await?;
         let Some(made) = made else {
             return Err(Problem::conflict("there is a course of this name", "give it another name"));
         };
@@ -186,24 +171,17 @@ impl Person {
     /// # Errors
     /// When this person does not teach the course, or it has no such assignment.
     pub async fn choose_assignment(&self, secret: &str, slug: &str) -> Result<Chosen, Problem> {
-        let mut transaction = self.house.0.database.begin().await?;
+        let mut transaction = self.app.0.database.begin().await?;
         let pending = launch::pending(&mut transaction, self.account.id, secret).await?;
         let Some(place) = place(&mut transaction, &pending).await? else { return Err(Problem::not_found("course")) };
-        let staff = transaction
-            .row(
-                "SELECT account FROM member WHERE course = ? AND account = ? AND role = 'staff'",
-                values![place.course, self.account.id],
-            )
-            .await?;
+        let statement = "SELECT account FROM member WHERE course = ? AND account = ? AND role = 'staff'";
+        let staff = transaction.row(statement, values![place.course, self.account.id]).await?;
         if staff.is_none() {
             return Err(Problem::not_allowed("this is for the course's staff"));
         }
-        let row = transaction
-            .row(
-                "SELECT id, slug, title, visible, settings, published_at FROM assignment WHERE course = ? AND slug = ?",
-                values![place.course, slug],
-            )
-            .await?;
+        let statement =
+            "SELECT id, slug, title, visible, settings, published_at FROM assignment WHERE course = ? AND slug = ?";
+        let row = transaction.row(statement, values![place.course, slug]).await?;
         let Some(row) = row else { return Err(Problem::not_found("assignment")) };
         let assignment = view::read_assignment(&row)?;
         let arrival = &pending.arrival;
@@ -219,13 +197,12 @@ impl Person {
             return Ok(Chosen::Assignment(format!("/c/{}/a/{}", place.slug, assignment.slug)));
         };
         transaction.commit().await?;
-        let over_http = self.house.0.lti.over_http();
+        let over_http = self.app.lti.over_http();
         let Some(address) = pending.platform.service(&wanted.deep_link_return_url, over_http) else {
             return Err(Problem::refused_launch("the platform wants the answer at a host that no administrator named"));
         };
-        let (launch, item) = (self.house.launch_address(), (assignment.slug.as_str(), assignment.title.as_str()));
-        let token =
-            lti::deep_linking_response(&self.house.0.database, &pending.platform, arrival, &launch, item).await?;
+        let (launch, item) = (self.app.launch_address(), (assignment.slug.as_str(), assignment.title.as_str()));
+        let token = lti::deep_linking_response(&self.app.0.database, &pending.platform, arrival, &launch, item).await?;
         let origins = pending.platform.origins(over_http);
         Ok(Chosen::Answer { address: address.into(), origins, token })
     }
@@ -233,14 +210,11 @@ impl Person {
 
 async fn place(transaction: &mut Transaction, pending: &Pending) -> Result<Option<Place>, DbError> {
     let arrival = &pending.arrival;
-    let row = transaction
-        .row(
-            "SELECT platform_course.id, platform_course.course, course.slug, course.title FROM platform_course
-             JOIN course ON course.id = platform_course.course
-             WHERE platform_course.platform = ? AND platform_course.deployment = ? AND platform_course.context = ?",
-            values![pending.platform.id, &arrival.deployment, &arrival.context.id],
-        )
-        .await?;
+    let statement = "SELECT platform_course.id, platform_course.course, course.slug, course.title FROM platform_course
+        JOIN course ON course.id = platform_course.course
+        WHERE platform_course.platform = ? AND platform_course.deployment = ? AND platform_course.context = ?";
+    let row =
+        transaction.row(statement, values![pending.platform.id, &arrival.deployment, &arrival.context.id]).await?;
     row.as_ref().map(Place::from_row).transpose()
 }
 
@@ -257,15 +231,11 @@ impl Member {
     /// # Errors
     /// When the database does not answer.
     pub async fn platforms(&self) -> Result<Vec<String>, Problem> {
-        let mut transaction = self.house.0.database.read().await?;
-        let rows = transaction
-            .rows(
-                "SELECT DISTINCT platform.name FROM platform_course
-                 JOIN platform ON platform.id = platform_course.platform AND platform.disabled_at IS NULL
-                 WHERE platform_course.course = ? ORDER BY platform.name",
-                values![self.course],
-            )
-            .await?;
+        let mut transaction = self.app.0.database.read().await?;
+        let statement = "SELECT DISTINCT platform.name FROM platform_course
+            JOIN platform ON platform.id = platform_course.platform AND platform.disabled_at IS NULL
+            WHERE platform_course.course = ? ORDER BY platform.name";
+        let rows = transaction.rows(statement, values![self.course]).await?;
         Ok(rows.iter().map(|row| row.text("name")).collect::<Result<_, DbError>>()?)
     }
 }

@@ -1,9 +1,9 @@
 //! Numbers for monitors: counted by indexes of what is in motion, and by sums of what only grows. Many who ask at once
 //! get one answer, and hold one connection.
-use super::Metrics;
 use crate::{
     db::{Database, DbError, Transaction},
     health,
+    instruments::Metrics,
     queue::{Lane, Policy},
     values,
 };
@@ -16,7 +16,7 @@ const FRESH: Duration = Duration::from_secs(1);
 /// What is older than this, in milliseconds, is committed or never will be, and can be summed up.
 const SETTLED: i64 = 300_000;
 
-/// With so many new rows a sum is brought up to date.
+/// With this many new rows a sum is brought up to date.
 const MANY: i64 = 10_000;
 
 /// The last answer.
@@ -99,42 +99,31 @@ async fn count(database: &Database, policy: &Policy) -> Result<(Metrics, Vec<&'s
         }
     }
     for (lane, counts) in [(Lane::Grading, &mut metrics.jobs), (Lane::Passback, &mut metrics.scores)] {
-        let row = transaction
-            .one(
-                "SELECT (SELECT count(*) FROM job WHERE lane = ? AND state = 'waiting') AS waiting,
-                    (SELECT count(*) FROM job WHERE lane = ? AND state = 'running') AS running,
-                    (SELECT count(*) FROM job WHERE lane = ? AND state = 'buried' AND replaced = 0) AS buried,
-                    (SELECT count(*) FROM job WHERE lane = ? AND state = 'cancelled') AS cancelled",
-                values![lane.name(), lane.name(), lane.name(), lane.name()],
-            )
-            .await?;
+        let statement = "SELECT (SELECT count(*) FROM job WHERE lane = ? AND state = 'waiting') AS waiting,
+            (SELECT count(*) FROM job WHERE lane = ? AND state = 'running') AS running,
+            (SELECT count(*) FROM job WHERE lane = ? AND state = 'buried' AND replaced = 0) AS buried,
+            (SELECT count(*) FROM job WHERE lane = ? AND state = 'cancelled') AS cancelled";
+        let row = transaction.one(statement, values![lane.name(), lane.name(), lane.name(), lane.name()]).await?;
         for state in ["waiting", "running", "buried", "cancelled"] {
             counts.push((state.to_owned(), row.int(state)?));
         }
     }
-    let row = transaction
-        .one(
-            "SELECT (SELECT count(*) FROM job WHERE lane = 'passback' AND state = 'done') AS sent,
-                (SELECT count(*) FROM job WHERE lane = 'paused' AND state = 'waiting') AS paused,
-                (SELECT coalesce({now} - min(enqueued_at), 0) FROM job
-                    WHERE lane = 'grading' AND state = 'waiting' AND campaign IS NULL) AS oldest,
-                (SELECT count(*) FROM suspicion WHERE state = 'open') AS suspicions",
-            values![],
-        )
-        .await?;
+    let statement = "SELECT (SELECT count(*) FROM job WHERE lane = 'passback' AND state = 'done') AS sent,
+        (SELECT count(*) FROM job WHERE lane = 'paused' AND state = 'waiting') AS paused,
+        (SELECT coalesce({now} - min(enqueued_at), 0) FROM job
+            WHERE lane = 'grading' AND state = 'waiting' AND campaign IS NULL) AS oldest,
+        (SELECT count(*) FROM suspicion WHERE state = 'open') AS suspicions";
+    let row = transaction.one(statement, values![]).await?;
     metrics.scores.push(("done".to_owned(), row.int("sent")?));
     (metrics.paused, metrics.oldest, metrics.suspicions) =
         (row.int("paused")?, row.int("oldest")?.max(0), row.int("suspicions")?);
     let recent = health::recent(policy);
-    let row = transaction
-        .one(
-            "SELECT count(*) AS n, CAST(coalesce(sum(slots), 0) AS {int}) AS slots, count(aside_since) AS aside,
-                count(CASE WHEN aside_since IS NULL AND EXISTS (SELECT 1 FROM job
-                    WHERE job.state = 'running' AND job.worker = worker.name) THEN 1 END) AS working
-             FROM worker WHERE seen_at > {now} - ? AND seen_at <= {now} + ?",
-            values![recent, recent],
-        )
-        .await?;
+    let statement =
+        "SELECT count(*) AS n, CAST(coalesce(sum(slots), 0) AS {int}) AS slots, count(aside_since) AS aside,
+           count(CASE WHEN aside_since IS NULL AND EXISTS (SELECT 1 FROM job
+               WHERE job.state = 'running' AND job.worker = worker.name) THEN 1 END) AS working
+        FROM worker WHERE seen_at > {now} - ? AND seen_at <= {now} + ?";
+    let row = transaction.one(statement, values![recent, recent]).await?;
     (metrics.workers, metrics.slots, metrics.aside) = (row.int("n")?, row.int("slots")?, row.int("aside")?);
     metrics.working = row.int("working")?;
     Ok((metrics, grown))

@@ -22,7 +22,7 @@ const RECENT: i64 = 12 * 3600 * 1000;
 /// A session that was not seen for so long is noted again.
 const SEEN_EVERY: i64 = 3600 * 1000;
 
-/// What tokens of people and of workers begin with: whoever finds one knows what it is, and so do scanners.
+/// What tokens of people and of workers begin with: anybody who finds one knows what it is, and so do scanners.
 pub(super) const PERSON: &str = "fso_";
 pub(super) const WORKER: &str = "fsw_";
 
@@ -95,14 +95,10 @@ pub(super) fn digest(secret: &str) -> String {
 
 /// Whose token it is, and its number.
 pub(super) async fn account_of_token(transaction: &mut Transaction, token: &str) -> Result<(Account, i64), Problem> {
-    let row = transaction
-        .row(
-            "SELECT account.id, account.login, account.name, account.is_admin, token.id AS token FROM token
-             JOIN account ON account.id = token.account
-             WHERE token.digest = ? AND token.revoked_at IS NULL AND account.disabled_at IS NULL",
-            values![digest(token)],
-        )
-        .await?;
+    let statement = "SELECT account.id, account.login, account.name, account.is_admin, token.id AS token FROM token
+        JOIN account ON account.id = token.account
+        WHERE token.digest = ? AND token.revoked_at IS NULL AND account.disabled_at IS NULL";
+    let row = transaction.row(statement, values![digest(token)]).await?;
     match row {
         Some(row) => Ok((Account::from_row(&row)?, row.int("token")?)),
         None => Err(Problem::unknown_secret("token")),
@@ -114,17 +110,13 @@ pub(super) async fn account_of_session(
     transaction: &mut Transaction,
     session: &str,
 ) -> Result<Option<(Account, Seen)>, Problem> {
-    let row = transaction
-        .row(
-            "SELECT account.id, account.login, account.name, account.is_admin, session.digest, session.vouched,
-                session.token, session.created_at, session.seen_at, {now} AS now
-             FROM session JOIN account ON account.id = session.account
-             LEFT JOIN token ON token.id = session.token
-             WHERE session.digest = ? AND session.expires_at > {now} AND account.disabled_at IS NULL
-                AND token.revoked_at IS NULL",
-            values![digest(session)],
-        )
-        .await?;
+    let statement = "SELECT account.id, account.login, account.name, account.is_admin, session.digest, session.vouched,
+           session.token, session.created_at, session.seen_at, {now} AS now
+        FROM session JOIN account ON account.id = session.account
+        LEFT JOIN token ON token.id = session.token
+        WHERE session.digest = ? AND session.expires_at > {now} AND account.disabled_at IS NULL
+           AND token.revoked_at IS NULL";
+    let row = transaction.row(statement, values![digest(session)]).await?;
     let Some(row) = row else { return Ok(None) };
     let now = row.int("now")?;
     let seen = Seen {
@@ -139,12 +131,8 @@ pub(super) async fn account_of_session(
 
 /// Lets a session last from now on.
 pub(super) async fn session_seen(transaction: &mut Transaction, session: &str) -> Result<(), DbError> {
-    transaction
-        .execute(
-            "UPDATE session SET seen_at = {now}, expires_at = {now} + ? WHERE digest = ?",
-            values![SESSION, digest(session)],
-        )
-        .await?;
+    let statement = "UPDATE session SET seen_at = {now}, expires_at = {now} + ? WHERE digest = ?";
+    transaction.execute(statement, values![SESSION, digest(session)]).await?;
     Ok(())
 }
 
@@ -155,13 +143,9 @@ pub(super) async fn begin_session(transaction: &mut Transaction, account: i64, w
     let expired =
         "DELETE FROM session WHERE digest IN (SELECT digest FROM session WHERE expires_at < {now} {skip locked})";
     transaction.execute(expired, values![]).await?;
-    transaction
-        .execute(
-            "INSERT INTO session (digest, account, created_at, seen_at, expires_at, vouched, token)
-             VALUES (?, ?, {now}, {now}, {now} + ?, ?, ?)",
-            values![secret.digest(), account, SESSION, way == Way::Vouched, token],
-        )
-        .await?;
+    let statement = "INSERT INTO session (digest, account, created_at, seen_at, expires_at, vouched, token)
+        VALUES (?, ?, {now}, {now}, {now} + ?, ?, ?)";
+    transaction.execute(statement, values![secret.digest(), account, SESSION, way == Way::Vouched, token]).await?;
     Ok(Session(secret))
 }
 
@@ -171,8 +155,8 @@ pub(super) async fn end_session(transaction: &mut Transaction, session: &str) ->
     Ok(())
 }
 
-/// Makes a link that signs in once; earlier ones of the account that were not used are void. Whether it is vouched for by
-/// a course's staff only, `way` says.
+/// Makes a link that signs in once; earlier ones of the account that were not used are void. Whether it is vouched for
+/// by a course's staff only, `way` says.
 pub(super) async fn new_link(
     transaction: &mut Transaction,
     account: i64,
@@ -181,36 +165,25 @@ pub(super) async fn new_link(
 ) -> Result<NewSecret, DbError> {
     let secret = NewSecret::new("");
     transaction.execute("DELETE FROM sign_in_link WHERE account = ? AND used_at IS NULL", values![account]).await?;
-    transaction
-        .execute(
-            "INSERT INTO sign_in_link (digest, account, created_by, created_at, expires_at, vouched)
-             VALUES (?, ?, ?, {now}, {now} + ?, ?)",
-            values![secret.digest(), account, by, LINK, way == Way::Vouched],
-        )
-        .await?;
+    let statement = "INSERT INTO sign_in_link (digest, account, created_by, created_at, expires_at, vouched)
+        VALUES (?, ?, ?, {now}, {now} + ?, ?)";
+    transaction.execute(statement, values![secret.digest(), account, by, LINK, way == Way::Vouched]).await?;
     Ok(secret)
 }
 
 /// Whether a link would sign somebody in.
 pub(super) async fn is_link(transaction: &mut Transaction, link: &str) -> Result<bool, DbError> {
-    let row = transaction
-        .row(
-            "SELECT account FROM sign_in_link WHERE digest = ? AND used_at IS NULL AND expires_at > {now}",
-            values![digest(link)],
-        )
-        .await?;
+    let statement = "SELECT account FROM sign_in_link WHERE digest = ? AND used_at IS NULL AND expires_at > {now}";
+    let row = transaction.row(statement, values![digest(link)]).await?;
     Ok(row.is_some())
 }
 
 /// Uses up a link, and says whose it was, and how they come in.
 pub(super) async fn use_link(transaction: &mut Transaction, link: &str) -> Result<Option<(i64, Way)>, DbError> {
-    let row = transaction
-        .row(
-            "UPDATE sign_in_link SET used_at = {now} WHERE digest = ? AND used_at IS NULL AND expires_at > {now}
-             RETURNING account, vouched",
-            values![digest(link)],
-        )
-        .await?;
+    let statement =
+        "UPDATE sign_in_link SET used_at = {now} WHERE digest = ? AND used_at IS NULL AND expires_at > {now}
+        RETURNING account, vouched";
+    let row = transaction.row(statement, values![digest(link)]).await?;
     let Some(row) = row else { return Ok(None) };
     let (account, way) = (row.int("account")?, if row.flag("vouched")? { Way::Vouched } else { Way::Own });
     // Who needs a link has forgotten the password: the next one is set without it.
@@ -252,25 +225,17 @@ pub(super) async fn end_vouched(
     transaction
         .execute("DELETE FROM sign_in_link WHERE account = ? AND vouched = 1 AND used_at IS NULL", values![account])
         .await?;
-    transaction
-        .execute(
-            "UPDATE token SET revoked_at = {now} WHERE account = ? AND vouched = 1 AND revoked_at IS NULL",
-            values![account],
-        )
-        .await?;
+    let statement = "UPDATE token SET revoked_at = {now} WHERE account = ? AND vouched = 1 AND revoked_at IS NULL";
+    transaction.execute(statement, values![account]).await?;
     Ok(())
 }
 
 /// Whether an account is more than a student anywhere: staff can't sign in as it, and could not before.
 pub(super) async fn is_trusted(transaction: &mut Transaction, account: i64) -> Result<bool, DbError> {
-    let row = transaction
-        .one(
-            "SELECT is_admin, (SELECT count(*) FROM member
-                WHERE member.account = account.id AND member.role = 'staff') AS staff
-             FROM account WHERE id = ?",
-            values![account],
-        )
-        .await?;
+    let statement = "SELECT is_admin, (SELECT count(*) FROM member
+           WHERE member.account = account.id AND member.role = 'staff') AS staff
+        FROM account WHERE id = ?";
+    let row = transaction.one(statement, values![account]).await?;
     Ok(row.flag("is_admin")? || row.int("staff")? > 0)
 }
 
@@ -283,13 +248,9 @@ pub(super) async fn new_token(
     way: Way,
 ) -> Result<(i64, NewSecret), DbError> {
     let secret = NewSecret::new(if account.is_some() { PERSON } else { WORKER });
-    let row = transaction
-        .one(
-            "INSERT INTO token (account, name, digest, created_by, created_at, vouched)
-             VALUES (?, ?, ?, ?, {now}, ?) RETURNING id",
-            values![account, name, secret.digest(), by, way == Way::Vouched],
-        )
-        .await?;
+    let statement = "INSERT INTO token (account, name, digest, created_by, created_at, vouched)
+        VALUES (?, ?, ?, ?, {now}, ?) RETURNING id";
+    let row = transaction.one(statement, values![account, name, secret.digest(), by, way == Way::Vouched]).await?;
     Ok((row.int("id")?, secret))
 }
 

@@ -1,5 +1,5 @@
-//! Coming into a further course, or becoming its staff: its staff invites, the person accepts, and until then nothing of
-//! theirs changes.
+//! Coming into a further course, or becoming its staff: its staff invites, the person accepts, and until then nothing
+//! of theirs changes.
 use super::{
     Person, identity,
     view::{self, Course, Entry},
@@ -36,7 +36,7 @@ impl Person {
     /// # Errors
     /// When the database does not answer.
     pub async fn invitations(&self) -> Result<Vec<Invitation>, Problem> {
-        let mut transaction = self.house.0.database.read().await?;
+        let mut transaction = self.app.0.database.read().await?;
         let kept = self.kept(&mut transaction).await?;
         Ok(kept.into_iter().map(|(_, kept)| kept.invitation).collect())
     }
@@ -46,7 +46,7 @@ impl Person {
     /// # Errors
     /// When there is no such invitation for this person.
     pub async fn invitation(&self, secret: &str) -> Result<Invitation, Problem> {
-        let mut transaction = self.house.0.database.read().await?;
+        let mut transaction = self.app.0.database.read().await?;
         Ok(self.by_secret(&mut transaction, secret).await?.invitation)
     }
 
@@ -55,19 +55,19 @@ impl Person {
     /// # Errors
     /// When there is no such invitation for this person, or a token asks.
     pub async fn accept_by_link(&self, secret: &str) -> Result<Course, Problem> {
-        let mut transaction = self.house.0.database.begin().await?;
+        let mut transaction = self.app.0.database.begin().await?;
         let kept = self.by_secret(&mut transaction, secret).await?;
         let session = self.lately_at_browser()?.digest.clone();
         self.join(transaction, kept, &session).await
     }
 
-    /// Accepts without the link, or declines. Whoever came by a link of another course's staff, who may have used it
-    /// themselves, accepts by the invitation's own link only.
+    /// Accepts without the link, or declines. Anybody who came by a link of another course's staff, who may have used
+    /// it themselves, accepts by the invitation's own link only.
     ///
     /// # Errors
     /// When there is no such invitation, or it is not certain that it is the person.
     pub async fn answer_invitation(&self, course: &str, accept: bool) -> Result<(), Problem> {
-        let mut transaction = self.house.0.database.begin().await?;
+        let mut transaction = self.app.0.database.begin().await?;
         let kept = self.kept(&mut transaction).await?.into_iter();
         let found = kept.map(|(_, kept)| kept).find(|kept| kept.invitation.course.slug == course);
         let Some(kept) = found else { return Err(Problem::not_found("invitation")) };
@@ -118,15 +118,12 @@ impl Person {
 
     /// Their invitations with the digests of the links.
     async fn kept(&self, transaction: &mut Transaction) -> Result<Vec<(String, Kept)>, Problem> {
-        let rows = transaction
-            .rows(
-                "SELECT invitation.digest, invitation.course, invitation.role, course.slug, course.title, inviter.login
-                 FROM invitation JOIN course ON course.id = invitation.course
-                 JOIN account AS inviter ON inviter.id = invitation.invited_by
-                 WHERE invitation.account = ? ORDER BY course.slug",
-                values![self.account.id],
-            )
-            .await?;
+        let statement =
+            "SELECT invitation.digest, invitation.course, invitation.role, course.slug, course.title, inviter.login
+            FROM invitation JOIN course ON course.id = invitation.course
+            JOIN account AS inviter ON inviter.id = invitation.invited_by
+            WHERE invitation.account = ? ORDER BY course.slug";
+        let rows = transaction.rows(statement, values![self.account.id]).await?;
         let read = |row: &Row| {
             let course = Course::from_row(row)?;
             let invitation = Invitation { course, role: row.text("role")?, by: row.text("login")? };
@@ -138,12 +135,8 @@ impl Person {
 
 /// Makes somebody a member, or changes what they are, by the word of people here.
 pub(super) async fn enrol(transaction: &mut Transaction, course: i64, account: i64, role: &str) -> Result<(), DbError> {
-    transaction
-        .execute(
-            "INSERT INTO member (course, account, role, created_at) VALUES (?, ?, ?, {now})
-             ON CONFLICT (course, account) DO UPDATE SET role = excluded.role, platform = NULL",
-            values![course, account, role],
-        )
-        .await?;
+    let statement = "INSERT INTO member (course, account, role, created_at) VALUES (?, ?, ?, {now})
+        ON CONFLICT (course, account) DO UPDATE SET role = excluded.role, platform = NULL";
+    transaction.execute(statement, values![course, account, role]).await?;
     Ok(())
 }

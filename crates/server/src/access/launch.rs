@@ -1,7 +1,7 @@
 //! Coming from a learning platform: the platform is asked who it is (SEC 5.1.1), answers once, and they are signed in
 //! as who they are here, in the course that belongs to theirs there.
 use super::{
-    House, NewSecret, Session, Visitor,
+    App, NewSecret, Session, Visitor,
     identity::{self, Way},
 };
 use crate::{
@@ -59,10 +59,10 @@ impl From<Refused> for Problem {
     }
 }
 
-impl House {
+impl App {
     /// Whether people may come from platforms at all: their cookies have to reach this service from another site.
     fn check_launchable(&self) -> Result<(), Problem> {
-        if self.is_secure() || self.0.lti.over_http() {
+        if self.is_secure() || self.lti.over_http() {
             return Ok(());
         }
         let remedy = "start the server with --public-url https://...";
@@ -71,7 +71,7 @@ impl House {
 
     /// The address that platforms send people to.
     pub fn launch_address(&self) -> String {
-        format!("{}/lti/launch", self.public())
+        format!("{}/lti/launch", self.public)
     }
 }
 
@@ -81,14 +81,12 @@ impl Visitor {
     /// # Errors
     /// When nobody registered it.
     pub async fn platform(&self, request: &LoginRequest) -> Result<Platform, Problem> {
-        self.house.check_launchable()?;
-        let mut transaction = self.house.0.database.read().await?;
+        self.app.check_launchable()?;
+        let mut transaction = self.app.0.database.read().await?;
+        let statement = "SELECT id, name, settings FROM platform
+            WHERE issuer = ? AND disabled_at IS NULL AND (CAST(? AS TEXT) IS NULL OR client = ?) ORDER BY id LIMIT 2";
         let rows = transaction
-            .rows(
-                "SELECT id, name, settings FROM platform
-                 WHERE issuer = ? AND disabled_at IS NULL AND (CAST(? AS TEXT) IS NULL OR client = ?) ORDER BY id LIMIT 2",
-                values![&request.issuer, request.client.as_deref(), request.client.as_deref()],
-            )
+            .rows(statement, values![&request.issuer, request.client.as_deref(), request.client.as_deref()])
             .await?;
         match rows.as_slice() {
             [row] => Ok(Platform::read(row)?),
@@ -109,7 +107,7 @@ impl Visitor {
         browser: Option<&str>,
     ) -> Result<LoginAnswer, Problem> {
         // Accounts have numbers above zero.
-        if !self.house.0.throttle.pass(-platform.id, LOGINS, Instant::now()) {
+        if !self.app.0.throttle.pass(-platform.id, LOGINS, Instant::now()) {
             return Err(Problem::too_many("too many people come from this platform at this moment"));
         }
         let (state, nonce) = (NewSecret::new(""), NewSecret::new(""));
@@ -125,22 +123,21 @@ impl Visitor {
             .append_pair("response_mode", "form_post")
             .append_pair("prompt", "none")
             .append_pair("client_id", &settings.client_id)
-            .append_pair("redirect_uri", &self.house.launch_address())
+            .append_pair("redirect_uri", &self.app.launch_address())
             .append_pair("login_hint", &request.hint)
             .append_pair("state", state.reveal())
             .append_pair("nonce", nonce.reveal());
         if let Some(hint) = &request.message_hint {
             address.query_pairs_mut().append_pair("lti_message_hint", hint);
         }
-        let mut transaction = self.house.0.database.begin().await?;
+        let mut transaction = self.app.0.database.begin().await?;
         let expired = "DELETE FROM platform_login
             WHERE state IN (SELECT state FROM platform_login WHERE expires_at < {now} {skip locked})";
         transaction.execute(expired, values![]).await?;
+        let statement =
+            "INSERT INTO platform_login (state, nonce, browser, platform, expires_at) VALUES (?, ?, ?, ?, {now} + ?)";
         transaction
-            .execute(
-                "INSERT INTO platform_login (state, nonce, browser, platform, expires_at) VALUES (?, ?, ?, ?, {now} + ?)",
-                values![state.digest(), nonce.digest(), identity::digest(&browser), platform.id, LOGIN],
-            )
+            .execute(statement, values![state.digest(), nonce.digest(), identity::digest(&browser), platform.id, LOGIN])
             .await?;
         transaction.commit().await?;
         Ok(LoginAnswer { address: address.into(), browser })
@@ -152,30 +149,27 @@ impl Visitor {
     /// When the answer is none of ours, none of the platform's, or nobody may come by it.
     pub async fn launch(&self, state: &str, token: &str, browser: Option<&str>) -> Result<Launched, Problem> {
         let (platform, nonce) = self.use_login(state, browser).await?;
-        let message = self.house.0.lti.receive(&platform, token, &nonce).await?;
+        let message = self.app.lti.receive(&platform, token, &nonce).await?;
         let Some(role) = message.role else {
             return Err(Problem::refused_launch("the platform says that you neither learn nor teach in this course"));
         };
-        let mut transaction = self.house.0.database.begin().await?;
+        let mut transaction = self.app.0.database.begin().await?;
         let launched = arrive(&mut transaction, &platform, &message, role).await?;
         transaction.commit().await?;
-        self.house.0.bell.strike();
+        self.app.0.notifier.wake();
         Ok(launched)
     }
 
     /// Uses up a sign-in: which platform was asked, and the digest of the nonce.
     async fn use_login(&self, state: &str, browser: Option<&str>) -> Result<(Platform, String), Problem> {
         let unknown = || Problem::refused_launch("this sign-in is unknown, used, or was begun too long ago");
-        let mut transaction = self.house.0.database.read().await?;
-        let row = transaction
-            .row(
-                "SELECT platform_login.browser, platform_login.nonce, platform.id, platform.name, platform.settings
-                 FROM platform_login
-                 JOIN platform ON platform.id = platform_login.platform AND platform.disabled_at IS NULL
-                 WHERE platform_login.state = ? AND platform_login.expires_at > {now}",
-                values![identity::digest(state)],
-            )
-            .await?;
+        let mut transaction = self.app.0.database.read().await?;
+        let statement =
+            "SELECT platform_login.browser, platform_login.nonce, platform.id, platform.name, platform.settings
+            FROM platform_login
+            JOIN platform ON platform.id = platform_login.platform AND platform.disabled_at IS NULL
+            WHERE platform_login.state = ? AND platform_login.expires_at > {now}";
+        let row = transaction.row(statement, values![identity::digest(state)]).await?;
         drop(transaction);
         let row = row.ok_or_else(unknown)?;
         let Some(browser) = browser else {
@@ -185,7 +179,7 @@ impl Visitor {
         if row.text("browser")? != identity::digest(browser) {
             return Err(Problem::refused_launch("this sign-in was begun in another browser"));
         }
-        let mut transaction = self.house.0.database.begin().await?;
+        let mut transaction = self.app.0.database.begin().await?;
         let used =
             transaction.execute("DELETE FROM platform_login WHERE state = ?", values![identity::digest(state)]).await?;
         transaction.commit().await?;
@@ -204,14 +198,10 @@ async fn arrive(
     role: Role,
 ) -> Result<Launched, Problem> {
     let arrival = &message.arrival;
-    let place = transaction
-        .row(
-            "SELECT platform_course.id, platform_course.course, course.slug FROM platform_course
-             JOIN course ON course.id = platform_course.course
-             WHERE platform_course.platform = ? AND platform_course.deployment = ? AND platform_course.context = ?",
-            values![platform.id, &arrival.deployment, &arrival.context.id],
-        )
-        .await?;
+    let statement = "SELECT platform_course.id, platform_course.course, course.slug FROM platform_course
+        JOIN course ON course.id = platform_course.course
+        WHERE platform_course.platform = ? AND platform_course.deployment = ? AND platform_course.context = ?";
+    let place = transaction.row(statement, values![platform.id, &arrival.deployment, &arrival.context.id]).await?;
     let staff = role == Role::Staff;
     let Some(place) = place else {
         if !staff {
@@ -234,14 +224,10 @@ async fn arrive(
         }
         return choose(transaction, platform, arrival, account).await;
     };
-    let link = transaction
-        .row(
-            "SELECT platform_link.id, assignment.slug FROM platform_link
-             JOIN assignment ON assignment.id = platform_link.assignment
-             WHERE platform_link.platform_course = ? AND platform_link.resource = ?",
-            values![id, &resource.id],
-        )
-        .await?;
+    let statement = "SELECT platform_link.id, assignment.slug FROM platform_link
+        JOIN assignment ON assignment.id = platform_link.assignment
+        WHERE platform_link.platform_course = ? AND platform_link.resource = ?";
+    let link = transaction.row(statement, values![id, &resource.id]).await?;
     let link = match link {
         Some(link) => Some((link.int("id")?, link.text("slug")?)),
         None => named(transaction, id, course, arrival).await?,
@@ -282,24 +268,17 @@ pub(super) async fn make_link(
     resource: &str,
     assignment: i64,
 ) -> Result<i64, DbError> {
-    transaction
-        .one(
-            "INSERT INTO platform_link (platform_course, resource, assignment, created_at) VALUES (?, ?, ?, {now})
-             ON CONFLICT (platform_course, resource) DO UPDATE SET assignment = excluded.assignment RETURNING id",
-            values![place, resource, assignment],
-        )
-        .await?
-        .int("id")
+    let statement =
+        "INSERT INTO platform_link (platform_course, resource, assignment, created_at) VALUES (?, ?, ?, {now})
+        ON CONFLICT (platform_course, resource) DO UPDATE SET assignment = excluded.assignment RETURNING id";
+    transaction.one(statement, values![place, resource, assignment]).await?.int("id")
 }
 
 /// Notes where scores of a link go, as the platform says today. A column that this service made stays.
 pub(super) async fn columns(transaction: &mut Transaction, link: i64, arrival: &Arrival) -> Result<(), DbError> {
-    transaction
-        .execute(
-            "UPDATE platform_link SET line_item = coalesce(CAST(? AS TEXT), line_item), line_items = ? WHERE id = ?",
-            values![arrival.line_item.clone(), arrival.line_items.clone(), link],
-        )
-        .await?;
+    let statement =
+        "UPDATE platform_link SET line_item = coalesce(CAST(? AS TEXT), line_item), line_items = ? WHERE id = ?";
+    transaction.execute(statement, values![arrival.line_item.clone(), arrival.line_items.clone(), link]).await?;
     Ok(())
 }
 
@@ -315,12 +294,9 @@ async fn choose(
     let expired = "DELETE FROM platform_choice
         WHERE digest IN (SELECT digest FROM platform_choice WHERE expires_at < {now} {skip locked})";
     transaction.execute(expired, values![]).await?;
-    transaction
-        .execute(
-            "INSERT INTO platform_choice (digest, account, platform, arrival, expires_at) VALUES (?, ?, ?, ?, {now} + ?)",
-            values![secret.digest(), account, platform.id, text, CHOICE],
-        )
-        .await?;
+    let statement =
+        "INSERT INTO platform_choice (digest, account, platform, arrival, expires_at) VALUES (?, ?, ?, ?, {now} + ?)";
+    transaction.execute(statement, values![secret.digest(), account, platform.id, text, CHOICE]).await?;
     // What is chosen may make a student's account that of staff.
     if !identity::is_trusted(transaction, account).await? {
         identity::end_all(transaction, account).await?;
@@ -336,7 +312,7 @@ async fn account(transaction: &mut Transaction, platform: &Platform, message: &M
     if row.maybe_int("disabled_at")?.is_some() {
         return Err(Problem::refused_launch("your account here is shut"));
     }
-    // Otherwise whoever runs a platform could do everything here.
+    // Otherwise anybody who runs a platform could do everything here.
     if row.flag("is_admin")? {
         return Err(Problem::refused_launch("you are an administrator here, and sign in here yourself"));
     }
@@ -359,12 +335,8 @@ pub(super) async fn find_or_make(
     person: Newcomer<'_>,
 ) -> Result<i64, DbError> {
     let name = person.name.map(tidy).filter(|name| !name.is_empty());
-    let known = transaction
-        .row(
-            "SELECT account FROM platform_account WHERE issuer = ? AND subject = ?",
-            values![&platform.settings.issuer, person.subject],
-        )
-        .await?;
+    let statement = "SELECT account FROM platform_account WHERE issuer = ? AND subject = ?";
+    let known = transaction.row(statement, values![&platform.settings.issuer, person.subject]).await?;
     if let Some(row) = known {
         let account = row.int("account")?;
         if let Some(name) = name {
@@ -381,21 +353,13 @@ pub(super) async fn find_or_make(
             2..=9 => format!("{base}-{number}"),
             _ => format!("{base}-{}", &crate::secret::random_hex()[..8]),
         };
-        let made = transaction
-            .row(
-                "INSERT INTO account (login, name, created_at) VALUES (?, ?, {now})
-                 ON CONFLICT (login) DO NOTHING RETURNING id",
-                values![&login, name.as_ref().unwrap_or(&login)],
-            )
-            .await?;
+        let statement = "INSERT INTO account (login, name, created_at) VALUES (?, ?, {now})
+            ON CONFLICT (login) DO NOTHING RETURNING id";
+        let made = transaction.row(statement, values![&login, name.as_ref().unwrap_or(&login)]).await?;
         let Some(made) = made else { continue };
         let account = made.int("id")?;
-        transaction
-            .execute(
-                "INSERT INTO platform_account (issuer, subject, account, created_at) VALUES (?, ?, ?, {now})",
-                values![&platform.settings.issuer, person.subject, account],
-            )
-            .await?;
+        let statement = "INSERT INTO platform_account (issuer, subject, account, created_at) VALUES (?, ?, ?, {now})";
+        transaction.execute(statement, values![&platform.settings.issuer, person.subject, account]).await?;
         return Ok(account);
     }
     Err(DbError::Other("no login is free".to_owned()))
@@ -428,13 +392,9 @@ pub(super) async fn enrol(
     account: i64,
     role: Role,
 ) -> Result<(), DbError> {
-    transaction
-        .execute(
-            "INSERT INTO platform_member (platform_course, account) VALUES (?, ?)
-             ON CONFLICT (platform_course, account) DO NOTHING",
-            values![place, account],
-        )
-        .await?;
+    let statement = "INSERT INTO platform_member (platform_course, account) VALUES (?, ?)
+        ON CONFLICT (platform_course, account) DO NOTHING";
+    transaction.execute(statement, values![place, account]).await?;
     let was = transaction
         .row("SELECT role, platform FROM member WHERE course = ? AND account = ?", values![course, account])
         .await?;
@@ -449,21 +409,13 @@ pub(super) async fn enrol(
     } else {
         identity::end_vouched(transaction, account, None).await?;
     }
-    transaction
-        .execute(
-            "INSERT INTO member (course, account, role, platform, created_at) VALUES (?, ?, ?, ?, {now})
-             ON CONFLICT (course, account) DO UPDATE SET role = excluded.role, platform = excluded.platform",
-            values![course, account, role.name(), platform],
-        )
-        .await?;
+    let statement = "INSERT INTO member (course, account, role, platform, created_at) VALUES (?, ?, ?, ?, {now})
+        ON CONFLICT (course, account) DO UPDATE SET role = excluded.role, platform = excluded.platform";
+    transaction.execute(statement, values![course, account, role.name(), platform]).await?;
     let login = transaction.one("SELECT login FROM account WHERE id = ?", values![account]).await?.text("login")?;
     let text = format!("{login} is {}, says a learning platform", role.name());
-    transaction
-        .execute(
-            "INSERT INTO event (happened_at, kind, actor, course, text) VALUES ({now}, 'member', ?, ?, ?)",
-            values![account, course, text],
-        )
-        .await?;
+    let statement = "INSERT INTO event (happened_at, kind, actor, course, text) VALUES ({now}, 'member', ?, ?, ?)";
+    transaction.execute(statement, values![account, course, text]).await?;
     Ok(())
 }
 
@@ -475,14 +427,10 @@ pub(super) struct Pending {
 
 /// What an account has to choose by this secret.
 pub(super) async fn pending(transaction: &mut Transaction, account: i64, secret: &str) -> Result<Pending, Problem> {
-    let row: Option<Row> = transaction
-        .row(
-            "SELECT platform.id, platform.name, platform.settings, platform_choice.arrival FROM platform_choice
-             JOIN platform ON platform.id = platform_choice.platform AND platform.disabled_at IS NULL
-             WHERE platform_choice.digest = ? AND platform_choice.account = ? AND platform_choice.expires_at > {now}",
-            values![identity::digest(secret), account],
-        )
-        .await?;
+    let statement = "SELECT platform.id, platform.name, platform.settings, platform_choice.arrival FROM platform_choice
+        JOIN platform ON platform.id = platform_choice.platform AND platform.disabled_at IS NULL
+        WHERE platform_choice.digest = ? AND platform_choice.account = ? AND platform_choice.expires_at > {now}";
+    let row: Option<Row> = transaction.row(statement, values![identity::digest(secret), account]).await?;
     let Some(row) = row else { return Err(Problem::not_found("choice")) };
     let arrival = serde_json::from_str(&row.text("arrival")?).map_err(|_| Problem::fault())?;
     Ok(Pending { platform: Platform::read(&row)?, arrival })

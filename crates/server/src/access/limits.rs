@@ -1,5 +1,6 @@
-//! What one account, one course, and all together may use of the server: transfers at one time, and bytes that are kept.
-use super::{House, Member};
+//! What one account, one course, and all together may use of the server: transfers at one time, and bytes that are
+//! kept.
+use super::Member;
 use crate::{
     db::Transaction,
     net::{Limit, Pass},
@@ -74,41 +75,25 @@ impl Member {
     /// # Errors
     /// When the account, or all together, have as many under way as they may.
     pub fn transfer(&self) -> Result<Transfer, Problem> {
-        self.house.0.limits.transfer(self.account.id)
+        self.app.limits.transfer(self.account.id)
     }
 
-    /// Whether so many more bytes may be kept.
+    /// Whether this many more bytes may be kept.
     pub(super) async fn check_quota(&self, transaction: &mut Transaction, size: u64) -> Result<(), Problem> {
-        let limits = &self.house.0.limits;
-        let row = transaction
-            .one(
-                "SELECT CAST(coalesce((SELECT sum(bytes) FROM kept_bytes WHERE account = ?), 0) AS {int}) AS student,
-                    CAST(coalesce((SELECT sum(bytes) FROM kept_bytes WHERE course = ?), 0) AS {int}) AS course",
-                values![self.account.id, self.course],
-            )
-            .await?;
+        let limits = &self.app.limits;
+        let statement =
+            "SELECT CAST(coalesce((SELECT sum(bytes) FROM kept_bytes WHERE account = ?), 0) AS {int}) AS student,
+            CAST(coalesce((SELECT sum(bytes) FROM kept_bytes WHERE course = ?), 0) AS {int}) AS course";
+        let row = transaction.one(statement, values![self.account.id, self.course]).await?;
         let kept = |column: &str| row.int(column).map(|bytes| u64::try_from(bytes).unwrap_or(0));
         exceeds("all that you handed in, with its reports,", kept("student")?, size, limits.student)?;
         exceeds("all that was handed in in this course, with its reports,", kept("course")?, size, limits.course)?;
         if limits.server > 0 {
-            exceeds(
-                "all that was handed in here, with its reports,",
-                self.house.kept(transaction).await?,
-                size,
-                limits.server,
-            )?;
+            let statement = "SELECT CAST(coalesce(sum(bytes), 0) AS {int}) AS bytes FROM kept_bytes";
+            let kept = u64::try_from(transaction.one(statement, values![]).await?.int("bytes")?).unwrap_or(0);
+            exceeds("all that was handed in here, with its reports,", kept, size, limits.server)?;
         }
         Ok(())
-    }
-}
-
-impl House {
-    /// Bytes of uploads and reports that are kept.
-    async fn kept(&self, transaction: &mut Transaction) -> Result<u64, Problem> {
-        let row = transaction
-            .one("SELECT CAST(coalesce(sum(bytes), 0) AS {int}) AS bytes FROM kept_bytes", values![])
-            .await?;
-        Ok(u64::try_from(row.int("bytes")?).unwrap_or(0))
     }
 }
 

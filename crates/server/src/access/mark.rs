@@ -68,15 +68,12 @@ impl Staff {
             return Err(Problem::invalid("points are a number between 0 and a million"));
         }
         let mut transaction = self.begin().await?;
-        self.member().find_submission(&mut transaction, id).await?;
-        transaction
-            .execute(
-                "INSERT INTO mark (submission, points, comment, marked_by, marked_at) VALUES (?, ?, ?, ?, {now})
-                 ON CONFLICT (submission) DO UPDATE SET points = excluded.points, comment = excluded.comment,
-                    marked_by = excluded.marked_by, marked_at = excluded.marked_at",
-                values![id, points, comment, self.member().account.id],
-            )
-            .await?;
+        self.find_submission(&mut transaction, id).await?;
+        let statement =
+            "INSERT INTO mark (submission, points, comment, marked_by, marked_at) VALUES (?, ?, ?, ?, {now})
+            ON CONFLICT (submission) DO UPDATE SET points = excluded.points, comment = excluded.comment,
+               marked_by = excluded.marked_by, marked_at = excluded.marked_at";
+        transaction.execute(statement, values![id, points, comment, self.account.id]).await?;
         let text = match points {
             Some(points) => format!("{points} points: {comment}"),
             None => format!("the grader's points: {comment}"),
@@ -86,8 +83,8 @@ impl Staff {
         view::note(&mut transaction, &entry).await?;
         score::changed(&mut transaction, id).await?;
         transaction.commit().await?;
-        self.member().house.0.bell.strike();
-        self.member().submission(id).await
+        self.app.0.notifier.wake();
+        self.submission(id).await
     }
 
     /// What students ask about an assignment and nobody has answered, oldest first.
@@ -95,17 +92,13 @@ impl Staff {
     /// # Errors
     /// When there is no such assignment.
     pub async fn requests(&self, slug: &str) -> Result<Vec<Request>, Problem> {
-        let mut transaction = self.member().house.0.database.read().await?;
-        let assignment = self.member().find_assignment(&mut transaction, slug).await?;
-        let requests = transaction
-            .all(
-                "SELECT mark.submission, mark.request, account.login FROM mark
-                 JOIN submission ON submission.id = mark.submission JOIN account ON account.id = submission.account
-                 WHERE submission.assignment = ? AND mark.requested_at > coalesce(mark.marked_at, 0)
-                 ORDER BY mark.requested_at",
-                values![assignment.id],
-            )
-            .await?;
+        let mut transaction = self.app.0.database.read().await?;
+        let assignment = self.find_assignment(&mut transaction, slug).await?;
+        let statement = "SELECT mark.submission, mark.request, account.login FROM mark
+            JOIN submission ON submission.id = mark.submission JOIN account ON account.id = submission.account
+            WHERE submission.assignment = ? AND mark.requested_at > coalesce(mark.marked_at, 0)
+            ORDER BY mark.requested_at";
+        let requests = transaction.all(statement, values![assignment.id]).await?;
         Ok(requests)
     }
 
@@ -114,8 +107,8 @@ impl Staff {
     /// # Errors
     /// When they are no member and handed nothing in.
     pub async fn work(&self, slug: &str, login: &str) -> Result<Work, Problem> {
-        let mut transaction = self.member().house.0.database.read().await?;
-        let assignment = self.member().find_assignment(&mut transaction, slug).await?;
+        let mut transaction = self.app.0.database.read().await?;
+        let assignment = self.find_assignment(&mut transaction, slug).await?;
         let account = self.student(&mut transaction, &assignment, login).await?;
         Ok(Work {
             login: login.to_owned(),
@@ -131,15 +124,11 @@ impl Staff {
         assignment: &Assignment,
         login: &str,
     ) -> Result<Row, Problem> {
-        let row = transaction
-            .row(
-                "SELECT id, name FROM account WHERE login = ?
-                    AND (EXISTS (SELECT 1 FROM member WHERE member.account = account.id AND member.course = ?)
-                        OR EXISTS (SELECT 1 FROM submission
-                            WHERE submission.account = account.id AND submission.assignment = ?))",
-                values![login, self.member().course, assignment.id],
-            )
-            .await?;
+        let statement = "SELECT id, name FROM account WHERE login = ?
+            AND (EXISTS (SELECT 1 FROM member WHERE member.account = account.id AND member.course = ?)
+                OR EXISTS (SELECT 1 FROM submission
+                    WHERE submission.account = account.id AND submission.assignment = ?))";
+        let row = transaction.row(statement, values![login, self.course, assignment.id]).await?;
         row.ok_or_else(|| Problem::not_found("member"))
     }
 
@@ -155,18 +144,15 @@ impl Staff {
             ));
         }
         let mut transaction = self.begin().await?;
-        let assignment = self.member().find_assignment(&mut transaction, slug).await?;
+        let assignment = self.find_assignment(&mut transaction, slug).await?;
         let account = self.student(&mut transaction, &assignment, login).await?.int("id")?;
         transaction
             .execute("DELETE FROM extension WHERE assignment = ? AND account = ?", values![assignment.id, account])
             .await?;
         if let Some(due) = due_at {
-            transaction
-                .execute(
-                    "INSERT INTO extension (assignment, account, due_at, set_by, set_at) VALUES (?, ?, ?, ?, {now})",
-                    values![assignment.id, account, due, self.member().account.id],
-                )
-                .await?;
+            let statement =
+                "INSERT INTO extension (assignment, account, due_at, set_by, set_at) VALUES (?, ?, ?, ?, {now})";
+            transaction.execute(statement, values![assignment.id, account, due, self.account.id]).await?;
         }
         let until = due_at.map_or("as all others".to_owned(), |due| format!("until {} UTC", calendar::minute(due)));
         let text = format!("{login} hands in {until}");
@@ -183,18 +169,14 @@ impl Member {
     /// When it is not one's own, or nothing is asked.
     pub async fn request(&self, id: i64, text: &str) -> Result<(), Problem> {
         check_words("a request", text, 1)?;
-        let mut transaction = self.house.0.database.begin().await?;
+        let mut transaction = self.app.0.database.begin().await?;
         let submission = self.find_submission(&mut transaction, id).await?;
         if submission.account != self.account.id {
-            return Err(Problem::not_allowed("this is for whoever handed it in"));
+            return Err(Problem::not_allowed("this is for the person who handed it in"));
         }
-        transaction
-            .execute(
-                "INSERT INTO mark (submission, comment, request, requested_at) VALUES (?, '', ?, {now})
-                 ON CONFLICT (submission) DO UPDATE SET request = excluded.request, requested_at = excluded.requested_at",
-                values![id, text],
-            )
-            .await?;
+        let statement = "INSERT INTO mark (submission, comment, request, requested_at) VALUES (?, '', ?, {now})
+            ON CONFLICT (submission) DO UPDATE SET request = excluded.request, requested_at = excluded.requested_at";
+        transaction.execute(statement, values![id, text]).await?;
         transaction.commit().await?;
         Ok(())
     }
@@ -204,7 +186,7 @@ impl Member {
     /// # Errors
     /// When the database does not answer.
     pub async fn due(&self, assignment: &Assignment) -> Result<Option<i64>, Problem> {
-        let mut transaction = self.house.0.database.read().await?;
+        let mut transaction = self.app.0.database.read().await?;
         Ok(due(&mut transaction, assignment, self.account.id).await?)
     }
 }

@@ -1,6 +1,6 @@
 //! A member of a course: a student, or staff who tries something out. They see their own submissions; staff sees all.
 use super::{
-    House,
+    App,
     account::Account,
     view::{self, Assignment, Course, History, Submission},
 };
@@ -20,39 +20,19 @@ const SHOWN: &str = "report.html";
 
 /// A member of a course.
 pub struct Member {
-    pub(super) account: Account,
+    pub(crate) account: Account,
     pub(super) course: i64,
     pub(super) slug: String,
     pub(super) title: String,
-    pub(super) is_staff: bool,
-    pub(super) is_archived: bool,
-    pub(super) house: House,
+    pub(crate) is_staff: bool,
+    pub(crate) is_archived: bool,
+    pub(crate) app: App,
 }
 
 impl Member {
-    /// Who it is.
-    pub fn account(&self) -> &Account {
-        &self.account
-    }
-
     /// The course.
     pub fn course(&self) -> Course {
         Course { slug: self.slug.clone(), title: self.title.clone() }
-    }
-
-    /// Whether they are of its staff.
-    pub fn is_staff(&self) -> bool {
-        self.is_staff
-    }
-
-    /// Whether the course is put away.
-    pub fn is_archived(&self) -> bool {
-        self.is_archived
-    }
-
-    /// The house.
-    pub fn house(&self) -> &House {
-        &self.house
     }
 
     /// The assignments that they may see.
@@ -60,14 +40,10 @@ impl Member {
     /// # Errors
     /// When the database does not answer.
     pub async fn assignments(&self) -> Result<Vec<Assignment>, Problem> {
-        let mut transaction = self.house.0.database.read().await?;
-        let rows = transaction
-            .rows(
-                "SELECT id, slug, title, visible, settings, published_at FROM assignment
-                 WHERE course = ? AND (visible = 1 OR ? = 1) ORDER BY id",
-                values![self.course, self.is_staff],
-            )
-            .await?;
+        let mut transaction = self.app.0.database.read().await?;
+        let statement = "SELECT id, slug, title, visible, settings, published_at FROM assignment
+            WHERE course = ? AND (visible = 1 OR ? = 1) ORDER BY id";
+        let rows = transaction.rows(statement, values![self.course, self.is_staff]).await?;
         rows.iter().map(view::read_assignment).collect()
     }
 
@@ -76,7 +52,7 @@ impl Member {
     /// # Errors
     /// When there is none.
     pub async fn assignment(&self, slug: &str) -> Result<Assignment, Problem> {
-        let mut transaction = self.house.0.database.read().await?;
+        let mut transaction = self.app.0.database.read().await?;
         self.find_assignment(&mut transaction, slug).await
     }
 
@@ -85,13 +61,9 @@ impl Member {
         transaction: &mut Transaction,
         slug: &str,
     ) -> Result<Assignment, Problem> {
-        let row = transaction
-            .row(
-                "SELECT id, slug, title, visible, settings, published_at FROM assignment
-                 WHERE course = ? AND slug = ? AND (visible = 1 OR ? = 1)",
-                values![self.course, slug, self.is_staff],
-            )
-            .await?;
+        let statement = "SELECT id, slug, title, visible, settings, published_at FROM assignment
+            WHERE course = ? AND slug = ? AND (visible = 1 OR ? = 1)";
+        let row = transaction.row(statement, values![self.course, slug, self.is_staff]).await?;
         row.as_ref().map_or_else(|| Err(Problem::not_found("assignment")), view::read_assignment)
     }
 
@@ -100,7 +72,7 @@ impl Member {
     /// # Errors
     /// When there is no such assignment.
     pub async fn submissions(&self, assignment: &str) -> Result<Vec<Submission>, Problem> {
-        let mut transaction = self.house.0.database.read().await?;
+        let mut transaction = self.app.0.database.read().await?;
         let assignment = self.find_assignment(&mut transaction, assignment).await?;
         let mut submissions = view::submissions_of(&mut transaction, assignment.id, self.account.id).await?;
         for submission in &mut submissions {
@@ -126,7 +98,7 @@ impl Member {
         // Of what older versions graded nobody has looked yet.
         let kept = match grade.outcome.shown.take() {
             Some(kept) => kept,
-            None => shown::of_outcome(&self.house.0.store, &grade.outcome.files).await?,
+            None => shown::of_outcome(&self.app.0.store, &grade.outcome.files).await?,
         };
         if let Some(shown) = Shown::read(&kept) {
             shown.cover(&mut grade.outcome, SHOWN);
@@ -138,7 +110,7 @@ impl Member {
     }
 
     pub(super) async fn find_submission(&self, transaction: &mut Transaction, id: i64) -> Result<Submission, Problem> {
-        let found = view::submission(transaction, &self.house, self.course, id).await?;
+        let found = view::submission(transaction, &self.app, self.course, id).await?;
         let found = found.filter(|submission| self.is_staff || submission.account == self.account.id);
         let mut submission = found.ok_or_else(|| Problem::not_found("submission"))?;
         if !self.is_staff {
@@ -153,7 +125,7 @@ impl Member {
     /// # Errors
     /// When they may see none of this number.
     pub async fn submission(&self, id: i64) -> Result<Submission, Problem> {
-        let mut transaction = self.house.0.database.read().await?;
+        let mut transaction = self.app.0.database.read().await?;
         self.find_submission(&mut transaction, id).await
     }
 
@@ -162,7 +134,7 @@ impl Member {
     /// # Errors
     /// When they may see none of this number.
     pub async fn history(&self, id: i64) -> Result<Vec<History>, Problem> {
-        let mut transaction = self.house.0.database.read().await?;
+        let mut transaction = self.app.0.database.read().await?;
         let submission = self.find_submission(&mut transaction, id).await?;
         Ok(view::history(&mut transaction, id, submission.is_withheld).await?)
     }
@@ -202,7 +174,7 @@ impl Member {
     /// # Errors
     /// When the store fails.
     pub async fn open(&self, artefact: &Artefact, range: Option<Range<u64>>) -> Result<Opened, Problem> {
-        Ok(self.house.0.store.open(&artefact.digest, range).await?)
+        Ok(self.app.0.store.open(&artefact.digest, range).await?)
     }
 
     /// The first bytes of an artefact that they may see.

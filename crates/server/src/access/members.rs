@@ -25,7 +25,7 @@ pub struct MemberInfo {
     pub is_invited: bool,
 }
 
-/// What whoever added a member hands on to them.
+/// What the person who added a member hands on to them.
 #[derive(Debug, Clone, Default)]
 pub struct Added {
     /// A link that signs in once: where the account is new, or has to be entered anew.
@@ -42,23 +42,19 @@ impl Staff {
     /// # Errors
     /// When the database does not answer.
     pub async fn members(&self) -> Result<Vec<MemberInfo>, Problem> {
-        let mut transaction = self.0.house.0.database.read().await?;
-        let members = transaction
-            .all(
-                "SELECT account.login, account.name, member.role, CAST(0 AS {int}) AS is_invited FROM member
-                 JOIN account ON account.id = member.account WHERE member.course = ?
-                 UNION ALL SELECT account.login, invitation.name, invitation.role, CAST(1 AS {int}) FROM invitation
-                 JOIN account ON account.id = invitation.account WHERE invitation.course = ?
-                 ORDER BY 1, 4",
-                values![self.0.course, self.0.course],
-            )
-            .await?;
+        let mut transaction = self.app.0.database.read().await?;
+        let statement = "SELECT account.login, account.name, member.role, CAST(0 AS {int}) AS is_invited FROM member
+            JOIN account ON account.id = member.account WHERE member.course = ?
+            UNION ALL SELECT account.login, invitation.name, invitation.role, CAST(1 AS {int}) FROM invitation
+            JOIN account ON account.id = invitation.account WHERE invitation.course = ?
+            ORDER BY 1, 4";
+        let members = transaction.all(statement, values![self.course, self.course]).await?;
         Ok(members)
     }
 
     /// Makes somebody a member, or changes what they are; makes the account when there is none, and a link for it that
-    /// signs in once. Whoever has an account that is not this course's alone, or is to be staff, is invited, and nothing
-    /// of theirs changes until they accept. An administrator's word needs no acceptance.
+    /// signs in once. Anybody who has an account that is not this course's alone, or is to be staff, is invited, and
+    /// nothing of theirs changes until they accept. An administrator's word needs no acceptance.
     ///
     /// # Errors
     /// When a name is none.
@@ -68,7 +64,7 @@ impl Staff {
         if !matches!(role, "student" | "staff") {
             return Err(Problem::invalid("a role is student or staff"));
         }
-        let mut transaction = self.0.house.0.database.begin().await?;
+        let mut transaction = self.app.0.database.begin().await?;
         let added = self.add(&mut transaction, login, name, role).await?;
         transaction.commit().await?;
         Ok(added)
@@ -81,15 +77,11 @@ impl Staff {
         name: &str,
         role: &str,
     ) -> Result<Added, Problem> {
-        let (course, by) = (self.0.course, &self.0.account);
+        let (course, by) = (self.course, &self.account);
         let mut added = Added::default();
-        let made = transaction
-            .row(
-                "INSERT INTO account (login, name, managed_by, created_at) VALUES (?, ?, ?, {now})
-                 ON CONFLICT (login) DO NOTHING RETURNING id",
-                values![login, name, course],
-            )
-            .await?;
+        let statement = "INSERT INTO account (login, name, managed_by, created_at) VALUES (?, ?, ?, {now})
+            ON CONFLICT (login) DO NOTHING RETURNING id";
+        let made = transaction.row(statement, values![login, name, course]).await?;
         if let Some(made) = made {
             let account = made.int("id")?;
             added.link = Some(identity::new_link(transaction, account, Some(by.id), self.way()).await?);
@@ -122,13 +114,13 @@ impl Staff {
         Ok(added)
     }
 
-    /// How whoever uses a link of this person's comes in.
+    /// How the user of a link of this person's comes in.
     fn way(&self) -> Way {
-        if self.0.account.is_admin { Way::Own } else { Way::Vouched }
+        if self.account.is_admin { Way::Own } else { Way::Vouched }
     }
 
     async fn enter(&self, transaction: &mut Transaction, account: i64, login: &str, role: &str) -> Result<(), DbError> {
-        invitation::enrol(transaction, self.0.course, account, role).await?;
+        invitation::enrol(transaction, self.course, account, role).await?;
         self.note(transaction, "member", None, &format!("{login} is {role}")).await
     }
 
@@ -137,17 +129,13 @@ impl Staff {
     /// # Errors
     /// When they are no member.
     pub async fn remove_member(&self, login: &str) -> Result<(), Problem> {
-        let mut transaction = self.0.house.0.database.begin().await?;
-        let mut removed = transaction
-            .execute(
-                "DELETE FROM member WHERE course = ? AND account = (SELECT id FROM account WHERE login = ?)",
-                values![self.0.course, login],
-            )
-            .await?;
+        let mut transaction = self.app.0.database.begin().await?;
+        let statement = "DELETE FROM member WHERE course = ? AND account = (SELECT id FROM account WHERE login = ?)";
+        let mut removed = transaction.execute(statement, values![self.course, login]).await?;
         removed += transaction
             .execute(
                 "DELETE FROM invitation WHERE course = ? AND account = (SELECT id FROM account WHERE login = ?)",
-                values![self.0.course, login],
+                values![self.course, login],
             )
             .await?;
         if removed == 0 {
@@ -159,28 +147,24 @@ impl Staff {
     }
 
     /// A new link that signs a student in once. Staff makes it for accounts that are this course's alone: made here, in
-    /// no other course, without a password or a platform of their own. Whoever could sign in as somebody else could do
-    /// what they may do.
+    /// no other course, without a password or a platform of their own. Anybody who could sign in as somebody else could
+    /// do what they may do.
     ///
     /// # Errors
     /// When the account is more than that, or no member.
     pub async fn new_link(&self, login: &str) -> Result<NewSecret, Problem> {
-        let mut transaction = self.0.house.0.database.begin().await?;
-        let row = transaction
-            .row(
-                "SELECT account.id, account.is_admin, account.managed_by, member.role
-                 FROM account JOIN member ON member.account = account.id
-                 WHERE account.login = ? AND member.course = ? AND account.disabled_at IS NULL",
-                values![login, self.0.course],
-            )
-            .await?;
+        let mut transaction = self.app.0.database.begin().await?;
+        let statement = "SELECT account.id, account.is_admin, account.managed_by, member.role
+            FROM account JOIN member ON member.account = account.id
+            WHERE account.login = ? AND member.course = ? AND account.disabled_at IS NULL";
+        let row = transaction.row(statement, values![login, self.course]).await?;
         let Some(row) = row else { return Err(Problem::not_found("member")) };
-        let is_ours = row.maybe_int("managed_by")? == Some(self.0.course) && row.text("role")? == "student";
-        if row.flag("is_admin")? || !(is_ours || self.0.account.is_admin) {
+        let is_ours = row.maybe_int("managed_by")? == Some(self.course) && row.text("role")? == "student";
+        if row.flag("is_admin")? || !(is_ours || self.account.is_admin) {
             let detail = "this account is its person's own: more than a student of this course, or with a password";
             return Err(Problem::not_allowed(detail));
         }
-        let link = identity::new_link(&mut transaction, row.int("id")?, Some(self.0.account.id), self.way()).await?;
+        let link = identity::new_link(&mut transaction, row.int("id")?, Some(self.account.id), self.way()).await?;
         self.note(&mut transaction, "link", None, &format!("a new link for {login}")).await?;
         transaction.commit().await?;
         Ok(link)
@@ -195,14 +179,12 @@ impl Staff {
         role: &str,
     ) -> Result<NewSecret, DbError> {
         let secret = NewSecret::new("");
+        let statement = "INSERT INTO invitation (course, account, name, role, digest, invited_by, created_at)
+            VALUES (?, ?, ?, ?, ?, ?, {now})
+            ON CONFLICT (course, account) DO UPDATE SET name = excluded.name, role = excluded.role,
+               digest = excluded.digest, invited_by = excluded.invited_by, created_at = excluded.created_at";
         transaction
-            .execute(
-                "INSERT INTO invitation (course, account, name, role, digest, invited_by, created_at)
-                 VALUES (?, ?, ?, ?, ?, ?, {now})
-                 ON CONFLICT (course, account) DO UPDATE SET name = excluded.name, role = excluded.role,
-                    digest = excluded.digest, invited_by = excluded.invited_by, created_at = excluded.created_at",
-                values![self.0.course, account, name, role, secret.digest(), self.0.account.id],
-            )
+            .execute(statement, values![self.course, account, name, role, secret.digest(), self.account.id])
             .await?;
         self.note(transaction, "member", None, &format!("{login} is invited as {role}")).await?;
         Ok(secret)

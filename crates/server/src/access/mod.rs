@@ -63,85 +63,90 @@ pub use submit::{Accepted, Upload};
 pub use suites::Suites;
 pub use suspicion::Suspicion;
 pub use view::{Assignment, Course, Event, Graded, History, Mark, Queue, QueueWorker, Submission};
-pub use visitor::{Metrics, Visitor};
+pub use visitor::Visitor;
 
 use crate::{
     db::Database,
     instruments::Instruments,
     lti::Lti,
-    queue::{Bell, Ear, Policy},
+    queue::{Notifier, Policy, Subscription},
     storage::Storage,
     store::Store,
 };
-use std::{path::PathBuf, sync::Arc, time::Duration};
+use std::{ops::Deref, path::PathBuf, sync::Arc, time::Duration};
 use tokio_util::sync::CancellationToken;
 
-/// What the service stands on. Its parts are for this room alone.
+/// What the service stands on. What holds data is for this room alone; the rest everybody may read.
 #[derive(Debug, Clone)]
-pub struct House(Arc<Parts>);
+pub struct App(Arc<Parts>);
 
-/// What a house is built from.
 #[derive(Debug)]
-pub struct Parts {
-    /// The database.
-    pub database: Database,
-    /// The store of artefacts.
-    pub store: Store,
-    /// Rings when something happens.
-    pub bell: Bell,
+struct Parts {
+    database: Database,
+    store: Store,
+    notifier: Notifier,
     /// The queue's patience.
-    pub policy: Policy,
+    policy: Policy,
+    /// Numbers for monitors.
+    counts: Counts,
+    /// Whether there is room, and whether it can be written.
+    storage: Storage,
+    /// Counts requests by account.
+    throttle: Throttle,
+    instruments: Instruments,
+    options: Options,
+}
+
+/// How the service is to be.
+#[derive(Debug, Default)]
+pub struct Options {
     /// The suites that come with the grader.
     pub suites: Suites,
     /// The grader, where there is one: it looks at suites before anybody is graded by them.
     pub grader: Option<PathBuf>,
-    /// Numbers for monitors.
-    pub counts: Counts,
-    /// Whether there is room, and whether it can be written.
-    pub storage: Storage,
-    /// What the server counts about itself.
-    pub instruments: Instruments,
     /// Where uploads wait until they are stored.
     pub incoming: PathBuf,
+    /// Uploads are refused when fewer bytes are free on that disk.
+    pub low_water: u64,
     /// The address that people know the service by.
     pub public: String,
     /// How long a body may pause.
     pub patience: Duration,
     /// Requests of one account in a minute.
     pub requests_per_minute: u32,
-    /// Counts these requests.
-    pub throttle: Throttle,
     /// Transfers at one time, and bytes that are kept.
     pub limits: Limits,
     /// What signing in with passwords needs; nothing where that is not allowed.
     pub passwords: Option<Passwords>,
     /// Speaks with learning platforms.
     pub lti: Arc<Lti>,
-    /// Cancelled when the server is to end: whoever waits for something to happen stops waiting.
+    /// Cancelled when the server is to end: anybody who waits for something to happen stops waiting.
     pub closing: CancellationToken,
+}
+
+impl Deref for App {
+    type Target = Options;
+
+    fn deref(&self) -> &Options {
+        &self.0.options
+    }
 }
 
 pub use throttle::Throttle;
 
-impl House {
-    /// A house from its parts.
-    pub fn new(parts: Parts) -> Self {
-        Self(Arc::new(parts))
-    }
-
-    /// The address that people know the service by.
-    pub fn public(&self) -> &str {
-        &self.0.public
-    }
-
-    /// A link that signs in once, as people open it.
-    pub fn welcome_address(&self, secret: &NewSecret) -> String {
-        format!("{}/welcome/{}", self.public(), secret.reveal())
-    }
-
-    /// A link to an invitation.
-    pub fn invitation_address(&self, secret: &NewSecret) -> String {
-        format!("{}/invitation/{}", self.public(), secret.reveal())
+impl App {
+    /// A app on this database and store.
+    pub fn new(
+        database: Database,
+        store: Store,
+        notifier: Notifier,
+        policy: Policy,
+        instruments: Instruments,
+        options: Options,
+    ) -> Self {
+        let storage = Storage::new(database.clone(), store.clone(), options.incoming.clone(), options.low_water);
+        let (counts, throttle) = (Counts::default(), Throttle::default());
+        Self(Arc::new(Parts { database, store, notifier, policy, counts, storage, throttle, instruments, options }))
     }
 
     /// What the server counts about itself.
@@ -149,29 +154,19 @@ impl House {
         &self.0.instruments
     }
 
-    /// The suites that come with the grader.
-    pub fn suites(&self) -> &Suites {
-        &self.0.suites
+    /// A link that signs in once, as people open it.
+    pub fn welcome_address(&self, secret: &NewSecret) -> String {
+        format!("{}/welcome/{}", self.public, secret.reveal())
     }
 
-    /// The grader, where there is one.
-    pub fn grader(&self) -> Option<&std::path::Path> {
-        self.0.grader.as_deref()
+    /// A link to an invitation.
+    pub fn invitation_address(&self, secret: &NewSecret) -> String {
+        format!("{}/invitation/{}", self.public, secret.reveal())
     }
 
     /// Whether people come by HTTPS.
     pub fn is_secure(&self) -> bool {
-        self.0.public.starts_with("https://")
-    }
-
-    /// How long a body may pause.
-    pub fn patience(&self) -> Duration {
-        self.0.patience
-    }
-
-    /// Where uploads wait until they are stored.
-    pub fn incoming(&self) -> &std::path::Path {
-        &self.0.incoming
+        self.public.starts_with("https://")
     }
 
     /// Whether there is room for an upload.
@@ -182,18 +177,13 @@ impl House {
         self.0.storage.has_room()
     }
 
-    /// Whether learning platforms may be reached, and people come from them, without HTTPS.
-    pub fn is_lti_over_http(&self) -> bool {
-        self.0.lti.over_http()
-    }
-
     /// Waits until the server is to end.
     pub async fn closing(&self) {
-        self.0.closing.cancelled().await;
+        self.closing.cancelled().await;
     }
 
     /// Hears whatever happens.
-    pub fn ear(&self) -> Ear {
-        self.0.bell.ear()
+    pub fn subscribe(&self) -> Subscription {
+        self.0.notifier.subscribe()
     }
 }

@@ -5,7 +5,7 @@
 //! run at one time. Wrong ones slow down the address that they come from, and never the person: from another address
 //! the right one goes on working.
 use super::{
-    House, Person, Session, Visitor,
+    App, Person, Session, Visitor,
     identity::{self, Way},
 };
 use crate::{
@@ -133,15 +133,15 @@ fn network(address: IpAddr) -> IpAddr {
     }
 }
 
-impl House {
+impl App {
     /// What passwords need, where they are allowed.
     fn passwords(&self) -> Result<&Passwords, Problem> {
-        self.0.passwords.as_ref().ok_or_else(|| Problem::not_allowed("this server takes no passwords"))
+        self.passwords.as_ref().ok_or_else(|| Problem::not_allowed("this server takes no passwords"))
     }
 
     /// Whether people may sign in with a password.
     pub fn takes_passwords(&self) -> bool {
-        self.0.passwords.is_some()
+        self.passwords.is_some()
     }
 }
 
@@ -152,9 +152,9 @@ impl Visitor {
     /// When it is not the account's, there is no such account, or there were too many tries. Which of the first two,
     /// nobody learns.
     pub async fn sign_in_by_password(&self, login: &str, password: &str) -> Result<Session, Problem> {
-        let passwords = self.house.passwords()?;
+        let passwords = self.app.passwords()?;
         let attempt = passwords.try_of(self.address, login)?;
-        let mut transaction = self.house.0.database.read().await?;
+        let mut transaction = self.app.0.database.read().await?;
         let row = transaction
             .row("SELECT id, password FROM account WHERE login = ? AND disabled_at IS NULL", values![login])
             .await?;
@@ -168,14 +168,10 @@ impl Visitor {
         let (true, Some(row)) = (right, row) else { return Err(Problem::wrong_password()) };
         attempt.was_right();
         let account = row.int("id")?;
-        let mut transaction = self.house.0.database.begin().await?;
+        let mut transaction = self.app.0.database.begin().await?;
         // It may have been changed, or the account shut, while the digest was computed.
-        let still = transaction
-            .row(
-                "SELECT id FROM account WHERE id = ? AND password = ? AND disabled_at IS NULL {for update}",
-                values![account, kept],
-            )
-            .await?;
+        let statement = "SELECT id FROM account WHERE id = ? AND password = ? AND disabled_at IS NULL {for update}";
+        let still = transaction.row(statement, values![account, kept]).await?;
         if still.is_none() {
             return Err(Problem::wrong_password());
         }
@@ -186,18 +182,19 @@ impl Visitor {
 }
 
 impl Person {
-    /// Sets one's own password, or changes it; whoever has one shows it. All sessions end, so that whoever signed in by
-    /// the old one is out, and so does what was made by links of a course's staff: the account is this person's own.
+    /// Sets one's own password, or changes it; anybody who has one shows it. All sessions end, so that anybody who
+    /// signed in by the old one is out, and so does what was made by links of a course's staff: the account is this
+    /// person's own.
     ///
     /// # Errors
     /// When the old one is wrong, the new one too short, or they did not sign in lately.
     pub async fn set_password(&self, old: &str, new: &str) -> Result<(), Problem> {
-        let passwords = self.house.passwords()?;
+        let passwords = self.app.passwords()?;
         if !LENGTH.contains(&new.chars().count()) || new == self.account.login || new.chars().any(char::is_control) {
             return Err(Problem::invalid("a password is 10 to 200 characters long, and not the login"));
         }
         self.at_browser()?;
-        let mut transaction = self.house.0.database.read().await?;
+        let mut transaction = self.app.0.database.read().await?;
         let row = transaction.one("SELECT password FROM account WHERE id = ?", values![self.account.id]).await?;
         drop(transaction);
         let kept = row.maybe_text("password")?;
@@ -213,13 +210,10 @@ impl Person {
             })
             .await?;
         attempt.was_right();
-        let mut transaction = self.house.0.database.begin().await?;
-        let changed = transaction
-            .execute(
-                "UPDATE account SET password = ? WHERE id = ? AND coalesce(password, '') = ?",
-                values![digest, self.account.id, kept.unwrap_or_default()],
-            )
-            .await?;
+        let mut transaction = self.app.0.database.begin().await?;
+        let statement = "UPDATE account SET password = ? WHERE id = ? AND coalesce(password, '') = ?";
+        let changed =
+            transaction.execute(statement, values![digest, self.account.id, kept.unwrap_or_default()]).await?;
         if changed == 0 {
             return Err(Problem::conflict("the password was changed meanwhile", "sign in again"));
         }

@@ -1,6 +1,6 @@
 //! Somebody who is signed in.
 use super::{
-    House, NewSecret,
+    App, NewSecret,
     account::Account,
     identity::{self, Seen, Way},
     view::Course,
@@ -39,31 +39,21 @@ pub struct TokenInfo {
 
 /// Somebody who is signed in.
 pub struct Person {
-    pub(super) account: Account,
+    pub(crate) account: Account,
     /// The browser's session; nothing where a token asks.
     pub(super) session: Option<Seen>,
     pub(super) address: Option<IpAddr>,
-    pub(super) house: House,
+    pub(crate) app: App,
 }
 
 impl Person {
-    /// Who it is.
-    pub fn account(&self) -> &Account {
-        &self.account
-    }
-
-    /// The house.
-    pub fn house(&self) -> &House {
-        &self.house
-    }
-
     /// The session, where it is the person at a browser: what a token can do, ends with the token.
     pub(super) fn at_browser(&self) -> Result<&Seen, Problem> {
         let session = self.session.as_ref().filter(|session| !session.is_by_token);
         session.ok_or_else(|| Problem::sign_in_again("a token can't do this, nor a session that was begun by one"))
     }
 
-    /// The same, where they signed in lately: whoever finds an open browser makes no further ways in.
+    /// The same, where they signed in lately: anybody who finds an open browser makes no further ways in.
     pub(super) fn lately_at_browser(&self) -> Result<&Seen, Problem> {
         let session = self.at_browser()?;
         match session.is_recent {
@@ -77,17 +67,14 @@ impl Person {
     /// # Errors
     /// When the database does not answer.
     pub async fn courses(&self) -> Result<Vec<CourseOf>, Problem> {
-        let mut transaction = self.house.0.database.read().await?;
+        let mut transaction = self.app.0.database.read().await?;
         let all: i64 = self.account.is_admin.into();
-        let rows = transaction
-            .rows(
-                "SELECT course.slug, course.title, course.archived_at, coalesce(member.role, 'admin') AS role FROM course
-                 LEFT JOIN member ON member.course = course.id AND member.account = ?
-                 WHERE member.role IS NOT NULL OR ? = 1
-                 ORDER BY CASE WHEN course.archived_at IS NULL THEN 0 ELSE 1 END, course.slug",
-                values![self.account.id, all],
-            )
-            .await?;
+        let statement =
+            "SELECT course.slug, course.title, course.archived_at, coalesce(member.role, 'admin') AS role FROM course
+            LEFT JOIN member ON member.course = course.id AND member.account = ?
+            WHERE member.role IS NOT NULL OR ? = 1
+            ORDER BY CASE WHEN course.archived_at IS NULL THEN 0 ELSE 1 END, course.slug";
+        let rows = transaction.rows(statement, values![self.account.id, all]).await?;
         let read = |row: &Row| {
             let is_archived = row.maybe_int("archived_at")?.is_some();
             Ok(CourseOf { course: Course::from_row(row)?, role: row.text("role")?, is_archived })
@@ -100,7 +87,7 @@ impl Person {
     /// # Errors
     /// When the database does not answer.
     pub async fn tokens(&self) -> Result<Vec<TokenInfo>, Problem> {
-        let mut transaction = self.house.0.database.read().await?;
+        let mut transaction = self.app.0.database.read().await?;
         let statement = "SELECT id, name, created_at FROM token WHERE account = ? AND revoked_at IS NULL ORDER BY id";
         Ok(transaction.all(statement, values![self.account.id]).await?)
     }
@@ -112,7 +99,7 @@ impl Person {
     pub async fn new_token(&self, name: &str) -> Result<(TokenInfo, NewSecret), Problem> {
         identity::check_title("a token's name", name)?;
         let way = if self.lately_at_browser()?.is_vouched { Way::Vouched } else { Way::Own };
-        let mut transaction = self.house.0.database.begin().await?;
+        let mut transaction = self.app.0.database.begin().await?;
         let count = transaction
             .one("SELECT count(*) AS n FROM token WHERE account = ? AND revoked_at IS NULL", values![self.account.id])
             .await?;
@@ -132,13 +119,9 @@ impl Person {
     /// # Errors
     /// When they have none of this number.
     pub async fn revoke_token(&self, id: i64) -> Result<(), Problem> {
-        let mut transaction = self.house.0.database.begin().await?;
-        let revoked = transaction
-            .execute(
-                "UPDATE token SET revoked_at = {now} WHERE id = ? AND account = ? AND revoked_at IS NULL",
-                values![id, self.account.id],
-            )
-            .await?;
+        let mut transaction = self.app.0.database.begin().await?;
+        let statement = "UPDATE token SET revoked_at = {now} WHERE id = ? AND account = ? AND revoked_at IS NULL";
+        let revoked = transaction.execute(statement, values![id, self.account.id]).await?;
         transaction.commit().await?;
         if revoked == 0 { Err(Problem::not_found("token")) } else { Ok(()) }
     }

@@ -1,6 +1,6 @@
 //! Platforms, as administrators register them, and what staff sees and does of them.
 use super::{
-    Admin, House, Staff,
+    Admin, App, Staff,
     launch::{Newcomer, enrol, find_or_make},
 };
 use crate::{
@@ -42,14 +42,14 @@ pub struct ScoreInfo {
     pub fault: Option<String>,
 }
 
-impl House {
-    /// Registers a platform, or changes it, by the word of whoever starts the server.
+impl App {
+    /// Registers a platform, or changes it, by the word of the person who starts the server.
     ///
     /// # Errors
     /// When something in it makes no sense.
     pub async fn set_platform(&self, name: &str, wish: &PlatformWish) -> Result<Platform, Problem> {
         super::identity::check_slug("a platform's name", name)?;
-        wish.check(self.0.lti.over_http())?;
+        wish.check(self.lti.over_http())?;
         let mut transaction = self.0.database.begin().await?;
         let platform = write(&mut transaction, name, wish).await?;
         transaction.commit().await?;
@@ -66,12 +66,8 @@ impl House {
 }
 
 async fn write(transaction: &mut Transaction, name: &str, wish: &PlatformWish) -> Result<Platform, Problem> {
-    let taken = transaction
-        .row(
-            "SELECT name FROM platform WHERE issuer = ? AND client = ? AND name <> ?",
-            values![&wish.issuer, &wish.client_id, name],
-        )
-        .await?;
+    let statement = "SELECT name FROM platform WHERE issuer = ? AND client = ? AND name <> ?";
+    let taken = transaction.row(statement, values![&wish.issuer, &wish.client_id, name]).await?;
     if let Some(taken) = taken {
         let detail = format!("this issuer and client are registered as {}", taken.text("name")?);
         return Err(Problem::conflict(detail, "change that one"));
@@ -82,15 +78,11 @@ async fn write(transaction: &mut Transaction, name: &str, wish: &PlatformWish) -
         return Err(Problem::conflict("another issuer is registered by this name", "give it another name"));
     }
     let text = serde_json::to_string(wish).map_err(|_| Problem::fault())?;
-    let row = transaction
-        .one(
-            "INSERT INTO platform (name, issuer, client, settings, created_at) VALUES (?, ?, ?, ?, {now})
-             ON CONFLICT (name) DO UPDATE SET client = excluded.client, settings = excluded.settings,
-                disabled_at = NULL
-             RETURNING id, name, settings",
-            values![name, &wish.issuer, &wish.client_id, text],
-        )
-        .await?;
+    let statement = "INSERT INTO platform (name, issuer, client, settings, created_at) VALUES (?, ?, ?, ?, {now})
+        ON CONFLICT (name) DO UPDATE SET client = excluded.client, settings = excluded.settings,
+           disabled_at = NULL
+        RETURNING id, name, settings";
+    let row = transaction.one(statement, values![name, &wish.issuer, &wish.client_id, text]).await?;
     Ok(Platform::read(&row)?)
 }
 
@@ -100,7 +92,7 @@ impl Admin {
     /// # Errors
     /// When the database does not answer.
     pub async fn platforms(&self) -> Result<Vec<Platform>, Problem> {
-        let mut transaction = self.house.0.database.read().await?;
+        let mut transaction = self.app.0.database.read().await?;
         let rows = transaction
             .rows("SELECT id, name, settings FROM platform WHERE disabled_at IS NULL ORDER BY name", values![])
             .await?;
@@ -113,8 +105,8 @@ impl Admin {
     /// When something in it makes no sense.
     pub async fn set_platform(&self, name: &str, wish: &PlatformWish) -> Result<Platform, Problem> {
         super::identity::check_slug("a platform's name", name)?;
-        wish.check(self.house.0.lti.over_http())?;
-        let mut transaction = self.house.0.database.begin().await?;
+        wish.check(self.app.lti.over_http())?;
+        let mut transaction = self.app.0.database.begin().await?;
         let platform = write(&mut transaction, name, wish).await?;
         let text = format!("{name}: {}, client {}", wish.issuer, wish.client_id);
         self.note(&mut transaction, "platform", &text).await?;
@@ -127,7 +119,7 @@ impl Admin {
     /// # Errors
     /// When there is none of this name.
     pub async fn shut_platform(&self, name: &str) -> Result<(), Problem> {
-        let mut transaction = self.house.0.database.begin().await?;
+        let mut transaction = self.app.0.database.begin().await?;
         let shut = transaction
             .execute("UPDATE platform SET disabled_at = {now} WHERE name = ? AND disabled_at IS NULL", values![name])
             .await?;
@@ -144,8 +136,8 @@ impl Admin {
     /// # Errors
     /// When the database does not answer.
     pub async fn new_platform_key(&self) -> Result<(), Problem> {
-        lti::new_key(&self.house.0.database).await?;
-        let mut transaction = self.house.0.database.begin().await?;
+        lti::new_key(&self.app.0.database).await?;
+        let mut transaction = self.app.0.database.begin().await?;
         self.note(&mut transaction, "platform", "a new key for learning platforms").await?;
         transaction.commit().await?;
         Ok(())
@@ -159,19 +151,15 @@ impl Staff {
     /// # Errors
     /// When no platform tells, or one does not answer; then nothing of what it tells changes.
     pub async fn read_roster(&self) -> Result<RosterRead, Problem> {
-        let house = &self.member().house;
-        let mut transaction = house.0.database.read().await?;
-        let places = transaction
-            .rows(
-                "SELECT platform_course.id AS place, platform_course.memberships, platform.id, platform.name,
-                    platform.settings
-                 FROM platform_course
-                 JOIN platform ON platform.id = platform_course.platform AND platform.disabled_at IS NULL
-                 WHERE platform_course.course = ? AND platform_course.memberships IS NOT NULL
-                 ORDER BY platform_course.id",
-                values![self.member().course],
-            )
-            .await?;
+        let app = &self.app;
+        let mut transaction = app.0.database.read().await?;
+        let statement = "SELECT platform_course.id AS place, platform_course.memberships, platform.id, platform.name,
+               platform.settings
+            FROM platform_course
+            JOIN platform ON platform.id = platform_course.platform AND platform.disabled_at IS NULL
+            WHERE platform_course.course = ? AND platform_course.memberships IS NOT NULL
+            ORDER BY platform_course.id";
+        let places = transaction.rows(statement, values![self.course]).await?;
         drop(transaction);
         if places.is_empty() {
             let detail = "no learning platform tells who is in this course";
@@ -181,7 +169,7 @@ impl Staff {
         for row in &places {
             let (place, platform) = (row.int("place")?, Platform::read(row)?);
             let address = row.text("memberships")?;
-            let told = lti::fetch_roster(&house.0.lti.client, &house.0.database, &platform, &address).await;
+            let told = lti::fetch_roster(&app.lti.client, &app.0.database, &platform, &address).await;
             let told = told.map_err(|fault| {
                 tracing::warn!(platform = platform.name, %fault, "a roster can't be read");
                 Problem::platform_failed(format!("{}: {fault}", platform.name))
@@ -198,7 +186,7 @@ impl Staff {
         platform: &Platform,
         told: &[lti::RosterMember],
     ) -> Result<RosterRead, Problem> {
-        let course = self.member().course;
+        let course = self.course;
         let mut transaction = self.begin().await?;
         let mut present = BTreeSet::new();
         for person in told {
@@ -224,21 +212,13 @@ impl Staff {
             if present.contains(&account) {
                 continue;
             }
-            transaction
-                .execute(
-                    "DELETE FROM platform_member WHERE platform_course = ? AND account = ?",
-                    values![place, account],
-                )
-                .await?;
-            let gone = transaction
-                .execute(
-                    "DELETE FROM member WHERE course = ? AND account = ? AND platform = ?
-                        AND NOT EXISTS (SELECT 1 FROM platform_member
-                            JOIN platform_course ON platform_course.id = platform_member.platform_course
-                            WHERE platform_course.course = member.course AND platform_member.account = member.account)",
-                    values![course, account, platform.id],
-                )
-                .await?;
+            let statement = "DELETE FROM platform_member WHERE platform_course = ? AND account = ?";
+            transaction.execute(statement, values![place, account]).await?;
+            let statement = "DELETE FROM member WHERE course = ? AND account = ? AND platform = ?
+                AND NOT EXISTS (SELECT 1 FROM platform_member
+                    JOIN platform_course ON platform_course.id = platform_member.platform_course
+                    WHERE platform_course.course = member.course AND platform_member.account = member.account)";
+            let gone = transaction.execute(statement, values![course, account, platform.id]).await?;
             left += usize::from(gone > 0);
         }
         let members = present.len();
@@ -253,21 +233,17 @@ impl Staff {
     /// # Errors
     /// When there is no such assignment.
     pub async fn scores(&self, slug: &str) -> Result<Vec<ScoreInfo>, Problem> {
-        let mut transaction = self.member().house.0.database.read().await?;
-        let assignment = self.member().find_assignment(&mut transaction, slug).await?;
-        let rows = transaction
-            .rows(
-                "SELECT platform.name AS platform, account.login, platform_score.content, platform_score.stamp,
-                    platform_score.sent_at, platform_score.fault
-                 FROM platform_score
-                 JOIN platform_link ON platform_link.id = platform_score.link
-                 JOIN platform_course ON platform_course.id = platform_link.platform_course
-                 JOIN platform ON platform.id = platform_course.platform
-                 JOIN account ON account.id = platform_score.account
-                 WHERE platform_link.assignment = ? ORDER BY platform.name, account.login, platform_link.id",
-                values![assignment.id],
-            )
-            .await?;
+        let mut transaction = self.app.0.database.read().await?;
+        let assignment = self.find_assignment(&mut transaction, slug).await?;
+        let statement = "SELECT platform.name AS platform, account.login, platform_score.content, platform_score.stamp,
+               platform_score.sent_at, platform_score.fault
+            FROM platform_score
+            JOIN platform_link ON platform_link.id = platform_score.link
+            JOIN platform_course ON platform_course.id = platform_link.platform_course
+            JOIN platform ON platform.id = platform_course.platform
+            JOIN account ON account.id = platform_score.account
+            WHERE platform_link.assignment = ? ORDER BY platform.name, account.login, platform_link.id";
+        let rows = transaction.rows(statement, values![assignment.id]).await?;
         let read = |row: &Row| {
             Ok(ScoreInfo {
                 platform: row.text("platform")?,
@@ -286,13 +262,13 @@ impl Staff {
     /// # Errors
     /// When there is no such assignment.
     pub async fn send_scores(&self, slug: &str) -> Result<usize, Problem> {
-        let assignment = self.member().assignment(slug).await?;
+        let assignment = self.assignment(slug).await?;
         let mut transaction = self.begin().await?;
         let count = score::send_all(&mut transaction, assignment.id, true).await?;
         let text = format!("{count} scores of {slug} are sent again");
         self.note(&mut transaction, "scores", Some(assignment.id), &text).await?;
         transaction.commit().await?;
-        self.member().house.0.bell.strike();
+        self.app.0.notifier.wake();
         Ok(count)
     }
 }

@@ -66,8 +66,8 @@ pub struct Regrade {
 /// Work on a regrade that goes on after the answer.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Doing {
-    /// `begin` (submissions are put into the queue), `apply` (results begin to count), `undo` (what counted before counts
-    /// again) or `discard`.
+    /// `begin` (submissions are put into the queue), `apply` (results begin to count), `undo` (what counted before
+    /// counts again) or `discard`.
     pub what: String,
     /// For how many submissions it is done.
     pub done: i64,
@@ -105,8 +105,8 @@ impl Staff {
     /// When another one is open.
     pub async fn regrade(&self, slug: &str, reason: &str, settings: Option<&Settings>) -> Result<Regrade, Problem> {
         super::identity::check_title("a reason", reason)?;
-        let assignment = self.member().assignment(slug).await?;
-        let settings = settings.unwrap_or(&assignment.settings).checked(self.member().house().suites())?;
+        let assignment = self.assignment(slug).await?;
+        let settings = settings.unwrap_or(&assignment.settings).checked(&self.app.suites)?;
         let mut transaction = self.begin().await?;
         transaction.one("SELECT id FROM assignment WHERE id = ? {for update}", values![assignment.id]).await?;
         let open = transaction
@@ -115,13 +115,12 @@ impl Staff {
         if open.is_some() {
             return Err(Problem::conflict("another regrade is open", "apply or discard it first"));
         }
+        let statement =
+            "INSERT INTO campaign (assignment, state, reason, settings, started_by, created_at, doing, total)
+            VALUES (?, 'open', ?, ?, ?, {now}, 'begin',
+               (SELECT count(*) FROM submission WHERE assignment = ? AND removed_at IS NULL)) RETURNING id, total";
         let campaign = transaction
-            .one(
-                "INSERT INTO campaign (assignment, state, reason, settings, started_by, created_at, doing, total)
-                 VALUES (?, 'open', ?, ?, ?, {now}, 'begin',
-                    (SELECT count(*) FROM submission WHERE assignment = ? AND removed_at IS NULL)) RETURNING id, total",
-                values![assignment.id, reason, settings.text(), self.member().account.id, assignment.id],
-            )
+            .one(statement, values![assignment.id, reason, settings.text(), self.account.id, assignment.id])
             .await?;
         let (campaign, count) = (campaign.int("id")?, campaign.int("total")?);
         let text = format!("regrade {campaign} of {count} submissions: {reason}");
@@ -133,9 +132,9 @@ impl Staff {
 
     /// Does what there is to do for a regrade, as far as it is done soon.
     async fn hurry(&self, id: i64) {
-        let parts = &self.member().house.0;
+        let parts = &self.app.0;
         campaign::hurry(&parts.database, id, HURRY).await;
-        parts.bell.strike();
+        parts.notifier.wake();
     }
 
     /// The regrades of an assignment, latest first, without their changes.
@@ -143,17 +142,13 @@ impl Staff {
     /// # Errors
     /// When there is no such assignment.
     pub async fn regrades(&self, slug: &str) -> Result<Vec<Regrade>, Problem> {
-        let mut transaction = self.member().house.0.database.read().await?;
-        let assignment = self.member().find_assignment(&mut transaction, slug).await?;
-        let rows = transaction
-            .rows(
-                "SELECT campaign.id, campaign.state, campaign.reason, campaign.settings, campaign.created_at,
-                    campaign.doing, campaign.done, campaign.total, account.login
-                 FROM campaign JOIN account ON account.id = campaign.started_by
-                 WHERE campaign.assignment = ? ORDER BY campaign.id DESC LIMIT 100",
-                values![assignment.id],
-            )
-            .await?;
+        let mut transaction = self.app.0.database.read().await?;
+        let assignment = self.find_assignment(&mut transaction, slug).await?;
+        let statement = "SELECT campaign.id, campaign.state, campaign.reason, campaign.settings, campaign.created_at,
+               campaign.doing, campaign.done, campaign.total, account.login
+            FROM campaign JOIN account ON account.id = campaign.started_by
+            WHERE campaign.assignment = ? ORDER BY campaign.id DESC LIMIT 100";
+        let rows = transaction.rows(statement, values![assignment.id]).await?;
         rows.iter().map(read_regrade).collect()
     }
 
@@ -162,8 +157,8 @@ impl Staff {
     /// # Errors
     /// When there is none of this number.
     pub async fn show_regrade(&self, slug: &str, id: i64, after: Option<i64>) -> Result<Regrade, Problem> {
-        let mut transaction = self.member().house.0.database.read().await?;
-        let assignment = self.member().find_assignment(&mut transaction, slug).await?;
+        let mut transaction = self.app.0.database.read().await?;
+        let assignment = self.find_assignment(&mut transaction, slug).await?;
         find(&mut transaction, &assignment, id, after.unwrap_or(0)).await
     }
 
@@ -173,19 +168,15 @@ impl Staff {
     /// # Errors
     /// When it is not finished; submissions that came in meanwhile are graded first, too.
     pub async fn apply_regrade(&self, slug: &str, id: i64) -> Result<Regrade, Problem> {
-        let assignment = self.member().assignment(slug).await?;
+        let assignment = self.assignment(slug).await?;
         let mut transaction = self.begin().await?;
         self.lock_open(&mut transaction, &assignment, id).await?;
-        let row = transaction
-            .one(
-                "SELECT settings, doing,
-                    (SELECT count(*) FROM submission WHERE assignment = ? AND id > campaign.cursor
-                        AND removed_at IS NULL) AS missing,
-                    (SELECT count(*) FROM job WHERE campaign = ? AND state IN ('waiting', 'running')) AS waiting
-                 FROM campaign WHERE id = ?",
-                values![assignment.id, id, id],
-            )
-            .await?;
+        let statement = "SELECT settings, doing,
+               (SELECT count(*) FROM submission WHERE assignment = ? AND id > campaign.cursor
+                   AND removed_at IS NULL) AS missing,
+               (SELECT count(*) FROM job WHERE campaign = ? AND state IN ('waiting', 'running')) AS waiting
+            FROM campaign WHERE id = ?";
+        let row = transaction.one(statement, values![assignment.id, id, id]).await?;
         if row.maybe_text("doing")?.is_some() {
             return Err(Problem::conflict("something is being done for this regrade", "wait"));
         }
@@ -206,22 +197,15 @@ impl Staff {
             return Err(Problem::conflict(format!("{waiting} submissions are not graded yet"), "wait"));
         }
         // From now on submissions are graded by these settings; the grades of others change one after the other.
-        transaction
-            .execute(
-                "UPDATE campaign SET settings_before = (SELECT settings FROM assignment WHERE id = ?) WHERE id = ?",
-                values![assignment.id, id],
-            )
-            .await?;
+        let statement =
+            "UPDATE campaign SET settings_before = (SELECT settings FROM assignment WHERE id = ?) WHERE id = ?";
+        transaction.execute(statement, values![assignment.id, id]).await?;
         transaction
             .execute("UPDATE assignment SET settings = ? WHERE id = ?", values![row.text("settings")?, assignment.id])
             .await?;
-        transaction
-            .execute(
-                "UPDATE campaign SET doing = 'apply', decided_by = ?, cursor = 0, done = 0,
-                    total = (SELECT count(*) FROM result WHERE campaign = ?) WHERE id = ?",
-                values![self.member().account.id, id, id],
-            )
-            .await?;
+        let statement = "UPDATE campaign SET doing = 'apply', decided_by = ?, cursor = 0, done = 0,
+            total = (SELECT count(*) FROM result WHERE campaign = ?) WHERE id = ?";
+        transaction.execute(statement, values![self.account.id, id, id]).await?;
         transaction.commit().await?;
         self.hurry(id).await;
         self.show_regrade(slug, id, None).await
@@ -233,7 +217,7 @@ impl Staff {
     /// # Errors
     /// When it is decided already.
     pub async fn discard_regrade(&self, slug: &str, id: i64) -> Result<Regrade, Problem> {
-        let assignment = self.member().assignment(slug).await?;
+        let assignment = self.assignment(slug).await?;
         let mut transaction = self.begin().await?;
         let doing = self.lock_open(&mut transaction, &assignment, id).await?;
         let statement = match doing.as_deref() {
@@ -243,7 +227,7 @@ impl Staff {
                  WHERE id = ?"
             }
         };
-        transaction.execute(statement, values![self.member().account.id, id]).await?;
+        transaction.execute(statement, values![self.account.id, id]).await?;
         let text = format!("regrade {id} discarded");
         self.note(&mut transaction, "regrade", Some(assignment.id), &text).await?;
         transaction.commit().await?;
@@ -258,12 +242,8 @@ impl Staff {
         assignment: &Assignment,
         id: i64,
     ) -> Result<Option<String>, Problem> {
-        let row = transaction
-            .row(
-                "SELECT state, doing FROM campaign WHERE id = ? AND assignment = ? {for update}",
-                values![id, assignment.id],
-            )
-            .await?;
+        let statement = "SELECT state, doing FROM campaign WHERE id = ? AND assignment = ? {for update}";
+        let row = transaction.row(statement, values![id, assignment.id]).await?;
         let row = row.ok_or_else(|| Problem::not_found("regrade"))?;
         match (row.text("state")?.as_str(), row.maybe_text("doing")?) {
             ("open", Some(doing)) if doing == "undo" => {
@@ -323,25 +303,17 @@ macro_rules! changes {
 }
 
 async fn find(transaction: &mut Transaction, assignment: &Assignment, id: i64, after: i64) -> Result<Regrade, Problem> {
-    let row = transaction
-        .row(
-            "SELECT campaign.id, campaign.state, campaign.reason, campaign.settings, campaign.created_at,
-                campaign.doing, campaign.done, campaign.total, account.login
-             FROM campaign JOIN account ON account.id = campaign.started_by
-             WHERE campaign.id = ? AND campaign.assignment = ?",
-            values![id, assignment.id],
-        )
-        .await?;
+    let statement = "SELECT campaign.id, campaign.state, campaign.reason, campaign.settings, campaign.created_at,
+           campaign.doing, campaign.done, campaign.total, account.login
+        FROM campaign JOIN account ON account.id = campaign.started_by
+        WHERE campaign.id = ? AND campaign.assignment = ?";
+    let row = transaction.row(statement, values![id, assignment.id]).await?;
     let Some(row) = row else { return Err(Problem::not_found("regrade")) };
     let mut regrade = read_regrade(&row)?;
     let count = |number: i64| usize::try_from(number).unwrap_or(0);
-    let jobs = transaction
-        .one(
-            "SELECT count(*) AS n, count(CASE WHEN state IN ('waiting', 'running') THEN 1 END) AS waiting
-             FROM job WHERE campaign = ?",
-            values![id],
-        )
-        .await?;
+    let statement = "SELECT count(*) AS n, count(CASE WHEN state IN ('waiting', 'running') THEN 1 END) AS waiting
+        FROM job WHERE campaign = ?";
+    let jobs = transaction.one(statement, values![id]).await?;
     let failed = transaction
         .one("SELECT count(*) AS n FROM result WHERE campaign = ? AND code = ?", values![id, JUDGE_ERROR])
         .await?;

@@ -1,6 +1,6 @@
 //! A worker on another machine. It runs hostile programs, so it may be theirs one day: it can claim jobs, read what
 //! belongs to those that it holds, and say what became of them. It sees no course, no student and no other submission.
-use super::House;
+use super::App;
 use crate::{
     problem::Problem,
     queue::Lease,
@@ -8,13 +8,13 @@ use crate::{
     task::{Outcome, Suite, Task},
     values,
     wire::Claimed,
-    worker::{Answer, Desk, DeskError, LocalDesk, REPORTS},
+    worker::{Answer, JobSource, LocalSource, REPORTS, SourceError},
 };
 use std::path::Path;
 
 /// A worker with a token.
 pub struct Remote {
-    house: House,
+    pub(crate) app: App,
     token: i64,
     worker: String,
 }
@@ -22,31 +22,31 @@ pub struct Remote {
 /// The largest report.
 const MAX_FILE: u64 = 256 << 20;
 
-impl From<DeskError> for Problem {
-    fn from(error: DeskError) -> Self {
+impl From<SourceError> for Problem {
+    fn from(error: SourceError) -> Self {
         match error {
-            DeskError::Away(error) => {
+            SourceError::Away(error) => {
                 tracing::warn!(error, "a worker was not answered");
                 Self::unavailable("the database or the store does not answer")
             }
-            DeskError::Refused(error) => Self::invalid(error),
-            DeskError::Dismissed => Self::unknown_secret("worker token"),
+            SourceError::Refused(error) => Self::invalid(error),
+            SourceError::Dismissed => Self::unknown_secret("worker token"),
         }
     }
 }
 
 impl Remote {
-    pub(super) fn new(house: House, id: i64, token: &str, name: &str) -> Self {
+    pub(super) fn new(app: App, id: i64, token: &str, name: &str) -> Self {
         let plain: String = name.chars().filter(|c| c.is_ascii_alphanumeric() || "-_.".contains(*c)).take(80).collect();
-        Self { house, token: id, worker: format!("{token}/{plain}") }
+        Self { app, token: id, worker: format!("{token}/{plain}") }
     }
 
-    fn desk(&self) -> LocalDesk {
-        let parts = &self.house.0;
-        LocalDesk::new(
+    fn source(&self) -> LocalSource {
+        let parts = &self.app.0;
+        LocalSource::new(
             parts.database.first(),
             parts.store.clone(),
-            parts.bell.clone(),
+            parts.notifier.clone(),
             parts.policy,
             self.worker.clone(),
         )
@@ -55,21 +55,16 @@ impl Remote {
 
     /// Whether a lease was given to this token: another's counts for nothing.
     async fn owns(&self, lease: &Lease) -> Result<bool, Problem> {
-        let mut transaction = self.house.0.database.first().read().await?;
+        let mut transaction = self.app.0.database.first().read().await?;
         let row = transaction
             .row("SELECT token FROM job WHERE id = ? AND attempt = ?", values![lease.job, lease.attempt])
             .await?;
         Ok(row.map(|row| row.maybe_int("token")).transpose()?.flatten() == Some(self.token))
     }
 
-    /// The house.
-    pub fn house(&self) -> &House {
-        &self.house
-    }
-
     /// How often it is to say that it is alive, in milliseconds.
     pub fn tick_every(&self) -> u64 {
-        u64::try_from(self.house.0.policy.tick_every().as_millis()).unwrap_or(u64::MAX)
+        u64::try_from(self.app.0.policy.tick_every().as_millis()).unwrap_or(u64::MAX)
     }
 
     /// The next job, if there is one; one that must run alone only for a worker that is idle.
@@ -77,7 +72,7 @@ impl Remote {
     /// # Errors
     /// When the database does not answer.
     pub async fn claim(&self, is_idle: bool) -> Result<Option<Claimed>, Problem> {
-        let job = self.desk().claim(is_idle).await?;
+        let job = self.source().claim(is_idle).await?;
         Ok(job.map(|job| Claimed {
             lease: job.lease,
             renew_every: u64::try_from(job.renew_every.as_millis()).unwrap_or(u64::MAX),
@@ -86,13 +81,13 @@ impl Remote {
         }))
     }
 
-    /// Says that it is alive, with so many slots, or why it can't grade.
+    /// Says that it is alive, with this many slots, or why it can't grade.
     ///
     /// # Errors
     /// When the database does not answer.
     pub async fn tick(&self, slots: usize, fault: Option<&str>) -> Result<(), Problem> {
         let fault = fault.map(|fault| plain(fault, 2000));
-        Ok(self.desk().tick(slots.min(MANY_SLOTS), fault.as_deref()).await?)
+        Ok(self.source().tick(slots.min(MANY_SLOTS), fault.as_deref()).await?)
     }
 
     /// Extends a lease.
@@ -100,7 +95,7 @@ impl Remote {
     /// # Errors
     /// When the database does not answer.
     pub async fn renew(&self, lease: &Lease) -> Result<bool, Problem> {
-        Ok(self.owns(lease).await? && self.desk().renew(lease).await? == Answer::Held)
+        Ok(self.owns(lease).await? && self.source().renew(lease).await? == Answer::Held)
     }
 
     /// Gives a job back.
@@ -108,7 +103,7 @@ impl Remote {
     /// # Errors
     /// When the database does not answer.
     pub async fn release(&self, lease: &Lease) -> Result<bool, Problem> {
-        Ok(self.owns(lease).await? && self.desk().release(lease).await? == Answer::Held)
+        Ok(self.owns(lease).await? && self.source().release(lease).await? == Answer::Held)
     }
 
     /// Says that a try came to nothing.
@@ -116,7 +111,7 @@ impl Remote {
     /// # Errors
     /// When the database does not answer.
     pub async fn fail(&self, lease: &Lease, fault: &str) -> Result<bool, Problem> {
-        Ok(self.owns(lease).await? && self.desk().fail(lease, &plain(fault, 2000)).await? == Answer::Held)
+        Ok(self.owns(lease).await? && self.source().fail(lease, &plain(fault, 2000)).await? == Answer::Held)
     }
 
     /// Brings a result. It is looked at as what a stranger says: of files it may name those that it stored for this
@@ -129,7 +124,7 @@ impl Remote {
             return Ok(false);
         }
         let outcome = self.checked(lease, outcome).await?;
-        Ok(self.desk().finish(lease, &outcome).await? == Answer::Held)
+        Ok(self.source().finish(lease, &outcome).await? == Answer::Held)
     }
 
     async fn checked(&self, lease: &Lease, outcome: &Outcome) -> Result<Outcome, Problem> {
@@ -165,7 +160,7 @@ impl Remote {
         for wrong in &mut outcome.wrong {
             wrong.scene = plain(&wrong.scene, 200);
         }
-        let mut transaction = self.house.0.database.first().read().await?;
+        let mut transaction = self.app.0.database.first().read().await?;
         let mut names = std::collections::BTreeSet::new();
         for file in &mut outcome.files {
             // What a report may be called, and what it holds, is not the worker's to say.
@@ -176,12 +171,9 @@ impl Remote {
                 return Err(Problem::invalid("a report is there twice"));
             }
             file.media_type = (*media_type).to_owned();
-            let stored = transaction
-                .row(
-                    "SELECT size FROM job_file WHERE job = ? AND attempt = ? AND digest = ?",
-                    values![lease.job, lease.attempt, file.artefact.digest.as_str()],
-                )
-                .await?;
+            let statement = "SELECT size FROM job_file WHERE job = ? AND attempt = ? AND digest = ?";
+            let stored =
+                transaction.row(statement, values![lease.job, lease.attempt, file.artefact.digest.as_str()]).await?;
             let Some(stored) = stored else {
                 return Err(Problem::conflict("a report was not stored for this job", "store it first"));
             };
@@ -192,14 +184,10 @@ impl Remote {
 
     /// The task of a job that the worker holds right now.
     async fn held(&self, lease: &Lease) -> Result<Task, Problem> {
-        let mut transaction = self.house.0.database.first().read().await?;
-        let row = transaction
-            .row(
-                "SELECT payload FROM job
-                 WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running' AND token = ?",
-                values![lease.job, lease.attempt, &lease.key, self.token],
-            )
-            .await?;
+        let mut transaction = self.app.0.database.first().read().await?;
+        let statement = "SELECT payload FROM job
+            WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running' AND token = ?";
+        let row = transaction.row(statement, values![lease.job, lease.attempt, &lease.key, self.token]).await?;
         let Some(row) = row else { return Err(Problem::not_found("job of yours")) };
         serde_json::from_str(&row.text("payload")?).map_err(|_| Problem::fault())
     }
@@ -214,7 +202,7 @@ impl Remote {
         if task.submission.artefact.digest != *digest && !suite {
             return Err(Problem::not_found("artefact of this job"));
         }
-        Ok(self.house.0.store.open(digest, None).await?)
+        Ok(self.app.0.store.open(digest, None).await?)
     }
 
     /// Stores a report of a job that it holds.
@@ -223,16 +211,12 @@ impl Remote {
     /// When the job is not its own (any more), or the store fails.
     pub async fn store(&self, lease: &Lease, file: &Path) -> Result<Artefact, Problem> {
         self.held(lease).await?;
-        let artefact = self.house.0.store.put_file(file).await?;
-        let mut transaction = self.house.0.database.first().begin().await?;
+        let artefact = self.app.0.store.put_file(file).await?;
+        let mut transaction = self.app.0.database.first().begin().await?;
         let size = i64::try_from(artefact.size).unwrap_or(i64::MAX);
-        transaction
-            .execute(
-                "INSERT INTO job_file (job, attempt, digest, size) VALUES (?, ?, ?, ?)
-                 ON CONFLICT (job, attempt, digest) DO NOTHING",
-                values![lease.job, lease.attempt, artefact.digest.as_str(), size],
-            )
-            .await?;
+        let statement = "INSERT INTO job_file (job, attempt, digest, size) VALUES (?, ?, ?, ?)
+            ON CONFLICT (job, attempt, digest) DO NOTHING";
+        transaction.execute(statement, values![lease.job, lease.attempt, artefact.digest.as_str(), size]).await?;
         transaction.commit().await?;
         Ok(artefact)
     }

@@ -40,19 +40,15 @@ async fn cancel_jobs(transaction: &mut Transaction, which: &'static str, value: 
     let rows = transaction.rows(which, values![value]).await?;
     let ids = rows.iter().map(|row| row.int("id")).collect::<Result<Vec<_>, _>>()?;
     let ids = serde_json::to_string(&ids).unwrap_or_default();
-    transaction
-        .execute(
-            "WITH going AS (SELECT id FROM job WHERE state IN ('waiting', 'running')
-                AND submission IN (SELECT CAST(wanted.value AS {int}) FROM {each}) ORDER BY id {for update})
-             UPDATE job SET state = 'cancelled', finished_at = {now}, lease_key = NULL, lease_until = NULL
-             WHERE id IN (SELECT id FROM going)",
-            values![&ids],
-        )
-        .await?;
+    let statement = "WITH going AS (SELECT id FROM job WHERE state IN ('waiting', 'running')
+           AND submission IN (SELECT CAST(wanted.value AS {int}) FROM {each}) ORDER BY id {for update})
+        UPDATE job SET state = 'cancelled', finished_at = {now}, lease_key = NULL, lease_until = NULL
+        WHERE id IN (SELECT id FROM going)";
+    transaction.execute(statement, values![&ids]).await?;
     Ok(ids)
 }
 
-/// Removes what is kept of submissions that a statement finds. Whoever writes about one of them is waited for.
+/// Removes what is kept of submissions that a statement finds. Anybody who writes about one of them is waited for.
 async fn remove_submissions(transaction: &mut Transaction, which: &'static str, value: i64) -> Result<(), DbError> {
     let ids = cancel_jobs(transaction, which, value).await?;
     let locked = "SELECT id FROM submission WHERE id IN (SELECT CAST(wanted.value AS {int}) FROM {each})
@@ -78,19 +74,15 @@ impl Staff {
     /// When the course has none of this number.
     pub async fn remove_submission(&self, id: i64) -> Result<(), Problem> {
         let mut transaction = self.begin().await?;
-        let found = transaction
-            .row(
-                "SELECT assignment.id FROM submission JOIN assignment ON assignment.id = submission.assignment
-                 WHERE submission.id = ? AND assignment.course = ?",
-                values![id, self.member().course],
-            )
-            .await?;
+        let statement = "SELECT assignment.id FROM submission JOIN assignment ON assignment.id = submission.assignment
+            WHERE submission.id = ? AND assignment.course = ?";
+        let found = transaction.row(statement, values![id, self.course]).await?;
         let Some(found) = found else { return Err(Problem::not_found("submission")) };
         score::changed(&mut transaction, id).await?;
         remove_submissions(&mut transaction, "SELECT id FROM submission WHERE id = ?", id).await?;
         self.note(&mut transaction, "removed", Some(found.int("id")?), "a submission").await?;
         transaction.commit().await?;
-        self.member().house.0.bell.strike();
+        self.app.0.notifier.wake();
         Ok(())
     }
 
@@ -100,7 +92,7 @@ impl Staff {
     /// When there is no such assignment.
     pub async fn remove_assignment(&self, slug: &str) -> Result<(), Problem> {
         let mut transaction = self.begin().await?;
-        let assignment = self.member().find_assignment(&mut transaction, slug).await?;
+        let assignment = self.find_assignment(&mut transaction, slug).await?;
         cancel_jobs(&mut transaction, OF_ASSIGNMENT, assignment.id).await?;
         // From here on nobody hands in.
         transaction.rows("SELECT id FROM assignment WHERE id = ? {for removal}", values![assignment.id]).await?;
@@ -132,16 +124,12 @@ impl Admin {
     /// # Errors
     /// When there is no such course.
     pub async fn archive_course(&self, slug: &str, archived: bool) -> Result<(), Problem> {
-        let mut transaction = self.house().0.database.begin().await?;
+        let mut transaction = self.app.0.database.begin().await?;
         let course = self.course(&mut transaction, slug).await?;
-        transaction
-            .execute(
-                "UPDATE course SET archived_at = CASE WHEN ? = 1 THEN {now} END WHERE id = ?",
-                values![archived, course],
-            )
-            .await?;
+        let statement = "UPDATE course SET archived_at = CASE WHEN ? = 1 THEN {now} END WHERE id = ?";
+        transaction.execute(statement, values![archived, course]).await?;
         let text = format!("{slug} is {}", if archived { "archived" } else { "open again" });
-        let entry = Entry { course: Some(course), ..Entry::new("course", self.account().id, &text) };
+        let entry = Entry { course: Some(course), ..Entry::new("course", self.account.id, &text) };
         view::note(&mut transaction, &entry).await?;
         transaction.commit().await?;
         Ok(())
@@ -152,7 +140,7 @@ impl Admin {
     /// # Errors
     /// When there is no such course.
     pub async fn remove_course(&self, slug: &str) -> Result<(), Problem> {
-        let mut transaction = self.house().0.database.begin().await?;
+        let mut transaction = self.app.0.database.begin().await?;
         let course = self.course(&mut transaction, slug).await?;
         cancel_jobs(&mut transaction, OF_COURSE, course).await?;
         transaction.rows("SELECT id FROM course WHERE id = ? {for removal}", values![course]).await?;
@@ -187,10 +175,10 @@ impl Admin {
     /// # Errors
     /// When there is no such account, or it is one's own.
     pub async fn remove_person(&self, login: &str) -> Result<(), Problem> {
-        if login == self.account().login {
+        if login == self.account.login {
             return Err(Problem::conflict("this is your own account", "ask another administrator"));
         }
-        let mut transaction = self.house().0.database.begin().await?;
+        let mut transaction = self.app.0.database.begin().await?;
         let row = transaction.row("SELECT id FROM account WHERE login = ?", values![login]).await?;
         let Some(row) = row else { return Err(Problem::not_found("account")) };
         let account = row.int("id")?;
@@ -213,13 +201,9 @@ impl Admin {
         ];
         run(&mut transaction, &rest, account).await?;
         let nobody = format!("removed-{account}");
-        transaction
-            .execute(
-                "UPDATE account SET login = ?, name = 'a removed person', password = NULL, is_admin = 0,
-                    managed_by = NULL, disabled_at = {now} WHERE id = ?",
-                values![&nobody, account],
-            )
-            .await?;
+        let statement = "UPDATE account SET login = ?, name = 'a removed person', password = NULL, is_admin = 0,
+            managed_by = NULL, disabled_at = {now} WHERE id = ?";
+        transaction.execute(statement, values![&nobody, account]).await?;
         // The log has logins in its sentences, too.
         let rows = transaction
             .rows("SELECT id, text FROM event WHERE text LIKE '%' || CAST(? AS TEXT) || '%'", values![login])

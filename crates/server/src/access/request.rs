@@ -1,6 +1,6 @@
 //! Who asks, told from the secrets that a request shows.
 use super::{
-    Admin, House, Member, Person, Remote, Staff, Visitor,
+    Admin, App, Member, Person, Remote, Staff, Visitor,
     account::Account,
     identity::{self, Seen},
 };
@@ -20,7 +20,7 @@ pub struct Secrets {
     pub address: Option<IpAddr>,
 }
 
-impl House {
+impl App {
     /// Whose these secrets are.
     async fn account(&self, secrets: &Secrets) -> Result<(Account, Option<Seen>), Problem> {
         let (account, seen) = match secrets {
@@ -42,8 +42,8 @@ impl House {
             }
             _ => return Err(Problem::not_signed_in()),
         };
-        if !self.0.throttle.pass(account.id, self.0.requests_per_minute, Instant::now()) {
-            let most = self.0.requests_per_minute;
+        if !self.0.throttle.pass(account.id, self.requests_per_minute, Instant::now()) {
+            let most = self.requests_per_minute;
             return Err(Problem::too_many(format!("an account may send {most} requests in a minute")));
         }
         Ok((account, seen))
@@ -52,7 +52,7 @@ impl House {
     /// Anybody.
     pub fn visitor(&self, secrets: Secrets) -> Visitor {
         let Secrets { session, browser, address, .. } = secrets;
-        Visitor { house: self.clone(), session, browser, address }
+        Visitor { app: self.clone(), session, browser, address }
     }
 
     /// Somebody who is signed in.
@@ -61,7 +61,7 @@ impl House {
     /// When nobody is, or they ask too often.
     pub async fn person(&self, secrets: &Secrets) -> Result<Person, Problem> {
         let (account, session) = self.account(secrets).await?;
-        Ok(Person { account, session, address: secrets.address, house: self.clone() })
+        Ok(Person { account, session, address: secrets.address, app: self.clone() })
     }
 
     /// A worker by its token; what it is called is its own to say.
@@ -70,12 +70,8 @@ impl House {
     /// When the token is none of a worker's, or not any more.
     pub async fn remote(&self, token: &str, name: &str) -> Result<Remote, Problem> {
         let mut transaction = self.0.database.read().await?;
-        let row = transaction
-            .row(
-                "SELECT id, name FROM token WHERE digest = ? AND account IS NULL AND revoked_at IS NULL",
-                values![identity::digest(token)],
-            )
-            .await?;
+        let statement = "SELECT id, name FROM token WHERE digest = ? AND account IS NULL AND revoked_at IS NULL";
+        let row = transaction.row(statement, values![identity::digest(token)]).await?;
         let Some(row) = row else { return Err(Problem::unknown_secret("worker token")) };
         Ok(Remote::new(self.clone(), row.int("id")?, &row.text("name")?, name))
     }
@@ -92,15 +88,11 @@ impl Person {
     /// # Errors
     /// When they are not in it, or there is no such course: who is not of it does not learn that it exists.
     pub async fn member_of(self, slug: &str) -> Result<Member, Problem> {
-        let mut transaction = self.house.0.database.read().await?;
-        let row = transaction
-            .row(
-                "SELECT course.id, course.slug, course.title, course.archived_at, member.role FROM course
-                 LEFT JOIN member ON member.course = course.id AND member.account = ?
-                 WHERE course.slug = ?",
-                values![self.account.id, slug],
-            )
-            .await?;
+        let mut transaction = self.app.0.database.read().await?;
+        let statement = "SELECT course.id, course.slug, course.title, course.archived_at, member.role FROM course
+            LEFT JOIN member ON member.course = course.id AND member.account = ?
+            WHERE course.slug = ?";
+        let row = transaction.row(statement, values![self.account.id, slug]).await?;
         let Some(row) = row else { return Err(Problem::not_found("course")) };
         let role = row.maybe_text("role")?;
         if role.is_none() && !self.account.is_admin {
@@ -113,7 +105,7 @@ impl Person {
             slug: row.text("slug")?,
             title: row.text("title")?,
             account: self.account,
-            house: self.house,
+            app: self.app,
         })
     }
 
@@ -123,7 +115,7 @@ impl Person {
     /// When they are none.
     pub fn admin(self) -> Result<Admin, Problem> {
         match self.account.is_admin {
-            true => Ok(Admin { account: self.account, house: self.house }),
+            true => Ok(Admin { account: self.account, app: self.app }),
             false => Err(Problem::not_allowed("this is for administrators")),
         }
     }

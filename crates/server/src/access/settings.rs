@@ -39,7 +39,7 @@ pub struct Settings {
     /// The program's name in a folder of sources.
     #[schema(value_type = crate::schema::FileName)]
     pub program: String,
-    /// After so many seconds a grading is stopped, and what it has so far counts. At most an hour.
+    /// After this many seconds a grading is stopped, and what it has so far counts. At most an hour.
     #[schema(minimum = 1, maximum = 3600)]
     pub seconds: u64,
     /// The largest upload, in bytes. At most a gigabyte.

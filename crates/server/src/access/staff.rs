@@ -10,7 +10,7 @@ use crate::{
     values,
 };
 use serde::Serialize;
-use std::{collections::BTreeMap, path::Path};
+use std::{collections::BTreeMap, ops::Deref, path::Path};
 use utoipa::ToSchema;
 
 /// Somebody of a course's staff.
@@ -31,14 +31,17 @@ pub struct Standing {
     pub counts: Option<Submission>,
 }
 
-impl Staff {
-    /// The same person as a member.
-    pub fn member(&self) -> &Member {
+impl Deref for Staff {
+    type Target = Member;
+
+    fn deref(&self) -> &Member {
         &self.0
     }
+}
 
+impl Staff {
     pub(super) fn entry<'a>(&self, kind: &'static str, assignment: Option<i64>, text: &'a str) -> Entry<'a> {
-        Entry { course: Some(self.0.course), assignment, ..Entry::new(kind, self.0.account.id, text) }
+        Entry { course: Some(self.course), assignment, ..Entry::new(kind, self.account.id, text) }
     }
 
     /// Writes into the course's audit log.
@@ -65,26 +68,22 @@ impl Staff {
     ) -> Result<Assignment, Problem> {
         identity::check_slug("an assignment's name", slug)?;
         identity::check_title("a title", title)?;
-        let settings = settings.checked(self.0.house.suites())?;
+        let settings = settings.checked(&self.app.suites)?;
         if let Some(digest) = settings.suite_archive.as_ref().and_then(|digest| digest.parse().ok())
-            && !self.0.house.0.store.has(&digest).await?
+            && !self.app.0.store.has(&digest).await?
         {
             return Err(Problem::conflict(
                 "suite_archive: nothing of this digest was uploaded",
                 "upload the archive first",
             ));
         }
-        let mut transaction = self.0.house.0.database.begin().await?;
-        let row = transaction
-            .one(
-                "INSERT INTO assignment (course, slug, title, visible, settings, created_at)
-                 VALUES (?, ?, ?, ?, ?, {now})
-                 ON CONFLICT (course, slug) DO UPDATE SET title = excluded.title, visible = excluded.visible,
-                    settings = excluded.settings
-                 RETURNING id, slug, title, visible, settings, published_at",
-                values![self.0.course, slug, title, visible, settings.text()],
-            )
-            .await?;
+        let mut transaction = self.app.0.database.begin().await?;
+        let statement = "INSERT INTO assignment (course, slug, title, visible, settings, created_at)
+            VALUES (?, ?, ?, ?, ?, {now})
+            ON CONFLICT (course, slug) DO UPDATE SET title = excluded.title, visible = excluded.visible,
+               settings = excluded.settings
+            RETURNING id, slug, title, visible, settings, published_at";
+        let row = transaction.one(statement, values![self.course, slug, title, visible, settings.text()]).await?;
         let assignment = view::read_assignment(&row)?;
         // What waits because nothing could be graded is tried by the new settings.
         bulk::resume(&mut transaction, &assignment).await?;
@@ -100,19 +99,15 @@ impl Staff {
     /// When there is no such assignment.
     pub async fn publish(&self, slug: &str, published: bool) -> Result<Assignment, Problem> {
         let mut transaction = self.begin().await?;
-        let assignment = self.0.find_assignment(&mut transaction, slug).await?;
-        let row = transaction
-            .one(
-                "UPDATE assignment SET published_at = CASE WHEN ? = 1 THEN {now} END WHERE id = ?
-                 RETURNING id, slug, title, visible, settings, published_at",
-                values![published, assignment.id],
-            )
-            .await?;
+        let assignment = self.find_assignment(&mut transaction, slug).await?;
+        let statement = "UPDATE assignment SET published_at = CASE WHEN ? = 1 THEN {now} END WHERE id = ?
+            RETURNING id, slug, title, visible, settings, published_at";
+        let row = transaction.one(statement, values![published, assignment.id]).await?;
         let text = format!("hidden groups of {slug} are {}", if published { "published" } else { "withheld" });
         self.note(&mut transaction, "assignment", Some(assignment.id), &text).await?;
         score::send_all(&mut transaction, assignment.id, false).await?;
         transaction.commit().await?;
-        self.0.house.0.bell.strike();
+        self.app.0.notifier.wake();
         view::read_assignment(&row)
     }
 
@@ -121,8 +116,8 @@ impl Staff {
     /// # Errors
     /// When there is no such assignment, or the store fails.
     pub async fn set_suite(&self, slug: &str, archive: &Path) -> Result<Assignment, Problem> {
-        let assignment = self.0.assignment(slug).await?;
-        let artefact = self.0.house.0.store.put_file(archive).await?;
+        let assignment = self.assignment(slug).await?;
+        let artefact = self.app.0.store.put_file(archive).await?;
         let settings = Settings { suite_archive: Some(artefact.digest.to_string()), ..assignment.settings };
         self.set_assignment(slug, &assignment.title, assignment.visible, &settings).await
     }
@@ -132,15 +127,11 @@ impl Staff {
     /// # Errors
     /// When there is no such assignment.
     pub async fn standings(&self, assignment: &str) -> Result<Vec<Standing>, Problem> {
-        let mut transaction = self.0.house.0.database.read().await?;
-        let assignment = self.0.find_assignment(&mut transaction, assignment).await?;
-        let rows = transaction
-            .rows(
-                "SELECT account.login, account.name FROM member JOIN account ON account.id = member.account
-                 WHERE member.course = ? AND member.role = 'student'",
-                values![self.0.course],
-            )
-            .await?;
+        let mut transaction = self.app.0.database.read().await?;
+        let assignment = self.find_assignment(&mut transaction, assignment).await?;
+        let statement = "SELECT account.login, account.name FROM member JOIN account ON account.id = member.account
+            WHERE member.course = ? AND member.role = 'student'";
+        let rows = transaction.rows(statement, values![self.course]).await?;
         let mut standings = BTreeMap::new();
         let empty = |login: String, name: String| Standing { login, name, submissions: 0, counts: None };
         for row in rows {
@@ -176,7 +167,7 @@ impl Staff {
     /// # Errors
     /// When the database does not answer.
     pub async fn submissions_after(&self, assignment: i64, after: i64) -> Result<Vec<Submission>, Problem> {
-        let mut transaction = self.0.house.0.database.read().await?;
+        let mut transaction = self.app.0.database.read().await?;
         Ok(view::submissions_after(&mut transaction, assignment, after).await?)
     }
 
@@ -185,15 +176,11 @@ impl Staff {
     /// # Errors
     /// When the database does not answer.
     pub async fn audit(&self, before: Option<i64>) -> Result<Vec<Event>, Problem> {
-        let mut transaction = self.0.house.0.database.read().await?;
-        let events = transaction
-            .all(
-                "SELECT event.id, happened_at, kind, account.login, submission, text FROM event
-                 LEFT JOIN account ON account.id = event.actor
-                 WHERE event.course = ? AND event.id < ? ORDER BY event.id DESC LIMIT 200",
-                values![self.0.course, before.unwrap_or(i64::MAX)],
-            )
-            .await?;
+        let mut transaction = self.app.0.database.read().await?;
+        let statement = "SELECT event.id, happened_at, kind, account.login, submission, text FROM event
+            LEFT JOIN account ON account.id = event.actor
+            WHERE event.course = ? AND event.id < ? ORDER BY event.id DESC LIMIT 200";
+        let events = transaction.all(statement, values![self.course, before.unwrap_or(i64::MAX)]).await?;
         Ok(events)
     }
 
@@ -202,11 +189,11 @@ impl Staff {
     /// # Errors
     /// When the database does not answer.
     pub async fn queue(&self) -> Result<Queue, Problem> {
-        let mut transaction = self.0.house.0.database.read().await?;
-        Ok(view::queue(&mut transaction, &self.0.house).await?)
+        let mut transaction = self.app.0.database.read().await?;
+        Ok(view::queue(&mut transaction, &self.app).await?)
     }
 
     pub(super) async fn begin(&self) -> Result<Transaction, Problem> {
-        Ok(self.0.house.0.database.begin().await?)
+        Ok(self.app.0.database.begin().await?)
     }
 }

@@ -7,7 +7,7 @@ use crate::{
     db::Transaction,
     lti::score,
     problem::Problem,
-    queue::{self, Bell, Lane, NewJob, Turn},
+    queue::{self, Lane, NewJob, Turn},
     store::{Artefact, digest_of_file},
     task::{Form, Input},
     values,
@@ -53,27 +53,25 @@ impl Member {
         if !assignment.settings.takes(upload.form) {
             return Err(Problem::unusable(format!("this assignment takes {forms}")));
         }
-        // Whoever sends several at once has them looked at one after another, so that nothing is stored of one that the
-        // one before leaves no room for.
-        let _turn = self.house.0.limits.turn(self.account.id).await;
+        // Anybody who sends several at once has them looked at one after another, so that nothing is stored of one that
+        // the one before leaves no room for.
+        let _turn = self.app.limits.turn(self.account.id).await;
         // Nothing is stored of an upload that is refused, or was stored before.
         let artefact = digest_of_file(upload.file).await?;
-        let mut transaction = self.house.0.database.read().await?;
+        let mut transaction = self.app.0.database.read().await?;
         if let Some(submission) = self.admit(&mut transaction, &assignment, upload, &artefact).await? {
             return Ok(Accepted { submission, repeated: true });
         }
         drop(transaction);
-        let artefact = self.house.0.store.put_file(upload.file).await?;
-        let mut transaction = self.house.0.database.begin().await?;
+        let artefact = self.app.0.store.put_file(upload.file).await?;
+        let mut transaction = self.app.0.database.begin().await?;
         // One after another for each student: numbers are given out here, and limits counted.
         transaction.one("SELECT id FROM account WHERE id = ? {for update}", values![self.account.id]).await?;
         if let Some(submission) = self.admit(&mut transaction, &assignment, upload, &artefact).await? {
             return Ok(Accepted { submission, repeated: true });
         }
         let submission = self.write(&mut transaction, &assignment, upload, &artefact).await?;
-        Bell::ring(&mut transaction).await?;
-        transaction.commit().await?;
-        self.house.0.bell.strike();
+        self.app.0.notifier.commit(transaction).await?;
         Ok(Accepted { submission: self.submission(submission).await?, repeated: false })
     }
 
@@ -83,7 +81,7 @@ impl Member {
     /// # Errors
     /// When it may not.
     pub async fn check_announced(&self, assignment: &str, key: Option<&str>, size: Option<u64>) -> Result<(), Problem> {
-        let mut transaction = self.house.0.database.read().await?;
+        let mut transaction = self.app.0.database.read().await?;
         let assignment = self.find_assignment(&mut transaction, assignment).await?;
         if let Some(key) = key {
             let known = transaction
@@ -127,12 +125,8 @@ impl Member {
         assignment: &Assignment,
         artefact: &Artefact,
     ) -> Result<Option<Submission>, Problem> {
-        let row = transaction
-            .row(
-                "SELECT assignment, digest, submission FROM upload_key WHERE account = ? AND word = ?",
-                values![self.account.id, key],
-            )
-            .await?;
+        let statement = "SELECT assignment, digest, submission FROM upload_key WHERE account = ? AND word = ?";
+        let row = transaction.row(statement, values![self.account.id, key]).await?;
         let Some(row) = row else { return Ok(None) };
         if row.int("assignment")? != assignment.id || row.text("digest")? != artefact.digest.as_str() {
             return Err(Problem::conflict(
@@ -146,17 +140,13 @@ impl Member {
     async fn check_limits(&self, transaction: &mut Transaction, assignment: &Assignment) -> Result<(), Problem> {
         let settings = &assignment.settings;
         // What the grader failed on costs nobody a try.
-        let row = transaction
-            .one(
-                "SELECT {now} AS now, count(*) AS n,
-                    count(CASE WHEN submission.created_at > {now} - ? AND submission.created_at <= {now} THEN 1 END) AS recent
-                 FROM submission
-                 LEFT JOIN grade ON grade.submission = submission.id
-                 LEFT JOIN result ON result.id = grade.result
-                 WHERE submission.assignment = ? AND submission.account = ? AND coalesce(result.code, '') <> 'JE'",
-                values![HOUR, assignment.id, self.account.id],
-            )
-            .await?;
+        let statement = "SELECT {now} AS now, count(*) AS n,
+               count(CASE WHEN submission.created_at > {now} - ? AND submission.created_at <= {now} THEN 1 END) AS recent
+            FROM submission
+            LEFT JOIN grade ON grade.submission = submission.id
+            LEFT JOIN result ON result.id = grade.result
+            WHERE submission.assignment = ? AND submission.account = ? AND coalesce(result.code, '') <> 'JE'";
+        let row = transaction.one(statement, values![HOUR, assignment.id, self.account.id]).await?;
         if mark::due(transaction, assignment, self.account.id)
             .await?
             .is_some_and(|due| row.int("now").is_ok_and(|now| now > due))
@@ -184,17 +174,15 @@ impl Member {
     ) -> Result<i64, Problem> {
         let input = Input { form: upload.form, name: upload.name.to_owned(), artefact: artefact.clone() };
         let task = assignment.settings.task(input);
-        let number = transaction
-            .one(
-                "SELECT coalesce(max(number), 0) + 1 AS number FROM submission WHERE assignment = ? AND account = ?",
-                values![assignment.id, self.account.id],
-            )
-            .await?
-            .int("number")?;
+        let statement =
+            "SELECT coalesce(max(number), 0) + 1 AS number FROM submission WHERE assignment = ? AND account = ?";
+        let number = transaction.one(statement, values![assignment.id, self.account.id]).await?.int("number")?;
+        let statement =
+            "INSERT INTO submission (assignment, account, number, form, file_name, digest, size, created_at)
+            VALUES (?, ?, ?, ?, ?, ?, ?, {now}) RETURNING id";
         let submission = transaction
             .one(
-                "INSERT INTO submission (assignment, account, number, form, file_name, digest, size, created_at)
-                 VALUES (?, ?, ?, ?, ?, ?, ?, {now}) RETURNING id",
+                statement,
                 values![
                     assignment.id,
                     self.account.id,
@@ -218,11 +206,10 @@ impl Member {
         queue::enqueue(transaction, &job).await?;
         score::changed(transaction, submission).await?;
         if let Some(key) = upload.key {
+            let statement =
+                "INSERT INTO upload_key (account, word, assignment, digest, submission) VALUES (?, ?, ?, ?, ?)";
             transaction
-                .execute(
-                    "INSERT INTO upload_key (account, word, assignment, digest, submission) VALUES (?, ?, ?, ?, ?)",
-                    values![self.account.id, key, assignment.id, artefact.digest.as_str(), submission],
-                )
+                .execute(statement, values![self.account.id, key, assignment.id, artefact.digest.as_str(), submission])
                 .await?;
         }
         let entry = Entry {

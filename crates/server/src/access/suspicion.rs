@@ -34,29 +34,21 @@ impl Staff {
     /// # Errors
     /// When there is no such assignment.
     pub async fn suspicions(&self, slug: &str) -> Result<Vec<Suspicion>, Problem> {
-        let mut transaction = self.member().house.0.database.read().await?;
-        let assignment = self.member().find_assignment(&mut transaction, slug).await?;
-        let rows = transaction
-            .rows(
-                "SELECT id, scene, answer, agreeing, nearly_right, state, found_at FROM suspicion
-                 WHERE assignment = ? ORDER BY id DESC",
-                values![assignment.id],
-            )
-            .await?;
+        let mut transaction = self.app.0.database.read().await?;
+        let assignment = self.find_assignment(&mut transaction, slug).await?;
+        let statement = "SELECT id, scene, answer, agreeing, nearly_right, state, found_at FROM suspicion
+            WHERE assignment = ? ORDER BY id DESC";
+        let rows = transaction.rows(statement, values![assignment.id]).await?;
         let mut suspicions = Vec::new();
         for row in &rows {
             let (scene, answer) = (row.text("scene")?, row.text("answer")?);
-            let logins = transaction
-                .rows(
-                    "SELECT DISTINCT account.login FROM wrong_scene
-                     JOIN grade ON grade.result = wrong_scene.result
-                     JOIN submission ON submission.id = grade.submission AND submission.assignment = ?
-                     JOIN account ON account.id = submission.account
-                     JOIN member ON member.account = account.id AND member.course = ? AND member.role = 'student'
-                     WHERE wrong_scene.scene = ? AND wrong_scene.answer = ? ORDER BY account.login",
-                    values![assignment.id, self.member().course, &scene, &answer],
-                )
-                .await?;
+            let statement = "SELECT DISTINCT account.login FROM wrong_scene
+                JOIN grade ON grade.result = wrong_scene.result
+                JOIN submission ON submission.id = grade.submission AND submission.assignment = ?
+                JOIN account ON account.id = submission.account
+                JOIN member ON member.account = account.id AND member.course = ? AND member.role = 'student'
+                WHERE wrong_scene.scene = ? AND wrong_scene.answer = ? ORDER BY account.login";
+            let logins = transaction.rows(statement, values![assignment.id, self.course, &scene, &answer]).await?;
             let read = |row: &Row| row.text("login");
             suspicions.push(Suspicion {
                 id: row.int("id")?,
@@ -77,16 +69,12 @@ impl Staff {
     /// # Errors
     /// When there is none of this number.
     pub async fn decide_suspicion(&self, slug: &str, id: i64, told: bool) -> Result<(), Problem> {
-        let assignment = self.member().assignment(slug).await?;
+        let assignment = self.assignment(slug).await?;
         let mut transaction = self.begin().await?;
         let state = if told { "told" } else { "dismissed" };
-        let row = transaction
-            .row(
-                "UPDATE suspicion SET state = ?, decided_by = ?, decided_at = {now}
-                 WHERE id = ? AND assignment = ? RETURNING scene",
-                values![state, self.member().account.id, id, assignment.id],
-            )
-            .await?;
+        let statement = "UPDATE suspicion SET state = ?, decided_by = ?, decided_at = {now}
+            WHERE id = ? AND assignment = ? RETURNING scene";
+        let row = transaction.row(statement, values![state, self.account.id, id, assignment.id]).await?;
         let Some(row) = row else { return Err(Problem::not_found("suspicion")) };
         let scene = row.text("scene")?;
         let text = match told {
@@ -106,21 +94,17 @@ impl Member {
     /// # Errors
     /// When they may see none of this number.
     pub async fn doubts(&self, id: i64) -> Result<Vec<String>, Problem> {
-        let mut transaction = self.house.0.database.read().await?;
+        let mut transaction = self.app.0.database.read().await?;
         let submission = self.find_submission(&mut transaction, id).await?;
         let kept = submission.grade.filter(|_| submission.is_withheld).and_then(|grade| grade.outcome.shown);
         let shown = kept.as_deref().and_then(Shown::read);
-        let rows = transaction
-            .rows(
-                "SELECT DISTINCT wrong_scene.scene FROM grade
-                 JOIN submission ON submission.id = grade.submission
-                 JOIN wrong_scene ON wrong_scene.result = grade.result
-                 JOIN suspicion ON suspicion.assignment = submission.assignment AND suspicion.scene = wrong_scene.scene
-                    AND suspicion.answer = wrong_scene.answer AND suspicion.state = 'told'
-                 WHERE grade.submission = ? ORDER BY wrong_scene.scene",
-                values![id],
-            )
-            .await?;
+        let statement = "SELECT DISTINCT wrong_scene.scene FROM grade
+            JOIN submission ON submission.id = grade.submission
+            JOIN wrong_scene ON wrong_scene.result = grade.result
+            JOIN suspicion ON suspicion.assignment = submission.assignment AND suspicion.scene = wrong_scene.scene
+               AND suspicion.answer = wrong_scene.answer AND suspicion.state = 'told'
+            WHERE grade.submission = ? ORDER BY wrong_scene.scene";
+        let rows = transaction.rows(statement, values![id]).await?;
         let mut scenes = rows.iter().map(|row| row.text("scene")).collect::<Result<Vec<_>, DbError>>()?;
         scenes.retain(|scene| shown.as_ref().is_none_or(|shown| shown.tells_of(scene)));
         Ok(scenes)

@@ -1,5 +1,5 @@
 //! What the service shows: the same to the API, to pages and to exports.
-use super::{House, Settings};
+use super::{App, Settings};
 use crate::{
     db::{DbError, FromRow, Row, Transaction, Value, from_row},
     health,
@@ -364,7 +364,7 @@ pub(super) async fn submissions_after(
 /// A submission of a course with its place in the queue and its reports.
 pub(super) async fn submission(
     transaction: &mut Transaction,
-    house: &House,
+    app: &App,
     course: i64,
     id: i64,
 ) -> Result<Option<Submission>, DbError> {
@@ -372,18 +372,14 @@ pub(super) async fn submission(
     let found = read_all(transaction, statement, values![id, course]).await?.into_iter().next();
     let Some(mut submission) = found else { return Ok(None) };
     if let Some(job) = submission.job.filter(|_| !submission.is_paused)
-        && let Some(place) = queue::place(transaction, &house.0.policy, Lane::Grading, job).await?
+        && let Some(place) = queue::place(transaction, &app.0.policy, Lane::Grading, job).await?
     {
         submission.ahead = Some(place.ahead);
         submission.expected_seconds = place.expected.map(|expected| expected.as_secs().max(1));
     }
     if let Some(grade) = &mut submission.grade {
-        let rows = transaction
-            .rows(
-                "SELECT name, media_type, digest, size FROM result_file WHERE result = ? ORDER BY name",
-                values![grade.result],
-            )
-            .await?;
+        let statement = "SELECT name, media_type, digest, size FROM result_file WHERE result = ? ORDER BY name";
+        let rows = transaction.rows(statement, values![grade.result]).await?;
         let read = |row: &Row| {
             let wrong = |what: &str| DbError::Other(format!("a report's {what} is none"));
             Ok(OutputFile {
@@ -408,19 +404,15 @@ pub(super) async fn history(
     submission: i64,
     withheld: bool,
 ) -> Result<Vec<History>, DbError> {
-    let rows = transaction
-        .rows(
-            "SELECT grade_change.changed_at, grade_change.reason, account.login, old.code AS old_code,
-                old.points AS old_points, old.shown AS old_shown, new.shown AS new_shown, new.id AS result, new.code AS new_code, new.points AS new_points, new.version,
-                new.grader, new.essence, new.task
-             FROM grade_change
-             JOIN result AS new ON new.id = grade_change.new_result
-             LEFT JOIN result AS old ON old.id = grade_change.old_result
-             LEFT JOIN account ON account.id = grade_change.changed_by
-             WHERE grade_change.submission = ? ORDER BY grade_change.id",
-            values![submission],
-        )
-        .await?;
+    let statement = "SELECT grade_change.changed_at, grade_change.reason, account.login, old.code AS old_code,
+           old.points AS old_points, old.shown AS old_shown, new.shown AS new_shown, new.id AS result, new.code AS new_code, new.points AS new_points, new.version,
+           new.grader, new.essence, new.task
+        FROM grade_change
+        JOIN result AS new ON new.id = grade_change.new_result
+        LEFT JOIN result AS old ON old.id = grade_change.old_result
+        LEFT JOIN account ON account.id = grade_change.changed_by
+        WHERE grade_change.submission = ? ORDER BY grade_change.id";
+    let rows = transaction.rows(statement, values![submission]).await?;
     let shown = |row: &Row, column: &str| -> Result<Option<(String, Option<String>)>, DbError> {
         let text = row.maybe_text(column)?.filter(|_| withheld);
         Ok(text.as_deref().and_then(Shown::read).map(Shown::line))
@@ -494,10 +486,11 @@ impl<'a> Entry<'a> {
 
 /// Writes it into the audit log.
 pub(super) async fn note(transaction: &mut Transaction, entry: &Entry<'_>) -> Result<(), DbError> {
+    let statement = "INSERT INTO event (happened_at, kind, actor, course, assignment, submission, text)
+        VALUES ({now}, ?, ?, ?, ?, ?, ?)";
     transaction
         .execute(
-            "INSERT INTO event (happened_at, kind, actor, course, assignment, submission, text)
-             VALUES ({now}, ?, ?, ?, ?, ?, ?)",
+            statement,
             values![entry.kind, entry.actor, entry.course, entry.assignment, entry.submission, entry.text],
         )
         .await?;
@@ -505,28 +498,22 @@ pub(super) async fn note(transaction: &mut Transaction, entry: &Entry<'_>) -> Re
 }
 
 /// The queue as everybody of the staff may see it.
-pub(super) async fn queue(transaction: &mut Transaction, house: &House) -> Result<Queue, DbError> {
+pub(super) async fn queue(transaction: &mut Transaction, app: &App) -> Result<Queue, DbError> {
     // Each by its index: of all jobs few are one of these.
+    let statement = "SELECT
+        (SELECT count(*) FROM job WHERE lane = ? AND state = 'waiting' AND campaign IS NULL) AS waiting,
+        (SELECT count(*) FROM job WHERE lane = ? AND state = 'waiting' AND campaign IS NOT NULL) AS regrades,
+        (SELECT count(*) FROM job WHERE lane = 'paused' AND state = 'waiting') AS paused,
+        (SELECT count(*) FROM job WHERE lane = ? AND state = 'running') AS running,
+        (SELECT count(*) FROM job WHERE lane = ? AND state = 'buried' AND replaced = 0) AS buried";
     let counts = transaction
-        .one(
-            "SELECT
-                (SELECT count(*) FROM job WHERE lane = ? AND state = 'waiting' AND campaign IS NULL) AS waiting,
-                (SELECT count(*) FROM job WHERE lane = ? AND state = 'waiting' AND campaign IS NOT NULL) AS regrades,
-                (SELECT count(*) FROM job WHERE lane = 'paused' AND state = 'waiting') AS paused,
-                (SELECT count(*) FROM job WHERE lane = ? AND state = 'running') AS running,
-                (SELECT count(*) FROM job WHERE lane = ? AND state = 'buried' AND replaced = 0) AS buried",
-            values![Lane::Grading.name(), Lane::Grading.name(), Lane::Grading.name(), Lane::Grading.name()],
-        )
+        .one(statement, values![Lane::Grading.name(), Lane::Grading.name(), Lane::Grading.name(), Lane::Grading.name()])
         .await?;
-    let recent = health::recent(&house.0.policy);
-    let workers = transaction
-        .all(
-            "SELECT name, version, slots, seen_at, aside_since, faults, fault, fault_at,
-                (SELECT count(*) FROM job WHERE job.state = 'running' AND job.worker = worker.name) AS running
-             FROM worker WHERE seen_at > {now} - ? AND seen_at <= {now} + ? ORDER BY name LIMIT 1000",
-            values![recent, recent],
-        )
-        .await?;
+    let recent = health::recent(&app.0.policy);
+    let statement = "SELECT name, version, slots, seen_at, aside_since, faults, fault, fault_at,
+           (SELECT count(*) FROM job WHERE job.state = 'running' AND job.worker = worker.name) AS running
+        FROM worker WHERE seen_at > {now} - ? AND seen_at <= {now} + ? ORDER BY name LIMIT 1000";
+    let workers = transaction.all(statement, values![recent, recent]).await?;
     Ok(Queue {
         waiting: counts.int("waiting")?,
         regrades: counts.int("regrades")?,

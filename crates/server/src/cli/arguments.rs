@@ -69,7 +69,7 @@ pub(super) struct Work {
     /// The grader; by default the program fosssim-oracle beside this one.
     #[arg(long, value_name = "PROGRAM")]
     pub(super) grader: Option<PathBuf>,
-    /// After so many seconds without a sign of a worker its jobs are given to others.
+    /// After this many seconds without a sign of a worker its jobs are given to others.
     #[arg(long, value_name = "SECONDS", default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..=3600))]
     pub(super) lease: u64,
     /// A job that failed so often is given up.
@@ -95,7 +95,7 @@ pub(super) struct Serve {
     /// Requests that an account may send in a minute.
     #[arg(long, value_name = "N", default_value = "600", value_parser = clap::value_parser!(u32).range(1..))]
     pub(super) requests_per_minute: u32,
-    /// After so many seconds of silence a request is given up.
+    /// After this many seconds of silence a request is given up.
     #[arg(long, value_name = "SECONDS", default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..=3600))]
     pub(super) patience: u64,
     /// Connections at one time; an address may have half of them. Who asks for nothing gives way to who comes.
@@ -124,7 +124,7 @@ pub(super) struct Serve {
     /// Let people sign in with passwords, too.
     #[arg(long)]
     pub(super) passwords: bool,
-    /// For so many days uploads and reports are kept; 0 for ever. Grades and their history always stay.
+    /// For this many days uploads and reports are kept; 0 for ever. Grades and their history always stay.
     #[arg(long, value_name = "DAYS", default_value_t = 0)]
     pub(super) keep_days: u32,
     /// A file (TOML) with learning platforms to register; docs/lti.md shows one.
@@ -191,8 +191,8 @@ pub(super) struct Backup {
     pub(super) output: PathBuf,
 }
 
-/// Makes a data folder from a backup. The data folder, and the database of PostgreSQL, must be empty. The exit code is 1
-/// when the backup lacks what its database names.
+/// Makes a data folder from a backup. The data folder, and the database of PostgreSQL, must be empty. The exit code is
+/// 1 when the backup lacks what its database names.
 #[derive(Debug, Args)]
 pub(super) struct Restore {
     #[command(flatten)]
@@ -232,7 +232,7 @@ pub(super) struct Bench {
     /// The rungs of the ladder: simulated students.
     #[arg(long, value_name = "N,N,...", value_delimiter = ',', default_value = "50,100,200,500,1000,2000")]
     pub(super) students: Vec<usize>,
-    /// How long each rung is, and how long others are watched.
+    /// How long each notify is, and how long others are watched.
     #[arg(long, value_name = "SECONDS", default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=3600))]
     pub(super) seconds: u64,
     /// Submissions of `million`.

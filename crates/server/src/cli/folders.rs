@@ -1,6 +1,9 @@
 //! What lies where in the data folder.
 use super::arguments::Place;
-use crate::{db::Address, store::Store};
+use crate::{
+    db::{Address, Database},
+    store::Store,
+};
 use anyhow::{Context, Result};
 use std::{
     fs,
@@ -13,6 +16,13 @@ use std::{
 pub(super) struct Folders {
     /// Database and store, for nobody else's eyes.
     pub(super) data: PathBuf,
+    pub(super) incoming: PathBuf,
+    pub(super) backups: PathBuf,
+    /// A program with a mistake, for who tries the service.
+    pub(super) flawed_program: PathBuf,
+    pub(super) workers: PathBuf,
+    /// Workers of other servers: what they leave behind is no concern of a server that has the same folder.
+    pub(super) remote_workers: PathBuf,
 }
 
 impl Folders {
@@ -31,7 +41,14 @@ impl Folders {
         if mode & 0o077 != 0 {
             tracing::warn!(folder = %data.display(), "others can read the data folder: chmod 700 it");
         }
-        Ok(Self { data: data.to_owned() })
+        Ok(Self {
+            incoming: data.join("incoming"),
+            backups: data.join("backups"),
+            flawed_program: data.join("flawed-program"),
+            workers: data.join("workers"),
+            remote_workers: data.join("remote-workers"),
+            data: data.to_owned(),
+        })
     }
 
     /// The store that was asked for, or the one in the data folder.
@@ -42,28 +59,6 @@ impl Folders {
         }
     }
 
-    pub(super) fn incoming(&self) -> PathBuf {
-        self.data.join("incoming")
-    }
-
-    pub(super) fn backups(&self) -> PathBuf {
-        self.data.join("backups")
-    }
-
-    /// A program with a mistake, for who tries the service.
-    pub(super) fn flawed_program(&self) -> PathBuf {
-        self.data.join("flawed-program")
-    }
-
-    pub(super) fn workers(&self) -> PathBuf {
-        self.data.join("workers")
-    }
-
-    /// Workers of other servers: what they leave behind is no concern of a server that has the same folder.
-    pub(super) fn remote_workers(&self) -> PathBuf {
-        self.data.join("remote-workers")
-    }
-
     pub(super) fn work(&self, worker: &str) -> PathBuf {
         self.data.join("work").join(worker)
     }
@@ -71,6 +66,13 @@ impl Folders {
     /// The database of a data folder.
     pub(super) fn database_in(data: &Path) -> PathBuf {
         data.join("fosssim.db")
+    }
+
+    /// Opens the database that was asked for, or the one in the data folder.
+    pub(super) async fn open_database(&self, place: &Place) -> Result<(Database, Address)> {
+        let address = self.database(place);
+        let database = Database::open(&address).await.with_context(|| format!("database {address}"))?;
+        Ok((database, address))
     }
 
     /// The database that was asked for, or the one in the data folder.

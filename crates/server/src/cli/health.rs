@@ -1,4 +1,5 @@
-//! `health`: whether a server or a worker is well, by the exit code: for probes of containers, which have no other tool.
+//! `health`: whether a server or a worker is well, by the exit code: for probes of containers, which have no other
+//! tool.
 use super::{arguments::Health, heartbeat};
 use std::time::Duration;
 

@@ -1,5 +1,5 @@
-//! Signs of life for whoever watches this process: systemd (`Type=notify` with `WatchdogSec`), and probes that look at a
-//! file in the data folder.
+//! Signs of life for anybody who watches this process: systemd (`Type=notify` with `WatchdogSec`), and probes that look
+//! at a file in the data folder.
 use sd_notify::NotifyState;
 use std::{
     fs,

@@ -1,7 +1,7 @@
 //! `replay`: grades once more by a past result's own task, and compares what the grade says, byte for byte.
 use super::{arguments::Replay, folders::Folders, until_signalled, worker::grader};
 use crate::{
-    db::{self, Database, Row},
+    db::{self, Row},
     store::{Digest, Store},
     task::{JUDGE_ERROR, Suite, Task},
     values,
@@ -46,22 +46,20 @@ impl Past {
 pub(super) async fn run(arguments: &Replay) -> Result<bool> {
     let stop = until_signalled()?;
     let folders = Folders::open(&arguments.place)?;
-    let address = folders.database(&arguments.place);
-    let database = Database::open(&address).await.with_context(|| format!("database {address}"))?;
+    let (database, address) = folders.open_database(&arguments.place).await?;
     if db::version(&database).await? != db::LATEST {
         bail!("the tables of {address} are not those of this version: start the server first");
     }
     let store = folders.store(&arguments.place)?;
     let program = Program::new(grader(arguments.work.grader.as_deref())?, arguments.work.threads.get());
     let mut transaction = database.read().await?;
+    let statement =
+        "SELECT result.id, result.code, result.points, result.version, result.grader, result.essence, result.task,
+           result_file.digest AS report
+        FROM result LEFT JOIN result_file ON result_file.result = result.id AND result_file.name = 'grade.json'
+        WHERE result.submission = ? AND (result.id = ? OR ? = 1) AND result.code <> ? ORDER BY result.id";
     let rows = transaction
-        .rows(
-            "SELECT result.id, result.code, result.points, result.version, result.grader, result.essence, result.task,
-                result_file.digest AS report
-             FROM result LEFT JOIN result_file ON result_file.result = result.id AND result_file.name = 'grade.json'
-             WHERE result.submission = ? AND (result.id = ? OR ? = 1) AND result.code <> ? ORDER BY result.id",
-            values![arguments.submission, arguments.result, arguments.result.is_none(), JUDGE_ERROR],
-        )
+        .rows(statement, values![arguments.submission, arguments.result, arguments.result.is_none(), JUDGE_ERROR])
         .await?;
     drop(transaction);
     if rows.is_empty() {

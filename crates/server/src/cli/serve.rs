@@ -6,15 +6,14 @@ use super::{
     worker::{Local, grader, policy},
 };
 use crate::{
-    access::{self, Counts, House, Limits, Parts, Passwords, Suites, Throttle},
+    access::{self, App, Limits, Options, Passwords, Suites},
     db::{self, Address, Database},
     instruments::Instruments,
     ledger,
     lti::{self, Lti, PlatformWish},
     net,
-    queue::Bell,
+    queue::{Notifier, Policy},
     retention,
-    storage::Storage,
     store::Store,
     web,
 };
@@ -26,7 +25,6 @@ use std::{
     sync::Arc,
     time::{Duration, SystemTime, UNIX_EPOCH},
 };
-use tokio_util::sync::CancellationToken;
 
 /// A day in seconds.
 const DAY: u64 = 24 * 3600;
@@ -46,14 +44,13 @@ const GIVE_UP_EVERY: Duration = Duration::from_secs(DAY / 4);
 pub(super) async fn run(arguments: &Serve) -> Result<()> {
     let stop = until_signalled()?;
     let folders = Folders::open(&arguments.place)?;
-    let address = folders.database(&arguments.place);
-    let database = Database::open(&address).await.with_context(|| format!("database {address}"))?;
+    let (database, address) = folders.open_database(&arguments.place).await?;
     bring_up_to_date(&database, &folders, &address).await?;
     let store = folders.store(&arguments.place)?;
-    clear_incoming(&folders.incoming())?;
-    let bell = Bell::default();
-    tokio::spawn(bell.clone().listen(database.clone(), arguments.place.database_direct.clone()));
-    tokio::spawn(access::work_on_regrades(database.clone(), bell.clone(), stop.clone()));
+    clear_incoming(&folders.incoming)?;
+    let notifier = Notifier::default();
+    tokio::spawn(notifier.clone().listen(database.clone(), arguments.place.database_direct.clone()));
+    tokio::spawn(access::work_on_regrades(database.clone(), notifier.clone(), stop.clone()));
     let listener = tokio::net::TcpListener::bind(arguments.listen)
         .await
         .with_context(|| format!("cannot listen on {}", arguments.listen))?;
@@ -62,21 +59,14 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
     let policy = policy(&arguments.work);
     let patience = Duration::from_secs(arguments.patience);
     let lti = Arc::new(Lti::new(arguments.lti_over_http));
-    let house = House::new(Parts {
-        database: database.clone(),
-        store: store.clone(),
-        bell: bell.clone(),
-        policy,
+    let options = Options {
         suites: suites(arguments.work.grader.as_deref()).await,
         grader: grader(arguments.work.grader.as_deref()).ok(),
-        counts: Counts::default(),
-        storage: Storage::new(database.clone(), store.clone(), folders.incoming(), arguments.low_water * MIB),
-        instruments: Instruments::new()?,
-        incoming: folders.incoming(),
+        incoming: folders.incoming.clone(),
+        low_water: arguments.low_water * MIB,
         public: public.clone(),
         patience,
         requests_per_minute: arguments.requests_per_minute,
-        throttle: Throttle::default(),
         limits: Limits::new(
             arguments.transfers as usize,
             arguments.keep_of_person * MIB,
@@ -86,16 +76,17 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
         passwords: arguments.passwords.then(Passwords::default),
         lti: lti.clone(),
         closing: stop.clone(),
-    });
+    };
+    let app = App::new(database.clone(), store.clone(), notifier.clone(), policy, Instruments::new()?, options);
     if let Some(file) = &arguments.platforms {
-        register_platforms(&house, file).await?;
+        register_platforms(&app, file).await?;
     }
     let looking = database.clone();
     let look = move || {
         let database = looking.clone();
         async move { ledger::tick(&database, &policy).await }
     };
-    tokio::spawn(lti::send_scores(database.clone(), bell.clone(), policy, lti, look, stop.clone()));
+    tokio::spawn(lti::send_scores(database.clone(), notifier.clone(), policy, lti, look, stop.clone()));
     let keep = (arguments.keep_days > 0).then(|| Duration::from_secs(u64::from(arguments.keep_days) * DAY));
     tokio::spawn(give_up(database.clone(), store.clone(), keep));
     let slots = match arguments.workers {
@@ -106,12 +97,12 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
         None => None,
         Some(slots) => {
             let grader = grader(arguments.work.grader.as_deref())?;
-            let local = Local { folders: folders.clone(), database: database.clone(), store, bell, policy, grader };
+            let local = Local { folders: folders.clone(), database: database.clone(), store, notifier, policy, grader };
             let stop = stop.clone();
             Some(async move { local.work(&arguments.work, Some(slots), None, stop).await })
         }
     };
-    let link = house.first_link().await.map_err(|problem| anyhow!("{}", problem.detail))?;
+    let link = app.first_link().await.map_err(|problem| anyhow!("{}", problem.detail))?;
     // On standard output, for people and scripts; the log is on standard error and holds no secrets.
     let mut output = std::io::stdout();
     writeln!(output, "Listening on {local}")?;
@@ -119,11 +110,11 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
         writeln!(output, "Sign in as administrator, once, by {public}/welcome/{}", link.reveal())?;
     }
     if arguments.example {
-        let link = house.example().await.map_err(|problem| anyhow!("{}: {}", problem.detail, problem.remedy))?;
+        let link = app.example().await.map_err(|problem| anyhow!("{}: {}", problem.detail, problem.remedy))?;
         if let Some(link) = link {
             writeln!(output, "Sign in as a student, once, by {public}/welcome/{}", link.reveal())?;
         }
-        let program = folders.flawed_program();
+        let program = folders.flawed_program.clone();
         if !program.exists() {
             write_flawed_program(arguments.work.grader.as_deref(), &program).await?;
         }
@@ -138,7 +129,7 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
     heartbeat::ready();
     let seen = database.clone();
     tokio::spawn(heartbeat::beat(folders.data.clone(), async move || db::version(&seen).await.is_ok()));
-    let serving = net::serve(listener, web::router(house), manners, stop.clone());
+    let serving = net::serve(listener, web::router(app), manners, stop.clone());
     match working {
         None => serving.await,
         Some(working) => {
@@ -152,12 +143,12 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
 }
 
 /// Registers the learning platforms of a file: a table for each, by name.
-async fn register_platforms(house: &House, file: &Path) -> Result<()> {
+async fn register_platforms(app: &App, file: &Path) -> Result<()> {
     let text = std::fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
     let platforms: std::collections::BTreeMap<String, PlatformWish> =
         toml::from_str(&text).with_context(|| format!("{} is not understood", file.display()))?;
     for (name, wish) in &platforms {
-        house.set_platform(name, wish).await.map_err(|problem| anyhow!("platform {name}: {}", problem.detail))?;
+        app.set_platform(name, wish).await.map_err(|problem| anyhow!("platform {name}: {}", problem.detail))?;
     }
     Ok(())
 }
@@ -206,9 +197,9 @@ async fn write_flawed_program(grader: Option<&Path>, program: &Path) -> Result<(
 async fn bring_up_to_date(database: &Database, folders: &Folders, address: &Address) -> Result<()> {
     let version = db::version(database).await?;
     if version > 0 && version < db::LATEST && matches!(address, Address::Sqlite(_)) {
-        std::fs::create_dir_all(folders.backups())?;
+        std::fs::create_dir_all(folders.backups.clone())?;
         let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |now| now.as_secs());
-        let copy = folders.backups().join(format!("version-{version}-{now}.db"));
+        let copy = folders.backups.join(format!("version-{version}-{now}.db"));
         database.copy_to(&copy).await.context("the backup before the tables change")?;
         tracing::info!(copy = %copy.display(), "the database was copied before its tables change");
     }
@@ -236,30 +227,11 @@ fn clear_incoming(folder: &PathBuf) -> Result<()> {
 
 pub(super) async fn admin_link(arguments: &AdminLink) -> Result<()> {
     let folders = Folders::open(&arguments.place)?;
-    let address = folders.database(&arguments.place);
-    let database = Database::open(&address).await.with_context(|| format!("database {address}"))?;
+    let (database, _) = folders.open_database(&arguments.place).await?;
     let store = folders.store(&arguments.place)?;
-    let house = House::new(Parts {
-        storage: Storage::new(database.clone(), store.clone(), folders.incoming(), 0),
-        store,
-        bell: Bell::default(),
-        policy: crate::queue::Policy::default(),
-        suites: Suites::default(),
-        instruments: Instruments::new()?,
-        grader: None,
-        counts: Counts::default(),
-        incoming: folders.incoming(),
-        public: arguments.public_url.clone(),
-        patience: Duration::from_secs(30),
-        requests_per_minute: 1,
-        throttle: Throttle::default(),
-        limits: Limits::default(),
-        passwords: None,
-        lti: Arc::new(Lti::new(false)),
-        closing: CancellationToken::new(),
-        database: database.clone(),
-    });
-    let link = house.admin_link(&arguments.login).await.map_err(|problem| anyhow!("{}", problem.detail))?;
+    let options = Options { public: arguments.public_url.clone(), incoming: folders.incoming, ..Options::default() };
+    let app = App::new(database.clone(), store, Notifier::default(), Policy::default(), Instruments::new()?, options);
+    let link = app.admin_link(&arguments.login).await.map_err(|problem| anyhow!("{}", problem.detail))?;
     println!("{}/welcome/{}", arguments.public_url, link.reveal());
     database.close().await;
     Ok(())

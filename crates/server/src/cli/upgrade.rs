@@ -1,5 +1,5 @@
-//! `upgrade`: what a newer program would change in the tables, and that change with a backup before. Starting the server
-//! does the same, but for PostgreSQL's backup.
+//! `upgrade`: what a newer program would change in the tables, and that change with a backup before. Starting the
+//! server does the same, but for PostgreSQL's backup.
 use super::{arguments::Upgrade, backup, folders::Folders};
 use crate::db::{self, Address, Database};
 use anyhow::{Context, Result, bail};
@@ -33,14 +33,14 @@ pub(super) async fn run(arguments: &Upgrade) -> Result<bool> {
         println!("  {number} {name}");
     }
     let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |now| now.as_secs());
-    let copy = folders.backups().join(format!("version-{version}-{now}"));
+    let copy = folders.backups.join(format!("version-{version}-{now}"));
     if arguments.check {
         println!("`fosssim-server upgrade` copies everything to {} before", copy.display());
         database.close().await;
         return Ok(false);
     }
     if version > 0 {
-        std::fs::create_dir_all(folders.backups())?;
+        std::fs::create_dir_all(folders.backups.clone())?;
         backup::make(&folders.store(&arguments.place)?, &address, &copy).await.context("the backup before")?;
         println!("copied to {}", copy.display());
     }

@@ -7,10 +7,10 @@ use super::{
 use crate::{
     db::{self, Database},
     ledger,
-    queue::{Bell, Policy},
+    queue::{Notifier, Policy},
     secret,
     store::Store,
-    worker::{self, Desk, DeskError, Liveness, LocalDesk, Options, Program, RemoteDesk},
+    worker::{self, JobSource, Liveness, LocalSource, Options, Program, RemoteSource, SourceError},
 };
 use anyhow::{Context, Result, bail};
 use std::{
@@ -29,21 +29,20 @@ pub(super) async fn run(arguments: &Worker) -> Result<()> {
         return work_for(server, file, arguments, stop).await;
     }
     let folders = Folders::open(&arguments.place)?;
-    let address = folders.database(&arguments.place);
-    let database = Database::open(&address).await.with_context(|| format!("database {address}"))?;
+    let (database, address) = folders.open_database(&arguments.place).await?;
     if db::version(&database).await? != db::LATEST {
         bail!(
             "the tables of {address} are not those of this version: start the server first, it brings them up to date"
         );
     }
     let store = folders.store(&arguments.place)?;
-    let bell = Bell::default();
-    tokio::spawn(bell.clone().listen(database.clone(), arguments.place.database_direct.clone()));
+    let notifier = Notifier::default();
+    tokio::spawn(notifier.clone().listen(database.clone(), arguments.place.database_direct.clone()));
     let local = Local {
         folders,
         database: database.clone(),
         store,
-        bell,
+        notifier,
         policy: policy(&arguments.work),
         grader: grader(arguments.work.grader.as_deref())?,
     };
@@ -68,13 +67,13 @@ async fn work_for(server: &str, token_file: &Path, arguments: &Worker, stop: Can
     let folders = Folders::open(&arguments.place)?;
     let name = unique_name(arguments.name.as_deref());
     // Jobs of workers that died here; the server gives them to others when their leases run out.
-    let alive = Liveness::begin(&folders.remote_workers(), &name).context("cannot show that this worker is alive")?;
-    for dead in worker::dead_workers(&folders.remote_workers())? {
+    let alive = Liveness::begin(&folders.remote_workers, &name).context("cannot show that this worker is alive")?;
+    for dead in worker::dead_workers(&folders.remote_workers)? {
         drop(std::fs::remove_dir_all(folders.work(&dead)));
-        worker::forget(&folders.remote_workers(), &dead);
+        worker::forget(&folders.remote_workers, &dead);
     }
-    let desk = RemoteDesk::new(server, token, &name);
-    if !greet(&desk, server, &stop).await? {
+    let source = RemoteSource::new(server, token, &name);
+    if !greet(&source, server, &stop).await? {
         return Ok(());
     }
     let folder = folders.work(&name);
@@ -83,7 +82,7 @@ async fn work_for(server: &str, token_file: &Path, arguments: &Worker, stop: Can
     tokio::spawn(heartbeat::beat(folders.data.clone(), async || true));
     tracing::info!(worker = name, server, slots = slots(arguments.slots), grader = %grader.display(), "working");
     let options = Options { slots: slots(arguments.slots), folder: folder.clone() };
-    let worked = worker::work(desk, Program::new(grader, arguments.work.threads.get()), options, stop).await;
+    let worked = worker::work(source, Program::new(grader, arguments.work.threads.get()), options, stop).await;
     drop(std::fs::remove_dir_all(folder));
     drop(alive);
     worked.with_context(|| server.to_owned())?;
@@ -92,12 +91,12 @@ async fn work_for(server: &str, token_file: &Path, arguments: &Worker, stop: Can
 }
 
 /// Says hello to a server, as often as it takes: one that is away may come back. False when the worker is to stop.
-async fn greet(desk: &RemoteDesk, server: &str, stop: &CancellationToken) -> Result<bool> {
+async fn greet(source: &RemoteSource, server: &str, stop: &CancellationToken) -> Result<bool> {
     let mut wait = Duration::from_secs(1);
     loop {
-        match desk.tick(0, None).await {
+        match source.tick(0, None).await {
             Ok(()) => return Ok(true),
-            Err(error @ (DeskError::Refused(_) | DeskError::Dismissed)) => bail!("{server}: {error}"),
+            Err(error @ (SourceError::Refused(_) | SourceError::Dismissed)) => bail!("{server}: {error}"),
             Err(error) => tracing::warn!(%error, server, "the server does not answer yet"),
         }
         tokio::select! {
@@ -142,7 +141,7 @@ pub(super) struct Local {
     pub(super) folders: Folders,
     pub(super) database: Database,
     pub(super) store: Store,
-    pub(super) bell: Bell,
+    pub(super) notifier: Notifier,
     pub(super) policy: Policy,
     pub(super) grader: PathBuf,
 }
@@ -157,12 +156,17 @@ impl Local {
         stop: CancellationToken,
     ) -> Result<()> {
         let name = unique_name(name);
-        let alive = Liveness::begin(&self.folders.workers(), &name).context("cannot show that this worker is alive")?;
+        let alive = Liveness::begin(&self.folders.workers, &name).context("cannot show that this worker is alive")?;
         self.take_over().await?;
         let slots = self::slots(slots);
         tracing::info!(worker = name, slots, grader = %self.grader.display(), "working");
-        let desk =
-            LocalDesk::new(self.database.first(), self.store.clone(), self.bell.clone(), self.policy, name.clone());
+        let source = LocalSource::new(
+            self.database.first(),
+            self.store.clone(),
+            self.notifier.clone(),
+            self.policy,
+            name.clone(),
+        );
         let folder = self.folders.work(&name);
         let options = Options { slots, folder: folder.clone() };
         let watching = async {
@@ -174,7 +178,7 @@ impl Local {
             }
         };
         tokio::select! {
-            worked = worker::work(desk, Program::new(self.grader.clone(), work.threads.get()), options, stop) => worked?,
+            worked = worker::work(source, Program::new(self.grader.clone(), work.threads.get()), options, stop) => worked?,
             () = watching => {}
         }
         drop(std::fs::remove_dir_all(folder));
@@ -185,14 +189,12 @@ impl Local {
 
     /// Gives the jobs of this machine's dead workers to others, and removes what these left behind.
     async fn take_over(&self) -> Result<()> {
-        for dead in worker::dead_workers(&self.folders.workers())? {
+        for dead in worker::dead_workers(&self.folders.workers)? {
             let mut transaction = self.database.begin().await?;
             let found = ledger::abandon(&mut transaction, &self.policy, &dead).await?;
-            Bell::ring(&mut transaction).await?;
-            transaction.commit().await?;
-            self.bell.strike();
+            self.notifier.commit(transaction).await?;
             drop(std::fs::remove_dir_all(self.folders.work(&dead)));
-            worker::forget(&self.folders.workers(), &dead);
+            worker::forget(&self.folders.workers, &dead);
             let jobs = found.retried + found.buried.len();
             tracing::warn!(worker = dead, jobs, "a worker died; its jobs are taken over");
         }

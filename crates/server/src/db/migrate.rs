@@ -109,12 +109,8 @@ pub async fn migrate(database: &Database) -> Result<usize, MigrateError> {
             continue;
         }
         transaction.script(script).await?;
-        transaction
-            .execute(
-                "INSERT INTO schema_change (number, name, digest, applied_at) VALUES (?, ?, ?, {now})",
-                values![number, name, digest],
-            )
-            .await?;
+        let statement = "INSERT INTO schema_change (number, name, digest, applied_at) VALUES (?, ?, ?, {now})";
+        transaction.execute(statement, values![number, name, digest]).await?;
         count += 1;
     }
     transaction.commit().await?;

@@ -71,7 +71,7 @@ pub(crate) fn postgres_options(url: &str) -> Result<PgConnectOptions, DbError> {
 pub struct Database {
     engine: Engine,
     waits: Arc<Waits>,
-    /// Of those who do not go first only so many use, or wait for, the connections.
+    /// Of those who do not go first only this many use, or wait for, the connections.
     turns: Arc<Semaphore>,
     goes_first: bool,
 }
@@ -125,7 +125,7 @@ impl Database {
     /// When it can't be reached within half a minute.
     pub async fn open(address: &Address) -> Result<Self, DbError> {
         let turns = match address {
-            // The writer's queue is short then: whoever goes first waits for one other at most.
+            // The writer's queue is short then: anybody who goes first waits for one other at most.
             Address::Sqlite(_) => 1,
             Address::Postgres(_) => CONNECTIONS - FOR_THE_FIRST,
         };

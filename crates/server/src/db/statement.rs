@@ -1,8 +1,8 @@
 //! One text for both engines: the few words in which they differ stand in braces.
 use super::Dialect;
 
-/// The parts of a script that are for this engine: lines between `-- only sqlite` or `-- only postgres` and `-- end` are
-/// for one.
+/// The parts of a script that are for this engine: lines between `-- only sqlite` or `-- only postgres` and `-- end`
+/// are for one.
 pub(super) fn parts(script: &str, dialect: Dialect) -> String {
     let other = match dialect {
         Dialect::Sqlite => "-- only postgres",
@@ -22,8 +22,8 @@ pub(super) fn parts(script: &str, dialect: Dialect) -> String {
 
 /// The statement as the engine wants it: `{now}` is its clock, `{int}`, `{id}` and `{strict}` are words of table
 /// definitions, `{each}` are the rows of a JSON array that is a value, `wanted.value`, `{strpos}` tells where a text
-/// stands in another, `{quoted}` makes JSON of a text, and PostgreSQL counts its placeholders. Statements hold no braces
-/// and no question marks of their own: values never stand in a statement's text.
+/// stands in another, `{quoted}` makes JSON of a text, and PostgreSQL counts its placeholders. Statements hold no
+/// braces and no question marks of their own: values never stand in a statement's text.
 pub(super) fn text(statement: &str, dialect: Dialect) -> String {
     let words: [(&str, &str); 11] = match dialect {
         Dialect::Sqlite => [
@@ -48,8 +48,8 @@ pub(super) fn text(statement: &str, dialect: Dialect) -> String {
             ("{strict}", ""),
             // Rows of the queue change five times each: room beside them, and dead ones swept early.
             ("{queue}", "WITH (fillfactor = 70, autovacuum_vacuum_scale_factor = 0.02)"),
-            // NO KEY: rows that refer to this one may be written meanwhile. Otherwise whoever holds one of these, and
-            // refers to this one next, and whoever holds this one, and changes those next, wait for each other.
+            // NO KEY: rows that refer to this one may be written meanwhile. Otherwise anybody who holds one of these,
+            // and refers to this one next, and anybody who holds this one, and changes those next, wait for each other.
             ("{skip locked}", "FOR NO KEY UPDATE SKIP LOCKED"),
             ("{for update}", "FOR NO KEY UPDATE"),
             ("{each}", "json_array_elements_text(CAST(? AS json)) AS wanted (value)"),

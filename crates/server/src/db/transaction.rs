@@ -3,8 +3,8 @@ use super::{DbError, Dialect, FromRow, Row, Value, statement, value};
 use sqlx::{AssertSqlSafe, Postgres, Sqlite};
 use tokio::sync::OwnedSemaphorePermit;
 
-/// A transaction. Dropped without [`commit`](Self::commit), nothing of it stands. Whoever does not go first holds a turn
-/// as long as it lasts ([`Database::first`](super::Database::first)).
+/// A transaction. Dropped without [`commit`](Self::commit), nothing of it stands. Anybody who does not go first holds a
+/// turn as long as it lasts ([`Database::first`](super::Database::first)).
 #[derive(Debug)]
 pub struct Transaction(Inner, #[expect(dead_code, reason = "held, and given back with the transaction")] Turn);
 

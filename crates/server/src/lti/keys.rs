@@ -37,20 +37,13 @@ pub async fn new_key(database: &Database) -> Result<(), DbError> {
     let made = tokio::task::spawn_blocking(make).await.map_err(|error| DbError::Other(error.to_string()))?;
     let (private, modulus, exponent) = made?;
     let mut transaction = database.begin().await?;
-    transaction
-        .execute(
-            "INSERT INTO platform_key (kid, private_key, modulus, exponent, created_at) VALUES (?, ?, ?, ?, {now})",
-            values![secret::random_hex(), private, modulus, exponent],
-        )
-        .await?;
+    let statement =
+        "INSERT INTO platform_key (kid, private_key, modulus, exponent, created_at) VALUES (?, ?, ?, ?, {now})";
+    transaction.execute(statement, values![secret::random_hex(), private, modulus, exponent]).await?;
     // The new one, and the one that signs so far.
-    transaction
-        .execute(
-            "UPDATE platform_key SET retired_at = {now} WHERE retired_at IS NULL
-                AND id NOT IN (SELECT id FROM platform_key WHERE retired_at IS NULL ORDER BY id DESC LIMIT 2)",
-            values![],
-        )
-        .await?;
+    let statement = "UPDATE platform_key SET retired_at = {now} WHERE retired_at IS NULL
+        AND id NOT IN (SELECT id FROM platform_key WHERE retired_at IS NULL ORDER BY id DESC LIMIT 2)";
+    transaction.execute(statement, values![]).await?;
     transaction.commit().await
 }
 
@@ -63,14 +56,10 @@ fn make() -> Result<(String, String, String), DbError> {
 }
 
 async fn rows(transaction: &mut Transaction) -> Result<Vec<Row>, DbError> {
-    transaction
-        .rows(
-            "SELECT kid, private_key, modulus, exponent,
-                CAST(CASE WHEN created_at <= {now} - ? THEN 1 ELSE 0 END AS {int}) AS is_known
-             FROM platform_key WHERE retired_at IS NULL ORDER BY id DESC",
-            values![FIRST_TOLD],
-        )
-        .await
+    let statement = "SELECT kid, private_key, modulus, exponent,
+           CAST(CASE WHEN created_at <= {now} - ? THEN 1 ELSE 0 END AS {int}) AS is_known
+        FROM platform_key WHERE retired_at IS NULL ORDER BY id DESC";
+    transaction.rows(statement, values![FIRST_TOLD]).await
 }
 
 /// All keys, the newest first; the first is made when there is none.

@@ -34,6 +34,12 @@ pub struct Lti {
     trust: Trust,
 }
 
+impl Default for Lti {
+    fn default() -> Self {
+        Self::new(false)
+    }
+}
+
 impl Lti {
     /// With `over_http` platforms may be reached without TLS: for trials on one machine.
     pub fn new(over_http: bool) -> Self {

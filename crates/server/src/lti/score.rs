@@ -1,13 +1,13 @@
 //! What a platform is to know of somebody's work on an assignment (AGS 3.4), and when it is to be told.
 //!
-//! Whoever changes a grade puts a job into the queue, in the same transaction. The job holds no score: what is sent is
-//! read when it is sent, so that many changes are one message. Each content has a time of its own, which only grows and
-//! stays the same however often it is sent; a platform keeps what is newer. So a message that comes twice, or late,
+//! Anybody who changes a grade puts a job into the queue, in the same transaction. The job holds no score: what is sent
+//! is read when it is sent, so that many changes are one message. Each content has a time of its own, which only grows
+//! and stays the same however often it is sent; a platform keeps what is newer. So a message that comes twice, or late,
 //! changes nothing.
 use super::Platform;
 use crate::{
     db::{DbError, Row, Transaction},
-    queue::{self, Bell, Lane, NewJob, Turn},
+    queue::{self, Lane, NewJob, Notifier, Turn},
     shown::Shown,
     task::rounded,
     values,
@@ -29,20 +29,16 @@ pub(super) struct Order {
 
 /// Notes that what counts for a submission has changed: the platforms that its owner came from are to be told.
 pub(crate) async fn changed(transaction: &mut Transaction, submission: i64) -> Result<(), DbError> {
-    let rows = transaction
-        .rows(
-            "SELECT platform_link.id AS link, submission.account FROM submission
-             JOIN assignment ON assignment.id = submission.assignment
-             JOIN member ON member.course = assignment.course AND member.account = submission.account
-                AND member.role = 'student'
-             JOIN platform_link ON platform_link.assignment = submission.assignment
-             JOIN platform_member ON platform_member.platform_course = platform_link.platform_course
-                AND platform_member.account = submission.account
-             WHERE submission.id = ? AND coalesce(platform_link.line_item, platform_link.line_items) IS NOT NULL
-             ORDER BY platform_link.id",
-            values![submission],
-        )
-        .await?;
+    let statement = "SELECT platform_link.id AS link, submission.account FROM submission
+        JOIN assignment ON assignment.id = submission.assignment
+        JOIN member ON member.course = assignment.course AND member.account = submission.account
+           AND member.role = 'student'
+        JOIN platform_link ON platform_link.assignment = submission.assignment
+        JOIN platform_member ON platform_member.platform_course = platform_link.platform_course
+           AND platform_member.account = submission.account
+        WHERE submission.id = ? AND coalesce(platform_link.line_item, platform_link.line_items) IS NOT NULL
+        ORDER BY platform_link.id";
+    let rows = transaction.rows(statement, values![submission]).await?;
     enqueue(transaction, &rows, false).await.map(drop)
 }
 
@@ -53,58 +49,46 @@ pub(crate) async fn changed_by(
     after: i64,
     last: i64,
 ) -> Result<(), DbError> {
-    let rows = transaction
-        .rows(
-            "SELECT DISTINCT platform_link.id AS link, submission.account FROM result
-             JOIN submission ON submission.id = result.submission
-             JOIN assignment ON assignment.id = submission.assignment
-             JOIN member ON member.course = assignment.course AND member.account = submission.account
-                AND member.role = 'student'
-             JOIN platform_link ON platform_link.assignment = submission.assignment
-             JOIN platform_member ON platform_member.platform_course = platform_link.platform_course
-                AND platform_member.account = submission.account
-             WHERE result.campaign = ? AND result.id > ? AND result.id <= ?
-                AND coalesce(platform_link.line_item, platform_link.line_items) IS NOT NULL
-             ORDER BY platform_link.id, submission.account",
-            values![campaign, after, last],
-        )
-        .await?;
+    let statement = "SELECT DISTINCT platform_link.id AS link, submission.account FROM result
+        JOIN submission ON submission.id = result.submission
+        JOIN assignment ON assignment.id = submission.assignment
+        JOIN member ON member.course = assignment.course AND member.account = submission.account
+           AND member.role = 'student'
+        JOIN platform_link ON platform_link.assignment = submission.assignment
+        JOIN platform_member ON platform_member.platform_course = platform_link.platform_course
+           AND platform_member.account = submission.account
+        WHERE result.campaign = ? AND result.id > ? AND result.id <= ?
+           AND coalesce(platform_link.line_item, platform_link.line_items) IS NOT NULL
+        ORDER BY platform_link.id, submission.account";
+    let rows = transaction.rows(statement, values![campaign, after, last]).await?;
     enqueue(transaction, &rows, false).await.map(drop)
 }
 
 /// Has all scores of an assignment sent, with `again` also those that platforms know; how many these are.
 pub(crate) async fn send_all(transaction: &mut Transaction, assignment: i64, again: bool) -> Result<usize, DbError> {
-    let rows = transaction
-        .rows(
-            "SELECT platform_link.id AS link, member.account FROM platform_link
-             JOIN assignment ON assignment.id = platform_link.assignment
-             JOIN platform_member ON platform_member.platform_course = platform_link.platform_course
-             JOIN member ON member.course = assignment.course AND member.account = platform_member.account
-                AND member.role = 'student'
-             WHERE platform_link.assignment = ?
-                AND coalesce(platform_link.line_item, platform_link.line_items) IS NOT NULL
-                AND EXISTS (SELECT 1 FROM submission
-                    WHERE submission.assignment = platform_link.assignment AND submission.account = member.account)
-             ORDER BY platform_link.id, member.account",
-            values![assignment],
-        )
-        .await?;
+    let statement = "SELECT platform_link.id AS link, member.account FROM platform_link
+        JOIN assignment ON assignment.id = platform_link.assignment
+        JOIN platform_member ON platform_member.platform_course = platform_link.platform_course
+        JOIN member ON member.course = assignment.course AND member.account = platform_member.account
+           AND member.role = 'student'
+        WHERE platform_link.assignment = ?
+           AND coalesce(platform_link.line_item, platform_link.line_items) IS NOT NULL
+           AND EXISTS (SELECT 1 FROM submission
+               WHERE submission.assignment = platform_link.assignment AND submission.account = member.account)
+        ORDER BY platform_link.id, member.account";
+    let rows = transaction.rows(statement, values![assignment]).await?;
     enqueue(transaction, &rows, again).await
 }
 
 /// Has what an account is worth sent to a link that it just came by.
 pub(crate) async fn arrived(transaction: &mut Transaction, link: i64, account: i64) -> Result<(), DbError> {
-    let rows = transaction
-        .rows(
-            "SELECT DISTINCT platform_link.id AS link, submission.account FROM platform_link
-             JOIN submission ON submission.assignment = platform_link.assignment AND submission.account = ?
-             JOIN assignment ON assignment.id = platform_link.assignment
-             JOIN member ON member.course = assignment.course AND member.account = submission.account
-                AND member.role = 'student'
-             WHERE platform_link.id = ? AND coalesce(platform_link.line_item, platform_link.line_items) IS NOT NULL",
-            values![account, link],
-        )
-        .await?;
+    let statement = "SELECT DISTINCT platform_link.id AS link, submission.account FROM platform_link
+        JOIN submission ON submission.assignment = platform_link.assignment AND submission.account = ?
+        JOIN assignment ON assignment.id = platform_link.assignment
+        JOIN member ON member.course = assignment.course AND member.account = submission.account
+           AND member.role = 'student'
+        WHERE platform_link.id = ? AND coalesce(platform_link.line_item, platform_link.line_items) IS NOT NULL";
+    let rows = transaction.rows(statement, values![account, link]).await?;
     enqueue(transaction, &rows, false).await.map(drop)
 }
 
@@ -120,7 +104,7 @@ async fn enqueue(transaction: &mut Transaction, rows: &[Row], again: bool) -> Re
         queue::enqueue(transaction, &job).await?;
     }
     if !rows.is_empty() {
-        Bell::ring(transaction).await?;
+        Notifier::notify(transaction).await?;
     }
     Ok(rows.len())
 }
@@ -146,29 +130,22 @@ pub(super) struct Parcel {
 
 /// What is to be sent for an order; nothing when there is nothing to tell (any more). Gives the content its time.
 pub(super) async fn prepare(transaction: &mut Transaction, order: Order) -> Result<Option<Parcel>, DbError> {
-    let row = transaction
-        .row(
-            "SELECT platform.id, platform.name, platform.settings, platform_account.subject, platform_link.line_item,
-                platform_link.line_items, platform_link.resource, platform_link.assignment, assignment.slug,
-                assignment.title
-             FROM platform_link
-             JOIN platform_course ON platform_course.id = platform_link.platform_course
-             JOIN platform ON platform.id = platform_course.platform AND platform.disabled_at IS NULL
-             JOIN platform_account ON platform_account.issuer = platform.issuer AND platform_account.account = ?
-             JOIN assignment ON assignment.id = platform_link.assignment
-             WHERE platform_link.id = ?",
-            values![order.account, order.link],
-        )
-        .await?;
+    let statement =
+        "SELECT platform.id, platform.name, platform.settings, platform_account.subject, platform_link.line_item,
+           platform_link.line_items, platform_link.resource, platform_link.assignment, assignment.slug,
+           assignment.title
+        FROM platform_link
+        JOIN platform_course ON platform_course.id = platform_link.platform_course
+        JOIN platform ON platform.id = platform_course.platform AND platform.disabled_at IS NULL
+        JOIN platform_account ON platform_account.issuer = platform.issuer AND platform_account.account = ?
+        JOIN assignment ON assignment.id = platform_link.assignment
+        WHERE platform_link.id = ?";
+    let row = transaction.row(statement, values![order.account, order.link]).await?;
     let Some(row) = row else { return Ok(None) };
     let Some(content) = content(transaction, row.int("assignment")?, order.account).await? else { return Ok(None) };
     let text = content.to_string();
-    let before = transaction
-        .row(
-            "SELECT content, stamp, sent_at FROM platform_score WHERE link = ? AND account = ? {for update}",
-            values![order.link, order.account],
-        )
-        .await?;
+    let statement = "SELECT content, stamp, sent_at FROM platform_score WHERE link = ? AND account = ? {for update}";
+    let before = transaction.row(statement, values![order.link, order.account]).await?;
     let stamp = match before {
         Some(before) if before.text("content")? == text && !order.again => {
             if before.maybe_int("sent_at")?.is_some() {
@@ -206,18 +183,14 @@ pub(super) async fn prepare(transaction: &mut Transaction, order: Order) -> Resu
 /// platform is told that they come, and when the grader failed, that somebody has to look: never a zero that nobody
 /// earned. Of groups that are hidden and not published platforms hear nothing: they show what they hear.
 async fn content(transaction: &mut Transaction, assignment: i64, account: i64) -> Result<Option<Value>, DbError> {
-    let rows = transaction
-        .rows(
-            "SELECT job.state, result.points, result.max_points, assignment.published_at, result.shown, mark.points AS mark FROM submission
-             LEFT JOIN mark ON mark.submission = submission.id
-             JOIN assignment ON assignment.id = submission.assignment
-             LEFT JOIN job ON job.submission = submission.id AND job.campaign IS NULL AND job.replaced = 0
-             LEFT JOIN grade ON grade.submission = submission.id
-             LEFT JOIN result ON result.id = grade.result
-             WHERE submission.assignment = ? AND submission.account = ? ORDER BY submission.id",
-            values![assignment, account],
-        )
-        .await?;
+    let statement = "SELECT job.state, result.points, result.max_points, assignment.published_at, result.shown, mark.points AS mark FROM submission
+        LEFT JOIN mark ON mark.submission = submission.id
+        JOIN assignment ON assignment.id = submission.assignment
+        LEFT JOIN job ON job.submission = submission.id AND job.campaign IS NULL AND job.replaced = 0
+        LEFT JOIN grade ON grade.submission = submission.id
+        LEFT JOIN result ON result.id = grade.result
+        WHERE submission.assignment = ? AND submission.account = ? ORDER BY submission.id";
+    let rows = transaction.rows(statement, values![assignment, account]).await?;
     let mut best: Option<(f64, f64)> = None;
     let mut waits = false;
     for row in &rows {
@@ -253,12 +226,9 @@ async fn content(transaction: &mut Transaction, assignment: i64, account: i64) -
 
 /// Notes that a platform was told, unless there is something newer by now.
 pub(super) async fn sent(transaction: &mut Transaction, parcel: &Parcel) -> Result<(), DbError> {
-    transaction
-        .execute(
-            "UPDATE platform_score SET sent_at = {now}, fault = NULL WHERE link = ? AND account = ? AND stamp = ?",
-            values![parcel.order.link, parcel.order.account, parcel.stamp],
-        )
-        .await?;
+    let statement =
+        "UPDATE platform_score SET sent_at = {now}, fault = NULL WHERE link = ? AND account = ? AND stamp = ?";
+    transaction.execute(statement, values![parcel.order.link, parcel.order.account, parcel.stamp]).await?;
     let score = &parcel.content;
     let what = match (score["scoreGiven"].as_f64(), score["scoreMaximum"].as_f64()) {
         (Some(points), Some(most)) => {
@@ -271,12 +241,8 @@ pub(super) async fn sent(transaction: &mut Transaction, parcel: &Parcel) -> Resu
 
 /// Notes why a platform does not take a score, for staff.
 pub(super) async fn refused(transaction: &mut Transaction, order: Order, fault: &str) -> Result<(), DbError> {
-    transaction
-        .execute(
-            "UPDATE platform_score SET fault = ? WHERE link = ? AND account = ? AND sent_at IS NULL",
-            values![fault, order.link, order.account],
-        )
-        .await?;
+    let statement = "UPDATE platform_score SET fault = ? WHERE link = ? AND account = ? AND sent_at IS NULL";
+    transaction.execute(statement, values![fault, order.link, order.account]).await?;
     Ok(())
 }
 
@@ -290,15 +256,11 @@ pub(crate) async fn give_up(transaction: &mut Transaction, payload: &str, fault:
 
 /// Writes an event about a score, for the staff of its course.
 async fn note(transaction: &mut Transaction, order: Order, kind: &str, text: &str) -> Result<(), DbError> {
-    transaction
-        .execute(
-            "INSERT INTO event (happened_at, kind, course, assignment, text)
-             SELECT {now}, ?, assignment.course, assignment.id, account.login || ': ' || CAST(? AS TEXT)
-             FROM platform_link JOIN assignment ON assignment.id = platform_link.assignment
-             JOIN account ON account.id = ? WHERE platform_link.id = ?",
-            values![kind, text, order.account, order.link],
-        )
-        .await?;
+    let statement = "INSERT INTO event (happened_at, kind, course, assignment, text)
+        SELECT {now}, ?, assignment.course, assignment.id, account.login || ': ' || CAST(? AS TEXT)
+        FROM platform_link JOIN assignment ON assignment.id = platform_link.assignment
+        JOIN account ON account.id = ? WHERE platform_link.id = ?";
+    transaction.execute(statement, values![kind, text, order.account, order.link]).await?;
     Ok(())
 }
 
@@ -313,16 +275,12 @@ pub(super) enum Column {
     Theirs,
 }
 
-/// How far the column of a link is; whoever hears [`Column::Yours`] calls [`column_made`] soon.
+/// How far the column of a link is; the caller that hears [`Column::Yours`] calls [`column_made`] soon.
 pub(super) async fn column(transaction: &mut Transaction, link: i64, at_most: i64) -> Result<Column, DbError> {
-    let mine = transaction
-        .execute(
-            "UPDATE platform_link SET making_until = {now} + ?
-             WHERE id = ? AND line_item IS NULL
-                AND (coalesce(making_until, 0) < {now} OR making_until > {now} + ?)",
-            values![at_most, link, at_most],
-        )
-        .await?;
+    let statement = "UPDATE platform_link SET making_until = {now} + ?
+        WHERE id = ? AND line_item IS NULL
+           AND (coalesce(making_until, 0) < {now} OR making_until > {now} + ?)";
+    let mine = transaction.execute(statement, values![at_most, link, at_most]).await?;
     if mine > 0 {
         return Ok(Column::Yours);
     }
@@ -336,11 +294,8 @@ pub(super) async fn column_made(
     link: i64,
     address: Option<&str>,
 ) -> Result<(), DbError> {
-    transaction
-        .execute(
-            "UPDATE platform_link SET line_item = coalesce(line_item, CAST(? AS TEXT)), making_until = NULL WHERE id = ?",
-            values![address, link],
-        )
-        .await?;
+    let statement =
+        "UPDATE platform_link SET line_item = coalesce(line_item, CAST(? AS TEXT)), making_until = NULL WHERE id = ?";
+    transaction.execute(statement, values![address, link]).await?;
     Ok(())
 }

@@ -7,7 +7,7 @@ use super::{
 use crate::{
     calendar,
     db::{Database, DbError},
-    queue::{self, Bell, Claim, Claimant, Completion, Failure, Lane, Policy},
+    queue::{self, Claim, Claimant, Completion, Failure, Lane, Notifier, Policy},
 };
 use serde::Deserialize;
 use serde_json::json;
@@ -47,14 +47,14 @@ const CLAIMANT: Claimant<'static> = Claimant { worker: "scores", is_idle: true, 
 /// `look` finds jobs of servers that went silent; it is called before each claim.
 pub async fn run<F: Future<Output = Result<(), DbError>>>(
     database: Database,
-    bell: Bell,
+    notifier: Notifier,
     policy: Policy,
     lti: Arc<Lti>,
     look: impl Fn() -> F,
     stop: CancellationToken,
 ) {
     let room = Arc::new(Semaphore::new(AT_ONE_TIME));
-    let mut ear = bell.ear();
+    let mut subscription = notifier.subscribe();
     while !stop.is_cancelled() {
         tokio::select! {
             () = stop.cancelled() => return,
@@ -75,7 +75,7 @@ pub async fn run<F: Future<Output = Result<(), DbError>>>(
         }
         tokio::select! {
             () = stop.cancelled() => return,
-            _ = ear.wait(LOOK_EVERY) => {}
+            _ = subscription.wait(LOOK_EVERY) => {}
         }
     }
 }
@@ -115,7 +115,7 @@ async fn work(database: &Database, policy: &Policy, lti: &Lti, claim: &Claim) ->
     let mut transaction = database.begin().await?;
     match sent {
         Ok(parcel) => {
-            // Whoever lost the lease sent what somebody else sends, too: the same, at the same time.
+            // Anybody who lost the lease sent what somebody else sends, too: the same, at the same time.
             if queue::complete(&mut transaction, &claim.lease).await? == Completion::Done
                 && let Some(parcel) = parcel
             {

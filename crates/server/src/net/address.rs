@@ -1,4 +1,5 @@
-//! Where a request comes from: the other end of its connection, or whom a proxy that is trusted says that it speaks for.
+//! Where a request comes from: the other end of its connection, or whom a proxy that is trusted says that it speaks
+//! for.
 use axum::http::{HeaderMap, HeaderName, header};
 use ipnet::IpNet;
 use std::{net::IpAddr, str::FromStr};

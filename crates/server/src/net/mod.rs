@@ -1,7 +1,7 @@
 //! Taking connections: each has to say what it wants in time, and to take what it asked for; none is cut off in the
 //! middle when the server ends.
 //!
-//! A connection that has sent no whole request waits, and whoever comes takes the place of one that waits when all
+//! A connection that has sent no whole request waits, and anybody who comes takes the place of one that waits when all
 //! places are taken (`seats`). So requests that never end keep nobody out, from whatever address they come.
 mod address;
 mod limit;

@@ -123,7 +123,7 @@ mod tests {
         tokio::runtime::Builder::new_current_thread().enable_time().build().expect("a runtime").block_on(future)
     }
 
-    /// Writes to somebody who reads so many bytes at a time, with a pause after each time; how it ends.
+    /// Writes to somebody who reads this many bytes at a time, with a pause after each time; how it ends.
     async fn written_to(bytes: usize, pause: Duration) -> Option<io::ErrorKind> {
         let (near, mut far) = duplex(1024);
         let mut near = Paced::new(near, PATIENCE);

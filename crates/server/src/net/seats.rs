@@ -1,4 +1,4 @@
-//! Places for connections. When all are taken, or an address has its share, whoever comes takes the place of a
+//! Places for connections. When all are taken, or an address has its share, anybody who comes takes the place of a
 //! connection that waits: that has sent no whole request, or none since its last answer. Those lose nothing but time.
 use std::{
     collections::{BTreeMap, HashMap},

@@ -44,14 +44,12 @@ pub async fn claim(
     let Some(next) = next else { return Ok(None) };
     let job = next.int("id")?;
     let key = secret::random_hex();
+    let statement = "UPDATE job SET state = 'running', attempt = attempt + 1, worker = ?, lease_key = ?,
+           lease_until = {now} + ?, started_at = {now},
+           token = ?, is_alone = CASE WHEN failures + deaths >= ? THEN ? ELSE 0 END
+        WHERE id = ? RETURNING attempt, failures, deaths, submission, payload";
     let row = transaction
-        .one(
-            "UPDATE job SET state = 'running', attempt = attempt + 1, worker = ?, lease_key = ?,
-                lease_until = {now} + ?, started_at = {now},
-                token = ?, is_alone = CASE WHEN failures + deaths >= ? THEN ? ELSE 0 END
-             WHERE id = ? RETURNING attempt, failures, deaths, submission, payload",
-            values![worker, &key, millis(policy.lease), token, SUSPECTED_AFTER, is_idle, job],
-        )
+        .one(statement, values![worker, &key, millis(policy.lease), token, SUSPECTED_AFTER, is_idle, job])
         .await?;
     Ok(Some(Claim {
         lease: Lease { job, attempt: row.int("attempt")?, key },
@@ -68,13 +66,9 @@ pub async fn claim(
 /// # Errors
 /// What the database says.
 pub async fn is_due(transaction: &mut Transaction, policy: &Policy, lane: Lane) -> Result<bool, DbError> {
-    let row = transaction
-        .row(
-            "SELECT id FROM job WHERE lane = ? AND (
-                (state = 'waiting' AND (run_after <= {now} OR run_after > {now} + ?)) OR (state = 'running' AND lease_until < {now})
-             ) LIMIT 1",
-            values![lane.name(), millis(lane.longest_wait(policy))],
-        )
-        .await?;
+    let statement = "SELECT id FROM job WHERE lane = ? AND (
+           (state = 'waiting' AND (run_after <= {now} OR run_after > {now} + ?)) OR (state = 'running' AND lease_until < {now})
+        ) LIMIT 1";
+    let row = transaction.row(statement, values![lane.name(), millis(lane.longest_wait(policy))]).await?;
     Ok(row.is_some())
 }

@@ -50,13 +50,9 @@ impl Turn {
     pub(crate) async fn next(self, transaction: &mut Transaction) -> Result<i64, DbError> {
         // Two uploads of one student at the same moment may get the same rank: then the number decides, and nobody is
         // hurt.
-        let last = transaction
-            .one(
-                "SELECT max(rank) AS last, {now} AS now FROM job
-                 WHERE fair_key = ? AND state IN ('waiting', 'running')",
-                values![self.key()],
-            )
-            .await?;
+        let statement = "SELECT max(rank) AS last, {now} AS now FROM job
+            WHERE fair_key = ? AND state IN ('waiting', 'running')";
+        let last = transaction.one(statement, values![self.key()]).await?;
         let own = last.int("now")? + millis(self.delay());
         Ok(last.maybe_int("last")?.map_or(own, |last| own.max(last + self.spacing_millis())))
     }
@@ -85,20 +81,19 @@ pub struct NewJob<'a> {
     pub payload: &'a str,
 }
 
-/// Enqueues a job within the caller's transaction and returns its number. Workers are told by [`super::Bell::ring`],
-/// within the same transaction.
+/// Enqueues a job within the caller's transaction and returns its number. Workers are told by
+/// [`super::Notifier::notify`], within the same transaction.
 ///
 /// # Errors
 /// What the database says.
 pub async fn enqueue(transaction: &mut Transaction, job: &NewJob<'_>) -> Result<i64, DbError> {
     let key = job.turn.key();
     let rank = job.turn.next(transaction).await?;
+    let statement =
+        "INSERT INTO job (lane, submission, campaign, fair_key, payload, state, rank, run_after, enqueued_at)
+        VALUES (?, ?, ?, ?, ?, 'waiting', ?, {now}, {now}) RETURNING id";
     let row = transaction
-        .one(
-            "INSERT INTO job (lane, submission, campaign, fair_key, payload, state, rank, run_after, enqueued_at)
-             VALUES (?, ?, ?, ?, ?, 'waiting', ?, {now}, {now}) RETURNING id",
-            values![job.lane.name(), job.submission, job.campaign, key, job.payload, rank],
-        )
+        .one(statement, values![job.lane.name(), job.submission, job.campaign, key, job.payload, rank])
         .await?;
     row.int("id")
 }
@@ -108,17 +103,13 @@ pub async fn enqueue(transaction: &mut Transaction, job: &NewJob<'_>) -> Result<
 /// # Errors
 /// What the database says.
 pub async fn cancel(transaction: &mut Transaction, job: i64) -> Result<bool, DbError> {
-    let changed = transaction
-        .execute(
-            "UPDATE job SET state = 'cancelled', finished_at = {now}, lease_key = NULL, lease_until = NULL
-             WHERE id = ? AND state IN ('waiting', 'running')",
-            values![job],
-        )
-        .await?;
+    let statement = "UPDATE job SET state = 'cancelled', finished_at = {now}, lease_key = NULL, lease_until = NULL
+        WHERE id = ? AND state IN ('waiting', 'running')";
+    let changed = transaction.execute(statement, values![job]).await?;
     Ok(changed > 0)
 }
 
-/// Whether a job of this turn waits, and goes on waiting until the caller's transaction ends: whoever is about to
+/// Whether a job of this turn waits, and goes on waiting until the caller's transaction ends: anybody who is about to
 /// change what it is about need not enqueue another one.
 ///
 /// # Errors

@@ -9,7 +9,7 @@ use std::time::Duration;
 /// What became of a wish to finish.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Completion {
-    /// The job is done; whoever called writes its result in the same transaction.
+    /// The job is done; the caller writes its result in the same transaction.
     Done,
     /// It was done by this very lease before: the answer got lost, not the result.
     Repeated,
@@ -22,7 +22,7 @@ pub enum Completion {
 pub enum Failure {
     /// It waits again.
     Retried,
-    /// That was its last try; whoever called writes what follows in the same transaction.
+    /// That was its last try; the caller writes what follows in the same transaction.
     Buried,
     /// The lease was lost before.
     Late,
@@ -38,12 +38,10 @@ pub async fn renew(
     lease: &Lease,
     most: Duration,
 ) -> Result<bool, DbError> {
+    let statement = "UPDATE job SET lease_until = {now} + ?
+        WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running' AND started_at >= {now} - ?";
     let changed = transaction
-        .execute(
-            "UPDATE job SET lease_until = {now} + ?
-             WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running' AND started_at >= {now} - ?",
-            values![millis(policy.lease), lease.job, lease.attempt, &lease.key, millis(most)],
-        )
+        .execute(statement, values![millis(policy.lease), lease.job, lease.attempt, &lease.key, millis(most)])
         .await?;
     Ok(changed > 0)
 }
@@ -53,12 +51,8 @@ pub async fn renew(
 /// # Errors
 /// What the database says.
 pub async fn payload(transaction: &mut Transaction, lease: &Lease) -> Result<Option<String>, DbError> {
-    let row = transaction
-        .row(
-            "SELECT payload FROM job WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running'",
-            values![lease.job, lease.attempt, &lease.key],
-        )
-        .await?;
+    let statement = "SELECT payload FROM job WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running'";
+    let row = transaction.row(statement, values![lease.job, lease.attempt, &lease.key]).await?;
     row.map(|row| row.text("payload")).transpose()
 }
 
@@ -68,22 +62,14 @@ pub async fn payload(transaction: &mut Transaction, lease: &Lease) -> Result<Opt
 /// What the database says.
 pub async fn complete(transaction: &mut Transaction, lease: &Lease) -> Result<Completion, DbError> {
     // The key stays, so that the same answer sent twice is known again.
-    let changed = transaction
-        .execute(
-            "UPDATE job SET state = 'done', finished_at = {now}, lease_until = NULL
-             WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running'",
-            values![lease.job, lease.attempt, &lease.key],
-        )
-        .await?;
+    let statement = "UPDATE job SET state = 'done', finished_at = {now}, lease_until = NULL
+        WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running'";
+    let changed = transaction.execute(statement, values![lease.job, lease.attempt, &lease.key]).await?;
     if changed > 0 {
         return Ok(Completion::Done);
     }
-    let same = transaction
-        .row(
-            "SELECT id FROM job WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'done'",
-            values![lease.job, lease.attempt, &lease.key],
-        )
-        .await?;
+    let statement = "SELECT id FROM job WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'done'";
+    let same = transaction.row(statement, values![lease.job, lease.attempt, &lease.key]).await?;
     Ok(if same.is_some() { Completion::Repeated } else { Completion::Late })
 }
 
@@ -92,13 +78,10 @@ pub async fn complete(transaction: &mut Transaction, lease: &Lease) -> Result<Co
 /// # Errors
 /// What the database says.
 pub async fn release(transaction: &mut Transaction, lease: &Lease) -> Result<bool, DbError> {
-    let changed = transaction
-        .execute(
-            "UPDATE job SET state = 'waiting', run_after = {now}, worker = NULL, lease_key = NULL, lease_until = NULL
-             WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running'",
-            values![lease.job, lease.attempt, &lease.key],
-        )
-        .await?;
+    let statement =
+        "UPDATE job SET state = 'waiting', run_after = {now}, worker = NULL, lease_key = NULL, lease_until = NULL
+        WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running'";
+    let changed = transaction.execute(statement, values![lease.job, lease.attempt, &lease.key]).await?;
     Ok(changed > 0)
 }
 
@@ -126,13 +109,9 @@ pub async fn fail_for(
     fault: &str,
     least: Duration,
 ) -> Result<Failure, DbError> {
-    let held = transaction
-        .row(
-            "SELECT failures, deaths, lone_deaths FROM job
-             WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running' {for update}",
-            values![lease.job, lease.attempt, &lease.key],
-        )
-        .await?;
+    let statement = "SELECT failures, deaths, lone_deaths FROM job
+        WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running' {for update}";
+    let held = transaction.row(statement, values![lease.job, lease.attempt, &lease.key]).await?;
     let Some(row) = held else { return Ok(Failure::Late) };
     let failures = row.int("failures")? + 1;
     let loss = Loss {
@@ -185,26 +164,24 @@ pub(super) async fn die(
 }
 
 async fn bury(transaction: &mut Transaction, loss: &Loss<'_>) -> Result<Failure, DbError> {
-    transaction
-        .execute(
-            "UPDATE job SET state = 'buried', failures = ?, deaths = ?, lone_deaths = ?, finished_at = {now},
-                lease_key = NULL, lease_until = NULL, last_fault = ?
-             WHERE id = ?",
-            values![loss.failures, loss.deaths, loss.lone_deaths, loss.fault, loss.job],
-        )
-        .await?;
+    let statement = "UPDATE job SET state = 'buried', failures = ?, deaths = ?, lone_deaths = ?, finished_at = {now},
+           lease_key = NULL, lease_until = NULL, last_fault = ?
+        WHERE id = ?";
+    transaction.execute(statement, values![loss.failures, loss.deaths, loss.lone_deaths, loss.fault, loss.job]).await?;
     Ok(Failure::Buried)
 }
 
 /// Has a job wait again; one that is suspected by now after the others.
 async fn retry(transaction: &mut Transaction, loss: &Loss<'_>) -> Result<Failure, DbError> {
     let later = if loss.failures + loss.deaths >= SUSPECTED_AFTER { millis(SUSPECTED_LATER) } else { 0 };
+    let statement =
+        "UPDATE job SET state = 'waiting', failures = ?, deaths = ?, lone_deaths = ?, run_after = {now} + ?,
+           rank = CASE WHEN ? > 0 AND rank < {now} + ? THEN {now} + ? ELSE rank END, failed_by = worker,
+           worker = NULL, lease_key = NULL, lease_until = NULL, last_fault = ?
+        WHERE id = ?";
     transaction
         .execute(
-            "UPDATE job SET state = 'waiting', failures = ?, deaths = ?, lone_deaths = ?, run_after = {now} + ?,
-                rank = CASE WHEN ? > 0 AND rank < {now} + ? THEN {now} + ? ELSE rank END, failed_by = worker,
-                worker = NULL, lease_key = NULL, lease_until = NULL, last_fault = ?
-             WHERE id = ?",
+            statement,
             values![
                 loss.failures,
                 loss.deaths,

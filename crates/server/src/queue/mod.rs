@@ -3,24 +3,24 @@
 //!
 //! A worker **claims** a job and holds it under a lease, which it **renews**; it **finishes** it, gives it back
 //! (**releases**) or says that it **failed**. Every claim has a number of its own, the attempt, and a key that only the
-//! worker knows: whatever a worker says is looked at together with them, so that one who is late changes nothing. A job that
-//! failed waits again, later each time, and after [`Policy::max_failures`] failures it is **buried**: somebody is to
-//! look at it. A worker that died, or went silent, is no failure of its job. But a job that was there several times is
-//! **suspected**: it is run alone, and after the others that wait; only one that takes its worker down over and over
-//! while nothing else runs there is buried. What a job is about, and what is written when it ends, is the concern of the
-//! rooms above.
+//! worker knows: whatever a worker says is looked at together with them, so that one who is late changes nothing. A job
+//! that failed waits again, later each time, and after [`Policy::max_failures`] failures it is **buried**: somebody is
+//! to look at it. A worker that died, or went silent, is no failure of its job. But a job that was there several times
+//! is **suspected**: it is run alone, and after the others that wait; only one that takes its worker down over and over
+//! while nothing else runs there is buried. What a job is about, and what is written when it ends, is the concern of
+//! the rooms above.
 
-mod bell;
 mod claim;
 mod enqueue;
 mod hold;
+mod notifier;
 mod place;
 mod tick;
 
-pub use bell::{Bell, Ear};
 pub use claim::{Claimant, claim, is_due};
 pub use enqueue::{NewJob, Turn, cancel, enqueue, waits};
 pub use hold::{Completion, Failure, complete, fail, fail_for, payload, release, renew};
+pub use notifier::{Notifier, Subscription};
 pub use place::{Place, place};
 pub use tick::{Buried, Tick, abandon, tick};
 
@@ -66,7 +66,7 @@ const A_DAY: Duration = Duration::from_secs(86_400);
 pub struct Policy {
     /// How long a worker may be silent.
     pub lease: Duration,
-    /// After so many failures a job is buried.
+    /// After this many failures a job is buried.
     pub max_failures: u32,
     /// The wait after the first failure; each further one waits four times as long.
     pub first_wait: Duration,
@@ -139,7 +139,7 @@ pub struct Lease {
     pub key: String,
 }
 
-/// From so many failures and deaths of workers on a job is suspected of killing its worker, and runs alone: others
+/// From this many failures and deaths of workers on a job is suspected of killing its worker, and runs alone: others
 /// would die with it.
 const SUSPECTED_AFTER: i64 = 2;
 

@@ -32,32 +32,18 @@ pub async fn place(
     let own = transaction.row("SELECT rank FROM job WHERE id = ? AND state = 'waiting'", values![job]).await?;
     let Some(own) = own else { return Ok(None) };
     let rank = own.int("rank")?;
-    let ahead = transaction
-        .one(
-            "SELECT count(*) AS n FROM job
-             WHERE lane = ? AND state = 'waiting' AND (rank < ? OR (rank = ? AND id < ?))",
-            values![lane.name(), rank, rank, job],
-        )
-        .await?
-        .int("n")?;
-    let usual = transaction
-        .one(
-            "SELECT CAST(avg(took) AS {int}) AS took FROM (
-                SELECT finished_at - started_at AS took FROM job WHERE lane = ? AND state = 'done'
-                ORDER BY finished_at DESC LIMIT ?
-             ) AS recent",
-            values![lane.name(), RECENT],
-        )
-        .await?
-        .maybe_int("took")?;
-    let slots = transaction
-        .one(
-            "SELECT CAST(coalesce(sum(slots), 0) AS {int}) AS slots FROM worker
-             WHERE seen_at > {now} - ? AND seen_at <= {now} + ?",
-            values![2 * millis(policy.lease), 2 * millis(policy.lease)],
-        )
-        .await?
-        .int("slots")?;
+    let statement = "SELECT count(*) AS n FROM job
+        WHERE lane = ? AND state = 'waiting' AND (rank < ? OR (rank = ? AND id < ?))";
+    let ahead = transaction.one(statement, values![lane.name(), rank, rank, job]).await?.int("n")?;
+    let statement = "SELECT CAST(avg(took) AS {int}) AS took FROM (
+           SELECT finished_at - started_at AS took FROM job WHERE lane = ? AND state = 'done'
+           ORDER BY finished_at DESC LIMIT ?
+        ) AS recent";
+    let usual = transaction.one(statement, values![lane.name(), RECENT]).await?.maybe_int("took")?;
+    let statement = "SELECT CAST(coalesce(sum(slots), 0) AS {int}) AS slots FROM worker
+        WHERE seen_at > {now} - ? AND seen_at <= {now} + ?";
+    let slots =
+        transaction.one(statement, values![2 * millis(policy.lease), 2 * millis(policy.lease)]).await?.int("slots")?;
     let expected = usual.filter(|_| slots > 0).map(|usual| {
         let rounds = ahead / slots + 1;
         Duration::from_millis(u64::try_from(rounds.saturating_mul(usual.max(1))).unwrap_or(0))

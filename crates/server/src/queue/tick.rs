@@ -13,7 +13,8 @@ use crate::{
 pub struct Tick {
     /// How many jobs wait again.
     pub retried: usize,
-    /// Jobs that took their worker down too often, alone; whoever called writes what follows in the same transaction.
+    /// Jobs that took their worker down too often, alone; the caller writes what follows in the same
+    /// transaction.
     pub buried: Vec<Buried>,
     /// Whether leases began anew because nobody had ticked.
     pub outage: bool,
@@ -32,7 +33,7 @@ pub struct Buried {
     pub fault: String,
 }
 
-/// Gives up on workers whose leases ran out, at most every [`Policy::tick_every`], whoever calls.
+/// Gives up on workers whose leases ran out, at most every [`Policy::tick_every`], by any caller.
 ///
 /// # Errors
 /// What the database says.
@@ -52,36 +53,24 @@ pub async fn tick(transaction: &mut Transaction, policy: &Policy) -> Result<Tick
     }
     // A clock that was set back, or far ahead, is an outage, too.
     if now < beat || now - beat > millis(policy.outage()) {
-        transaction
-            .execute(
-                "WITH held AS (SELECT id FROM job WHERE state = 'running' ORDER BY id {for update})
-                 UPDATE job SET lease_until = {now} + ?, started_at = {now}
-                 WHERE id IN (SELECT id FROM held) AND state = 'running'",
-                values![millis(policy.lease)],
-            )
-            .await?;
+        let statement = "WITH held AS (SELECT id FROM job WHERE state = 'running' ORDER BY id {for update})
+            UPDATE job SET lease_until = {now} + ?, started_at = {now}
+            WHERE id IN (SELECT id FROM held) AND state = 'running'";
+        transaction.execute(statement, values![millis(policy.lease)]).await?;
         return Ok(Tick { outage: true, ..Tick::default() });
     }
-    let lost = transaction
-        .rows(
-            "SELECT id, attempt, failures, deaths, lone_deaths, is_alone, worker FROM job
-             WHERE state = 'running' AND lease_until < {now} ORDER BY id {skip locked}",
-            values![],
-        )
-        .await?;
+    let statement = "SELECT id, attempt, failures, deaths, lone_deaths, is_alone, worker FROM job
+        WHERE state = 'running' AND lease_until < {now} ORDER BY id {skip locked}";
+    let lost = transaction.rows(statement, values![]).await?;
     give_up(transaction, policy, lost, "its worker went silent").await
 }
 
 /// The clock was set back by so much: what waits would wait for it to catch up, and be passed by whatever comes now.
 async fn set_back(transaction: &mut Transaction, by: i64) -> Result<(), DbError> {
-    transaction
-        .execute(
-            "WITH held AS (SELECT id FROM job WHERE state = 'waiting' ORDER BY id {for update})
-             UPDATE job SET rank = rank - ?, run_after = CASE WHEN run_after > {now} THEN {now} ELSE run_after END
-             WHERE id IN (SELECT id FROM held) AND state = 'waiting'",
-            values![by],
-        )
-        .await?;
+    let statement = "WITH held AS (SELECT id FROM job WHERE state = 'waiting' ORDER BY id {for update})
+        UPDATE job SET rank = rank - ?, run_after = CASE WHEN run_after > {now} THEN {now} ELSE run_after END
+        WHERE id IN (SELECT id FROM held) AND state = 'waiting'";
+    transaction.execute(statement, values![by]).await?;
     Ok(())
 }
 
@@ -90,13 +79,9 @@ async fn set_back(transaction: &mut Transaction, by: i64) -> Result<(), DbError>
 /// # Errors
 /// What the database says.
 pub async fn abandon(transaction: &mut Transaction, policy: &Policy, worker: &str) -> Result<Tick, DbError> {
-    let lost = transaction
-        .rows(
-            "SELECT id, attempt, failures, deaths, lone_deaths, is_alone, worker FROM job
-             WHERE state = 'running' AND worker = ? ORDER BY id {skip locked}",
-            values![worker],
-        )
-        .await?;
+    let statement = "SELECT id, attempt, failures, deaths, lone_deaths, is_alone, worker FROM job
+        WHERE state = 'running' AND worker = ? ORDER BY id {skip locked}";
+    let lost = transaction.rows(statement, values![worker]).await?;
     give_up(transaction, policy, lost, "its worker died").await
 }
 

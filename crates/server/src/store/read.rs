@@ -21,7 +21,7 @@ pub struct Opened {
 
 impl Store {
     /// Opens an artefact, or a range of it. Of a whole one the last piece comes only if all are what they should be:
-    /// whoever gets all bytes got the right ones. Who reads the first piece before saying anything knows that an
+    /// anybody who gets all bytes got the right ones. Who reads the first piece before saying anything knows that an
     /// artefact of one piece is undamaged.
     ///
     /// # Errors

@@ -24,10 +24,10 @@ pub trait Names: Send {
 impl Store {
     /// Gives up every artefact that is older than `least` and not named; how many these were.
     ///
-    /// Whoever stores one of them at this very moment does not lose it: it is put aside first, where it is still read,
-    /// and looked at again there, at once and every time from then on. When it is named by then it comes back. It goes
-    /// only when it lay there unnamed for `least`: so a server that was started on the wrong database by mistake has
-    /// taken nothing away when somebody notices within that time.
+    /// Anybody who stores one of them at this very moment does not lose it: it is put aside first, where it is still
+    /// read, and looked at again there, at once and every time from then on. When it is named by then it comes back. It
+    /// goes only when it lay there unnamed for `least`: so a server that was started on the wrong database by mistake
+    /// has taken nothing away when somebody notices within that time.
     ///
     /// # Errors
     /// When the store fails, or nobody can say what is named. What was put aside is looked at again the next time.

@@ -41,7 +41,7 @@ const MOST: i64 = (1 << 53) - 1;
         (name = "regrades", description = "Grading all submissions again"),
         (name = "administration", description = "What administrators do"),
         (name = "workers", description = "What workers on other machines ask; with a worker's token"),
-        (name = "operations", description = "For whoever runs the server; without any sign-in")
+        (name = "operations", description = "For the people who run the server; without any sign-in")
     )
 )]
 struct Base;
@@ -67,8 +67,8 @@ pub(super) fn complete(api: &mut OpenApi) {
     }
 }
 
-/// A type that takes no other fields can't be part of a larger one, which has them: the larger one has its fields as its
-/// own then.
+/// A type that takes no other fields can't be part of a larger one, which has them: the larger one has its fields as
+/// its own then.
 fn open_what_is_extended(schemas: &mut BTreeMap<String, RefOr<Schema>>) {
     let closed: BTreeMap<String, Object> = schemas
         .iter()

@@ -54,7 +54,7 @@ pub(super) fn whole(opened: Opened, transfer: Option<Transfer>) -> Response {
 
 fn body(opened: Opened, range: Range<u64>, transfer: Option<Transfer>) -> Response {
     let pieces = opened.pieces.inspect_err(move |error| {
-        // The answer breaks off; whoever gets it sees that bytes are missing.
+        // The answer breaks off; anybody who gets it sees that bytes are missing.
         tracing::error!(%error, "an answer broke off");
         let _of_this_answer = &transfer;
     });

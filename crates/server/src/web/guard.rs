@@ -1,6 +1,6 @@
 //! What holds for every request: where it may come from, what answers say to browsers, and what is logged.
 use super::who;
-use crate::{access::House, problem::Problem};
+use crate::{access::App, problem::Problem};
 use axum::{
     extract::{MatchedPath, Request, State},
     http::{HeaderMap, HeaderName, HeaderValue, Method, header},
@@ -21,30 +21,29 @@ const FROM_PLATFORMS: [&str; 2] = ["/lti/login", "/lti/launch"];
 /// Refuses what another site made a browser send. A token in a header can't be sent by one, so that requests with a
 /// token pass; all others that change something must come from this site, by the browser's own word: `Sec-Fetch-Site`,
 /// or `Origin` from browsers that don't say.
-pub(super) async fn same_site(State(house): State<House>, request: Request, next: Next) -> Response {
+pub(super) async fn same_site(State(app): State<App>, request: Request, next: Next) -> Response {
     if is_harmless(request.method())
         || FROM_PLATFORMS.contains(&request.uri().path())
-        || who::secrets(request.headers(), house.is_secure()).bearer.is_some()
-        || is_own(request.headers(), &house)
+        || who::secrets(request.headers(), app.is_secure()).bearer.is_some()
+        || is_own(request.headers(), &app)
     {
         return next.run(request).await;
     }
     // A program that forgot its token: nobody asks, whatever the site.
-    if request.uri().path().starts_with("/api/") && who::secrets(request.headers(), house.is_secure()).session.is_none()
-    {
+    if request.uri().path().starts_with("/api/") && who::secrets(request.headers(), app.is_secure()).session.is_none() {
         return Problem::not_signed_in().into_response();
     }
     Problem::cross_site().into_response()
 }
 
 /// Sends a session's cookie again when it lasts longer from now on.
-pub(super) async fn renew(State(house): State<House>, mut request: Request, next: Next) -> Response {
+pub(super) async fn renew(State(app): State<App>, mut request: Request, next: Next) -> Response {
     let renewed = who::Renewed::default();
     request.extensions_mut().insert(renewed.clone());
     let mut response = next.run(request).await;
     if let Some(session) = renewed.session()
         && !response.headers().contains_key(header::SET_COOKIE)
-        && let Ok(cookie) = HeaderValue::from_str(&session_cookie(&house, session))
+        && let Ok(cookie) = HeaderValue::from_str(&session_cookie(&app, session))
     {
         response.headers_mut().append(header::SET_COOKIE, cookie);
     }
@@ -52,8 +51,8 @@ pub(super) async fn renew(State(house): State<House>, mut request: Request, next
 }
 
 /// A session's cookie, which lasts as long as the session does.
-pub(super) fn session_cookie(house: &House, session: &str) -> String {
-    let (name, secure) = (who::cookie_name(house.is_secure()), if house.is_secure() { "; Secure" } else { "" });
+pub(super) fn session_cookie(app: &App, session: &str) -> String {
+    let (name, secure) = (who::cookie_name(app.is_secure()), if app.is_secure() { "; Secure" } else { "" });
     format!("{name}={session}; Path=/; HttpOnly; SameSite=Lax; Max-Age=1209600{secure}")
 }
 
@@ -61,18 +60,18 @@ fn is_harmless(method: &Method) -> bool {
     matches!(*method, Method::GET | Method::HEAD | Method::OPTIONS)
 }
 
-fn is_own(headers: &HeaderMap, house: &House) -> bool {
+fn is_own(headers: &HeaderMap, app: &App) -> bool {
     let text = |name: HeaderName| headers.get(name).and_then(|value| value.to_str().ok());
     if let Some(site) = text(HeaderName::from_static("sec-fetch-site")) {
         return matches!(site, "same-origin" | "none");
     }
     let Some(origin) = text(header::ORIGIN) else { return false };
-    origin == house.public()
+    origin == app.public
         || text(header::HOST).is_some_and(|host| origin.split_once("://").is_some_and(|(_, place)| place == host))
 }
 
 /// What every answer says.
-pub(super) async fn headers(State(house): State<House>, request: Request, next: Next) -> Response {
+pub(super) async fn headers(State(app): State<App>, request: Request, next: Next) -> Response {
     let mut response = next.run(request).await;
     let headers = response.headers_mut();
     let mut set = |name: HeaderName, value: &'static str| {
@@ -84,16 +83,16 @@ pub(super) async fn headers(State(house): State<House>, request: Request, next: 
     set(HeaderName::from_static("cross-origin-opener-policy"), "same-origin");
     set(HeaderName::from_static("cross-origin-resource-policy"), "same-origin");
     set(header::CACHE_CONTROL, "no-store");
-    if house.is_secure() {
+    if app.is_secure() {
         set(header::STRICT_TRANSPORT_SECURITY, "max-age=31536000");
     }
     response
 }
 
 /// Notes and counts what was asked by the route, never by the address: addresses may hold secrets.
-pub(super) async fn log(State(house): State<House>, request: Request, next: Next) -> Response {
+pub(super) async fn log(State(app): State<App>, request: Request, next: Next) -> Response {
     let start = Instant::now();
-    let in_flight = house.instruments().begin();
+    let in_flight = app.instruments().begin();
     let method = request.method().clone();
     let route = request.extensions().get::<MatchedPath>().map_or("none", MatchedPath::as_str).to_owned();
     // By OpenTelemetry's conventions.
@@ -112,7 +111,7 @@ pub(super) async fn log(State(house): State<House>, request: Request, next: Next
     let known = [Method::GET, Method::HEAD, Method::POST, Method::PUT, Method::DELETE, Method::OPTIONS, Method::PATCH];
     // Anybody may make up methods, and each would be a series of its own.
     let counted = if known.contains(&method) { method.as_str() } else { "other" };
-    house.instruments().answered(counted, &route, status, took);
+    app.instruments().answered(counted, &route, status, took);
     let took = took.as_millis();
     if response.status().is_server_error() {
         tracing::warn!(%method, route, status, took, "answered");

@@ -1,6 +1,6 @@
 //! Reading requests, with answers that say what is wrong.
 use super::who::SignedIn;
-use crate::{access::House, problem::Problem};
+use crate::{access::App, problem::Problem};
 use axum::{
     extract::{FromRequest, FromRequestParts, Path, Query, Request},
     http::{HeaderMap, header, request::Parts},
@@ -40,7 +40,7 @@ fn is_of_type(headers: &HeaderMap, wanted: &str) -> bool {
 }
 
 /// The bytes of a body: few, while nobody knows who sends them.
-async fn bytes(request: Request, house: &House) -> Result<Vec<u8>, Problem> {
+async fn bytes(request: Request, app: &App) -> Result<Vec<u8>, Problem> {
     let most = if request.extensions().get::<SignedIn>().is_some() { super::BODY } else { super::BODY_OF_NOBODY };
     let reading = async {
         let mut stream = request.into_body().into_data_stream();
@@ -53,7 +53,7 @@ async fn bytes(request: Request, house: &House) -> Result<Vec<u8>, Problem> {
         }
         Ok(bytes)
     };
-    tokio::time::timeout(house.patience(), reading).await.map_err(|_| Problem::too_slow())?
+    tokio::time::timeout(app.patience, reading).await.map_err(|_| Problem::too_slow())?
 }
 
 /// Reads JSON in which whole numbers may be written as `7.0`, as some languages do: to JSON Schema, which describes the
@@ -79,10 +79,10 @@ fn with_whole_numbers<T: DeserializeOwned>(bytes: &[u8]) -> Option<T> {
     serde_json::from_value(value).ok()
 }
 
-impl<T: DeserializeOwned> FromRequest<House> for Body<T> {
+impl<T: DeserializeOwned> FromRequest<App> for Body<T> {
     type Rejection = Problem;
 
-    async fn from_request(request: Request, state: &House) -> Result<Self, Problem> {
+    async fn from_request(request: Request, state: &App) -> Result<Self, Problem> {
         if !is_of_type(request.headers(), "application/json") {
             return Err(Problem::invalid("the body is to be JSON: Content-Type: application/json"));
         }
@@ -93,10 +93,10 @@ impl<T: DeserializeOwned> FromRequest<House> for Body<T> {
     }
 }
 
-impl FromRequest<House> for Text {
+impl FromRequest<App> for Text {
     type Rejection = Problem;
 
-    async fn from_request(request: Request, state: &House) -> Result<Self, Problem> {
+    async fn from_request(request: Request, state: &App) -> Result<Self, Problem> {
         if !is_of_type(request.headers(), "text/csv") {
             return Err(Problem::invalid("the body is to be a table: Content-Type: text/csv"));
         }
@@ -105,10 +105,10 @@ impl FromRequest<House> for Text {
     }
 }
 
-impl<T: DeserializeOwned> FromRequest<House> for Fields<T> {
+impl<T: DeserializeOwned> FromRequest<App> for Fields<T> {
     type Rejection = Problem;
 
-    async fn from_request(request: Request, state: &House) -> Result<Self, Problem> {
+    async fn from_request(request: Request, state: &App) -> Result<Self, Problem> {
         if !is_of_type(request.headers(), "application/x-www-form-urlencoded") {
             return Err(Problem::invalid("the body is to be a form"));
         }

@@ -1,6 +1,6 @@
 //! Receiving files: as they come, into a file of the server's own, never whole in memory.
 use crate::{
-    access::{House, is_file_name},
+    access::{App, is_file_name},
     archive::{self, Limits},
     problem::Problem,
     task::Form,
@@ -64,24 +64,24 @@ struct Place<'a> {
 }
 
 /// Receives the body of a request: the file itself, or a form with a field `file`.
-pub(super) async fn receive(house: &House, request: Request, most: u64) -> Result<Received, Problem> {
-    if let Err(problem) = house.has_room() {
-        return Err(refuse(house, request, most, problem).await);
+pub(super) async fn receive(app: &App, request: Request, most: u64) -> Result<Received, Problem> {
+    if let Err(problem) = app.has_room() {
+        return Err(refuse(app, request, most, problem).await);
     }
-    receive_at(&Place { incoming: house.incoming(), patience: house.patience() }, request, most).await
+    receive_at(&Place { incoming: &app.incoming, patience: app.patience }, request, most).await
 }
 
-/// Refuses an upload before anything of it is stored. What comes all the same is read and forgotten: many a program looks
-/// for the answer only when it has sent everything, and finds a broken connection instead.
-pub(super) async fn refuse(house: &House, request: Request, most: u64, problem: Problem) -> Problem {
+/// Refuses an upload before anything of it is stored. What comes all the same is read and forgotten: many a program
+/// looks for the answer only when it has sent everything, and finds a broken connection instead.
+pub(super) async fn refuse(app: &App, request: Request, most: u64, problem: Problem) -> Problem {
     if request.headers().contains_key(header::EXPECT) {
         return problem;
     }
-    let until = tokio::time::Instant::now() + house.patience() * PAUSES;
+    let until = tokio::time::Instant::now() + app.patience * PAUSES;
     let mut body = request.into_body().into_data_stream();
     let mut size = 0;
     while size <= most {
-        let pause = tokio::time::Instant::now() + house.patience();
+        let pause = tokio::time::Instant::now() + app.patience;
         match tokio::time::timeout_at(until.min(pause), body.next()).await {
             Ok(Some(Ok(chunk))) => size += chunk.len() as u64,
             _ => break,
@@ -90,9 +90,13 @@ pub(super) async fn refuse(house: &House, request: Request, most: u64, problem: 
     problem
 }
 
-/// Receives a form that came in pieces of so many bytes, as fuzzers make them: the size of its file, and what it says
-/// of it.
-pub(super) async fn receive_form(
+/// Receives a form with an upload that came in pieces of this many bytes, into a folder that is empty again afterwards:
+/// what the fuzzer of uploads, and tests, hand bytes to. The size of the file, and what the form says: its name, its
+/// kind, and its key.
+///
+/// # Errors
+/// What is wrong with the form.
+pub async fn receive_form(
     incoming: &Path,
     body: &[u8],
     pieces: usize,

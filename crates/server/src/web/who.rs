@@ -1,7 +1,7 @@
 //! Who asks: a handler says by the type of its argument whom it serves, and is not called for others.
 use super::input::At;
 use crate::{
-    access::{Admin, House, Member, Person, Remote, Secrets, Staff, Visitor},
+    access::{Admin, App, Member, Person, Remote, Secrets, Staff, Visitor},
     net::ClientAddress,
     problem::Problem,
 };
@@ -52,25 +52,25 @@ pub(super) fn secrets(headers: &HeaderMap, secure: bool) -> Secrets {
     Secrets { bearer, session, browser, address: None }
 }
 
-fn of_parts(parts: &Parts, house: &House) -> Secrets {
+fn of_parts(parts: &Parts, app: &App) -> Secrets {
     let address = parts.extensions.get::<ClientAddress>().map(|ClientAddress(address)| *address);
-    Secrets { address, ..secrets(&parts.headers, house.is_secure()) }
+    Secrets { address, ..secrets(&parts.headers, app.is_secure()) }
 }
 
-impl FromRequestParts<House> for Visitor {
+impl FromRequestParts<App> for Visitor {
     type Rejection = Problem;
 
-    async fn from_request_parts(parts: &mut Parts, house: &House) -> Result<Self, Problem> {
-        Ok(house.visitor(of_parts(parts, house)))
+    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Problem> {
+        Ok(app.visitor(of_parts(parts, app)))
     }
 }
 
-impl FromRequestParts<House> for Person {
+impl FromRequestParts<App> for Person {
     type Rejection = Problem;
 
-    async fn from_request_parts(parts: &mut Parts, house: &House) -> Result<Self, Problem> {
-        let secrets = of_parts(parts, house);
-        let person = house.person(&secrets).await?;
+    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Problem> {
+        let secrets = of_parts(parts, app);
+        let person = app.person(&secrets).await?;
         parts.extensions.insert(SignedIn);
         if let (true, Some(secret), Some(renewed)) =
             (person.is_renewed(), secrets.session, parts.extensions.get::<Renewed>())
@@ -82,39 +82,39 @@ impl FromRequestParts<House> for Person {
     }
 }
 
-impl FromRequestParts<House> for Member {
+impl FromRequestParts<App> for Member {
     type Rejection = Problem;
 
-    async fn from_request_parts(parts: &mut Parts, house: &House) -> Result<Self, Problem> {
-        let person = Person::from_request_parts(parts, house).await?;
-        let at = At::from_request_parts(parts, house).await;
+    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Problem> {
+        let person = Person::from_request_parts(parts, app).await?;
+        let at = At::from_request_parts(parts, app).await;
         person.member_of(&at.unwrap_or_default().course).await
     }
 }
 
-impl FromRequestParts<House> for Staff {
+impl FromRequestParts<App> for Staff {
     type Rejection = Problem;
 
-    async fn from_request_parts(parts: &mut Parts, house: &House) -> Result<Self, Problem> {
-        Member::from_request_parts(parts, house).await?.staff()
+    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Problem> {
+        Member::from_request_parts(parts, app).await?.staff()
     }
 }
 
-impl FromRequestParts<House> for Admin {
+impl FromRequestParts<App> for Admin {
     type Rejection = Problem;
 
-    async fn from_request_parts(parts: &mut Parts, house: &House) -> Result<Self, Problem> {
-        Person::from_request_parts(parts, house).await?.admin()
+    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Problem> {
+        Person::from_request_parts(parts, app).await?.admin()
     }
 }
 
-impl FromRequestParts<House> for Remote {
+impl FromRequestParts<App> for Remote {
     type Rejection = Problem;
 
-    async fn from_request_parts(parts: &mut Parts, house: &House) -> Result<Self, Problem> {
-        let token = of_parts(parts, house).bearer.ok_or_else(Problem::not_signed_in)?;
+    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Problem> {
+        let token = of_parts(parts, app).bearer.ok_or_else(Problem::not_signed_in)?;
         let name = parts.headers.get("fosssim-worker").and_then(|name| name.to_str().ok()).unwrap_or("worker");
-        let remote = house.remote(&token, name).await?;
+        let remote = app.remote(&token, name).await?;
         parts.extensions.insert(SignedIn);
         Ok(remote)
     }

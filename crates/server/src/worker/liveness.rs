@@ -39,7 +39,7 @@ impl Liveness {
 
 impl Drop for Liveness {
     fn drop(&mut self) {
-        // Whoever ends in peace has given its jobs back.
+        // Anybody who ends in peace has given its jobs back.
         drop(fs::remove_file(&self.path));
     }
 }

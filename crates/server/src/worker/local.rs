@@ -1,9 +1,9 @@
-//! The desk of workers that hold the database themselves: those within the server, and those of who wants it so.
-use super::{Answer, Desk, DeskError, GRACE, Job};
+//! The source of workers that hold the database themselves: those within the server, and those of who wants it so.
+use super::{Answer, GRACE, Job, JobSource, SourceError};
 use crate::{
     db::{Database, DbError},
     health, ledger,
-    queue::{self, Bell, Claimant, Completion, Ear, Failure, Lane, Lease, Policy},
+    queue::{self, Claimant, Completion, Failure, Lane, Lease, Notifier, Policy, Subscription},
     shown,
     store::{Artefact, Digest, Store, StoreError},
     task::{Outcome, Task},
@@ -17,34 +17,34 @@ const LOOK_EVERY: Duration = Duration::from_secs(1);
 /// What a job may take besides its grading, at least.
 const LEAST_MARGIN: Duration = Duration::from_secs(60);
 
-/// The database and the store as a desk.
+/// The database and the store as a source.
 #[derive(Debug)]
-pub struct LocalDesk {
+pub struct LocalSource {
     database: Database,
     store: Store,
-    bell: Bell,
+    notifier: Notifier,
     /// What this copy has heard.
-    ear: Mutex<Ear>,
+    subscription: Mutex<Subscription>,
     policy: Policy,
     worker: String,
     /// The token that the worker came by, if any.
     token: Option<i64>,
 }
 
-impl Clone for LocalDesk {
+impl Clone for LocalSource {
     fn clone(&self) -> Self {
-        let (database, store, bell) = (self.database.clone(), self.store.clone(), self.bell.clone());
-        Self { token: self.token, ..Self::new(database, store, bell, self.policy, self.worker.clone()) }
+        let (database, store, notifier) = (self.database.clone(), self.store.clone(), self.notifier.clone());
+        Self { token: self.token, ..Self::new(database, store, notifier, self.policy, self.worker.clone()) }
     }
 }
 
-impl From<DbError> for DeskError {
+impl From<DbError> for SourceError {
     fn from(error: DbError) -> Self {
         if error.is_transient() { Self::Away(error.to_string()) } else { Self::Refused(error.to_string()) }
     }
 }
 
-impl From<StoreError> for DeskError {
+impl From<StoreError> for SourceError {
     fn from(error: StoreError) -> Self {
         match error {
             StoreError::Failed(_) => Self::Away(error.to_string()),
@@ -53,11 +53,11 @@ impl From<StoreError> for DeskError {
     }
 }
 
-impl LocalDesk {
-    /// A desk for the worker of this name.
-    pub fn new(database: Database, store: Store, bell: Bell, policy: Policy, worker: String) -> Self {
-        let ear = Mutex::new(bell.ear());
-        Self { database, store, bell, ear, policy, worker, token: None }
+impl LocalSource {
+    /// A source for the worker of this name.
+    pub fn new(database: Database, store: Store, notifier: Notifier, policy: Policy, worker: String) -> Self {
+        let subscription = Mutex::new(notifier.subscribe());
+        Self { database, store, notifier, subscription, policy, worker, token: None }
     }
 
     /// The same for a worker that came by this token.
@@ -71,8 +71,8 @@ fn longest(task: &Task, policy: &Policy) -> Duration {
     Duration::from_secs(task.seconds) + GRACE + LEAST_MARGIN.max(policy.lease * 10)
 }
 
-impl Desk for LocalDesk {
-    async fn claim(&self, is_idle: bool) -> Result<Option<Job>, DeskError> {
+impl JobSource for LocalSource {
+    async fn claim(&self, is_idle: bool) -> Result<Option<Job>, SourceError> {
         let claimant = Claimant { worker: &self.worker, is_idle, token: self.token };
         ledger::tick(&self.database, &self.policy).await?;
         loop {
@@ -98,10 +98,10 @@ impl Desk for LocalDesk {
     }
 
     async fn wait(&self, patience: Duration) {
-        self.ear.lock().await.wait(patience.min(LOOK_EVERY)).await;
+        self.subscription.lock().await.wait(patience.min(LOOK_EVERY)).await;
     }
 
-    async fn renew(&self, lease: &Lease) -> Result<Answer, DeskError> {
+    async fn renew(&self, lease: &Lease) -> Result<Answer, SourceError> {
         // A step of the clock is noticed before it can end a lease.
         ledger::tick(&self.database, &self.policy).await?;
         let mut transaction = self.database.begin().await?;
@@ -114,55 +114,49 @@ impl Desk for LocalDesk {
         Ok(if held { Answer::Held } else { Answer::Lost })
     }
 
-    async fn finish(&self, lease: &Lease, outcome: &Outcome) -> Result<Answer, DeskError> {
+    async fn finish(&self, lease: &Lease, outcome: &Outcome) -> Result<Answer, SourceError> {
         for file in &outcome.files {
             if !self.store.has(&file.artefact.digest).await? {
-                return Err(DeskError::Refused(format!("{} is not in the store", file.name)));
+                return Err(SourceError::Refused(format!("{} is not in the store", file.name)));
             }
         }
         let shown = Some(shown::of_outcome(&self.store, &outcome.files).await?);
         let outcome = Outcome { shown, ..outcome.clone() };
         let mut transaction = self.database.begin().await?;
         let completion = ledger::finish(&mut transaction, lease, &outcome).await?;
-        Bell::ring(&mut transaction).await?;
-        transaction.commit().await?;
-        self.bell.strike();
+        self.notifier.commit(transaction).await?;
         Ok(match completion {
             Completion::Done | Completion::Repeated => Answer::Held,
             Completion::Late => Answer::Lost,
         })
     }
 
-    async fn release(&self, lease: &Lease) -> Result<Answer, DeskError> {
+    async fn release(&self, lease: &Lease) -> Result<Answer, SourceError> {
         let mut transaction = self.database.begin().await?;
         let held = queue::release(&mut transaction, lease).await?;
-        Bell::ring(&mut transaction).await?;
-        transaction.commit().await?;
-        self.bell.strike();
+        self.notifier.commit(transaction).await?;
         Ok(if held { Answer::Held } else { Answer::Lost })
     }
 
-    async fn fail(&self, lease: &Lease, fault: &str) -> Result<Answer, DeskError> {
+    async fn fail(&self, lease: &Lease, fault: &str) -> Result<Answer, SourceError> {
         let mut transaction = self.database.begin().await?;
         let failure = ledger::fail(&mut transaction, &self.policy, lease, fault).await?;
-        Bell::ring(&mut transaction).await?;
-        transaction.commit().await?;
-        self.bell.strike();
+        self.notifier.commit(transaction).await?;
         if failure == Failure::Buried {
             tracing::error!(job = lease.job, fault, "a job was tried too often");
         }
         Ok(if failure == Failure::Late { Answer::Lost } else { Answer::Held })
     }
 
-    async fn fetch(&self, _: &Lease, digest: &Digest, file: &Path) -> Result<(), DeskError> {
+    async fn fetch(&self, _: &Lease, digest: &Digest, file: &Path) -> Result<(), SourceError> {
         Ok(self.store.fetch(digest, file).await?)
     }
 
-    async fn store(&self, _: &Lease, file: &Path) -> Result<Artefact, DeskError> {
+    async fn store(&self, _: &Lease, file: &Path) -> Result<Artefact, SourceError> {
         Ok(self.store.put_file(file).await?)
     }
 
-    async fn tick(&self, slots: usize, fault: Option<&str>) -> Result<(), DeskError> {
+    async fn tick(&self, slots: usize, fault: Option<&str>) -> Result<(), SourceError> {
         let mut transaction = self.database.begin().await?;
         health::seen(&mut transaction, &self.worker, self.token, slots, fault).await?;
         transaction.commit().await?;

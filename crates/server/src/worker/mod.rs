@@ -1,8 +1,7 @@
-//! Workers: they fetch jobs from a [`Desk`], let a [`Grader`] do them, and bring the results back. A worker knows
+//! Workers: they fetch jobs from a [`JobSource`], let a [`Grader`] do them, and bring the results back. A worker knows
 //! neither courses nor students; what it holds is a lease.
 
 mod child;
-mod desk;
 mod grader;
 mod guard;
 mod health;
@@ -12,15 +11,16 @@ mod program;
 mod reading;
 mod remote;
 mod slots;
+mod source;
 mod suite_check;
 
-pub use desk::{Answer, Desk, DeskError, Job};
 pub use grader::{Graded, Grader, GraderFault, NewFile};
 pub use liveness::{Liveness, dead_workers, forget};
-pub use local::LocalDesk;
+pub use local::LocalSource;
 use program::GRACE;
 pub use program::{Program, REPORTS};
 pub(crate) use reading::essence;
-pub use remote::RemoteDesk;
+pub use remote::RemoteSource;
 pub use slots::{Options, work};
+pub use source::{Answer, Job, JobSource, SourceError};
 pub use suite_check::check_suite;

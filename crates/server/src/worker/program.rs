@@ -50,7 +50,7 @@ pub struct Program {
 type Stamp = (u64, u64, i64, i64);
 
 impl Program {
-    /// The grader at this path, with so many scenes of a job at one time.
+    /// The grader at this path, with this many scenes of a job at one time.
     pub fn new(path: PathBuf, threads: usize) -> Self {
         Self { path, threads, digested: Arc::default() }
     }

@@ -120,7 +120,7 @@ pub(crate) fn essence(grade: &[u8]) -> Result<String, serde_json::Error> {
     serde_json::to_string(&value)
 }
 
-/// Whether so many wrong scenes leave a submission nearly right: what it answers there may be worth a second look.
+/// Whether this many wrong scenes leave a submission nearly right: what it answers there may be worth a second look.
 fn is_nearly_right(wrong: usize, scenes: usize) -> bool {
     wrong <= 1 || wrong * 10 <= scenes
 }

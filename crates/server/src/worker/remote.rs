@@ -1,5 +1,5 @@
-//! The desk of workers on other machines: a server over HTTP. They hold a token, no password of a database.
-use super::{Answer, Desk, DeskError, Job};
+//! The source of workers on other machines: a server over HTTP. They hold a token, no password of a database.
+use super::{Answer, Job, JobSource, SourceError};
 use crate::{
     queue::Lease,
     store::{Artefact, Digest, digest_of_file},
@@ -16,7 +16,7 @@ use std::{
     },
     time::Duration,
 };
-use ureq::{Agent, Body, http::Response};
+use ureq::{Agent, Body, RequestBuilder, http::Response};
 
 /// How often a worker asks whether there is a job.
 const ASK_EVERY: Duration = Duration::from_secs(1);
@@ -28,9 +28,9 @@ const WHOLE_FILE: Duration = Duration::from_secs(900);
 /// The longest answer that is read.
 const ANSWER: u64 = 1 << 20;
 
-/// A server over HTTP as a desk. Cloning it is cheap.
+/// A server over HTTP as a source. Cloning it is cheap.
 #[derive(Clone)]
-pub struct RemoteDesk(Arc<Parts>);
+pub struct RemoteSource(Arc<Parts>);
 
 struct Parts {
     agent: Agent,
@@ -41,14 +41,14 @@ struct Parts {
     tick_every: AtomicU64,
 }
 
-impl fmt::Debug for RemoteDesk {
+impl fmt::Debug for RemoteSource {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "RemoteDesk({})", self.0.server)
+        write!(f, "RemoteSource({})", self.0.server)
     }
 }
 
-impl RemoteDesk {
-    /// A desk at a server's address, for a worker of this name.
+impl RemoteSource {
+    /// A source at a server's address, for a worker of this name.
     pub fn new(server: &str, token: &str, name: &str) -> Self {
         let agent = Agent::config_builder()
             // What a server says with a status is looked at here.
@@ -73,14 +73,14 @@ impl RemoteDesk {
     /// Asks, away from the threads that must not wait.
     async fn call<T: Send + 'static>(
         &self,
-        ask: impl FnOnce(&Parts) -> Result<T, DeskError> + Send + 'static,
-    ) -> Result<T, DeskError> {
+        ask: impl FnOnce(&Parts) -> Result<T, SourceError> + Send + 'static,
+    ) -> Result<T, SourceError> {
         let parts = self.0.clone();
         let asked = tokio::task::spawn_blocking(move || ask(&parts)).await;
-        asked.map_err(|error| DeskError::Away(error.to_string()))?
+        asked.map_err(|error| SourceError::Away(error.to_string()))?
     }
 
-    async fn held(&self, path: &'static str, body: impl Serialize + Send + 'static) -> Result<Answer, DeskError> {
+    async fn held(&self, path: &'static str, body: impl Serialize + Send + 'static) -> Result<Answer, SourceError> {
         let held: Held = self.call(move |parts| parts.json(path, &body)).await?;
         Ok(if held.held { Answer::Held } else { Answer::Lost })
     }
@@ -91,8 +91,8 @@ fn shown(lease: &Lease) -> String {
     format!("{}:{}:{}", lease.job, lease.attempt, lease.key)
 }
 
-fn away(error: impl fmt::Display) -> DeskError {
-    DeskError::Away(format!("the server does not answer: {error}"))
+fn away(error: impl fmt::Display) -> SourceError {
+    SourceError::Away(format!("the server does not answer: {error}"))
 }
 
 impl Parts {
@@ -101,27 +101,31 @@ impl Parts {
     }
 
     /// Sends JSON, and reads JSON.
-    fn json<T: DeserializeOwned>(&self, path: &str, body: &impl Serialize) -> Result<T, DeskError> {
+    fn json<T: DeserializeOwned>(&self, path: &str, body: &impl Serialize) -> Result<T, SourceError> {
         let answer = self.post(path, body)?;
         let mut answer = checked(answer)?;
         let text = answer.body_mut().with_config().limit(ANSWER).read_to_vec().map_err(away)?;
-        serde_json::from_slice(&text).map_err(|error| DeskError::Refused(format!("the server's answer: {error}")))
+        serde_json::from_slice(&text).map_err(|error| SourceError::Refused(format!("the server's answer: {error}")))
     }
 
-    fn post(&self, path: &str, body: &impl Serialize) -> Result<Response<Body>, DeskError> {
-        let body = serde_json::to_vec(body).map_err(|error| DeskError::Refused(error.to_string()))?;
-        self.agent
-            .post(self.url(path))
-            .header("Authorization", &self.authorization)
-            .header("Fosssim-Worker", &self.name)
-            .header("Content-Type", "application/json")
-            .send(&body)
-            .map_err(away)
+    /// A request with what says who asks, and for which job.
+    fn signed<B>(&self, request: RequestBuilder<B>, lease: Option<&str>) -> RequestBuilder<B> {
+        let request = request.header("Authorization", &self.authorization).header("Fosssim-Worker", &self.name);
+        match lease {
+            Some(lease) => request.header("Fosssim-Lease", lease),
+            None => request,
+        }
+    }
+
+    fn post(&self, path: &str, body: &impl Serialize) -> Result<Response<Body>, SourceError> {
+        let body = serde_json::to_vec(body).map_err(|error| SourceError::Refused(error.to_string()))?;
+        let request = self.signed(self.agent.post(self.url(path)), None);
+        request.header("Content-Type", "application/json").send(&body).map_err(away)
     }
 }
 
 /// What a status means: a server that is away for a moment, or one that will never agree.
-fn checked(mut answer: Response<Body>) -> Result<Response<Body>, DeskError> {
+fn checked(mut answer: Response<Body>) -> Result<Response<Body>, SourceError> {
     let status = answer.status();
     if status.is_success() {
         return Ok(answer);
@@ -131,14 +135,14 @@ fn checked(mut answer: Response<Body>) -> Result<Response<Body>, DeskError> {
     let text = format!("{status}: {}", problem["detail"].as_str().unwrap_or_default());
     // Our own mistakes, and what is not there, stay so; a proxy's troubles pass.
     match status.as_u16() {
-        401 if problem["type"] == "urn:fosssim:unknown-secret" => Err(DeskError::Dismissed),
-        400 | 403 | 404 | 409 | 413 | 422 => Err(DeskError::Refused(text)),
-        _ => Err(DeskError::Away(text)),
+        401 if problem["type"] == "urn:fosssim:unknown-secret" => Err(SourceError::Dismissed),
+        400 | 403 | 404 | 409 | 413 | 422 => Err(SourceError::Refused(text)),
+        _ => Err(SourceError::Away(text)),
     }
 }
 
-impl Desk for RemoteDesk {
-    async fn claim(&self, is_idle: bool) -> Result<Option<Job>, DeskError> {
+impl JobSource for RemoteSource {
+    async fn claim(&self, is_idle: bool) -> Result<Option<Job>, SourceError> {
         let claimed: Option<Claimed> = self
             .call(move |parts| {
                 let path = if is_idle { "claim" } else { "claim?idle=false" };
@@ -149,7 +153,7 @@ impl Desk for RemoteDesk {
                 let text = answer.body_mut().with_config().limit(ANSWER).read_to_vec().map_err(away)?;
                 serde_json::from_slice(&text)
                     .map(Some)
-                    .map_err(|error| DeskError::Refused(format!("the job can't be read: {error}")))
+                    .map_err(|error| SourceError::Refused(format!("the job can't be read: {error}")))
             })
             .await?;
         Ok(claimed.map(|claimed| Job {
@@ -164,40 +168,34 @@ impl Desk for RemoteDesk {
         tokio::time::sleep(patience.min(ASK_EVERY)).await;
     }
 
-    async fn renew(&self, lease: &Lease) -> Result<Answer, DeskError> {
+    async fn renew(&self, lease: &Lease) -> Result<Answer, SourceError> {
         self.held("renew", lease.clone()).await
     }
 
-    async fn finish(&self, lease: &Lease, outcome: &Outcome) -> Result<Answer, DeskError> {
+    async fn finish(&self, lease: &Lease, outcome: &Outcome) -> Result<Answer, SourceError> {
         self.held("finish", Finished { lease: lease.clone(), outcome: outcome.clone() }).await
     }
 
-    async fn release(&self, lease: &Lease) -> Result<Answer, DeskError> {
+    async fn release(&self, lease: &Lease) -> Result<Answer, SourceError> {
         self.held("release", lease.clone()).await
     }
 
-    async fn fail(&self, lease: &Lease, fault: &str) -> Result<Answer, DeskError> {
+    async fn fail(&self, lease: &Lease, fault: &str) -> Result<Answer, SourceError> {
         self.held("fail", Fault { lease: lease.clone(), fault: fault.to_owned() }).await
     }
 
-    async fn fetch(&self, lease: &Lease, digest: &Digest, file: &Path) -> Result<(), DeskError> {
+    async fn fetch(&self, lease: &Lease, digest: &Digest, file: &Path) -> Result<(), SourceError> {
         let (lease, wanted, place) = (shown(lease), digest.clone(), file.to_owned());
         self.call(move |parts| {
-            let answer = parts
-                .agent
-                .get(parts.url(&format!("files/{wanted}")))
-                .header("Authorization", &parts.authorization)
-                .header("Fosssim-Worker", &parts.name)
-                .header("Fosssim-Lease", &lease)
-                .call()
-                .map_err(away)?;
+            let request = parts.agent.get(parts.url(&format!("files/{wanted}")));
+            let answer = parts.signed(request, Some(&lease)).call().map_err(away)?;
             let mut answer = checked(answer)?;
             let written = fs::File::create_new(&place).and_then(|mut output| {
                 let mut input = answer.body_mut().with_config().limit(u64::MAX).reader();
                 io::copy(&mut input, &mut output)
             });
             written.map(drop).map_err(|error| {
-                // Whoever tries again wants to find nothing.
+                // Anybody who tries again wants to find nothing.
                 drop(fs::remove_file(&place));
                 away(error)
             })
@@ -206,32 +204,25 @@ impl Desk for RemoteDesk {
         let found = digest_of_file(file).await.map_err(away)?;
         if found.digest != *digest {
             drop(fs::remove_file(file));
-            return Err(DeskError::Away(format!("the server sent other bytes than {digest}")));
+            return Err(SourceError::Away(format!("the server sent other bytes than {digest}")));
         }
         Ok(())
     }
 
-    async fn store(&self, lease: &Lease, file: &Path) -> Result<Artefact, DeskError> {
-        let artefact = digest_of_file(file).await.map_err(|error| DeskError::Refused(error.to_string()))?;
+    async fn store(&self, lease: &Lease, file: &Path) -> Result<Artefact, SourceError> {
+        let artefact = digest_of_file(file).await.map_err(|error| SourceError::Refused(error.to_string()))?;
         let (lease, digest, place) = (shown(lease), artefact.digest.clone(), file.to_owned());
         self.call(move |parts| {
-            let input = fs::File::open(&place).map_err(|error| DeskError::Refused(error.to_string()))?;
-            let answer = parts
-                .agent
-                .put(parts.url(&format!("files/{digest}")))
-                .header("Authorization", &parts.authorization)
-                .header("Fosssim-Worker", &parts.name)
-                .header("Fosssim-Lease", &lease)
-                .header("Content-Type", "application/octet-stream")
-                .send(input)
-                .map_err(away)?;
+            let input = fs::File::open(&place).map_err(|error| SourceError::Refused(error.to_string()))?;
+            let request = parts.signed(parts.agent.put(parts.url(&format!("files/{digest}"))), Some(&lease));
+            let answer = request.header("Content-Type", "application/octet-stream").send(input).map_err(away)?;
             checked(answer).map(drop)
         })
         .await?;
         Ok(artefact)
     }
 
-    async fn tick(&self, slots: usize, fault: Option<&str>) -> Result<(), DeskError> {
+    async fn tick(&self, slots: usize, fault: Option<&str>) -> Result<(), SourceError> {
         let alive = Alive { slots, fault: fault.map(str::to_owned) };
         let manners: Manners = self.call(move |parts| parts.json("tick", &alive)).await?;
         self.0.tick_every.store(manners.tick_every.clamp(100, 60_000), Ordering::Relaxed);

@@ -1,6 +1,6 @@
 //! A worker's slots: each does one job after another.
 use super::{
-    Answer, Desk, DeskError, Grader, GraderFault, Job,
+    Answer, Grader, GraderFault, Job, JobSource, SourceError,
     health::{Health, job_folder},
 };
 use crate::{
@@ -18,11 +18,11 @@ use tokio_util::sync::CancellationToken;
 /// How long a slot waits for a job before it asks again.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// The wait after the desk did not answer; it doubles up to the longest.
+/// The wait after the source did not answer; it doubles up to the longest.
 const FIRST_WAIT: Duration = Duration::from_millis(200);
 const LONGEST_WAIT: Duration = Duration::from_secs(5);
 
-/// How often a desk that is away is asked again for the parts of a job.
+/// How often a source that is away is asked again for the parts of a job.
 const PATIENT_TRIES: u32 = 5;
 
 /// How a worker works.
@@ -37,30 +37,30 @@ pub struct Options {
 /// Does jobs until `stop` is cancelled; then gives back what it holds, and ends.
 ///
 /// # Errors
-/// When the desk does not know the worker any more: what it holds counts for nothing.
-pub async fn work<D: Desk, G: Grader>(
-    desk: D,
+/// When the source does not know the worker any more: what it holds counts for nothing.
+pub async fn work<D: JobSource, G: Grader>(
+    source: D,
     grader: G,
     options: Options,
     stop: CancellationToken,
-) -> Result<(), DeskError> {
+) -> Result<(), SourceError> {
     let gate = Arc::new(RwLock::new(()));
     let health = Health::new(grader.clone(), options.folder.clone());
     let mut slots = tokio::task::JoinSet::new();
     for _ in 0..options.slots {
-        let (desk, grader, health) = (desk.clone(), grader.clone(), health.clone());
-        slots.spawn(slot(desk, grader, health, options.folder.clone(), gate.clone(), stop.clone()));
+        let (source, grader, health) = (source.clone(), grader.clone(), health.clone());
+        slots.spawn(slot(source, grader, health, options.folder.clone(), gate.clone(), stop.clone()));
     }
     let ticking = async {
         loop {
             let slots = if health.is_proven() { options.slots } else { 0 };
-            match desk.tick(slots, health.fault().as_deref()).await {
+            match source.tick(slots, health.fault().as_deref()).await {
                 Ok(()) => {}
-                Err(DeskError::Dismissed) => return DeskError::Dismissed,
+                Err(SourceError::Dismissed) => return SourceError::Dismissed,
                 Err(error) => tracing::warn!(%error, "the worker can't say that it is alive"),
             }
             tokio::select! {
-                () = tokio::time::sleep(desk.tick_every()) => {}
+                () = tokio::time::sleep(source.tick_every()) => {}
                 () = health.changed() => {}
             }
         }
@@ -71,8 +71,8 @@ pub async fn work<D: Desk, G: Grader>(
     }
 }
 
-async fn slot<D: Desk, G: Grader>(
-    desk: D,
+async fn slot<D: JobSource, G: Grader>(
+    source: D,
     grader: G,
     health: Health<G>,
     folder: PathBuf,
@@ -82,12 +82,12 @@ async fn slot<D: Desk, G: Grader>(
     let mut wait = FIRST_WAIT;
     while health.well(&stop).await {
         let pass = Pass::through(&gate).await;
-        match desk.claim(matches!(pass, Pass::Alone(_))).await {
+        match source.claim(matches!(pass, Pass::Alone(_))).await {
             Ok(None) => {
                 wait = FIRST_WAIT;
                 drop(pass);
                 tokio::select! {
-                    () = desk.wait(PATIENCE) => {}
+                    () = source.wait(PATIENCE) => {}
                     () = stop.cancelled() => {}
                 }
             }
@@ -97,11 +97,11 @@ async fn slot<D: Desk, G: Grader>(
                 let lease = job.lease.clone();
                 let pass = pass.for_job(job.alone, gate.clone());
                 let running =
-                    run(desk.clone(), grader.clone(), health.clone(), job, folder.clone(), pass, stop.clone());
+                    run(source.clone(), grader.clone(), health.clone(), job, folder.clone(), pass, stop.clone());
                 let done = tokio::spawn(running);
                 if let Err(error) = done.await {
                     tracing::error!(job = lease.job, %error, "the worker failed");
-                    settle(&desk, &lease, Ending::Failed(format!("the worker failed: {error}")), &stop).await;
+                    settle(&source, &lease, Ending::Failed(format!("the worker failed: {error}")), &stop).await;
                 }
             }
             Err(error) => {
@@ -145,7 +145,7 @@ impl Pass {
     }
 }
 
-/// How a job ended, to be told to the desk.
+/// How a job ended, to be told to the source.
 enum Ending {
     Finished(Box<Outcome>),
     Failed(String),
@@ -155,8 +155,8 @@ enum Ending {
     Lost,
 }
 
-async fn run<D: Desk, G: Grader>(
-    desk: D,
+async fn run<D: JobSource, G: Grader>(
+    source: D,
     grader: G,
     health: Health<G>,
     job: Job,
@@ -165,13 +165,13 @@ async fn run<D: Desk, G: Grader>(
     stop: CancellationToken,
 ) {
     let lost = CancellationToken::new();
-    let keeping = tokio::spawn(keep(desk.clone(), job.lease.clone(), job.renew_every, lost.clone()));
+    let keeping = tokio::spawn(keep(source.clone(), job.lease.clone(), job.renew_every, lost.clone()));
     let _pass = pass.await;
     let ending = match job_folder(&folder) {
         Err(error) => Ending::Failed(format!("no folder for the job: {error}")),
         Ok(folder) => {
             let halt = CancellationToken::new();
-            let grading = attempt(&desk, &grader, &job, folder.path(), halt.clone());
+            let grading = attempt(&source, &grader, &job, folder.path(), halt.clone());
             tokio::pin!(grading);
             let ending = tokio::select! {
                 ending = &mut grading => Some(ending),
@@ -201,15 +201,15 @@ async fn run<D: Desk, G: Grader>(
         }
         ending => ending,
     };
-    settle(&desk, &job.lease, ending, &stop).await;
+    settle(&source, &job.lease, ending, &stop).await;
     keeping.abort();
 }
 
 /// Renews a lease until it is lost.
-async fn keep<D: Desk>(desk: D, lease: Lease, every: Duration, lost: CancellationToken) {
+async fn keep<D: JobSource>(source: D, lease: Lease, every: Duration, lost: CancellationToken) {
     loop {
         tokio::time::sleep(every).await;
-        match desk.renew(&lease).await {
+        match source.renew(&lease).await {
             Ok(Answer::Held) => {}
             Ok(Answer::Lost) => {
                 tracing::warn!(job = lease.job, attempt = lease.attempt, "the lease is lost");
@@ -222,28 +222,28 @@ async fn keep<D: Desk>(desk: D, lease: Lease, every: Duration, lost: Cancellatio
 }
 
 /// Fetches what the job needs, grades, and stores what came of it.
-async fn attempt<D: Desk, G: Grader>(
-    desk: &D,
+async fn attempt<D: JobSource, G: Grader>(
+    source: &D,
     grader: &G,
     job: &Job,
     folder: &Path,
     halt: CancellationToken,
 ) -> Ending {
-    match try_attempt(desk, grader, job, folder, halt).await {
+    match try_attempt(source, grader, job, folder, halt).await {
         Ok(outcome) => Ending::Finished(Box::new(outcome)),
         Err(GraderFault::Stopped) => Ending::GivenBack,
         Err(GraderFault::Failed(fault)) => Ending::Failed(fault),
     }
 }
 
-impl From<DeskError> for GraderFault {
-    fn from(error: DeskError) -> Self {
+impl From<SourceError> for GraderFault {
+    fn from(error: SourceError) -> Self {
         Self::Failed(error.to_string())
     }
 }
 
-async fn try_attempt<D: Desk, G: Grader>(
-    desk: &D,
+async fn try_attempt<D: JobSource, G: Grader>(
+    source: &D,
     grader: &G,
     job: &Job,
     folder: &Path,
@@ -251,12 +251,12 @@ async fn try_attempt<D: Desk, G: Grader>(
 ) -> Result<Outcome, GraderFault> {
     let start = Instant::now();
     let submission = folder.join("submission");
-    patiently(|| desk.fetch(&job.lease, &job.task.submission.artefact.digest, &submission)).await?;
+    patiently(|| source.fetch(&job.lease, &job.task.submission.artefact.digest, &submission)).await?;
     let suite = match &job.task.suite {
         Suite::Named(_) => None,
         Suite::Archive(digest) => {
             let file = folder.join("suite");
-            patiently(|| desk.fetch(&job.lease, digest, &file)).await?;
+            patiently(|| source.fetch(&job.lease, digest, &file)).await?;
             Some(file)
         }
     };
@@ -265,19 +265,19 @@ async fn try_attempt<D: Desk, G: Grader>(
     let graded = grader.grade(&job.task, &submission, suite.as_deref(), &work, halt).await?;
     let mut files = Vec::new();
     for file in &graded.files {
-        let artefact = patiently(|| desk.store(&job.lease, &file.path)).await?;
+        let artefact = patiently(|| source.store(&job.lease, &file.path)).await?;
         files.push(OutputFile { name: file.name.clone(), media_type: file.media_type.clone(), artefact });
     }
     let seconds = format!("{:.3}", start.elapsed().as_secs_f64());
     Ok(Outcome { seconds, ..graded.with_files(files) })
 }
 
-/// Asks a desk that is away a few times more: a hiccup of the network costs no try.
-async fn patiently<T, F: Future<Output = Result<T, DeskError>>>(ask: impl Fn() -> F) -> Result<T, DeskError> {
+/// Asks a source that is away a few times more: a hiccup of the network costs no try.
+async fn patiently<T, F: Future<Output = Result<T, SourceError>>>(ask: impl Fn() -> F) -> Result<T, SourceError> {
     let mut wait = FIRST_WAIT;
     for _ in 0..PATIENT_TRIES {
         match ask().await {
-            Err(DeskError::Away(error)) => tracing::warn!(error, "the desk is away"),
+            Err(SourceError::Away(error)) => tracing::warn!(error, "the source is away"),
             answer => return answer,
         }
         tokio::time::sleep(wait).await;
@@ -286,28 +286,30 @@ async fn patiently<T, F: Future<Output = Result<T, DeskError>>>(ask: impl Fn() -
     ask().await
 }
 
-/// Tells the desk, as often as it takes: a result that is lost would have to be made again. A worker that is to stop
+/// Tells the source, as often as it takes: a result that is lost would have to be made again. A worker that is to stop
 /// says it a few times only; then the lease runs out.
-async fn settle<D: Desk>(desk: &D, lease: &Lease, ending: Ending, stop: &CancellationToken) {
+async fn settle<D: JobSource>(source: &D, lease: &Lease, ending: Ending, stop: &CancellationToken) {
     let mut wait = FIRST_WAIT;
     let mut tries_after_stop = 3;
     loop {
         let answer = match &ending {
-            Ending::Finished(outcome) => desk.finish(lease, outcome).await,
+            Ending::Finished(outcome) => source.finish(lease, outcome).await,
             Ending::Failed(fault) => {
                 tracing::warn!(job = lease.job, fault, "a try came to nothing");
-                desk.fail(lease, fault).await
+                source.fail(lease, fault).await
             }
-            Ending::GivenBack => desk.release(lease).await,
+            Ending::GivenBack => source.release(lease).await,
             Ending::Lost => return,
         };
         match answer {
             Ok(Answer::Held) => return,
             Ok(Answer::Lost) => return tracing::warn!(job = lease.job, "too late: the lease is lost"),
-            Err(error @ (DeskError::Refused(_) | DeskError::Dismissed)) => {
+            Err(error @ (SourceError::Refused(_) | SourceError::Dismissed)) => {
                 return tracing::error!(job = lease.job, %error, "the result is refused; the lease will run out");
             }
-            Err(DeskError::Away(error)) => tracing::warn!(job = lease.job, error, "the result can't be delivered yet"),
+            Err(SourceError::Away(error)) => {
+                tracing::warn!(job = lease.job, error, "the result can't be delivered yet")
+            }
         }
         if stop.is_cancelled() {
             tries_after_stop -= 1;

@@ -1,4 +1,4 @@
-//! Regrades of whole classes. `FOSSSIM_ROWS=20000` grades so many submissions again, and prints how long it took.
+//! Regrades of whole classes. `FOSSSIM_ROWS=20000` grades this many submissions again, and prints how long it took.
 use crate::support::{
     engines::{Fresh, on_both_engines},
     rows,
@@ -193,7 +193,7 @@ async fn a_result_and_the_end_of_its_regrade_do_not_wait_for_each_other(fresh: F
             values![],
         )
         .await;
-    assert_eq!(written.expect("nobody waits for whoever waits for him"), 1);
+    assert_eq!(written.expect("no two wait for each other"), 1);
     worker.commit().await.expect("commit");
     assert_eq!(discarding.join().expect("no panic").expect(200).json()["state"], "discarded");
 }

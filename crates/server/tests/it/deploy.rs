@@ -91,7 +91,7 @@ fn units_leave_little_exposed() {
     }
     for (name, user) in [("fosssim-server.service", "fosssim"), ("fosssim-worker.service", "fosssim-worker")] {
         let text = read(&format!("systemd/{name}"));
-        // Whoever runs strangers' programs is another user than whoever keeps the grades.
+        // Anybody who runs strangers' programs is another user than anybody who keeps the grades.
         for line in [&format!("User={user}"), "Type=notify", "WatchdogSec=120", "PrivateTmp=yes"] {
             assert!(text.lines().any(|known| known == line), "{name} has no {line}");
         }

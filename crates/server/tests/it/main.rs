@@ -1,10 +1,10 @@
 //! The service's tests, in one binary. What touches the database runs on both engines.
 
-mod bell;
 mod bench;
 mod campaigns;
 mod deploy;
 mod migrations;
+mod notifier;
 mod plans;
 mod pooler;
 mod queue;

@@ -391,7 +391,7 @@ async fn a_clock_that_is_set_back_holds_nothing_up(fresh: Fresh) {
     transaction.commit().await.expect("commit");
     assert!(tick(database).await.outage);
     let new = enqueue(database, Turn::Student(3)).await;
-    assert_eq!(claim_all(database).await, [old[1], new], "whoever came before goes before");
+    assert_eq!(claim_all(database).await, [old[1], new], "the jobs that came before go before");
     let_pass(database, POLICY.lease * 2).await;
     assert_eq!(tick(database).await.retried, 1, "a lease ends in its time");
 }

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 
 on_both_engines!(workers_go_before_requests);
 
-/// Waits until so many wait for a transaction.
+/// Waits until this many wait for a transaction.
 async fn waiting(fresh: &Fresh, wanted: i64) {
     while fresh.database.waits().0 < wanted {
         tokio::task::yield_now().await;

@@ -1,11 +1,11 @@
 //! Workers on a real queue, with graders that only tests have.
 use crate::support::engines::{Fresh, run};
 use fosssim_server::{
-    queue::{self, Bell, Lane, NewJob, Policy, Turn},
+    queue::{self, Lane, NewJob, Notifier, Policy, Turn},
     store::{Artefact, Store},
     task::{Form, Input, Suite, Task},
     values,
-    worker::{self, Graded, Grader, GraderFault, LocalDesk, Options},
+    worker::{self, Graded, Grader, GraderFault, LocalSource, Options},
 };
 use std::{
     path::Path,
@@ -145,12 +145,12 @@ fn a_broken_worker_costs_no_job_its_tries() {
             let (good, broken) = (Watchful::default(), Broken { knows, tried: Arc::default() });
             let policy = Policy::default();
             let options = |name: &str| Options { slots: 2, folder: folder.path().join(name) };
-            let desk = |name: &str| {
-                LocalDesk::new(fresh.database.clone(), store.clone(), Bell::default(), policy, name.to_owned())
+            let source = |name: &str| {
+                LocalSource::new(fresh.database.clone(), store.clone(), Notifier::default(), policy, name.to_owned())
             };
             let workers = [
-                tokio::spawn(worker::work(desk("broken"), broken.clone(), options("broken"), stop.clone())),
-                tokio::spawn(worker::work(desk("good"), good.clone(), options("good"), stop.clone())),
+                tokio::spawn(worker::work(source("broken"), broken.clone(), options("broken"), stop.clone())),
+                tokio::spawn(worker::work(source("good"), good.clone(), options("good"), stop.clone())),
             ];
             while count(&fresh, "done").await < 30 {
                 assert_eq!(count(&fresh, "buried").await, 0);
@@ -176,10 +176,15 @@ fn a_job_that_may_kill_its_worker_runs_alone() {
         enqueue(&fresh, &artefact, 12, 5).await;
         let grader = Watchful { needs_company: true, ..Watchful::default() };
         let stop = CancellationToken::new();
-        let desk =
-            LocalDesk::new(fresh.database.clone(), store, Bell::default(), Policy::default(), "worker".to_owned());
+        let source = LocalSource::new(
+            fresh.database.clone(),
+            store,
+            Notifier::default(),
+            Policy::default(),
+            "worker".to_owned(),
+        );
         let options = Options { slots: 3, folder: folder.path().join("work") };
-        let working = tokio::spawn(worker::work(desk, grader.clone(), options, stop.clone()));
+        let working = tokio::spawn(worker::work(source, grader.clone(), options, stop.clone()));
         while grader.done.load(Ordering::SeqCst) < 12 {
             assert!(!working.is_finished(), "the worker gave up");
             tokio::time::sleep(Duration::from_millis(5)).await;

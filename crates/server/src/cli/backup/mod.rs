@@ -1,5 +1,5 @@
-//! `backup` and `restore`: everything that the server keeps, in a folder that says what it holds. The database is copied
-//! first: what it names lies in the store before it is named.
+//! `backup` and `restore`: everything that the server keeps, in a folder that says what it holds. The database is
+//! copied first: what it names lies in the store before it is named.
 mod manifest;
 mod postgres;
 mod restore;

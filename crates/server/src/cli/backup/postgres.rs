@@ -1,5 +1,5 @@
-//! PostgreSQL's own tools, which copy a database consistently while others write. They are told the address by variables,
-//! so that no list of processes shows the password.
+//! PostgreSQL's own tools, which copy a database consistently while others write. They are told the address by
+//! variables, so that no list of processes shows the password.
 use anyhow::{Context, Result, bail};
 use std::{path::Path, process::Stdio};
 use tokio::process::Command;

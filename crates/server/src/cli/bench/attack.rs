@@ -79,7 +79,7 @@ pub(super) async fn half_open(arguments: &Bench) -> Result<()> {
     let flood = tokio::spawn(async move {
         let mut open = std::collections::VecDeque::new();
         loop {
-            // Whoever is cut off comes again.
+            // Anybody who is cut off comes again.
             if open.len() >= HALF_OPEN {
                 open.pop_front();
             }

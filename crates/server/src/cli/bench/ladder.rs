@@ -23,12 +23,12 @@ const STEPS: [&str; 6] = ["sign in", "course", "upload", "status", "verdict", "r
 
 pub(super) async fn climb(arguments: &Bench) -> Result<()> {
     let mut stage = Stage::set(arguments, &[]).await?;
-    println!("load average at the start: {}; each rung {} s; p50 / p95 / p99 in ms\n", load(), arguments.seconds);
+    println!("load average at the start: {}; each notify {} s; p50 / p95 / p99 in ms\n", load(), arguments.seconds);
     println!("| students | {} | errors | jobs in a minute | memory | bound by |", STEPS.join(" | "));
     println!("|---:|{}---:|---:|---:|---|", "---:|".repeat(STEPS.len()));
     let mut students: Vec<Student> = Vec::new();
-    for &rung in &arguments.students {
-        for number in students.len() + 1..=rung {
+    for &notify in &arguments.students {
+        for number in students.len() + 1..=notify {
             let secret = stage.enrol(number).await?;
             students.push(Student {
                 client: Client::new(stage.address, number),
@@ -56,7 +56,7 @@ pub(super) async fn climb(arguments: &Bench) -> Result<()> {
         let cells: Vec<String> = STEPS.iter().map(|step| times.percentiles(step)).collect();
         let errors: usize = times.errors.values().sum();
         println!(
-            "| {rung} | {} | {errors} | {per_minute} | {} MiB | {} |",
+            "| {notify} | {} | {errors} | {per_minute} | {} MiB | {} |",
             cells.join(" | "),
             peak(stage.process()),
             spent.bound()
@@ -78,7 +78,7 @@ fn program(arguments: &Bench) -> Result<Bytes> {
     })
 }
 
-/// Waits until the queue is empty: what one rung left behind is not the next one's.
+/// Waits until the queue is empty: what one notify left behind is not the next one's.
 async fn empty(stage: &mut Stage) -> Result<()> {
     let start = Instant::now();
     while start.elapsed() < REST {
@@ -89,7 +89,7 @@ async fn empty(stage: &mut Stage) -> Result<()> {
         }
         tokio::time::sleep(LOOK_EVERY).await;
     }
-    println!("<!-- the queue was not empty before the next rung -->");
+    println!("<!-- the queue was not empty before the next notify -->");
     Ok(())
 }
 
@@ -142,7 +142,7 @@ impl Student {
             if submission["state"] == "done" {
                 break;
             }
-            // Who has no grade by now does not wait for it: the queue is as long as the rung is high.
+            // Who has no grade by now does not wait for it: the queue is as long as the notify is high.
             if Instant::now() > until {
                 return Ok(());
             }

@@ -50,14 +50,10 @@ pub(super) async fn run(arguments: &Bench) -> Result<()> {
 /// Writes accounts, submissions, and a result with a report for each.
 async fn fill(database: &Database, count: i64) -> Result<()> {
     let mut transaction = database.begin().await?;
-    transaction
-        .execute(
-            "INSERT INTO account (login, name, created_at)
-             WITH RECURSIVE n (i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < ?)
-             SELECT 'many' || i, 'One of many', {now} FROM n",
-            values![STUDENTS],
-        )
-        .await?;
+    let statement = "INSERT INTO account (login, name, created_at)
+        WITH RECURSIVE n (i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < ?)
+        SELECT 'many' || i, 'One of many', {now} FROM n";
+    transaction.execute(statement, values![STUDENTS]).await?;
     let submissions = match transaction.dialect() {
         Dialect::Sqlite => {
             "INSERT INTO submission (assignment, account, number, form, file_name, digest, size, created_at)

@@ -21,29 +21,29 @@ pub(super) struct NewToken {
 /// What a token is to be called.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-pub(super) struct TokenName {
+pub(in crate::web) struct TokenName {
     #[schema(value_type = Title)]
-    name: String,
+    pub(in crate::web) name: String,
 }
 
 /// What workers with a token are to be called.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-pub(super) struct WorkerTokenName {
+pub(in crate::web) struct WorkerTokenName {
     #[schema(value_type = Slug)]
-    name: String,
+    pub(in crate::web) name: String,
 }
 
 /// A password as it is to be.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-pub(super) struct PasswordWish {
+pub(in crate::web) struct PasswordWish {
     /// The one so far, if there is one.
     #[serde(default)]
-    old: String,
+    pub(in crate::web) old: String,
     /// 10 to 200 characters, and not the login.
     #[schema(min_length = 10, max_length = 200, pattern = r"^[^\x00-\x1f\x7f-\x9f]+$")]
-    new: String,
+    pub(in crate::web) new: String,
 }
 
 /// An account as it is to be.
@@ -70,15 +70,15 @@ pub(super) struct Before {
 }
 
 /// A link as people open it.
-pub(super) fn link(house: &crate::access::House, secret: Option<NewSecret>) -> Link {
-    Link { link: secret.map(|secret| house.welcome_address(&secret)) }
+pub(super) fn link(app: &crate::access::App, secret: Option<NewSecret>) -> Link {
+    Link { link: secret.map(|secret| app.welcome_address(&secret)) }
 }
 
 /// Who asks.
 #[utoipa::path(get, path = "/api/v1/me", tag = "accounts",
     responses((status = 200, body = Account)))]
 pub(super) async fn me(person: Person) -> Json<Account> {
-    Json(person.account().clone())
+    Json(person.account.clone())
 }
 
 /// Sets one's own password, where the server takes passwords. All sessions end.
@@ -109,7 +109,7 @@ pub(super) async fn set_account(
     Body(wish): Body<AccountWish>,
 ) -> Result<Json<Link>, Problem> {
     let secret = admin.set_account(&login, &wish.name, wish.is_admin).await?;
-    Ok(Json(link(admin.house(), Some(secret))))
+    Ok(Json(link(&admin.app, Some(secret))))
 }
 
 /// Makes a token for workers on other machines.

@@ -93,12 +93,12 @@ pub(in crate::web) async fn receive_suite(
     assignment: &str,
     request: Request,
 ) -> Result<Assignment, Problem> {
-    let received = upload::receive(staff.member().house(), request, SUITE).await?;
-    let house = staff.member().house();
-    let (path, incoming) = (received.file.to_path_buf(), house.incoming().to_owned());
+    let received = upload::receive(&staff.app, request, SUITE).await?;
+    let app = &staff.app;
+    let (path, incoming) = (received.file.to_path_buf(), app.incoming.clone());
     let looked = tokio::task::spawn_blocking(move || unpack_suite(&path, &incoming)).await;
     let folder = looked.map_err(|_| Problem::fault())??;
-    if let Some(grader) = house.grader() {
+    if let Some(grader) = app.grader.as_deref() {
         worker::check_suite(grader, folder.path()).await.map_err(Problem::unusable)?;
     }
     staff.set_suite(assignment, &received.file).await
@@ -143,8 +143,8 @@ pub(super) async fn export(
 
 /// All submissions, a line for each, read as they are sent.
 async fn lines(staff: Staff, assignment: &str) -> Result<HttpBody, Problem> {
-    let transfer = staff.member().transfer()?;
-    let assignment = staff.member().assignment(assignment).await?;
+    let transfer = staff.transfer()?;
+    let assignment = staff.assignment(assignment).await?;
     let pages = futures_util::stream::try_unfold((staff, 0), move |(staff, after)| {
         let (assignment, _of_this_answer) = (assignment.id, &transfer);
         async move {

@@ -15,11 +15,11 @@ use utoipa::ToSchema;
 /// A course as it is to be.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-pub(super) struct CourseWish {
+pub(in crate::web) struct CourseWish {
     #[schema(value_type = Slug)]
-    slug: String,
+    pub(in crate::web) slug: String,
     #[schema(value_type = Title)]
-    title: String,
+    pub(in crate::web) title: String,
 }
 
 /// A member as they are to be.
@@ -39,7 +39,7 @@ pub(super) struct MemberWish {
 pub(super) struct MemberLinks {
     /// A link that signs in once, good for a week; nothing where the account was there before.
     link: Option<String>,
-    /// A link to accept by, for whoever has an account of their own: they open it, signed in as ever.
+    /// A link to accept by, for anybody who has an account of their own: they open it, signed in as ever.
     invitation: Option<String>,
 }
 
@@ -78,8 +78,8 @@ pub(super) struct Confirm {
     confirm: String,
 }
 
-/// Makes somebody a member, and their account when there is none; a new account gets a link that signs in once. Whoever
-/// has an account of their own is invited, and nothing changes until they accept.
+/// Makes somebody a member, and their account when there is none; a new account gets a link that signs in once. Anybody
+/// who has an account of their own is invited, and nothing changes until they accept.
 #[utoipa::path(put, path = "/api/v1/courses/{course}/members/{login}", tag = "courses", request_body = MemberWish,
     responses((status = 200, body = MemberLinks)))]
 pub(super) async fn set_member(
@@ -88,9 +88,9 @@ pub(super) async fn set_member(
     Body(wish): Body<MemberWish>,
 ) -> Result<Json<MemberLinks>, Problem> {
     let added = staff.set_member(&login, &wish.name, &wish.role).await?;
-    let house = staff.member().house();
-    let invitation = added.invitation.map(|secret| house.invitation_address(&secret));
-    Ok(Json(MemberLinks { link: link(house, added.link).link, invitation }))
+    let app = &staff.app;
+    let invitation = added.invitation.map(|secret| app.invitation_address(&secret));
+    Ok(Json(MemberLinks { link: link(app, added.link).link, invitation }))
 }
 
 /// A line of a table of members, and what became of it.
@@ -126,11 +126,11 @@ pub(super) async fn import(
     Text(table): Text,
 ) -> Result<Json<Vec<MemberLine>>, Problem> {
     let lines = staff.import(&table, asked.preview).await?;
-    let house = staff.member().house();
+    let app = &staff.app;
     let told = lines.into_iter().map(|one| MemberLine {
         links: MemberLinks {
-            link: one.link.map(|secret| house.welcome_address(&secret)),
-            invitation: one.invitation.map(|secret| house.invitation_address(&secret)),
+            link: one.link.map(|secret| app.welcome_address(&secret)),
+            invitation: one.invitation.map(|secret| app.invitation_address(&secret)),
         },
         line: one.line,
         name: one.name,
@@ -147,7 +147,7 @@ pub(super) async fn import(
     responses((status = 200, body = Link)))]
 pub(super) async fn member_link(staff: Staff, At { login, .. }: At) -> Result<Json<Link>, Problem> {
     let secret = staff.new_link(&login).await?;
-    Ok(Json(link(staff.member().house(), Some(secret))))
+    Ok(Json(link(&staff.app, Some(secret))))
 }
 
 /// What happened in the course, latest first, 200 at a time.

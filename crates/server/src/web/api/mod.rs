@@ -37,14 +37,16 @@ mod submissions;
 mod suspicions;
 mod workers;
 
+pub(super) use accounts::{PasswordWish, TokenName, WorkerTokenName};
 pub(super) use assignments::receive_suite;
+pub(super) use courses::CourseWish;
 pub use submissions::export_csv;
-pub(super) use submissions::{receive, report_response, upload_response};
+pub(super) use submissions::{RequestWish, receive, report_response, upload_response};
 
-use crate::access::House;
+use crate::access::App;
 use utoipa_axum::{router::OpenApiRouter, routes};
 
-pub(super) fn routes() -> OpenApiRouter<House> {
+pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new()
         .routes(routes!(operations::health))
         .routes(routes!(operations::ready))

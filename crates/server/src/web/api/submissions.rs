@@ -65,10 +65,10 @@ pub(in crate::web) async fn receive(
     if !upload::is_form(&request) {
         let checked = member.check_announced(assignment, key, upload::announced(&request)).await;
         if let Err(problem) = checked {
-            return Err(upload::refuse(member.house(), request, most, problem).await);
+            return Err(upload::refuse(&member.app, request, most, problem).await);
         }
     }
-    let received = upload::receive(member.house(), request, most).await?;
+    let received = upload::receive(&member.app, request, most).await?;
     let form = upload::examine(&received.file, received.form.as_deref().or(form)).await?;
     let name = upload::plain_name(received.name.as_deref().or(name).unwrap_or("submission"));
     // A page's key and the file together: another file from the same page is another submission.
@@ -101,10 +101,10 @@ pub(super) struct MarkWish {
 /// What a student asks.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-pub(super) struct RequestWish {
+pub(in crate::web) struct RequestWish {
     /// What is wrong with the grade.
     #[schema(min_length = 1, max_length = 2000)]
-    text: String,
+    pub(in crate::web) text: String,
 }
 
 /// Gives a submission other points than the grader, with a comment, or the grader's again.

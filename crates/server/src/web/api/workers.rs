@@ -104,7 +104,7 @@ pub(super) async fn store(remote: Remote, At { digest, .. }: At, request: Reques
     let digest: Digest = digest.parse().map_err(Problem::invalid)?;
     let lease = lease(request.headers())?;
     let most = remote.check_held(&lease).await?;
-    let received = upload::receive(remote.house(), request, most).await?;
+    let received = upload::receive(&remote.app, request, most).await?;
     let found = crate::store::digest_of_file(&received.file).await?;
     if found.digest != digest {
         return Err(Problem::invalid("these are other bytes than the digest says"));

@@ -1,6 +1,9 @@
 //! One's courses and tokens.
 use super::{
-    super::input::{At, Fields},
+    super::{
+        api::{PasswordWish, TokenName},
+        input::{At, Fields},
+    },
     Frame, see, show, text,
 };
 use crate::{
@@ -9,7 +12,6 @@ use crate::{
 };
 use askama::Template;
 use axum::response::{Html, Redirect};
-use serde::Deserialize;
 
 #[derive(Template)]
 #[template(path = "home.html")]
@@ -37,20 +39,8 @@ struct AccountPage {
     takes_passwords: bool,
 }
 
-#[derive(Deserialize)]
-pub(super) struct NewPassword {
-    #[serde(default)]
-    old: String,
-    new: String,
-}
-
-#[derive(Deserialize)]
-pub(super) struct Name {
-    name: String,
-}
-
 pub(super) async fn home(person: Person) -> Result<Html<String>, Problem> {
-    let account = person.account();
+    let account = &person.account;
     let (courses, invitations) = (person.courses().await?, person.invitations().await?);
     show(&Home { frame: Frame::of(account), name: account.name.clone(), courses, invitations })
 }
@@ -58,7 +48,7 @@ pub(super) async fn home(person: Person) -> Result<Html<String>, Problem> {
 /// Opening the link does nothing yet.
 pub(super) async fn invitation(person: Person, At { secret, .. }: At) -> Result<Html<String>, Problem> {
     let invitation = person.invitation(&secret).await?;
-    show(&InvitationPage { frame: Frame::of(person.account()), secret, invitation })
+    show(&InvitationPage { frame: Frame::of(&person.account), secret, invitation })
 }
 
 pub(super) async fn accept_by_link(person: Person, At { secret, .. }: At) -> Result<Redirect, Problem> {
@@ -66,19 +56,9 @@ pub(super) async fn accept_by_link(person: Person, At { secret, .. }: At) -> Res
     Ok(see(&format!("/c/{}", course.slug)))
 }
 
-pub(super) async fn accept(person: Person, At { course, .. }: At) -> Result<Redirect, Problem> {
-    person.answer_invitation(&course, true).await?;
-    Ok(see(&format!("/c/{course}")))
-}
-
-pub(super) async fn decline(person: Person, At { course, .. }: At) -> Result<Redirect, Problem> {
-    person.answer_invitation(&course, false).await?;
-    Ok(see("/"))
-}
-
 async fn page(person: &Person, new: Option<String>) -> Result<Html<String>, Problem> {
-    let frame = Frame::of(person.account()).then("/account".to_owned(), "Account");
-    let takes_passwords = person.house().takes_passwords();
+    let frame = Frame::of(&person.account).then("/account".to_owned(), "Account");
+    let takes_passwords = person.app.takes_passwords();
     show(&AccountPage { frame, tokens: person.tokens().await?, new, takes_passwords })
 }
 
@@ -87,18 +67,19 @@ pub(super) async fn account(person: Person) -> Result<Html<String>, Problem> {
 }
 
 /// The secret is shown in the answer itself, and nowhere again.
-pub(super) async fn new_token(person: Person, Fields(form): Fields<Name>) -> Result<Html<String>, Problem> {
+pub(super) async fn new_token(person: Person, Fields(form): Fields<TokenName>) -> Result<Html<String>, Problem> {
     let (_, secret) = person.new_token(form.name.trim()).await?;
     page(&person, Some(secret.reveal().to_owned())).await
 }
 
-pub(super) async fn revoke_token(person: Person, At { id, .. }: At) -> Result<Redirect, Problem> {
-    person.revoke_token(id).await?;
-    Ok(see("/account"))
-}
-
 /// Everybody who is signed in as this person is to sign in again, by the new one.
-pub(super) async fn set_password(person: Person, Fields(form): Fields<NewPassword>) -> Result<Redirect, Problem> {
+pub(super) async fn set_password(person: Person, Fields(form): Fields<PasswordWish>) -> Result<Redirect, Problem> {
     person.set_password(&form.old, &form.new).await?;
     Ok(see("/sign-in"))
+}
+
+deeds! {
+    accept(person: Person, { course }): person.answer_invitation(&course, true) => "/c/{course}";
+    decline(person: Person, { course }): person.answer_invitation(&course, false) => "/";
+    revoke_token(person: Person, { id }): person.revoke_token(id) => "/account";
 }

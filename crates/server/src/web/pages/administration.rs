@@ -1,6 +1,9 @@
 //! What administrators see.
 use super::{
-    super::input::{At, Fields},
+    super::{
+        api::{CourseWish, WorkerTokenName},
+        input::{At, Fields},
+    },
     Frame, see, show, text,
 };
 use crate::{
@@ -28,30 +31,19 @@ struct AdminPage {
 }
 
 #[derive(Deserialize)]
-pub(super) struct NewCourse {
-    slug: String,
-    title: String,
-}
-
-#[derive(Deserialize)]
 pub(super) struct NewAccount {
     login: String,
     name: String,
     is_admin: Option<String>,
 }
 
-#[derive(Deserialize)]
-pub(super) struct NewWorker {
-    name: String,
-}
-
 async fn make(admin: &Admin, link: Option<String>, token: Option<String>) -> Result<Html<String>, Problem> {
     show(&AdminPage {
-        frame: Frame::of(admin.account()).then("/admin".to_owned(), "Administration"),
+        frame: Frame::of(&admin.account).then("/admin".to_owned(), "Administration"),
         accounts: admin.accounts().await?,
         workers: admin.worker_tokens().await?,
         platforms: admin.platforms().await?,
-        public: admin.house().public().to_owned(),
+        public: admin.app.public.clone(),
         queue: admin.queue().await?,
         events: admin.audit(None).await?,
         link,
@@ -63,23 +55,22 @@ pub(super) async fn page(admin: Admin) -> Result<Html<String>, Problem> {
     make(&admin, None, None).await
 }
 
-pub(super) async fn new_course(admin: Admin, Fields(form): Fields<NewCourse>) -> Result<Redirect, Problem> {
+pub(super) async fn new_course(admin: Admin, Fields(form): Fields<CourseWish>) -> Result<Redirect, Problem> {
     let course = admin.new_course(form.slug.trim(), form.title.trim()).await?;
     Ok(see(&format!("/c/{}", course.slug)))
 }
 
 pub(super) async fn set_account(admin: Admin, Fields(form): Fields<NewAccount>) -> Result<Html<String>, Problem> {
     let secret = admin.set_account(form.login.trim(), form.name.trim(), form.is_admin.is_some()).await?;
-    let link = admin.house().welcome_address(&secret);
+    let link = admin.app.welcome_address(&secret);
     make(&admin, Some(link), None).await
 }
 
-pub(super) async fn new_worker(admin: Admin, Fields(form): Fields<NewWorker>) -> Result<Html<String>, Problem> {
+pub(super) async fn new_worker(admin: Admin, Fields(form): Fields<WorkerTokenName>) -> Result<Html<String>, Problem> {
     let (_, secret) = admin.new_worker_token(form.name.trim()).await?;
     make(&admin, None, Some(secret.reveal().to_owned())).await
 }
 
-pub(super) async fn revoke_worker(admin: Admin, At { id, .. }: At) -> Result<Redirect, Problem> {
-    admin.revoke_worker_token(id).await?;
-    Ok(see("/admin"))
+deeds! {
+    revoke_worker(admin: Admin, { id }): admin.revoke_worker_token(id) => "/admin";
 }

@@ -75,31 +75,25 @@ pub(super) async fn course(member: Member) -> Result<Html<String>, Problem> {
         frame: Frame::course(&member),
         slug: course.slug,
         title: course.title,
-        is_staff: member.is_staff(),
-        is_archived: member.is_archived(),
+        is_staff: member.is_staff,
+        is_archived: member.is_archived,
         assignments: member.assignments().await?,
     })
 }
 
 pub(super) async fn new_assignment(staff: Staff, Fields(form): Fields<NewAssignment>) -> Result<Redirect, Problem> {
     let slug = form.slug.trim();
-    if staff.member().assignments().await?.iter().any(|assignment| assignment.slug == slug) {
+    if staff.assignments().await?.iter().any(|assignment| assignment.slug == slug) {
         return Err(Problem::conflict("there is an assignment of this name", "give it another name"));
     }
     staff.set_assignment(slug, form.title.trim(), false, &Settings::default()).await?;
-    Ok(see(&format!("/c/{}/a/{slug}/settings", staff.member().course().slug)))
+    Ok(see(&format!("/c/{}/a/{slug}/settings", staff.course().slug)))
 }
 
 async fn members_page(staff: &Staff, link: Option<(String, &'static str, String)>) -> Result<Html<String>, Problem> {
-    let slug = staff.member().course().slug;
-    let frame = Frame::course(staff.member()).then(format!("/c/{slug}/members"), "Members");
-    show(&MembersPage {
-        frame,
-        slug,
-        members: staff.members().await?,
-        platforms: staff.member().platforms().await?,
-        link,
-    })
+    let slug = staff.course().slug;
+    let frame = Frame::course(staff).then(format!("/c/{slug}/members"), "Members");
+    show(&MembersPage { frame, slug, members: staff.members().await?, platforms: staff.platforms().await?, link })
 }
 
 pub(super) async fn members(staff: Staff) -> Result<Html<String>, Problem> {
@@ -109,39 +103,34 @@ pub(super) async fn members(staff: Staff) -> Result<Html<String>, Problem> {
 pub(super) async fn set_member(staff: Staff, Fields(form): Fields<NewMember>) -> Result<Html<String>, Problem> {
     let login = form.login.trim();
     let added = staff.set_member(login, form.name.trim(), &form.role).await?;
-    let house = staff.member().house();
+    let app = &staff.app;
     let link = match (added.link, added.invitation) {
-        (Some(secret), _) => Some((login.to_owned(), SIGNS_IN, house.welcome_address(&secret))),
-        (None, Some(secret)) => Some((login.to_owned(), INVITES, house.invitation_address(&secret))),
+        (Some(secret), _) => Some((login.to_owned(), SIGNS_IN, app.welcome_address(&secret))),
+        (None, Some(secret)) => Some((login.to_owned(), INVITES, app.invitation_address(&secret))),
         (None, None) => None,
     };
     members_page(&staff, link).await
 }
 
-pub(super) async fn remove_member(staff: Staff, At { course: slug, login, .. }: At) -> Result<Redirect, Problem> {
-    staff.remove_member(&login).await?;
-    Ok(see(&format!("/c/{slug}/members")))
-}
-
 pub(super) async fn member_link(staff: Staff, At { login, .. }: At) -> Result<Html<String>, Problem> {
     let secret = staff.new_link(&login).await?;
-    let link = staff.member().house().welcome_address(&secret);
+    let link = staff.app.welcome_address(&secret);
     members_page(&staff, Some((login, SIGNS_IN, link))).await
 }
 
 pub(super) async fn audit(staff: Staff, Asked(asked): Asked<Before>) -> Result<Html<String>, Problem> {
-    let slug = staff.member().course().slug;
-    let frame = Frame::course(staff.member()).then(format!("/c/{slug}/audit"), "Audit log");
+    let slug = staff.course().slug;
+    let frame = Frame::course(&staff).then(format!("/c/{slug}/audit"), "Audit log");
     show(&AuditPage { frame, slug, events: staff.audit(asked.before).await? })
 }
 
-pub(super) async fn grade_errors_again(staff: Staff) -> Result<Redirect, Problem> {
-    staff.grade_errors_again(None).await?;
-    Ok(see(&format!("/c/{}/queue", staff.member().course().slug)))
+pub(super) async fn queue(staff: Staff) -> Result<Html<String>, Problem> {
+    let slug = staff.course().slug;
+    let frame = Frame::course(&staff).then(format!("/c/{slug}/queue"), "Queue");
+    show(&QueuePage { frame, queue: staff.queue().await? })
 }
 
-pub(super) async fn queue(staff: Staff) -> Result<Html<String>, Problem> {
-    let slug = staff.member().course().slug;
-    let frame = Frame::course(staff.member()).then(format!("/c/{slug}/queue"), "Queue");
-    show(&QueuePage { frame, queue: staff.queue().await? })
+deeds! {
+    remove_member(staff: Staff, { course, login }): staff.remove_member(&login) => "/c/{course}/members";
+    grade_errors_again(staff: Staff, { course }): staff.grade_errors_again(None) => "/c/{course}/queue";
 }

@@ -103,13 +103,12 @@ pub(super) async fn class(
     At { course: slug, assignment, .. }: At,
     Asked(look): Asked<Look>,
 ) -> Result<Html<String>, Problem> {
-    let assignment = staff.member().assignment(&assignment).await?;
-    let frame = Frame::course(staff.member())
-        .then(format!("/c/{slug}/a/{}", assignment.slug), &assignment.title)
+    let assignment = staff.assignment(&assignment).await?;
+    let frame = Frame::assignment(&staff, &assignment.slug, &assignment.title)
         .then(format!("/c/{slug}/a/{}/class", assignment.slug), "Class");
     let standings = staff.standings(&assignment.slug).await?;
     let regrades = staff.regrades(&assignment.slug).await?;
-    let grading = GradingFields::of(&assignment.settings, staff.member().house().suites().names());
+    let grading = GradingFields::of(&assignment.settings, staff.app.suites.names());
     let suspicions = staff.suspicions(&assignment.slug).await?;
     let scores = staff.scores(&assignment.slug).await?;
     let (requests, statistics) = (staff.requests(&assignment.slug).await?, Statistics::of(&standings));
@@ -137,19 +136,9 @@ pub(super) async fn begin(
     At { course: slug, assignment, .. }: At,
     Fields(form): Fields<NewRegrade>,
 ) -> Result<Redirect, Problem> {
-    let settings = form.grading.over(&staff.member().assignment(&assignment).await?.settings)?;
+    let settings = form.grading.over(&staff.assignment(&assignment).await?.settings)?;
     let regrade = staff.regrade(&assignment, form.reason.trim(), Some(&settings)).await?;
     Ok(see(&format!("/c/{slug}/a/{assignment}/regrades/{}", regrade.id)))
-}
-
-pub(super) async fn publish(staff: Staff, At { course: slug, assignment, .. }: At) -> Result<Redirect, Problem> {
-    staff.publish(&assignment, true).await?;
-    Ok(see(&format!("/c/{slug}/a/{assignment}/class")))
-}
-
-pub(super) async fn withhold(staff: Staff, At { course: slug, assignment, .. }: At) -> Result<Redirect, Problem> {
-    staff.publish(&assignment, false).await?;
-    Ok(see(&format!("/c/{slug}/a/{assignment}/class")))
 }
 
 async fn show_page(
@@ -159,10 +148,9 @@ async fn show_page(
     id: i64,
     after: Option<i64>,
 ) -> Result<Html<String>, Problem> {
-    let assignment = staff.member().assignment(assignment).await?;
+    let assignment = staff.assignment(assignment).await?;
     let regrade = staff.show_regrade(&assignment.slug, id, after).await?;
-    let frame = Frame::course(staff.member())
-        .then(format!("/c/{slug}/a/{}", assignment.slug), &assignment.title)
+    let frame = Frame::assignment(staff, &assignment.slug, &assignment.title)
         .then(format!("/c/{slug}/a/{}/class", assignment.slug), "Class")
         .then(format!("/c/{slug}/a/{}/regrades/{id}", assignment.slug), "Regrade");
     show(&RegradePage { frame, slug, assignment, regrade })
@@ -176,30 +164,19 @@ pub(super) async fn show_regrade(
     show_page(&staff, slug, &assignment, id, asked.after).await
 }
 
-pub(super) async fn apply(staff: Staff, At { course: slug, assignment, id, .. }: At) -> Result<Redirect, Problem> {
-    staff.apply_regrade(&assignment, id).await?;
-    Ok(see(&format!("/c/{slug}/a/{assignment}/regrades/{id}")))
-}
-
-pub(super) async fn discard(staff: Staff, At { course: slug, assignment, id, .. }: At) -> Result<Redirect, Problem> {
-    staff.discard_regrade(&assignment, id).await?;
-    Ok(see(&format!("/c/{slug}/a/{assignment}/regrades/{id}")))
-}
-
-pub(super) async fn grade_errors_again(
-    staff: Staff,
-    At { course: slug, assignment, .. }: At,
-) -> Result<Redirect, Problem> {
-    staff.grade_errors_again(Some(&assignment)).await?;
-    Ok(see(&format!("/c/{slug}/a/{assignment}/class")))
-}
-
-pub(super) async fn dismiss(staff: Staff, At { course: slug, assignment, id, .. }: At) -> Result<Redirect, Problem> {
-    staff.decide_suspicion(&assignment, id, false).await?;
-    Ok(see(&format!("/c/{slug}/a/{assignment}/class")))
-}
-
-pub(super) async fn tell(staff: Staff, At { course: slug, assignment, id, .. }: At) -> Result<Redirect, Problem> {
-    staff.decide_suspicion(&assignment, id, true).await?;
-    Ok(see(&format!("/c/{slug}/a/{assignment}/class")))
+deeds! {
+    publish(staff: Staff, { course, assignment }):
+        staff.publish(&assignment, true) => "/c/{course}/a/{assignment}/class";
+    withhold(staff: Staff, { course, assignment }):
+        staff.publish(&assignment, false) => "/c/{course}/a/{assignment}/class";
+    apply(staff: Staff, { course, assignment, id }):
+        staff.apply_regrade(&assignment, id) => "/c/{course}/a/{assignment}/regrades/{id}";
+    discard(staff: Staff, { course, assignment, id }):
+        staff.discard_regrade(&assignment, id) => "/c/{course}/a/{assignment}/regrades/{id}";
+    grade_errors_again(staff: Staff, { course, assignment }):
+        staff.grade_errors_again(Some(&assignment)) => "/c/{course}/a/{assignment}/class";
+    dismiss(staff: Staff, { course, assignment, id }):
+        staff.decide_suspicion(&assignment, id, false) => "/c/{course}/a/{assignment}/class";
+    tell(staff: Staff, { course, assignment, id }):
+        staff.decide_suspicion(&assignment, id, true) => "/c/{course}/a/{assignment}/class";
 }

@@ -1,5 +1,17 @@
 //! The pages. They work without JavaScript; with it a submission's state changes by itself, and files can be dropped.
 
+/// Handlers that do one thing and lead on to a page, one a row: name, whom it serves and which parts of the address it
+/// takes; what it does, and where it leads.
+macro_rules! deeds {
+    ($($(#[doc = $doc:literal])* $name:ident($who:ident: $role:ty $(, { $($at:ident),* })?): $do:expr => $to:literal;)*) => {
+        $($(#[doc = $doc])*
+        pub(super) async fn $name($who: $role $(, At { $($at,)* .. }: At)?) -> Result<Redirect, Problem> {
+            $do.await?;
+            Ok(see(&format!($to)))
+        })*
+    };
+}
+
 mod account;
 mod administration;
 mod course;
@@ -13,7 +25,7 @@ mod student;
 mod submission;
 mod text;
 
-use crate::{access::House, problem::Problem};
+use crate::{access::App, problem::Problem};
 use askama::Template;
 use axum::{
     Router,
@@ -30,7 +42,7 @@ macro_rules! pages {
         /// Every page: method and path.
         pub const PAGES: &[(&str, &str)] = &[$((stringify!($method), $path)),*];
 
-        pub(super) fn router() -> Router<House> {
+        pub(super) fn router() -> Router<App> {
             Router::new()$(.route($path, routing::$method($handler)))*
         }
     };
@@ -151,9 +163,15 @@ impl Frame {
 
     fn course(member: &crate::access::Member) -> Self {
         let course = member.course();
-        let mut frame = Self::of(member.account());
+        let mut frame = Self::of(&member.account);
         frame.way.push((format!("/c/{}", course.slug), course.title));
         frame
+    }
+
+    /// At an assignment of a course.
+    fn assignment(member: &crate::access::Member, slug: &str, title: &str) -> Self {
+        let frame = Self::course(member);
+        frame.then(format!("/c/{}/a/{slug}", member.course().slug), title)
     }
 
     fn then(mut self, address: String, title: &str) -> Self {
@@ -183,7 +201,7 @@ struct ProblemPage {
 }
 
 /// Turns refusals into pages, and shows the way in to who is not signed in.
-pub(super) async fn show_problems(State(_): State<House>, request: Request, next: Next) -> Response {
+pub(super) async fn show_problems(State(_): State<App>, request: Request, next: Next) -> Response {
     let asks = request.method() == Method::GET;
     let mut response = next.run(request).await;
     let Some(problem) = response.extensions_mut().remove::<Problem>() else { return response };

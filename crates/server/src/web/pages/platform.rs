@@ -7,7 +7,7 @@ use super::{
     Frame, see, show, sign_in,
 };
 use crate::{
-    access::{Admin, Assignment, Choice, Chosen, Course, House, LoginRequest, Person, Staff, Visitor},
+    access::{Admin, App, Assignment, Choice, Chosen, Course, LoginRequest, Person, Staff, Visitor},
     problem::Problem,
 };
 use askama::Template;
@@ -107,8 +107,8 @@ pub(super) struct NewPlatform {
 
 /// The browser's word while it comes from a platform: sent with what another site makes it send, which is what the
 /// platform's answer is. In a frame many browsers keep it apart, or drop it; so nobody comes in by a frame.
-fn browser_word(house: &House, word: &str) -> String {
-    let secure = house.is_secure();
+fn browser_word(app: &App, word: &str) -> String {
+    let secure = app.is_secure();
     let rest = if secure { "SameSite=None; Secure; Partitioned" } else { "SameSite=Lax" };
     format!("{}={word}; Path=/; HttpOnly; Max-Age=600; {rest}", browser_cookie(secure))
 }
@@ -145,7 +145,7 @@ async fn begin(visitor: &Visitor, headers: &HeaderMap, login: Login) -> Result<R
         message_hint: login.lti_message_hint.clone(),
     };
     let platform = visitor.platform(&request).await?;
-    let house = visitor.house();
+    let app = &visitor.app;
     let framed = headers.get("sec-fetch-dest").is_some_and(|place| place == "iframe" || place == "frame");
     if framed {
         let fields = [
@@ -164,14 +164,14 @@ async fn begin(visitor: &Visitor, headers: &HeaderMap, login: Login) -> Result<R
         // platform.
         let address = format!("/lti/login?{}", query.finish());
         let page = show(&WindowPage { frame: Frame::nobody(), address })?.into_response();
-        let origins = platform.origins(house.is_lti_over_http());
+        let origins = platform.origins(app.lti.over_http());
         let policy = format!(
             "default-src 'none'; style-src 'self'; form-action 'self'; base-uri 'none'; frame-ancestors {origins}"
         );
         return Ok(with_policy(page, &policy));
     }
-    let answer = visitor.begin_login(&platform, &request, visitor.browser()).await?;
-    Ok(sign_in::with_cookie(&browser_word(house, &answer.browser), &answer.address))
+    let answer = visitor.begin_login(&platform, &request, visitor.browser.as_deref()).await?;
+    Ok(sign_in::with_cookie(&browser_word(app, &answer.browser), &answer.address))
 }
 
 pub(super) async fn launch(visitor: Visitor, Fields(answer): Fields<Answer>) -> Result<Response, Problem> {
@@ -183,21 +183,21 @@ pub(super) async fn launch(visitor: Visitor, Fields(answer): Fields<Answer>) -> 
             false => Problem::refused_launch(format!("the platform says: {said}")),
         });
     };
-    let launched = visitor.launch(state, token, visitor.browser()).await?;
-    Ok(sign_in::enter(visitor.house(), &launched.session, &launched.to))
+    let launched = visitor.launch(state, token, visitor.browser.as_deref()).await?;
+    Ok(sign_in::enter(&visitor.app, &launched.session, &launched.to))
 }
 
 /// The service's public keys, where platforms look for them.
-pub(super) async fn keys(State(house): State<House>) -> Result<Response, Problem> {
-    let keys = house.platform_keys().await?;
+pub(super) async fn keys(State(app): State<App>) -> Result<Response, Problem> {
+    let keys = app.platform_keys().await?;
     Ok(([(header::CACHE_CONTROL, "public, max-age=300")], Json(keys)).into_response())
 }
 
 /// What an administrator of Canvas gives as the address of a configuration.
-pub(super) async fn configuration(State(house): State<House>) -> Json<Value> {
-    let public = house.public();
-    let launch = house.launch_address();
-    let host = public.split_once("://").map_or(public, |(_, host)| host);
+pub(super) async fn configuration(State(app): State<App>) -> Json<Value> {
+    let public = &app.public;
+    let launch = app.launch_address();
+    let host = public.split_once("://").map_or(public.as_str(), |(_, host)| host);
     let placement = |place: &str, kind: &str| {
         json!({"placement": place, "message_type": kind, "target_link_uri": launch, "text": "fosssim-oracle",
             "windowTarget": "_blank"})
@@ -222,7 +222,7 @@ pub(super) async fn configuration(State(house): State<House>) -> Json<Value> {
 }
 
 pub(super) async fn choose(person: Person, At { secret, .. }: At) -> Result<Html<String>, Problem> {
-    let frame = Frame::of(person.account());
+    let frame = Frame::of(&person.account);
     match person.choice(&secret).await? {
         Choice::Course { platform, title, slug, courses } => {
             show(&CoursePage { frame, secret, platform, title, slug, courses })
@@ -251,7 +251,7 @@ pub(super) async fn choose_assignment(
     match person.choose_assignment(&secret, &choice.assignment).await? {
         Chosen::Assignment(path) => Ok(see(&path).into_response()),
         Chosen::Answer { address, origins, token } => {
-            let page = show(&AnswerPage { frame: Frame::of(person.account()), address, token })?.into_response();
+            let page = show(&AnswerPage { frame: Frame::of(&person.account), address, token })?.into_response();
             let policy = format!(
                 "default-src 'none'; style-src 'self'; form-action 'self' {origins}; base-uri 'none'; frame-ancestors 'none'"
             );
@@ -279,22 +279,10 @@ pub(super) async fn set_platform(admin: Admin, Fields(form): Fields<NewPlatform>
     Ok(see("/admin"))
 }
 
-pub(super) async fn shut_platform(admin: Admin, At { name, .. }: At) -> Result<Redirect, Problem> {
-    admin.shut_platform(&name).await?;
-    Ok(see("/admin"))
-}
-
-pub(super) async fn new_key(admin: Admin) -> Result<Redirect, Problem> {
-    admin.new_platform_key().await?;
-    Ok(see("/admin"))
-}
-
-pub(super) async fn read_roster(staff: Staff) -> Result<Redirect, Problem> {
-    staff.read_roster().await?;
-    Ok(see(&format!("/c/{}/members", staff.member().course().slug)))
-}
-
-pub(super) async fn send_scores(staff: Staff, At { course: slug, assignment, .. }: At) -> Result<Redirect, Problem> {
-    staff.send_scores(&assignment).await?;
-    Ok(see(&format!("/c/{slug}/a/{assignment}/class")))
+deeds! {
+    shut_platform(admin: Admin, { name }): admin.shut_platform(&name) => "/admin";
+    new_key(admin: Admin): admin.new_platform_key() => "/admin";
+    read_roster(staff: Staff, { course }): staff.read_roster() => "/c/{course}/members";
+    send_scores(staff: Staff, { course, assignment }):
+        staff.send_scores(&assignment) => "/c/{course}/a/{assignment}/class";
 }

@@ -46,9 +46,8 @@ const PERSON: &str = "All that they handed in, what it came to, their login and 
                       courses. A shut account only can't sign in any more.";
 
 pub(super) async fn submission(staff: Staff, At { course: slug, id, .. }: At) -> Result<Html<String>, Problem> {
-    let submission = staff.member().submission(id).await?;
-    let frame =
-        Frame::course(staff.member()).then(format!("/c/{slug}/s/{id}"), &format!("Submission {}", submission.number));
+    let submission = staff.submission(id).await?;
+    let frame = Frame::course(&staff).then(format!("/c/{slug}/s/{id}"), &format!("Submission {}", submission.number));
     let title = format!("Submission {} of {} to {}", submission.number, submission.login, submission.title);
     show(&RemovePage { frame, title, words: SUBMISSION, confirm: id.to_string(), instead: None })
 }
@@ -59,14 +58,14 @@ pub(super) async fn remove_submission(
     Fields(form): Fields<Confirmed>,
 ) -> Result<Redirect, Problem> {
     form.is(&id.to_string())?;
-    let assignment = staff.member().submission(id).await?.assignment;
+    let assignment = staff.submission(id).await?.assignment;
     staff.remove_submission(id).await?;
     Ok(see(&format!("/c/{slug}/a/{assignment}/class")))
 }
 
-pub(super) async fn assignment(staff: Staff, At { course: slug, assignment, .. }: At) -> Result<Html<String>, Problem> {
-    let assignment = staff.member().assignment(&assignment).await?;
-    let frame = Frame::course(staff.member()).then(format!("/c/{slug}/a/{}", assignment.slug), &assignment.title);
+pub(super) async fn assignment(staff: Staff, At { assignment, .. }: At) -> Result<Html<String>, Problem> {
+    let assignment = staff.assignment(&assignment).await?;
+    let frame = Frame::assignment(&staff, &assignment.slug, &assignment.title);
     show(&RemovePage { frame, title: assignment.title, words: ASSIGNMENT, confirm: assignment.slug, instead: None })
 }
 
@@ -81,13 +80,13 @@ pub(super) async fn remove_assignment(
 }
 
 pub(super) async fn course(admin: Admin, staff: Staff) -> Result<Html<String>, Problem> {
-    let course = staff.member().course();
-    let (way, button) = match staff.member().is_archived() {
+    let course = staff.course();
+    let (way, button) = match staff.is_archived {
         true => ("reopen", "Open it again"),
         false => ("archive", "Archive it"),
     };
     let instead = Some((format!("/c/{}/{way}", course.slug), button));
-    let frame = Frame::of(admin.account()).then(format!("/c/{}", course.slug), &course.title);
+    let frame = Frame::of(&admin.account).then(format!("/c/{}", course.slug), &course.title);
     show(&RemovePage { frame, title: course.title, words: COURSE, confirm: course.slug, instead })
 }
 
@@ -101,20 +100,10 @@ pub(super) async fn remove_course(
     Ok(see("/"))
 }
 
-pub(super) async fn archive(admin: Admin, At { course: slug, .. }: At) -> Result<Redirect, Problem> {
-    admin.archive_course(&slug, true).await?;
-    Ok(see(&format!("/c/{slug}")))
-}
-
-pub(super) async fn reopen(admin: Admin, At { course: slug, .. }: At) -> Result<Redirect, Problem> {
-    admin.archive_course(&slug, false).await?;
-    Ok(see(&format!("/c/{slug}")))
-}
-
 pub(super) async fn person(admin: Admin, At { login, .. }: At) -> Result<Html<String>, Problem> {
     let found = admin.accounts().await?.into_iter().find(|account| account.login == login);
     let account = found.ok_or_else(|| Problem::not_found("account"))?;
-    let frame = Frame::of(admin.account()).then("/admin".to_owned(), "Administration");
+    let frame = Frame::of(&admin.account).then("/admin".to_owned(), "Administration");
     let instead = Some((format!("/admin/accounts/{login}/shut"), "Only shut the account"));
     let title = format!("{} ({login})", account.name);
     show(&RemovePage { frame, title, words: PERSON, confirm: login, instead })
@@ -130,7 +119,8 @@ pub(super) async fn remove_person(
     Ok(see("/admin"))
 }
 
-pub(super) async fn shut_account(admin: Admin, At { login, .. }: At) -> Result<Redirect, Problem> {
-    admin.disable_account(&login).await?;
-    Ok(see("/admin"))
+deeds! {
+    archive(admin: Admin, { course }): admin.archive_course(&course, true) => "/c/{course}";
+    reopen(admin: Admin, { course }): admin.archive_course(&course, false) => "/c/{course}";
+    shut_account(admin: Admin, { login }): admin.disable_account(&login) => "/admin";
 }

@@ -150,11 +150,10 @@ pub(super) fn moment(field: &str, zone: &str, before: Option<i64>) -> Result<Opt
 }
 
 pub(super) async fn page(staff: Staff, At { course: slug, assignment, .. }: At) -> Result<Html<String>, Problem> {
-    let assignment = staff.member().assignment(&assignment).await?;
-    let frame = Frame::course(staff.member())
-        .then(format!("/c/{slug}/a/{}", assignment.slug), &assignment.title)
+    let assignment = staff.assignment(&assignment).await?;
+    let frame = Frame::assignment(&staff, &assignment.slug, &assignment.title)
         .then(format!("/c/{slug}/a/{}/settings", assignment.slug), "Settings");
-    let grading = GradingFields::of(&assignment.settings, staff.member().house().suites().names());
+    let grading = GradingFields::of(&assignment.settings, staff.app.suites.names());
     let megabytes = assignment.settings.max_bytes as f64 / MIB;
     show(&SettingsPage { frame, slug, assignment, grading, megabytes })
 }
@@ -165,7 +164,7 @@ pub(super) async fn set(
     Fields(form): Fields<NewSettings>,
 ) -> Result<Redirect, Problem> {
     // An assignment is made on the course's page: a typing error in an address makes none.
-    let assignment = staff.member().assignment(&assignment).await?;
+    let assignment = staff.assignment(&assignment).await?;
     let settings = form.over(&assignment.settings)?;
     staff.set_assignment(&assignment.slug, form.title.trim(), form.visible.is_some(), &settings).await?;
     Ok(see(&format!("/c/{slug}/a/{}", assignment.slug)))

@@ -8,7 +8,7 @@ use super::{
     Frame, see, show,
 };
 use crate::{
-    access::{House, Session, Visitor},
+    access::{App, Session, Visitor},
     problem::Problem,
 };
 use askama::Template;
@@ -43,8 +43,8 @@ pub(super) struct Password {
 }
 
 /// A new session's cookie, and the way on.
-pub(super) fn enter(house: &House, session: &Session, to: &str) -> Response {
-    with_cookie(&session_cookie(house, session.secret()), to)
+pub(super) fn enter(app: &App, session: &Session, to: &str) -> Response {
+    with_cookie(&session_cookie(app, session.secret()), to)
 }
 
 pub(super) fn with_cookie(cookie: &str, to: &str) -> Response {
@@ -56,17 +56,17 @@ pub(super) fn with_cookie(cookie: &str, to: &str) -> Response {
 }
 
 pub(super) async fn page(visitor: Visitor) -> Result<Html<String>, Problem> {
-    show(&SignIn { frame: Frame::nobody(), takes_passwords: visitor.house().takes_passwords() })
+    show(&SignIn { frame: Frame::nobody(), takes_passwords: visitor.app.takes_passwords() })
 }
 
 pub(super) async fn by_password(visitor: Visitor, Fields(form): Fields<Password>) -> Result<Response, Problem> {
     let session = visitor.sign_in_by_password(form.login.trim(), &form.password).await?;
-    Ok(enter(visitor.house(), &session, "/"))
+    Ok(enter(&visitor.app, &session, "/"))
 }
 
 pub(super) async fn by_token(visitor: Visitor, Fields(form): Fields<Token>) -> Result<Response, Problem> {
     let session = visitor.sign_in_by_token(form.token.trim()).await?;
-    Ok(enter(visitor.house(), &session, "/"))
+    Ok(enter(&visitor.app, &session, "/"))
 }
 
 /// Opening the link does nothing yet: mail programs open links, too.
@@ -76,12 +76,12 @@ pub(super) async fn welcome(_: Visitor) -> Result<Html<String>, Problem> {
 
 pub(super) async fn by_link(visitor: Visitor, At { secret, .. }: At) -> Result<Response, Problem> {
     let session = visitor.sign_in_by_link(&secret).await?;
-    Ok(enter(visitor.house(), &session, "/"))
+    Ok(enter(&visitor.app, &session, "/"))
 }
 
 pub(super) async fn sign_out(visitor: Visitor) -> Result<Response, Problem> {
     visitor.sign_out().await?;
-    let secure = visitor.house().is_secure();
+    let secure = visitor.app.is_secure();
     let cookie = format!(
         "{}=; Path=/; HttpOnly; SameSite=Lax; Max-Age=0{}",
         cookie_name(secure),

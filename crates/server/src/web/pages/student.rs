@@ -1,12 +1,15 @@
 //! One student's work, as staff sees it; and the table by which a class comes in.
 use super::{
-    super::input::{At, Fields},
+    super::{
+        api::RequestWish,
+        input::{At, Fields},
+    },
     Frame, see,
     settings::moment,
     show, text,
 };
 use crate::{
-    access::{Assignment, House, Imported, Member, Staff, Work},
+    access::{App, Assignment, Imported, Member, Staff, Work},
     problem::Problem,
 };
 use askama::Template;
@@ -60,11 +63,6 @@ pub(super) struct NewMark {
 }
 
 #[derive(Deserialize)]
-pub(super) struct NewRequest {
-    text: String,
-}
-
-#[derive(Deserialize)]
 pub(super) struct Table {
     table: String,
     import: Option<String>,
@@ -74,10 +72,9 @@ pub(super) async fn page(
     staff: Staff,
     At { course: slug, assignment, login, .. }: At,
 ) -> Result<Html<String>, Problem> {
-    let assignment = staff.member().assignment(&assignment).await?;
+    let assignment = staff.assignment(&assignment).await?;
     let work = staff.work(&assignment.slug, &login).await?;
-    let frame = Frame::course(staff.member())
-        .then(format!("/c/{slug}/a/{}", assignment.slug), &assignment.title)
+    let frame = Frame::assignment(&staff, &assignment.slug, &assignment.title)
         .then(format!("/c/{slug}/a/{}/class", assignment.slug), "Class")
         .then(format!("/c/{slug}/a/{}/students/{login}", assignment.slug), &work.name);
     show(&StudentPage { frame, slug, assignment, work })
@@ -106,15 +103,15 @@ pub(super) async fn mark(
 pub(super) async fn request(
     member: Member,
     At { course: slug, id, .. }: At,
-    Fields(form): Fields<NewRequest>,
+    Fields(form): Fields<RequestWish>,
 ) -> Result<Redirect, Problem> {
     member.request(id, form.text.trim()).await?;
     Ok(see(&format!("/c/{slug}/s/{id}")))
 }
 
 fn import_page(staff: &Staff, table: String, lines: Vec<Line>, is_done: bool) -> Result<Html<String>, Problem> {
-    let slug = staff.member().course().slug;
-    let frame = Frame::course(staff.member())
+    let slug = staff.course().slug;
+    let frame = Frame::course(staff)
         .then(format!("/c/{slug}/members"), "Members")
         .then(format!("/c/{slug}/members/import"), "Import");
     let is_wrong = lines.iter().any(|line| line.of.error.is_some());
@@ -133,10 +130,10 @@ fn percent(bytes: &[u8]) -> String {
     byte_serialize(bytes).collect::<String>().replace('+', "%20")
 }
 
-fn line(house: &House, course: &str, of: Imported) -> Line {
+fn line(app: &App, course: &str, of: Imported) -> Line {
     let link = match (&of.link, &of.invitation) {
-        (Some(secret), _) => house.welcome_address(secret),
-        (None, Some(secret)) => house.invitation_address(secret),
+        (Some(secret), _) => app.welcome_address(secret),
+        (None, Some(secret)) => app.invitation_address(secret),
         (None, None) => String::new(),
     };
     let (subject, body) = (percent(course.as_bytes()), percent(format!("{}:\n{link}\n", of.name).as_bytes()));
@@ -151,7 +148,7 @@ pub(super) async fn import(staff: Staff) -> Result<Html<String>, Problem> {
 pub(super) async fn import_table(staff: Staff, Fields(form): Fields<Table>) -> Result<Html<String>, Problem> {
     let is_meant = form.import.is_some();
     let lines = staff.import(&form.table, !is_meant).await?;
-    let (house, course) = (staff.member().house(), staff.member().course().title);
-    let lines = lines.into_iter().map(|one| line(house, &course, one)).collect();
+    let (app, course) = (&staff.app, staff.course().title);
+    let lines = lines.into_iter().map(|one| line(app, &course, one)).collect();
     import_page(&staff, form.table, lines, is_meant)
 }

@@ -52,11 +52,11 @@ pub(super) async fn assignment(
     At { course: slug, assignment, .. }: At,
 ) -> Result<Html<String>, Problem> {
     let assignment = member.assignment(&assignment).await?;
-    let frame = Frame::course(&member).then(format!("/c/{slug}/a/{}", assignment.slug), &assignment.title);
+    let frame = Frame::assignment(&member, &assignment.slug, &assignment.title);
     let submissions = member.submissions(&assignment.slug).await?;
     let due = member.due(&assignment).await?;
     let key = secret::random_hex();
-    show(&AssignmentPage { frame, slug, is_staff: member.is_staff(), assignment, due, submissions, key })
+    show(&AssignmentPage { frame, slug, is_staff: member.is_staff, assignment, due, submissions, key })
 }
 
 pub(super) async fn submit(
@@ -70,8 +70,7 @@ pub(super) async fn submit(
 
 pub(super) async fn submission(member: Member, At { course: slug, id, .. }: At) -> Result<Html<String>, Problem> {
     let submission = member.submission(id).await?;
-    let frame = Frame::course(&member)
-        .then(format!("/c/{slug}/a/{}", submission.assignment), &submission.title)
+    let frame = Frame::assignment(&member, &submission.assignment, &submission.title)
         .then(format!("/c/{slug}/s/{id}"), &format!("Submission {}", submission.number));
     let has =
         |name: &str| submission.grade.as_ref().is_some_and(|grade| grade.files.iter().any(|file| file.name == name));
@@ -84,8 +83,8 @@ pub(super) async fn submission(member: Member, At { course: slug, id, .. }: At) 
     show(&SubmissionPage {
         frame,
         slug,
-        is_staff: member.is_staff(),
-        is_own: submission.login == member.account().login,
+        is_staff: member.is_staff,
+        is_own: submission.login == member.account.login,
         is_moving: matches!(submission.state.as_str(), "waiting" | "running"),
         history: member.history(id).await?,
         doubts: member.doubts(id).await?,
@@ -95,15 +94,14 @@ pub(super) async fn submission(member: Member, At { course: slug, id, .. }: At) 
     })
 }
 
-pub(super) async fn grade_again(staff: Staff, At { course: slug, id, .. }: At) -> Result<Redirect, Problem> {
-    staff.grade_again(id).await?;
-    Ok(see(&format!("/c/{slug}/s/{id}")))
-}
-
 pub(super) async fn report(member: Member, At { id, name, .. }: At, headers: HeaderMap) -> Result<Response, Problem> {
     api::report_response(&member, id, &name, &headers).await
 }
 
 pub(super) async fn upload(member: Member, At { id, .. }: At, headers: HeaderMap) -> Result<Response, Problem> {
     api::upload_response(&member, id, &headers).await
+}
+
+deeds! {
+    grade_again(staff: Staff, { course, id }): staff.grade_again(id) => "/c/{course}/s/{id}";
 }

@@ -16,10 +16,10 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// A worker is given up after so many seconds of silence.
+/// A worker is given up after this many seconds of silence.
 pub(super) const LEASE: u64 = 2;
 
-/// A job is given up after so many failures. More than the default: here workers die many times a minute.
+/// A job is given up after this many failures. More than the default: here workers die many times a minute.
 pub(super) const TRIES: u32 = 8;
 
 /// What a submission comes to in calm weather.
@@ -173,7 +173,7 @@ impl Arena {
             payload: &payload,
         };
         queue::enqueue(&mut transaction, &job).await?;
-        queue::Bell::ring(&mut transaction).await?;
+        queue::Notifier::notify(&mut transaction).await?;
         transaction.commit().await
     }
 
@@ -204,7 +204,7 @@ impl Arena {
             .int("n")
     }
 
-    /// Starts workers until there are so many.
+    /// Starts workers until there are this many.
     pub(super) fn replace_the_dead(&mut self, count: usize) {
         self.workers.retain_mut(|worker| worker.try_wait().expect("a status").is_none());
         while self.workers.len() < count {

@@ -9,7 +9,7 @@ use std::{
 /// Submissions are a line: what to do, the verdict's code, the points, and how long to take.
 ///
 /// `poison` kills the worker that runs it, every time. `crash` kills the grader. `freeze` stops its worker the first
-/// time, and whoever watches over the storm wakes it much later.
+/// time, and anybody who watches over the storm wakes it much later.
 const SCRIPT: &str = r#"#!/bin/sh
 [ "$1" = grade ] || exit 2
 program=$2

@@ -1,6 +1,6 @@
 //! Two servers with their workers on one database and one store, and workers over HTTP of which one lies about its
-//! health and one has no room: killed and frozen while students hand in, some of it poison. The store's disk is full for
-//! a while, and the pooler is killed, where there is one.
+//! health and one has no room: killed and frozen while students hand in, some of it poison. The store's disk is full
+//! for a while, and the pooler is killed, where there is one.
 use crate::support::{
     disk::SmallDisk,
     engines::{Fresh, on_all_engines},

@@ -83,7 +83,7 @@ pub(crate) static KEYS: LazyLock<[Key; 3]> =
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Trouble {
     Status(u16),
-    /// Asks to wait so many seconds.
+    /// Asks to wait this many seconds.
     Busy(u64),
     /// Takes it, and the answer gets lost.
     Lost,

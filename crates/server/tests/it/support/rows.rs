@@ -6,7 +6,7 @@ pub(crate) fn count(some: i64) -> i64 {
     std::env::var("FOSSSIM_ROWS").ok().map_or(some, |rows| rows.parse().expect("a number"))
 }
 
-/// Adds so many graded submissions of students to an assignment. All were right.
+/// Adds this many graded submissions of students to an assignment. All were right.
 pub(crate) async fn fill(database: &Database, assignment: i64, students: i64, submissions: i64) {
     let mut transaction = database.begin().await.expect("a transaction");
     let first = transaction

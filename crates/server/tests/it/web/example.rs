@@ -22,7 +22,7 @@ async fn two_commands_and_an_upload(fresh: Fresh) {
     let admin = server.visitor().welcome(&admin);
     let class = admin.get("/api/v1/courses/example/assignments/m1/class").expect(200).json();
     assert_eq!(class[0]["login"], "student");
-    // Started again it makes no second one, and whoever has signed in needs no link.
+    // Started again it makes no second one, and anybody who has signed in needs no link.
     server.stop();
     server.resume();
     assert!(server.next_word().ends_with("/flawed-program"));

@@ -15,7 +15,7 @@ on_both_engines!(files_are_sent_in_pieces, quotas_count_what_is_kept, refused_at
 
 const SUBMISSIONS: &str = "/api/v1/courses/physics/assignments/m1/submissions";
 
-/// A program of so many MiB, which no two calls make alike.
+/// A program of this many MiB, which no two calls make alike.
 fn large(mebibytes: usize, number: u8) -> Vec<u8> {
     let mut bytes = program("AC", u32::from(number));
     bytes.resize(mebibytes << 20, number);
@@ -52,7 +52,8 @@ async fn files_are_sent_in_pieces(fresh: Fresh) {
         ada.send("GET", &path, &[("Range", "bytes=0-4"), ("If-Range", "\"other\"")], b"").expect(200).body.len(),
         bytes.len()
     );
-    // Readers that take nothing: each holds little, an account has so many and no more, and the rest is not disturbed.
+    // Readers that take nothing: each holds little, an account has this many and no more, and the rest is not
+    // disturbed.
     let before = server.peak_memory();
     let mut readers: Vec<TcpStream> = (0..12).map(|_| ask(&ada, &path)).collect();
     for reader in &mut readers {

@@ -43,7 +43,7 @@ async fn a_password_signs_in_until_it_is_changed(fresh: Fresh) {
     let headers = [("Cookie".to_owned(), cookie), ("Sec-Fetch-Site".to_owned(), "same-origin".to_owned())];
     let session = Client { url: server.url.clone(), headers: headers.into() };
     session.get("/api/v1/me").expect(200);
-    // Whoever changes it shows the old one, and who signed in by that is out.
+    // Anybody who changes it shows the old one, and who signed in by that is out.
     assert_eq!(set(&ada, "correct horse", "another horse"), 401, "she is out, too");
     assert_eq!(set(&session, "wrong horse!", "another horse"), 401);
     assert_eq!(set(&session, "correct horse", "another horse"), 204);
@@ -54,7 +54,7 @@ async fn a_password_signs_in_until_it_is_changed(fresh: Fresh) {
     let link = admin.post_json("/api/v1/courses/physics/members/ada/link", "{}").expect(200).json();
     let ada = server.visitor().welcome(link["link"].as_str().expect("a link").rsplit('/').next().expect("a secret"));
     sign_in(&server, "ada", "another+horse").expect(401);
-    // So does becoming more than a student: whoever set it could sign in as staff.
+    // So does becoming more than a student: anybody who set it could sign in as staff.
     assert_eq!(set(&ada, "", "third horse !"), 204);
     let wish = br#"{"name": "Ada", "role": "staff"}"#;
     admin.send("PUT", "/api/v1/courses/physics/members/ada", JSON, wish).expect(200);
@@ -93,7 +93,8 @@ async fn nobody_signs_in_by_guessing(fresh: Fresh) {
     );
     other.expect(403);
     eve.get("/api/v1/me").expect(200);
-    // Whoever guesses shuts their own address out, and nobody else: from another one the right password goes on working.
+    // Anybody who guesses shuts their own address out, and nobody else: from another one the right password goes on
+    // working.
     sign_in(&server, "ada", "correct+horse").expect(429);
     let body = "login=ada&password=correct+horse";
     let host = server.url.strip_prefix("http://").expect("an address");

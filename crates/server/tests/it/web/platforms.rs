@@ -245,7 +245,7 @@ async fn rosters_are_read_to_their_end(fresh: Fresh) {
     assert_eq!(read, json!({"members": 4, "left": 1}));
     let left = ["Given ada student", "Given bob staff", "Given teacher staff", "Given tutor staff", "Local student"];
     assert_eq!(sorted(members()), left);
-    // Who becomes more than a student signs in again: whoever was signed in for them does not come along.
+    // Who becomes more than a student signs in again: anybody who was signed in for them does not come along.
     let (now_staff, _) = arrive(&server, &platform, ("ada", INSTRUCTOR), |_| {});
     ada.get("/api/v1/me").expect(401);
     now_staff.get("/api/v1/courses/physics/members").expect(200);

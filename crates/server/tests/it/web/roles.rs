@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 pub(super) enum For {
     /// Anybody.
     All,
-    /// Whoever is signed in.
+    /// Anybody who is signed in.
     People,
     /// Members of the course.
     Members,

@@ -6,7 +6,7 @@ use crate::support::{
 
 on_both_engines!(staff_is_told_when_many_agree_on_another_answer);
 
-/// A program that is wrong in one scene, and right for so many steps of it.
+/// A program that is wrong in one scene, and right for this many steps of it.
 fn answering(scene: &str, right_steps: u32) -> Vec<u8> {
     format!("#!grade WA 50 {scene} {right_steps}\n").into_bytes()
 }

@@ -1,5 +1,5 @@
-//! A bell that tells waiting workers to look at once. Only a convenience: nothing is told by it but that something may
-//! have changed, and whoever misses it looks again a little later anyway.
+//! A notifier that tells waiting workers to look at once. Only a convenience: nothing is told by it but that something
+//! may have changed, and anybody who misses it looks again a little later anyway.
 use crate::{
     db::{Address, Database, DbError, Dialect, Transaction, is_pooled, postgres_options},
     values,
@@ -14,40 +14,51 @@ const CHANNEL: &str = "fosssim_queue";
 /// How long a lost listener waits before it connects again.
 const RECONNECT: Duration = Duration::from_secs(5);
 
-/// The bell of one process; on PostgreSQL it is heard by all processes.
+/// The notifier of one process; on PostgreSQL it is heard by all processes.
 #[derive(Debug, Clone, Default)]
-pub struct Bell {
-    strokes: Arc<watch::Sender<u64>>,
+pub struct Notifier {
+    changes: Arc<watch::Sender<u64>>,
 }
 
-/// Somebody who waits for the bell. Strokes between two waits are not missed.
+/// Somebody who waits for the notifier. Changes between two waits are not missed.
 #[derive(Debug, Clone)]
-pub struct Ear(watch::Receiver<u64>);
+pub struct Subscription(watch::Receiver<u64>);
 
-impl Bell {
-    /// Makes the bell ring everywhere when the transaction is committed. On SQLite nothing rings by itself: call
-    /// [`strike`](Self::strike) after the commit.
+impl Notifier {
+    /// Commits, and wakes subscribers everywhere.
     ///
     /// # Errors
     /// What the database says.
-    pub async fn ring(transaction: &mut Transaction) -> Result<(), DbError> {
+    pub async fn commit(&self, mut transaction: Transaction) -> Result<(), DbError> {
+        Self::notify(&mut transaction).await?;
+        transaction.commit().await?;
+        self.wake();
+        Ok(())
+    }
+
+    /// Wakes subscribers everywhere when the transaction is committed. On SQLite nobody is woken by that: call
+    /// [`wake`](Self::wake) after the commit.
+    ///
+    /// # Errors
+    /// What the database says.
+    pub async fn notify(transaction: &mut Transaction) -> Result<(), DbError> {
         if transaction.dialect() == Dialect::Postgres {
-            transaction.rows("SELECT CAST(pg_notify(?, '') AS TEXT) AS rung", values![CHANNEL]).await?;
+            transaction.rows("SELECT CAST(pg_notify(?, '') AS TEXT) AS notify", values![CHANNEL]).await?;
         }
         Ok(())
     }
 
-    /// Rings in this process.
-    pub fn strike(&self) {
-        self.strokes.send_modify(|strokes| *strokes += 1);
+    /// Wakes subscribers in this process.
+    pub fn wake(&self) {
+        self.changes.send_modify(|changes| *changes += 1);
     }
 
-    /// Somebody who will hear every stroke from now on.
-    pub fn ear(&self) -> Ear {
-        Ear(self.strokes.subscribe())
+    /// Somebody who will hear of every change from now on.
+    pub fn subscribe(&self) -> Subscription {
+        Subscription(self.changes.subscribe())
     }
 
-    /// Passes PostgreSQL's bell on to this process, for ever; ends at once where there is none. It listens where
+    /// Passes PostgreSQL's notifier on to this process, for ever; ends at once where there is none. It listens where
     /// `direct` says, or where the database is. Behind a pooler that gives every transaction another connection it
     /// does not: the wish to be told would stay in a connection that others get next. Then polling has to do.
     pub async fn listen(self, database: Database, direct: Option<Address>) {
@@ -59,7 +70,9 @@ impl Bell {
         loop {
             match self.listen_once(&options).await {
                 Ok(()) => return tracing::info!("behind a pooler workers look by the clock: --database-direct"),
-                Err(error) => tracing::warn!(%error, "the database's bell is not heard, so workers look by the clock"),
+                Err(error) => {
+                    tracing::warn!(%error, "the database's notifier is not heard, so workers look by the clock")
+                }
             }
             tokio::time::sleep(RECONNECT).await;
         }
@@ -74,21 +87,21 @@ impl Bell {
         let mut listener = PgListener::connect_with(&pool).await?;
         listener.listen(CHANNEL).await?;
         // Whatever rang before is found by looking.
-        self.strike();
+        self.wake();
         loop {
             listener.try_recv().await?;
-            self.strike();
+            self.wake();
         }
     }
 }
 
-impl Ear {
-    /// Waits for a stroke, or until `patience` is over; whether there was one.
+impl Subscription {
+    /// Waits for a change, or until `patience` is over; whether there was one.
     pub async fn wait(&mut self, patience: Duration) -> bool {
         match tokio::time::timeout(patience, self.0.changed()).await {
             Ok(Ok(())) => true,
             Err(_) => false,
-            // The bell is gone, with everybody who could strike it: wait all the same, so that no caller spins.
+            // The notifier is gone, with everybody who could strike it: wait all the same, so that no caller spins.
             Ok(Err(_)) => {
                 tokio::time::sleep(patience).await;
                 false

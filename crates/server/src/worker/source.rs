@@ -29,9 +29,9 @@ pub enum Answer {
     Lost,
 }
 
-/// Why a desk did not answer.
+/// Why a source did not answer.
 #[derive(Debug, Error)]
-pub enum DeskError {
+pub enum SourceError {
     /// The same may succeed a moment later.
     #[error("{0}")]
     Away(String),
@@ -44,35 +44,40 @@ pub enum DeskError {
 }
 
 /// Where workers get their jobs and bring their results.
-pub trait Desk: Clone + Send + Sync + 'static {
-    /// The next job, if there is one. Not to be interrupted: the desk might have given away a job that nobody gets. A
+pub trait JobSource: Clone + Send + Sync + 'static {
+    /// The next job, if there is one. Not to be interrupted: the source might have given away a job that nobody gets. A
     /// worker that is idle also gets jobs that must run alone.
-    fn claim(&self, is_idle: bool) -> impl Future<Output = Result<Option<Job>, DeskError>> + Send;
+    fn claim(&self, is_idle: bool) -> impl Future<Output = Result<Option<Job>, SourceError>> + Send;
 
     /// Waits until there may be a job, or `patience` is over. May be interrupted.
     fn wait(&self, patience: Duration) -> impl Future<Output = ()> + Send;
 
     /// Extends the lease.
-    fn renew(&self, lease: &Lease) -> impl Future<Output = Result<Answer, DeskError>> + Send;
+    fn renew(&self, lease: &Lease) -> impl Future<Output = Result<Answer, SourceError>> + Send;
 
     /// Brings the result. Saying it twice is no harm.
-    fn finish(&self, lease: &Lease, outcome: &Outcome) -> impl Future<Output = Result<Answer, DeskError>> + Send;
+    fn finish(&self, lease: &Lease, outcome: &Outcome) -> impl Future<Output = Result<Answer, SourceError>> + Send;
 
     /// Gives the job back at no cost.
-    fn release(&self, lease: &Lease) -> impl Future<Output = Result<Answer, DeskError>> + Send;
+    fn release(&self, lease: &Lease) -> impl Future<Output = Result<Answer, SourceError>> + Send;
 
     /// Says that the try came to nothing through no fault of the submission.
-    fn fail(&self, lease: &Lease, fault: &str) -> impl Future<Output = Result<Answer, DeskError>> + Send;
+    fn fail(&self, lease: &Lease, fault: &str) -> impl Future<Output = Result<Answer, SourceError>> + Send;
 
     /// Copies an artefact of the job into a new file.
-    fn fetch(&self, lease: &Lease, digest: &Digest, file: &Path) -> impl Future<Output = Result<(), DeskError>> + Send;
+    fn fetch(
+        &self,
+        lease: &Lease,
+        digest: &Digest,
+        file: &Path,
+    ) -> impl Future<Output = Result<(), SourceError>> + Send;
 
     /// Stores a file for the result of the job.
-    fn store(&self, lease: &Lease, file: &Path) -> impl Future<Output = Result<Artefact, DeskError>> + Send;
+    fn store(&self, lease: &Lease, file: &Path) -> impl Future<Output = Result<Artefact, SourceError>> + Send;
 
-    /// Says that this worker is alive, with so many slots, and why it can't grade where it can't; called every now and
-    /// then.
-    fn tick(&self, slots: usize, fault: Option<&str>) -> impl Future<Output = Result<(), DeskError>> + Send;
+    /// Says that this worker is alive, with this many slots, and why it can't grade where it can't; called every now
+    /// and then.
+    fn tick(&self, slots: usize, fault: Option<&str>) -> impl Future<Output = Result<(), SourceError>> + Send;
 
     /// How often [`tick`](Self::tick) is to be called.
     fn tick_every(&self) -> Duration;
