@@ -36,6 +36,8 @@ pub struct StepLog<'a> {
     pub polynomials: Vec<Polynomial>,
     /// Asked about each polynomial, by its index in the log, before its roots are searched.
     pub guard: Option<Guard<'a>>,
+    /// The steps of root searches that took longer than usual.
+    pub long_searches: u64,
 }
 
 /// Says whether a step may go on after this polynomial (index in the step's log, coefficients highest power first). Who

@@ -52,7 +52,7 @@ fn aligned_steps(scene: &Scene, layout: Layout, opening: &[Logged], row: &Row) -
         let mid = if per_step == 2 { frames.next().cloned() } else { None };
         let end = frames.next()?.clone();
         let guard = |index: usize, _: &[f64]| index < end.polynomials.len();
-        let mut expected = resimulate(&world, &before, StepLog { guard: Some(&guard), ..StepLog::default() })?;
+        let mut expected = resimulate(&world, &before, &mut StepLog { guard: Some(&guard), ..StepLog::default() })?;
         if no_mid {
             expected.mid = None;
         }

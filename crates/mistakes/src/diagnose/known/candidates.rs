@@ -5,7 +5,7 @@ use super::{
     trials::{Program, Trials},
 };
 use crate::{
-    diagnose::sampling::{KeptStep, Scan},
+    diagnose::sampling::{KeptStep, Reference, Scan},
     student::{Mistake, Row},
 };
 use fosssim_model::scene::Scene;
@@ -40,15 +40,15 @@ pub(super) struct Candidates<'a> {
     /// The first divergence.
     first: Option<&'a KeptStep>,
     right: Vec<&'a KeptStep>,
-    trials: Trials,
+    trials: Trials<'a>,
 }
 
 impl<'a> Candidates<'a> {
     /// Sets the programs up.
     ///
     /// `correct` is the program that the mistakes are added to.
-    pub(super) fn new(scene: &Scene, scan: &'a Scan, correct: Correct) -> Self {
-        let trials = Trials::new(scene, correct);
+    pub(super) fn new(reference: &'a Reference<'_>, scene: &Scene, scan: &'a Scan, correct: Correct) -> Self {
+        let trials = Trials::new(reference, scene, correct);
         let candidates = applicable(scene).map(|row| Candidate { row, program: trials.program(&[row]) }).collect();
         let mut signatures = BTreeSet::new();
         let (mut probes, mut others) = (Vec::new(), Vec::new());
@@ -93,7 +93,7 @@ impl<'a> Candidates<'a> {
 
     /// The rows that reproduce the most wrong steps, half of them at least, and all right ones.
     fn partial(&self) -> Vec<Score> {
-        self.trials.work.set(0);
+        self.trials.restart();
         let stride = self.wrong.len().div_ceil(PARTIAL).max(1);
         let spread: Vec<&KeptStep> = self.wrong.iter().step_by(stride).copied().collect();
         let rest = self.wrong.iter().enumerate().filter(|(index, _)| !index.is_multiple_of(stride));
@@ -129,7 +129,7 @@ impl<'a> Candidates<'a> {
     }
 
     fn exhausted(&self) -> bool {
-        self.trials.work.get() > WORK
+        self.trials.exceed(WORK)
     }
 
     /// Whether this program logs in this step what the submission did.

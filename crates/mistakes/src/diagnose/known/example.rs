@@ -18,7 +18,7 @@ pub(super) fn example(reference: &mut Reference<'_>, scene: &Scene, correct: Cor
     let _end = reference.step(kept.step, &kept.before, &mut capture);
     if correct == Correct::RightApproach {
         let world = World::new(scene.clone(), correct.with(None));
-        capture.records = resimulate(&world, &kept.before, StepLog::default()).unwrap_or_default();
+        capture.records = resimulate(&world, &kept.before, &mut StepLog::default()).unwrap_or_default();
     }
     let (ours, theirs) = (&capture.records, &kept.records);
     let (place, expected, actual) = match kept.difference {

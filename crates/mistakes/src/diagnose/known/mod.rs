@@ -96,7 +96,7 @@ fn of_wrong_steps(reference: &mut Reference<'_>, scene: &Scene, scan: &mut Scan)
     if supplied.complete {
         return (supplied.explanation.into_iter().collect(), true);
     }
-    if let Some(several) = several::several(scene, scan, Correct::Supplied) {
+    if let Some(several) = several::several(reference, scene, scan, Correct::Supplied) {
         return (together(reference, scene, scan, Correct::Supplied, &several), true);
     }
     // The fair rules accept the right approach as well as the supplied one; behind it may be a mistake of another kind.
@@ -107,7 +107,7 @@ fn of_wrong_steps(reference: &mut Reference<'_>, scene: &Scene, scan: &mut Scan)
     if right.complete {
         return (right.explanation.into_iter().collect(), true);
     }
-    if let Some(several) = several::several(scene, scan, Correct::RightApproach) {
+    if let Some(several) = several::several(reference, scene, scan, Correct::RightApproach) {
         return (together(reference, scene, scan, Correct::RightApproach, &several), true);
     }
     (supplied.explanation.or(right.explanation).into_iter().collect(), false)
@@ -125,7 +125,7 @@ fn take_right_approach(scan: &mut Scan, scene: &Scene) -> bool {
         let logged = sample.records.end.polynomials.len();
         // A few more than were logged show that there are too few; no more are of interest.
         let guard = |index: usize, _: &[f64]| index < 2 * logged + SPARE;
-        let expected = resimulate(&world, &sample.before, StepLog { guard: Some(&guard), ..StepLog::default() });
+        let expected = resimulate(&world, &sample.before, &mut StepLog { guard: Some(&guard), ..StepLog::default() });
         let Some(expected) = expected else { continue };
         sample.difference = first_difference(&expected, &sample.records, &ROUND_OFF);
         if sample.difference.is_some() { scan.wrong.push(sample) } else { scan.right.push(sample) }
@@ -172,7 +172,7 @@ struct Found {
 
 /// Tries the catalogue on the kept steps.
 fn best(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan, correct: Correct) -> Found {
-    let mut scores = Candidates::new(scene, scan, correct).best();
+    let mut scores = Candidates::new(reference, scene, scan, correct).best();
     scores.sort_by_key(|score| plausibility(score.row));
     let (Some(best), Some(first)) = (scores.first(), scan.wrong.first()) else { return Found::default() };
     let complete = best.reproduced == best.samples;

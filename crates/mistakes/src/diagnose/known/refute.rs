@@ -43,7 +43,7 @@ pub fn shows(scene: &Scene, key: &str) -> bool {
             work.set(work.get() + 1);
             index < expected.len() && same_polynomial(coefficients, expected.get(index), &PLAIN)
         };
-        let records = resimulate(&world, &before, StepLog { guard: Some(&guard), ..StepLog::default() });
+        let records = resimulate(&world, &before, &mut StepLog { guard: Some(&guard), ..StepLog::default() });
         if records.is_none_or(|records| first_difference(&capture.records, &records, &PLAIN).is_some()) {
             return true;
         }

@@ -35,11 +35,11 @@ pub(super) fn step_work(scene: &Scene) -> u64 {
 pub(super) fn resimulate(
     world: &World,
     before: &fosssim_model::sim::State,
-    mut log: StepLog<'_>,
+    log: &mut StepLog<'_>,
 ) -> Option<StepRecords> {
     let mut state = State { x: before.positions.clone(), v: before.velocities.clone() };
     let mut records: Vec<Logged> = Vec::new();
-    step(world, &mut state, &mut log, &mut |state, log| {
+    step(world, &mut state, log, &mut |state, log| {
         records.push(Record::new(world.student, &world.scene.collision, state, log).into());
     })
     .ok()?;

@@ -5,7 +5,7 @@
 //! anything.
 use super::{plausibility, resimulate::Correct, shown::applicable, trials::Trials};
 use crate::{
-    diagnose::sampling::{KeptStep, Scan},
+    diagnose::sampling::{KeptStep, Reference, Scan},
     student::{CATALOGUE, Mistake, Row, RowKind},
 };
 use fosssim_model::{
@@ -34,8 +34,8 @@ pub(super) struct Several {
 }
 
 /// The set of rows that reproduces all kept steps; `None` where none is found with at least two rows.
-pub(super) fn several(scene: &Scene, scan: &Scan, correct: Correct) -> Option<Several> {
-    let search = Search::new(scene, scan, correct);
+pub(super) fn several(reference: &Reference<'_>, scene: &Scene, scan: &Scan, correct: Correct) -> Option<Several> {
+    let search = Search::new(reference, scene, scan, correct);
     let mut found = search.starts().into_iter().find_map(|start| search.from(start))?;
     // What is not written may look like a mistake in what is.
     if found.rows.iter().any(|row| is_empty_stage(row))
@@ -55,21 +55,21 @@ pub(in crate::diagnose) fn is_empty_stage(row: &Row) -> bool {
 
 struct Search<'a> {
     scene: &'a Scene,
-    trials: Trials,
+    trials: Trials<'a>,
     wrong: Vec<&'a KeptStep>,
     probes: Vec<&'a KeptStep>,
     right: Vec<&'a KeptStep>,
 }
 
 impl<'a> Search<'a> {
-    fn new(scene: &'a Scene, scan: &'a Scan, correct: Correct) -> Self {
+    fn new(reference: &'a Reference<'_>, scene: &'a Scene, scan: &'a Scan, correct: Correct) -> Self {
         let mut signatures = BTreeSet::new();
         // The first divergence has to be reproduced, whatever it is.
         let is_probe = |kept: &&KeptStep| signatures.insert(kept.signature);
         let mut probes: Vec<&KeptStep> = scan.wrong.iter().filter(is_probe).take(PROBES).collect();
         probes.sort_by_key(|kept| kept.records.end.polynomials.len());
         let (wrong, right) = (scan.wrong.iter().collect(), scan.right.iter().collect());
-        Self { scene, trials: Trials::new(scene, correct), wrong, probes, right }
+        Self { scene, trials: Trials::new(reference, scene, correct), wrong, probes, right }
     }
 
     #[expect(clippy::cast_precision_loss, reason = "a handful")]
@@ -169,7 +169,7 @@ impl<'a> Search<'a> {
         sets.sort_by_key(Vec::len);
         let mut best = (self.progress(&[]), Vec::new());
         for set in sets.into_iter().skip(1) {
-            if self.trials.work.get() > WORK / 2 {
+            if self.trials.exceed(WORK / 2) {
                 break;
             }
             let progress = self.progress(&set);
@@ -190,7 +190,7 @@ impl<'a> Search<'a> {
         let mut best: (f64, Vec<&'static Row>) = (reached + 1e-9, Vec::new());
         let rows = applicable(self.scene).filter(|row| set.iter().all(|other| other.mistake != row.mistake));
         for row in rows {
-            if self.trials.work.get() > WORK {
+            if self.trials.exceed(WORK) {
                 return None;
             }
             let with: Vec<&Row> = set.iter().copied().chain([row]).collect();
@@ -220,7 +220,7 @@ impl<'a> Search<'a> {
         let program = self.trials.program(set);
         let mut samples = 0;
         for sample in self.right.iter().chain(&self.wrong) {
-            if self.trials.work.get() > 2 * WORK && samples > 0 {
+            if self.trials.exceed(2 * WORK) && samples > 0 {
                 break;
             }
             if self.trials.reached(&program, sample) < 1.0 {

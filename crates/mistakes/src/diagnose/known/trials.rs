@@ -1,20 +1,22 @@
 //! Programs with mistakes of the catalogue, tried on kept steps.
 use super::resimulate::{Correct, resimulate, step_work};
 use crate::{
-    diagnose::sampling::{Difference, KeptStep, ROUND_OFF, first_difference, same_polynomial},
+    diagnose::sampling::{Difference, KeptStep, ROUND_OFF, Reference, first_difference, same_polynomial},
     student::{Area, Row, StepLog, Student, World},
 };
 use fosssim_model::scene::Scene;
 use std::cell::Cell;
 
-/// Tries programs, and counts the polynomials that they compute; one takes about a microsecond.
-pub(super) struct Trials {
+/// Tries programs, and counts the polynomials that they compute; one takes about a third of a microsecond.
+pub(super) struct Trials<'a> {
     /// The scene, for programs of all students.
     world: World,
     correct: Correct,
     step_work: u64,
-    /// What was computed so far, in polynomials.
-    pub(super) work: Cell<u64>,
+    /// The polynomials that were computed so far.
+    work: Cell<u64>,
+    /// The polynomials that all trials of an explanation may still compute.
+    left: &'a Cell<u64>,
 }
 
 /// A program.
@@ -24,11 +26,21 @@ pub(super) struct Program {
     logs_wrongly: bool,
 }
 
-impl Trials {
+impl<'a> Trials<'a> {
     /// On a scene; `correct` is the program to which mistakes are added.
-    pub(super) fn new(scene: &Scene, correct: Correct) -> Self {
+    pub(super) fn new(reference: &'a Reference<'_>, scene: &Scene, correct: Correct) -> Self {
         let world = World::new(scene.clone(), Student::default());
-        Self { world, correct, step_work: step_work(scene), work: Cell::new(0) }
+        Self { world, correct, step_work: step_work(scene), work: Cell::new(0), left: &reference.trials }
+    }
+
+    /// Whether more than these polynomials were computed, or nothing is left.
+    pub(super) fn exceed(&self, most: u64) -> bool {
+        self.work.get() > most || self.left.get() == 0
+    }
+
+    /// Counts from zero again.
+    pub(super) fn restart(&self) {
+        self.work.set(0);
     }
 
     /// The program with these mistakes.
@@ -52,8 +64,10 @@ impl Trials {
             }
             goes_on
         };
-        let records = resimulate(&program.world, &kept.before, StepLog { guard: Some(&guard), ..StepLog::default() });
+        let mut log = StepLog { guard: Some(&guard), ..StepLog::default() };
+        let records = resimulate(&program.world, &kept.before, &mut log);
         self.work.set(self.work.get() + asked.get());
+        self.left.set(self.left.get().saturating_sub(asked.get() + log.long_searches));
         let share = |index: usize| 0.5 * index as f64 / (logged.len() + 1) as f64;
         let Some(records) = records else { return failed.get().map_or(0.0, share) };
         match first_difference(&records, &kept.records, &ROUND_OFF) {

@@ -2,31 +2,35 @@
 use fosssim_judge::budget::Budget;
 use fosssim_model::{
     scene::Scene,
-    sim::{Observer, RootSearch, Simulation, State, StepError},
+    sim::{Observer, RootSearch, Simulation, State},
 };
+use std::cell::Cell;
 
 /// Makes steps for all parts of an explanation, within one budget.
 pub struct Reference<'a> {
     simulation: Simulation,
     budget: Budget<'a>,
-    given_up: Option<u32>,
+    /// The polynomials that programs with mistakes may still compute for this explanation.
+    pub trials: Cell<u64>,
 }
+
+/// The polynomials that programs with mistakes may compute for one explanation, and the steps of root searches beyond
+/// the usual. Explanations of sample programs take up to four million. Lowered, mistakes in the company of others are
+/// no longer found; raised, a hostile trace takes longer to explain.
+const TRIALS: u64 = 5_000_000;
 
 impl<'a> Reference<'a> {
     /// For a trace of this scene.
     pub fn new(scene: &'a Scene) -> Self {
         let simulation = Simulation::new(scene, RootSearch::WhereNeeded);
-        Self { simulation, budget: Budget::new(scene, false), given_up: None }
+        Self { simulation, budget: Budget::new(scene, false), trials: Cell::new(TRIALS) }
     }
 
     /// Where a step from this state ends; `None` where it has no result, or nothing is left of the budget.
     pub fn step(&mut self, step: u32, before: &State, observer: &mut dyn Observer) -> Option<&State> {
         self.simulation.state_mut().clone_from(before);
         self.simulation.set_steps_done(step - 1);
-        let result = self.budget.step(&mut self.simulation, observer);
-        if matches!(result, Err(StepError::Work { .. })) {
-            self.given_up.get_or_insert(step);
-        }
-        result.is_ok().then(|| self.simulation.state())
+        self.budget.step(&mut self.simulation, observer).ok()?;
+        Some(self.simulation.state())
     }
 }

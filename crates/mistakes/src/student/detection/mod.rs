@@ -3,7 +3,7 @@
 //! The root finder is the one that the course supplies (`num::first_time`); everything else is the student's.
 use fosssim_model::sim::{PairMotion, PointMotion};
 use fosssim_num::{
-    first_time::first_time,
+    first_time::first_time_counted,
     polynomial::Polynomial,
     vector::{Vec2, at, length, unit},
 };
@@ -34,6 +34,12 @@ mod wide;
 use frame::Axes;
 
 fosssim_model::drops_leading!();
+
+/// The steps that the root searches of one pair usually take at most.
+const USUAL_SEARCH: u64 = 128;
+
+/// The steps after which a search without end is given up (`num::rpoly`).
+const ENDLESS_SEARCH: u64 = 1000;
 
 impl Encounter {
     fn new(world: &World, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Self {
@@ -192,7 +198,10 @@ pub fn detect(
     if let Some(Change::Searched(change)) = student.change() {
         change(&mut searched);
     }
-    let mut time = first_time(&searched)?;
+    let mut steps = 0;
+    let found = first_time_counted(&searched, &mut steps);
+    log.long_searches += if found.is_err() { ENDLESS_SEARCH } else { steps.saturating_sub(USUAL_SEARCH) };
+    let mut time = found?;
     if let Some(Change::Time(change)) = student.change() {
         time = change(time);
     }
