@@ -1,5 +1,4 @@
 //! Reading requests, with answers that say what is wrong.
-use super::who::SignedIn;
 use crate::{access::App, problem::Problem};
 use axum::{
     extract::{FromRequest, FromRequestParts, Path, Query, Request},
@@ -38,6 +37,10 @@ fn is_of_type(headers: &HeaderMap, wanted: &str) -> bool {
     let value = headers.get(header::CONTENT_TYPE).and_then(|value| value.to_str().ok()).unwrap_or_default();
     value.split(';').next().is_some_and(|value| value.trim().eq_ignore_ascii_case(wanted))
 }
+
+/// Stands in a request once it is known who asks: more of its body may be read then.
+#[derive(Clone, Copy)]
+pub(super) struct SignedIn;
 
 /// The bytes of a body: few, while nobody knows who sends them.
 async fn bytes(request: Request, app: &App) -> Result<Vec<u8>, Problem> {

@@ -1,5 +1,5 @@
 //! Who asks: a handler says by the type of its argument whom it serves, and is not called for others.
-use super::input::At;
+use super::input::{At, SignedIn};
 use crate::{
     access::{Admin, App, Member, Person, Remote, Secrets, Staff, Visitor},
     net::ClientAddress,
@@ -21,10 +21,6 @@ impl Renewed {
         self.0.get().map(String::as_str)
     }
 }
-
-/// Stands in a request once it is known who asks: more of its body may be read then.
-#[derive(Clone, Copy)]
-pub(super) struct SignedIn;
 
 /// The session's cookie: by HTTPS one that no other host and no script can set or read.
 pub(super) fn cookie_name(secure: bool) -> &'static str {
