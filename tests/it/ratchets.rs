@@ -24,8 +24,9 @@ const LONGEST_FUNCTION: usize = 80;
 const LONG_FILES: [(&str, usize); 1] = [("crates/mistakes/src/assignments/t2m2/catalogue.rs", 626)];
 
 /// Functions that are longer, by the names of their files, and how long they may be.
-const LONG_FUNCTIONS: [(&str, usize); 11] = [
+const LONG_FUNCTIONS: [(&str, usize); 12] = [
     ("execute.rs attempt", 101),
+    ("mod.rs detect", 83),
     ("words.rs fmt", 106),
     ("places.rs places", 99),
     ("stages.rs of_fault", 95),
