@@ -88,7 +88,8 @@ impl std::fmt::Display for Cause {
                  factor or a rounding moves them across that bound"
             }
             Self::VanishingPolynomial => {
-                "the original takes a polynomial below an absolute 1e-10 for zero, and its round-off elsewhere for wrong"
+                "the original takes a polynomial below an absolute 1e-10 for zero, and its round-off elsewhere \
+                 for wrong"
             }
             Self::ApproachForm => {
                 "the original has the course's slip in t^3 of the approach polynomial of a particle and an edge, and \
@@ -101,7 +102,8 @@ impl std::fmt::Display for Cause {
                 "the original compares contact normals at an absolute 1e-9: the round-off of long ones exceeds it"
             }
             Self::AccumulatedResiduals => {
-                "the original adds up the round-off of all steps and particles, and its bound of 1e-6 does not grow with them"
+                "the original adds up the round-off of all steps and particles, and its bound of 1e-6 does not \
+                 grow with them"
             }
             Self::BorderlineDecision => {
                 "the original knows one outcome of a decision that round-off may flip, and the trace has the other"

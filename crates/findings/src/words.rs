@@ -129,7 +129,8 @@ impl Display for FindingDetail {
             }
             Self::PassPositions { place } => write!(
                 f,
-                "{place}: belongs to other positions than those that the response or the failsafe before it should lead to"
+                "{place}: belongs to other positions than those that the response or the failsafe before it \
+                 should lead to"
             ),
             Self::RecordsDiffer { part } => f.write_str(match part {
                 RecordPart::State => "the state changes between the step's two records",
@@ -154,7 +155,8 @@ impl Display for FindingDetail {
             ),
             Self::BeyondReach { particle, position: [x, y], velocity: [vx, vy] } => write!(
                 f,
-                "the step starts or ends with particle {particle} at ({x}, {y}) with velocity ({vx}, {vy}): no run of the scene leads to such states"
+                "the step starts or ends with particle {particle} at ({x}, {y}) with velocity ({vx}, {vy}): no \
+                 run of the scene leads to such states"
             ),
             Self::MixedForms { place } => {
                 write!(f, "{place}: the other one of the two accepted forms; a program uses one of them throughout")

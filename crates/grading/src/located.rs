@@ -8,7 +8,7 @@ use super::coverage::{Coverage, FAMILIES};
 pub use fosssim_findings::located::{Content, Failing, Located};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A kind of event, or one value of one of its properties, by their numbers in [`FAMILIES`](crate::coverage::FAMILIES).
+/// A kind of event, or one value of one of its properties, by their numbers in [`FAMILIES`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ContentIndex {
     /// The kind of event.

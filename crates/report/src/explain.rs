@@ -1,6 +1,6 @@
 //! Explanations of mistakes: lines for people, a view for programs.
 //!
-//! They show what they are given: how much that is, [`Hints::cut`](fosssim_findings::Hints::cut) decides. Words
+//! They show what they are given: how much that is, `grading::cut` decides. Words
 //! may come from a submission only as numbers.
 use super::{
     number::{counted, exact},

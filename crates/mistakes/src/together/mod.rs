@@ -11,7 +11,7 @@ use std::{borrow::Cow, time::Duration};
 
 /// The grade with nothing in it but what students see at once: points and verdict are those of the groups that are
 /// left. Unless the suite shows all that programs print, scenes tell their verdicts only
-/// ([`SceneResult::withhold`]).
+/// ([`withhold`](fosssim_findings::SceneResult::withhold)).
 #[must_use]
 pub fn for_students(grade: &Grade) -> Cow<'_, Grade> {
     if grade.is_visible() {
