@@ -198,10 +198,7 @@ pub fn detect(
     if let Some(Change::Searched(change)) = student.change() {
         change(&mut searched);
     }
-    let mut steps = 0;
-    let found = first_time_counted(&searched, &mut steps);
-    log.long_searches += if found.is_err() { ENDLESS_SEARCH } else { steps.saturating_sub(USUAL_SEARCH) };
-    let mut time = found?;
+    let mut time = searched_time(&searched, log)?;
     if let Some(Change::Time(change)) = student.change() {
         time = change(time);
     }
@@ -235,6 +232,14 @@ pub fn detect(
     let time = if student.makes(Mistake::ContactTimeZero) { 0.0 } else { time };
     let time = student.number(Place::ContactTime { kind }, time);
     Ok(Some(Contact { pair, n, time }))
+}
+
+/// The time of impact; the log counts what its search takes beyond the usual.
+fn searched_time(polynomials: &[Polynomial], log: &mut StepLog) -> Result<f64, StepFailure> {
+    let mut steps = 0;
+    let found = first_time_counted(polynomials, &mut steps);
+    log.long_searches += if found.is_err() { ENDLESS_SEARCH } else { steps.saturating_sub(USUAL_SEARCH) };
+    Ok(found?)
 }
 
 /// One pass over all pairs, with no response in between.
