@@ -191,15 +191,20 @@ impl Shared {
         };
         let door = lock("door");
         door.lock().expect("the door");
-        if !programs.is_ready(&folder) {
+        if is_running(&folder.join("data")) {
+            // A loaded machine takes its time to answer; whose data others use are never thrown away.
+            programs.wait_until_ready(&folder);
+        } else {
             drop(fs::remove_dir_all(folder.join("data")));
             programs.init(&folder.join("data"));
             programs.server(&folder, false).process_group(0).spawn().expect("postgres");
             programs.wait_until_ready(&folder);
-            // Ends the server when nobody uses it any more: tests hold the lock `users` together.
-            let script = "cd \"$0\" && while sleep 15; do
-                if flock door -c 'flock --nonblock users true && kill -INT $(head -n1 data/postmaster.pid) && rm -r data'
-                then exit; fi; done";
+            // Ends the server when nobody uses it any more: tests hold the lock `users` together. Whoever comes next
+            // waits at the door until the server is gone.
+            let script = "cd \"$0\" && pid=$(head -n1 data/postmaster.pid) && while sleep 15 && kill -0 $pid; do
+                flock door -c \"flock --nonblock users true && kill -INT $pid &&
+                    while kill -0 $pid; do sleep 0.1; done && rm -r data\"
+                done";
             Command::new("sh")
                 .args(["-c", script])
                 .arg(&folder)
@@ -219,6 +224,13 @@ impl Shared {
     pub(crate) fn new_database(&self) -> Address {
         self.programs.create_database(&self.folder)
     }
+}
+
+/// Whether the server that once wrote its number into these data still runs.
+fn is_running(data: &Path) -> bool {
+    let Ok(file) = fs::read_to_string(data.join("postmaster.pid")) else { return false };
+    let number = file.lines().next().unwrap_or_default();
+    fs::read_to_string(format!("/proc/{number}/comm")).is_ok_and(|name| name.trim() == "postgres")
 }
 
 /// PgBouncer in front of the tests' server, as hard on its clients as it can be: every transaction gets another
