@@ -83,13 +83,7 @@ impl Display for FindingDetail {
             }
             Self::PolynomialCount { expected, actual, per_pass } => {
                 write!(f, "{actual} polynomials logged, expected {expected}")?;
-                match passes(*expected, *actual, *per_pass) {
-                    Some((passes, more)) => {
-                        let plural = if passes == 1 { "pass" } else { "passes" };
-                        write!(f, ": {passes} detection {plural} too {}", if more { "many" } else { "few" })
-                    }
-                    None => Ok(()),
-                }
+                write_passes(f, passes(*expected, *actual, *per_pass))
             }
             Self::PassCount { part, expected, actual } => {
                 let part = match part {
@@ -163,6 +157,13 @@ impl Display for FindingDetail {
             }
         }
     }
+}
+
+/// How many whole detection passes a log has too many (`true`) or too few, where it is that.
+fn write_passes(f: &mut Formatter<'_>, passes: Option<(usize, bool)>) -> fmt::Result {
+    let Some((passes, more)) = passes else { return Ok(()) };
+    let plural = if passes == 1 { "pass" } else { "passes" };
+    write!(f, ": {passes} detection {plural} too {}", if more { "many" } else { "few" })
 }
 
 /// Two vectors, the wrong one first, with as many digits as tell them apart, and their distance.
