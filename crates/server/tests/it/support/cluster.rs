@@ -48,11 +48,15 @@ impl Programs {
         Some(Self { folder, user })
     }
 
-    fn command(&self, name: &str) -> Command {
-        let mut command = Command::new(self.folder.join(name));
+    fn as_its_user(&self, mut command: Command) -> Command {
         if let Some((user, group)) = self.user {
             command.uid(user).gid(group);
         }
+        command
+    }
+
+    fn command(&self, name: &str) -> Command {
+        let mut command = self.as_its_user(Command::new(self.folder.join(name)));
         command.stdin(Stdio::null()).current_dir("/");
         command
     }
@@ -199,15 +203,19 @@ impl Shared {
             programs.init(&folder.join("data"));
             programs.server(&folder, false).process_group(0).spawn().expect("postgres");
             programs.wait_until_ready(&folder);
-            // Ends the server when nobody uses it any more: tests hold the lock `users` together. The next
-            // test waits at the door until the server is gone.
-            let script = "cd \"$0\" && pid=$(head -n1 data/postmaster.pid) && while sleep 15 && kill -0 $pid; do
-                flock door -c \"flock --nonblock users true && kill -INT $pid &&
-                    while kill -0 $pid; do sleep 0.1; done && rm -r data\"
+            // Ends the server when nobody uses it any more: tests hold the lock `users` together. The next test waits at
+            // the door until the server is gone.
+            let script = "cd \"$0\" && pid=$(head -n1 data/postmaster.pid) &&
+                while sleep 15 && [ \"$(head -n1 data/postmaster.pid)\" = \"$pid\" ]; do
+                    if flock door -c \"flock --nonblock users true &&
+                        '$1' stop --silent --mode=fast --pgdata=data && rm -r data\"
+                    then exit; fi
                 done";
-            Command::new("sh")
+            programs
+                .as_its_user(Command::new("sh"))
                 .args(["-c", script])
                 .arg(&folder)
+                .arg(programs.folder.join("pg_ctl"))
                 .stdin(Stdio::null())
                 .stdout(Stdio::null())
                 .stderr(Stdio::null())
@@ -230,7 +238,9 @@ impl Shared {
 fn is_running(data: &Path) -> bool {
     let Ok(file) = fs::read_to_string(data.join("postmaster.pid")) else { return false };
     let number = file.lines().next().unwrap_or_default();
-    fs::read_to_string(format!("/proc/{number}/comm")).is_ok_and(|name| name.trim() == "postgres")
+    // One that ended, and that its parent has not asked about, is still listed.
+    let state = fs::read_to_string(format!("/proc/{number}/stat")).unwrap_or_default();
+    state.contains("(postgres)") && !state.contains("(postgres) Z")
 }
 
 /// PgBouncer in front of the tests' server, as hard on its clients as it can be: every transaction gets another
@@ -259,10 +269,7 @@ impl Pooler {
             cluster.folder.display()
         );
         fs::write(folder.path().join("settings"), settings).expect("settings");
-        let mut command = Command::new(program);
-        if let Some((user, group)) = cluster.programs.user {
-            command.uid(user).gid(group);
-        }
+        let mut command = cluster.programs.as_its_user(Command::new(program));
         command.arg("--quiet").arg(folder.path().join("settings"));
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
         let server = command.spawn().expect("pgbouncer");
