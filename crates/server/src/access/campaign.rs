@@ -139,6 +139,7 @@ async fn begin(transaction: &mut Transaction, campaign: &Campaign) -> Result<(),
     values.push(from.into());
     values.push(turn.spacing_millis().into());
     values.extend([campaign.assignment.id, campaign.cursor, last, campaign.id].map(Value::from));
+    // The plus keeps SQLite from looking through all jobs of the regrade for each submission.
     transaction
         .execute(
             concat!(
@@ -149,7 +150,7 @@ async fn begin(transaction: &mut Transaction, campaign: &Campaign) -> Result<(),
                  FROM submission
                  WHERE submission.assignment = ? AND submission.id > ? AND submission.id <= ?
                     AND submission.removed_at IS NULL
-                    AND NOT EXISTS (SELECT 1 FROM job WHERE job.submission = submission.id AND job.campaign = ?)"
+                    AND NOT EXISTS (SELECT 1 FROM job WHERE job.submission = submission.id AND +job.campaign = ?)"
             ),
             &values,
         )
