@@ -77,6 +77,10 @@ pub(super) struct Grade {
     /// Keep the traces of scenes that are not accepted, in the output folder.
     #[arg(long)]
     pub(super) keep_traces: bool,
+    /// Write how far it is into a file, such as `3/85`: scenes with a verdict, and all. Scenes that the reader does not
+    /// see do not count.
+    #[arg(long, value_name = "FILE", env = "FOSSSIM_PROGRESS")]
+    pub(super) progress: Option<PathBuf>,
     /// Show a line per submission only.
     #[arg(short, long, conflicts_with = "verbose")]
     pub(super) quiet: bool,

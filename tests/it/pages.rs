@@ -161,8 +161,11 @@ fn pages_to_hand_out_hold_no_hidden_group() {
         );
         assert!(student.contains(shown), "{student}");
     }
-    let words =
-        ["grade", &words[7], "--suite", "veils.toml", "--for", "student", "--format", "html=one.html", "--quiet"];
-    workspace.run(words);
-    assert!(!text(&workspace, "one.html").contains("Veiled"));
+    for (reader, runs) in [("student", "1/1\n"), ("staff", "2/2\n")] {
+        let report = format!("html={reader}.html");
+        let words = ["grade", &words[7], "--suite", "veils.toml", "--for", reader, "--format", &report, "--quiet"];
+        workspace.run([&words[..], &["--progress", "progress"]].concat());
+        assert_eq!(text(&workspace, "progress"), runs, "a count tells of no hidden scene");
+    }
+    assert!(!text(&workspace, "student.html").contains("Veiled"));
 }

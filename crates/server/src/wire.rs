@@ -1,6 +1,6 @@
 //! What workers on other machines and the server say to each other, as JSON.
 use crate::{
-    queue::Lease,
+    queue::{Lease, Progress},
     task::{Outcome, Task},
 };
 use serde::{Deserialize, Serialize};
@@ -43,6 +43,16 @@ pub(crate) struct Manners {
 pub(crate) struct Held {
     /// If not, somebody else has the job and nothing was changed.
     pub(crate) held: bool,
+}
+
+/// A lease that is to go on.
+#[derive(Serialize, Deserialize, ToSchema)]
+pub(crate) struct Renewal {
+    #[serde(flatten)]
+    pub(crate) lease: Lease,
+    /// How far the grading is, if the worker knows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) progress: Option<Progress>,
 }
 
 /// Why a try came to nothing.

@@ -1,11 +1,12 @@
 //! How a grading goes, on standard error: bars on a terminal, otherwise a line per finished submission.
 use crate::{
     cli::{console, screen},
+    files::Place,
     report::grade::{no_points, one_line, score, shortened},
     suite::{Submission, batch::Event, plan::Plan},
 };
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, io, path::Path};
 
 /// The display of one grading; it goes away when dropped.
 pub(super) struct Display<'a> {
@@ -88,6 +89,43 @@ impl<'a> Display<'a> {
         }
         bar.set_message(format!("{} {}", shortened(&one_line(&self.submissions[submission].name)), task.name));
         bars.running.insert((submission, scene), bar);
+    }
+}
+
+/// How many scenes have their verdict, in a file for programs that wait.
+pub(super) struct Counter {
+    place: Place,
+    /// Whether a scene of the plan counts.
+    counts: Vec<bool>,
+    done: usize,
+    all: usize,
+}
+
+impl Counter {
+    /// Nothing is done yet of these scenes, for each of so many submissions.
+    ///
+    /// # Errors
+    /// When the file can't be written.
+    pub(super) fn new(file: &Path, submissions: usize, counts: Vec<bool>) -> io::Result<Self> {
+        let all = submissions * counts.iter().filter(|counts| **counts).count();
+        let place = Place::new(file.parent().unwrap_or(Path::new("")), file.file_name().unwrap_or_default());
+        let counter = Self { place, counts, done: 0, all };
+        counter.write()?;
+        Ok(counter)
+    }
+
+    fn write(&self) -> io::Result<()> {
+        self.place.write(format!("{}/{}\n", self.done, self.all).as_bytes())
+    }
+
+    /// Counts a scene that has its verdict. A file that can't be written any more stops no grading.
+    pub(super) fn event(&mut self, event: &Event<'_>) {
+        if let Event::SceneDone { scene, .. } = *event
+            && self.counts.get(scene).copied().unwrap_or_default()
+        {
+            self.done += 1;
+            drop(self.write());
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! `grade`: runs programs on a suite in the sandbox, keeps every result, and writes the reports.
 use super::{
     closer::Closer,
-    display::Display,
+    display::{Counter, Display},
     ending::{exit_code, file_name, file_of_scene, shown, with_class},
     last_run::LastRun,
     pages::{self, Pages},
@@ -13,7 +13,7 @@ use super::{
 use crate::{
     cli::{
         console, exit,
-        grading::Grade as Arguments,
+        grading::{Audience, Grade as Arguments},
         interrupt::{cancelled_by_signals, still_at_work},
         output,
         selection::Selection,
@@ -31,6 +31,7 @@ use crate::{
     suite::{
         Cancellation, Grade, Grader, PassedOver, SceneTask, Submission, Verdict, batch,
         cards::{Cards, Judged},
+        config::Visibility,
         grader::Options,
         plan::{self, Plan},
         results::FolderResults,
@@ -237,10 +238,14 @@ impl Session<'_> {
             rehearse: &grade::rehearse,
         };
         let mut display = Display::new(self.plan, submissions);
+        let mut counter = self.arguments.progress.as_deref().map(|file| self.counter(file, submissions)).transpose()?;
         let mut log_error = None;
         let mut on_event = |event: batch::Event<'_>| {
             still_at_work();
             display.event(&event);
+            if let Some(counter) = &mut counter {
+                counter.event(&event);
+            }
             if let (Some(folder), batch::Event::Graded { grade, .. }) = (&self.folder, &event)
                 && log_error.is_none()
                 && let Err(error) = write_logs(folder, grade)
@@ -262,6 +267,18 @@ impl Session<'_> {
         drop(display);
         grade::warn_of(&mut grades, self.passed_over());
         Ok((grades, fault.map(anyhow::Error::from).or(log_error)))
+    }
+
+    /// What counts scenes for `--progress`: those that the reader of the pages sees.
+    fn counter(&self, file: &Path, submissions: &[Submission]) -> Result<Counter> {
+        let sees_all = self.arguments.reader == Audience::Staff;
+        let groups = self.plan.groups.iter();
+        let counts = groups.flat_map(|group| {
+            let is_seen = sees_all || group.marking.visibility == Visibility::Visible;
+            group.scenes.iter().map(move |_| is_seen)
+        });
+        Counter::new(file, submissions.len(), counts.collect())
+            .with_context(|| format!("cannot write the progress to {}", file.display()))
     }
 
     /// The entries that are no submissions. Of a shard, `merge` tells them.

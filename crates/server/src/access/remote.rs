@@ -3,7 +3,7 @@
 use super::App;
 use crate::{
     problem::Problem,
-    queue::Lease,
+    queue::{Lease, Progress},
     store::{Artefact, Digest, Opened},
     task::{Outcome, Suite, Task},
     values,
@@ -90,12 +90,12 @@ impl Remote {
         Ok(self.source().tick(slots.min(MANY_SLOTS), fault.as_deref()).await?)
     }
 
-    /// Extends a lease.
+    /// Extends a lease, and keeps how far the grading is.
     ///
     /// # Errors
     /// When the database does not answer.
-    pub async fn renew(&self, lease: &Lease) -> Result<bool, Problem> {
-        Ok(self.owns(lease).await? && self.source().renew(lease).await? == Answer::Held)
+    pub async fn renew(&self, lease: &Lease, progress: Option<Progress>) -> Result<bool, Problem> {
+        Ok(self.owns(lease).await? && self.source().renew(lease, progress).await? == Answer::Held)
     }
 
     /// Gives a job back.

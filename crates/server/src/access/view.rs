@@ -4,7 +4,7 @@ use crate::{
     db::{DbError, FromRow, Row, Transaction, Value, from_row},
     health,
     problem::Problem,
-    queue::{self, Lane},
+    queue::{self, Lane, Progress},
     shown::Shown,
     store::Artefact,
     task::{Outcome, OutputFile, Suite, Task},
@@ -77,6 +77,9 @@ pub struct Submission {
     /// In how many seconds its grade may be expected, while it waits and workers are there.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub expected_seconds: Option<u64>,
+    /// How far the grading is, while it runs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub progress: Option<Progress>,
     /// The result that counts.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grade: Option<Graded>,
@@ -248,6 +251,7 @@ macro_rules! submissions {
             "SELECT submission.id, submission.number, submission.form, submission.file_name, submission.digest,
                 submission.size, submission.created_at, submission.removed_at, submission.account, assignment.slug AS assignment,
                 assignment.title, assignment.published_at, account.login, account.name, job.id AS job, job.state,
+                job.scenes_done, job.scenes,
                 job.lane, job.last_fault, grade.result, result.verdict,
                 result.code, result.points, result.max_points, result.summary, result.version, result.seconds,
                 result.grader, result.essence, result.shown, result.created_at AS graded_at,
@@ -307,6 +311,7 @@ fn read_submission(row: &Row) -> Result<Submission, DbError> {
         state: row.maybe_text("state")?.unwrap_or_else(|| "cancelled".to_owned()),
         ahead: None,
         expected_seconds: None,
+        progress: progress(row)?,
         grade,
         is_withheld: false,
         is_published: row.maybe_int("published_at")?.is_some(),
@@ -318,6 +323,13 @@ fn read_submission(row: &Row) -> Result<Submission, DbError> {
     };
     submission.overrule();
     Ok(submission)
+}
+
+/// How far a job is, while it runs and its worker says so.
+fn progress(row: &Row) -> Result<Option<Progress>, DbError> {
+    let is_running = row.maybe_text("state")?.as_deref() == Some("running");
+    let read = |column| Ok::<_, DbError>(row.maybe_int(column)?.and_then(|number| u32::try_from(number).ok()));
+    Ok(read("scenes_done")?.zip(read("scenes")?).filter(|_| is_running).map(|(done, all)| Progress { done, all }))
 }
 
 impl Submission {

@@ -107,7 +107,7 @@ async fn work(database: &Database, policy: &Policy, lti: &Lti, claim: &Claim) ->
             sent = &mut sending => break sent,
             () = tokio::time::sleep(policy.renew_every()) => {
                 let mut transaction = database.begin().await?;
-                queue::renew(&mut transaction, policy, &claim.lease, MOST).await?;
+                queue::renew(&mut transaction, policy, &claim.lease, None, MOST).await?;
                 transaction.commit().await?;
             }
         }

@@ -45,7 +45,7 @@ pub async fn claim(
     let job = next.int("id")?;
     let key = secret::random_hex();
     let statement = "UPDATE job SET state = 'running', attempt = attempt + 1, worker = ?, lease_key = ?,
-           lease_until = {now} + ?, started_at = {now},
+           lease_until = {now} + ?, started_at = {now}, scenes_done = NULL, scenes = NULL,
            token = ?, is_alone = CASE WHEN failures + deaths >= ? THEN ? ELSE 0 END
         WHERE id = ? RETURNING attempt, failures, deaths, submission, payload";
     let row = transaction

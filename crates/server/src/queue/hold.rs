@@ -4,7 +4,9 @@ use crate::{
     db::{DbError, Row, Transaction},
     values,
 };
+use serde::{Deserialize, Serialize};
 use std::time::Duration;
+use utoipa::ToSchema;
 
 /// What became of a wish to finish.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,7 +30,20 @@ pub enum Failure {
     Late,
 }
 
-/// Extends a lease from now on, at most until a claim is so old; false when it was lost, and the work is for nothing.
+/// How far a grading is, in scenes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Progress {
+    /// Scenes that have their verdict.
+    #[schema(maximum = 1_000_000)]
+    pub done: u32,
+    /// All scenes that count for it.
+    #[schema(maximum = 1_000_000)]
+    pub all: u32,
+}
+
+/// Extends a lease from now on, at most until a claim is so old, and keeps how far its holder is, if it says so; false
+/// when the lease was lost, and the work is for nothing.
 ///
 /// # Errors
 /// What the database says.
@@ -36,14 +51,15 @@ pub async fn renew(
     transaction: &mut Transaction,
     policy: &Policy,
     lease: &Lease,
+    progress: Option<Progress>,
     most: Duration,
 ) -> Result<bool, DbError> {
-    let statement = "UPDATE job SET lease_until = {now} + ?
+    let (done, all) = progress.map(|Progress { done, all }| (i64::from(done), i64::from(all))).unzip();
+    let statement = "UPDATE job SET lease_until = {now} + ?, scenes_done = coalesce(?, scenes_done),
+           scenes = coalesce(?, scenes)
         WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running' AND started_at >= {now} - ?";
-    let changed = transaction
-        .execute(statement, values![millis(policy.lease), lease.job, lease.attempt, &lease.key, millis(most)])
-        .await?;
-    Ok(changed > 0)
+    let values = values![millis(policy.lease), done, all, lease.job, lease.attempt, &lease.key, millis(most)];
+    Ok(transaction.execute(statement, values).await? > 0)
 }
 
 /// What the holder of a lease is to do; nothing when the lease was lost.

@@ -19,7 +19,7 @@ mod tick;
 
 pub use claim::{Claimant, claim, is_due};
 pub use enqueue::{NewJob, Turn, cancel, enqueue, waits};
-pub use hold::{Completion, Failure, complete, fail, fail_for, payload, release, renew};
+pub use hold::{Completion, Failure, Progress, complete, fail, fail_for, payload, release, renew};
 pub use notifier::{Notifier, Subscription};
 pub use place::{Place, place};
 pub use tick::{Buried, Tick, abandon, tick};

@@ -21,6 +21,9 @@ pub struct NewFile {
     pub path: PathBuf,
 }
 
+/// The file in its folder in which a grader may say how far it is, as `3/85`: scenes with a verdict, all scenes.
+pub const PROGRESS: &str = "progress";
+
 /// Why there is no verdict. Never the submission's fault.
 #[derive(Debug, Error)]
 pub enum GraderFault {

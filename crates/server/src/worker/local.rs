@@ -3,7 +3,7 @@ use super::{Answer, GRACE, Job, JobSource, SourceError};
 use crate::{
     db::{Database, DbError},
     health, ledger,
-    queue::{self, Claimant, Completion, Failure, Lane, Lease, Notifier, Policy, Subscription},
+    queue::{self, Claimant, Completion, Failure, Lane, Lease, Notifier, Policy, Progress, Subscription},
     shown,
     store::{Artefact, Digest, Store, StoreError},
     task::{Outcome, Task},
@@ -101,13 +101,16 @@ impl JobSource for LocalSource {
         self.subscription.lock().await.wait(patience.min(LOOK_EVERY)).await;
     }
 
-    async fn renew(&self, lease: &Lease) -> Result<Answer, SourceError> {
+    async fn renew(&self, lease: &Lease, progress: Option<Progress>) -> Result<Answer, SourceError> {
         // A step of the clock is noticed before it can end a lease.
         ledger::tick(&self.database, &self.policy).await?;
         let mut transaction = self.database.begin().await?;
         let task = queue::payload(&mut transaction, lease).await?.and_then(|text| serde_json::from_str(&text).ok());
         let held = match task {
-            Some(task) => queue::renew(&mut transaction, &self.policy, lease, longest(&task, &self.policy)).await?,
+            Some(task) => {
+                let most = longest(&task, &self.policy);
+                queue::renew(&mut transaction, &self.policy, lease, progress, most).await?
+            }
             None => false,
         };
         transaction.commit().await?;

@@ -14,7 +14,7 @@ mod slots;
 mod source;
 mod suite_check;
 
-pub use grader::{Graded, Grader, GraderFault, NewFile};
+pub use grader::{Graded, Grader, GraderFault, NewFile, PROGRESS};
 pub use liveness::{Liveness, dead_workers, forget};
 pub use local::LocalSource;
 use program::GRACE;

@@ -1,7 +1,7 @@
 //! The grader as a child process: `fosssim-oracle grade`. A panic, an endless loop or a lack of memory there never
 //! takes the worker down, and whatever the child leaves behind dies with the job.
 use super::{
-    Graded, Grader, GraderFault, NewFile,
+    Graded, Grader, GraderFault, NewFile, PROGRESS,
     child::{Child, End},
     reading,
 };
@@ -95,6 +95,8 @@ impl Program {
             command.arg("--format").arg(format!("{format}={}", folder.join(file).display()));
         }
         at_home(&mut command, folder);
+        // Another grader may not know it.
+        command.env("FOSSSIM_PROGRESS", folder.join(PROGRESS));
         command
     }
 }

@@ -1,10 +1,10 @@
 //! The source of workers on other machines: a server over HTTP. They hold a token, no password of a database.
 use super::{Answer, Job, JobSource, SourceError};
 use crate::{
-    queue::Lease,
+    queue::{Lease, Progress},
     store::{Artefact, Digest, digest_of_file},
     task::Outcome,
-    wire::{Alive, Claimed, Fault, Finished, Held, Manners},
+    wire::{Alive, Claimed, Fault, Finished, Held, Manners, Renewal},
 };
 use serde::{Serialize, de::DeserializeOwned};
 use std::{
@@ -168,8 +168,8 @@ impl JobSource for RemoteSource {
         tokio::time::sleep(patience.min(ASK_EVERY)).await;
     }
 
-    async fn renew(&self, lease: &Lease) -> Result<Answer, SourceError> {
-        self.held("renew", lease.clone()).await
+    async fn renew(&self, lease: &Lease, progress: Option<Progress>) -> Result<Answer, SourceError> {
+        self.held("renew", Renewal { lease: lease.clone(), progress }).await
     }
 
     async fn finish(&self, lease: &Lease, outcome: &Outcome) -> Result<Answer, SourceError> {

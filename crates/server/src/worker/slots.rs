@@ -1,13 +1,15 @@
 //! A worker's slots: each does one job after another.
 use super::{
-    Answer, Grader, GraderFault, Job, JobSource, SourceError,
+    Answer, Grader, GraderFault, Job, JobSource, PROGRESS, SourceError,
     health::{Health, job_folder},
 };
 use crate::{
-    queue::Lease,
+    queue::{Lease, Progress},
     task::{Outcome, OutputFile, Suite},
 };
 use std::{
+    fs::File,
+    io::Read,
     path::{Path, PathBuf},
     sync::Arc,
     time::{Duration, Instant},
@@ -24,6 +26,15 @@ const LONGEST_WAIT: Duration = Duration::from_secs(5);
 
 /// How often a source that is away is asked again for the parts of a job.
 const PATIENT_TRIES: u32 = 5;
+
+/// How often the source may hear how far a grading is.
+const TELL_EVERY: Duration = Duration::from_secs(1);
+
+/// No suite has more scenes.
+const MANY_SCENES: u32 = 1_000_000;
+
+/// The folder of a job in which its grader works.
+const WORK: &str = "work";
 
 /// How a worker works.
 #[derive(Debug, Clone)]
@@ -165,9 +176,11 @@ async fn run<D: JobSource, G: Grader>(
     stop: CancellationToken,
 ) {
     let lost = CancellationToken::new();
-    let keeping = tokio::spawn(keep(source.clone(), job.lease.clone(), job.renew_every, lost.clone()));
+    let folder = job_folder(&folder);
+    let progress = folder.as_ref().ok().map(|folder| folder.path().join(WORK).join(PROGRESS));
+    let keeping = tokio::spawn(keep(source.clone(), job.lease.clone(), job.renew_every, progress, lost.clone()));
     let _pass = pass.await;
-    let ending = match job_folder(&folder) {
+    let ending = match folder {
         Err(error) => Ending::Failed(format!("no folder for the job: {error}")),
         Ok(folder) => {
             let halt = CancellationToken::new();
@@ -205,11 +218,19 @@ async fn run<D: JobSource, G: Grader>(
     keeping.abort();
 }
 
-/// Renews a lease until it is lost.
-async fn keep<D: JobSource>(source: D, lease: Lease, every: Duration, lost: CancellationToken) {
+/// Renews a lease until it is lost: as often as the source asks for, and when the grading has come further.
+async fn keep<D: JobSource>(source: D, lease: Lease, every: Duration, file: Option<PathBuf>, lost: CancellationToken) {
+    let mut renewed = tokio::time::Instant::now();
+    let mut told = None;
     loop {
-        tokio::time::sleep(every).await;
-        match source.renew(&lease).await {
+        tokio::time::sleep(every.min(TELL_EVERY)).await;
+        let progress = file.as_deref().and_then(progress_in);
+        if progress == told && renewed.elapsed() < every {
+            continue;
+        }
+        renewed = tokio::time::Instant::now();
+        told = progress;
+        match source.renew(&lease, progress).await {
             Ok(Answer::Held) => {}
             Ok(Answer::Lost) => {
                 tracing::warn!(job = lease.job, attempt = lease.attempt, "the lease is lost");
@@ -219,6 +240,15 @@ async fn keep<D: JobSource>(source: D, lease: Lease, every: Duration, lost: Canc
             Err(error) => tracing::warn!(job = lease.job, %error, "the lease can't be renewed"),
         }
     }
+}
+
+/// How far the grading is that writes this file: `3/85`.
+fn progress_in(file: &Path) -> Option<Progress> {
+    let mut text = String::new();
+    File::open(file).ok()?.take(64).read_to_string(&mut text).ok()?;
+    let (done, all) = text.trim().split_once('/')?;
+    let progress = Progress { done: done.parse().ok()?, all: all.parse().ok()? };
+    (progress.done <= progress.all && progress.all <= MANY_SCENES).then_some(progress)
 }
 
 /// Fetches what the job needs, grades, and stores what came of it.
@@ -260,7 +290,7 @@ async fn try_attempt<D: JobSource, G: Grader>(
             Some(file)
         }
     };
-    let work = folder.join("work");
+    let work = folder.join(WORK);
     std::fs::create_dir(&work).map_err(|error| GraderFault::Failed(format!("cannot make a folder: {error}")))?;
     let graded = grader.grade(&job.task, &submission, suite.as_deref(), &work, halt).await?;
     let mut files = Vec::new();

@@ -1,6 +1,6 @@
 //! Where workers get their jobs and bring their results: the database itself, or a server over HTTP.
 use crate::{
-    queue::Lease,
+    queue::{Lease, Progress},
     store::{Artefact, Digest},
     task::{Outcome, Task},
 };
@@ -52,8 +52,12 @@ pub trait JobSource: Clone + Send + Sync + 'static {
     /// Waits until there may be a job, or `patience` is over. May be interrupted.
     fn wait(&self, patience: Duration) -> impl Future<Output = ()> + Send;
 
-    /// Extends the lease.
-    fn renew(&self, lease: &Lease) -> impl Future<Output = Result<Answer, SourceError>> + Send;
+    /// Extends the lease, and says how far the grading is, if anybody knows.
+    fn renew(
+        &self,
+        lease: &Lease,
+        progress: Option<Progress>,
+    ) -> impl Future<Output = Result<Answer, SourceError>> + Send;
 
     /// Brings the result. Saying it twice is no harm.
     fn finish(&self, lease: &Lease, outcome: &Outcome) -> impl Future<Output = Result<Answer, SourceError>> + Send;

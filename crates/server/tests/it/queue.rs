@@ -158,7 +158,7 @@ async fn a_late_worker_changes_nothing(fresh: Fresh) {
     assert_eq!((second.lease.job, second.lease.attempt), (job, 2));
     assert_eq!((second.failures, second.deaths), (0, 1));
     let mut transaction = database.begin().await.expect("a transaction");
-    assert!(!queue::renew(&mut transaction, &POLICY, &frozen.lease, MOST).await.expect("an answer"));
+    assert!(!queue::renew(&mut transaction, &POLICY, &frozen.lease, None, MOST).await.expect("an answer"));
     assert!(!queue::release(&mut transaction, &frozen.lease).await.expect("an answer"));
     transaction.commit().await.expect("commit");
     assert_eq!(fail(database, &frozen.lease).await, Failure::Late);
@@ -402,7 +402,7 @@ async fn a_lease_is_not_renewed_for_ever(fresh: Fresh) {
     let held = claim(database, "w").await.expect("a job");
     let renew = async |most| {
         let mut transaction = database.begin().await.expect("a transaction");
-        let held = queue::renew(&mut transaction, &POLICY, &held.lease, most).await.expect("an answer");
+        let held = queue::renew(&mut transaction, &POLICY, &held.lease, None, most).await.expect("an answer");
         transaction.commit().await.expect("commit");
         held
     };

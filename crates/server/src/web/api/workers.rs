@@ -10,7 +10,7 @@ use crate::{
     problem::Problem,
     queue::Lease,
     store::{Artefact, Digest},
-    wire::{Alive, Claimed, Fault, Finished, Held, Manners},
+    wire::{Alive, Claimed, Fault, Finished, Held, Manners, Renewal},
 };
 use axum::{
     Json,
@@ -46,11 +46,11 @@ pub(super) async fn claim(remote: Remote, Asked(claimant): Asked<Claimant>) -> R
     })
 }
 
-/// Extends a lease.
-#[utoipa::path(post, path = "/api/v1/worker/renew", tag = "workers", request_body = Lease,
+/// Extends a lease, and says how far the grading is.
+#[utoipa::path(post, path = "/api/v1/worker/renew", tag = "workers", request_body = Renewal,
     responses((status = 200, body = Held)))]
-pub(super) async fn renew(remote: Remote, Body(lease): Body<Lease>) -> Result<Json<Held>, Problem> {
-    Ok(Json(Held { held: remote.renew(&lease).await? }))
+pub(super) async fn renew(remote: Remote, Body(renewal): Body<Renewal>) -> Result<Json<Held>, Problem> {
+    Ok(Json(Held { held: remote.renew(&renewal.lease, renewal.progress).await? }))
 }
 
 /// Gives a job back at no cost.

@@ -56,6 +56,7 @@ if [ "$code" = POISON ]; then
 fi
 # Ends when somebody lets it.
 if [ "$code" = SLOW ]; then
+    echo 3/85 > "$FOSSSIM_PROGRESS"
     while [ ! -e "$0.mended" ]; do sleep 0.1; done
     code=AC
 fi

@@ -8,7 +8,11 @@ use std::{
     time::{Duration, Instant},
 };
 
-on_both_engines!(staff_has_it_graded_again, an_assignment_that_nothing_can_be_graded_of_waits_for_staff);
+on_both_engines!(
+    staff_has_it_graded_again,
+    an_assignment_that_nothing_can_be_graded_of_waits_for_staff,
+    a_student_sees_how_far_the_grading_is,
+);
 
 fn wait_for_state(client: &Client, id: i64, wanted: impl Fn(&serde_json::Value) -> bool) -> serde_json::Value {
     let start = Instant::now();
@@ -116,4 +120,18 @@ fn a_suite_that_can_t_work_is_refused() {
         assert!(assignment["settings"]["suite_archive"].is_null(), "{assignment}");
         admin.send("PUT", path, &[], &suite("title = 'whole'")).expect(200);
     });
+}
+
+async fn a_student_sees_how_far_the_grading_is(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "1"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let ada = server.member(&admin, "physics", "ada", "student");
+    let id = ada.submit("physics", &program("SLOW", 90));
+    let running = wait_for_state(&ada, id, |submission| submission["progress"].is_object());
+    assert_eq!(running["progress"], serde_json::json!({"done": 3, "all": 85}));
+    let page = ada.get(&format!("/c/physics/s/{id}")).expect(200).text();
+    assert!(page.contains("being graded, 3 of 85 scenes done"), "{page}");
+    fs::write(server.grader().with_extension("mended"), "").expect("a file");
+    assert!(ada.wait_for_grade("physics", id)["progress"].is_null(), "it is graded");
 }

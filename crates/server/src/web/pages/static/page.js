@@ -11,6 +11,7 @@ if (state && state.dataset.follow) {
             return;
         }
         let text = submission.state === "running" ? "being graded" : "waiting";
+        if (submission.progress) text += `, ${submission.progress.done} of ${submission.progress.all} scenes done`;
         if (submission.ahead !== undefined) text += `, ${submission.ahead} before it`;
         if (submission.expected_seconds !== undefined) text += `, about ${submission.expected_seconds} s`;
         state.textContent = text;
