@@ -102,7 +102,7 @@ pub(super) struct Counter {
 }
 
 impl Counter {
-    /// Nothing is done yet of these scenes, for each of so many submissions.
+    /// Nothing is done yet of these scenes, for each of these submissions.
     ///
     /// # Errors
     /// When the file can't be written.
