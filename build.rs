@@ -5,6 +5,8 @@
 //! forbids procedural macros. So the linker is led: a folder that is searched before the system's holds scripts that
 //! stand for the shared libraries and name the archives instead. Where a trial shows that this does not work, programs
 //! are linked as usual; `FOSSSIM_LINK=shared` asks for that.
+//!
+//! Besides, it hands over the module of the browser's page, where it is asked to.
 #![forbid(unsafe_code)]
 use std::{
     env, fs, io,
@@ -21,6 +23,7 @@ const ARCHIVES: &str = "GROUP(-l:libc.a -l:libm.a -l:libgcc_eh.a -l:libgcc.a)\n"
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
     println!("cargo:rerun-if-env-changed=FOSSSIM_LINK");
+    take_module();
     let of = |name: &str| env::var(name).unwrap_or_default();
     let is_gnu = of("CARGO_CFG_TARGET_OS") == "linux" && of("CARGO_CFG_TARGET_ENV") == "gnu";
     let is_ours = of("HOST") == of("TARGET") && env::var_os("RUSTC_LINKER").is_none();
@@ -34,6 +37,19 @@ fn main() {
             println!("cargo:rustc-link-arg-bins={argument}");
         }
     }
+}
+
+/// Has the module of the browser's page compiled into the program, where `FOSSSIM_MODULE` names it
+/// (`scripts/browser-page`): nobody else needs the target that it is compiled for.
+fn take_module() {
+    println!("cargo:rerun-if-env-changed=FOSSSIM_MODULE");
+    println!("cargo:rustc-check-cfg=cfg(has_module)");
+    let Some(module) = env::var_os("FOSSSIM_MODULE").filter(|module| !module.is_empty()) else { return };
+    let module =
+        fs::canonicalize(&module).unwrap_or_else(|error| panic!("FOSSSIM_MODULE={}: {error}", module.display()));
+    println!("cargo:rerun-if-changed={}", module.display());
+    println!("cargo:rustc-env=FOSSSIM_MODULE_FILE={}", module.display());
+    println!("cargo:rustc-cfg=has_module");
 }
 
 /// Behind everything that Rust says to the linker: of `-pie` and `-no-pie` the last one counts.

@@ -75,6 +75,8 @@ pub(super) enum Command {
     Selftest(Later<Selftest>),
     /// Runs a course's grading server, the program fosssim-server beside this one.
     Serve(Later<Serve>),
+    /// Writes the page that checks traces in any browser, with nothing installed.
+    Page(Later<Page>),
     /// Behaves as the original program: same flags, same output, same files, same exit codes.
     ///
     /// The same happens when the program is called under a name that starts with FOSSSimOracle.
@@ -354,6 +356,19 @@ pub(super) struct Serve {
     /// The server's own options; serve --help lists them.
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "OPTIONS")]
     pub(super) words: Vec<OsString>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  fosssim-oracle page --output oracle.html")]
+pub(super) struct Page {
+    /// Where to write it; - is standard output.
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: PathBuf,
+    /// The module (WebAssembly) to put inside, instead of the program's own; scripts/browser-page makes it.
+    #[arg(long, value_name = "FILE")]
+    pub(super) module: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -3,7 +3,7 @@
 use crate::tree::{files, root};
 
 /// The crates of the house and those that each may use, lowest first.
-const CRATES: [(&str, &[&str]); 18] = [
+const CRATES: [(&str, &[&str]); 19] = [
     ("num", &[]),
     ("textdiff", &[]),
     ("files", &[]),
@@ -21,13 +21,14 @@ const CRATES: [(&str, &[&str]); 18] = [
         "grading",
         &["num", "textdiff", "files", "testing", "sandbox", "model", "findings", "judge", "mistakes", "evidence"],
     ),
-    // Grading is there for its tests alone (`reports_know_no_processes`).
+    // Grading is there for its tests alone (`browsers_and_reports_know_no_processes`).
     ("report", &["num", "testing", "model", "findings", "judge", "mistakes", "render", "evidence", "grading"]),
+    ("browser", &["num", "model", "judge", "render", "evidence", "report"]),
     (
         "oracle",
         &[
-            "num", "textdiff", "files", "testing", "sandbox", "model", "original", "judge", "mistakes", "render",
-            "evidence", "grading", "report",
+            "browser", "num", "textdiff", "files", "testing", "sandbox", "model", "original", "judge", "mistakes",
+            "render", "evidence", "grading", "report",
         ],
     ),
     ("lab", &["num", "model", "judge", "oracle"]),
@@ -121,8 +122,8 @@ fn rooms_of_one_crate_import_only_from_lower_rooms() {
 
 /// What judges and what writes reports is good for machines without processes and files, such as a browser's.
 #[test]
-fn reports_know_no_processes() {
-    let mut wanted = vec!["report".to_owned()];
+fn browsers_and_reports_know_no_processes() {
+    let mut wanted = vec!["browser".to_owned()];
     let mut seen = Vec::new();
     while let Some(name) = wanted.pop() {
         let manifest =

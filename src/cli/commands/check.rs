@@ -1,5 +1,5 @@
 //! `check`: grades a trace.
-use super::{headroom, pages::what_if};
+use super::headroom;
 use crate::{
     cli::{
         arguments::{Check, CheckFormat},
@@ -9,18 +9,17 @@ use crate::{
     },
     evidence::{self, Evidence, Examined, Keep, examine},
     judge::{
-        Outcome, Overall, Rules, Stop, Unreadable, fair,
+        Outcome, Rules, Stop, Unreadable,
         replay::{self, Progress, Remark, WrongStep},
     },
     report::{
         self,
-        check::{StepChoice, WrongSteps},
+        check::{StepChoice, WrongSteps, is_wrong, no_verdict},
         number::counted,
         page,
         style::Style,
     },
-    sim::{RootSearch, StepError},
-    suite::config::Hints,
+    sim::RootSearch,
 };
 use anyhow::{Result, bail};
 use std::{io::Read, path::Path};
@@ -83,7 +82,7 @@ fn write(
         (CheckFormat::Text, _) => check.text(style),
         (CheckFormat::Json, _) => check.json(),
         (CheckFormat::Github, _) => check.github(),
-        (CheckFormat::Html, _) => html(check, examined, &evidence()),
+        (CheckFormat::Html, _) => page::of_examined(check, examined, &evidence()),
     };
     match (target, format) {
         (Some(target), format) => target.finish_and_tell(text.as_bytes(), format == CheckFormat::Html),
@@ -155,11 +154,10 @@ fn wrong_steps(arguments: &Check, scene: &SceneInput) -> Result<WrongSteps> {
 
 /// Ends with an error where the scene has no verdicts, or the trace could not be read to its end.
 fn refuse_unreadable(outcome: &Outcome, scene: &SceneInput, trace: &TraceInput) -> Result<()> {
+    if let Some(why) = no_verdict(outcome, &scene.name) {
+        bail!(why);
+    }
     match &outcome.stop {
-        Some(Stop::Step(StepError::VortexHessian { .. })) => bail!(
-            "the scene {} has a vortexforce, which has no Hessian: choose an integrator that is not implicit",
-            scene.name
-        ),
         // Further steps may or may not have been read by then: what failed there is not asked for.
         Some(Stop::Step(_)) => {}
         stop => {
@@ -187,15 +185,6 @@ fn with_plots(text: String, evidence: &Evidence, columns: usize) -> String {
     text + if plots.is_empty() { "" } else { "\n" } + &plots
 }
 
-fn html(check: report::check::Check<'_>, examined: &Examined<'_>, evidence: &Evidence) -> String {
-    let scene = examined.trace.scene();
-    let what_if = check.explanations.first().and_then(|first| what_if(scene, first, &examined.bytes(), evidence));
-    let title = format!("{}: {}", check.verdict(), check.scene);
-    let (evidence, what_if) = (Some(evidence), what_if.as_ref());
-    let case = page::Case { check, scene, evidence, what_if, hints: Hints::Full, has_trace: true };
-    page::Page { title: &title, cases: vec![case] }.html()
-}
-
 /// Shows how far judging is, and gathers the wrong steps.
 struct Heard {
     bar: console::Bar,
@@ -209,14 +198,6 @@ impl Progress for Heard {
 
     fn step_wrong(&mut self, wrong: &WrongStep<'_>) {
         self.wrong.step_wrong(wrong);
-    }
-}
-
-/// Whether there is something to explain: the fair rules know better what is a mistake.
-fn is_wrong(outcome: &Outcome) -> bool {
-    match &outcome.fair {
-        Some(fair) => fair.verdict == fair::FairVerdict::Rejected,
-        None => outcome.parity.overall != Overall::Passed,
     }
 }
 

@@ -11,6 +11,7 @@ mod headroom;
 mod host;
 mod last_run;
 mod merge;
+mod page;
 mod pages;
 mod record;
 mod render;
@@ -58,6 +59,7 @@ pub(super) fn run(command: &Command) -> Result<u8> {
         Command::Doctor(_) => host::doctor(),
         Command::Selftest(arguments) => host::selftest(arguments),
         Command::Serve(arguments) => serve::run(arguments),
+        Command::Page(arguments) => page::run(arguments),
         Command::Completions(arguments) => shell::completions(arguments),
         Command::Man(arguments) => shell::manual(arguments),
         // Never gets here: it has its own way of ending.

@@ -3,16 +3,14 @@ use super::ending::file_name;
 use crate::{
     cli::output,
     diagnose::Explanation,
-    evidence::{self, Evidence, Examined, Focus, Keep, Track, examine},
+    evidence::{self, Examined, Focus, Keep, examine},
     files::Place,
     judge::{Outcome, Rules, replay},
     report::{
         check::{Check, StepChoice, WrongSteps},
         page::{Audience, Card, Case, ClassPage, GradePage, WhatIf},
-        words::explanation,
     },
     scene::Scene,
-    student,
     suite::{
         Grade, PassedOver, SceneGrade,
         cards::{self, Judged},
@@ -172,7 +170,7 @@ pub(super) fn card(source: &Source<'_>) -> Option<Card> {
     let (fair, focus) = (outcome.fair.is_some(), Focus::of(outcome));
     let evidence = evidence::gather(scene, &mut &trace[..], rulings, fair, &focus, BUDGET);
     let what_if = match (hints, explanations.first()) {
-        (Hints::Full, Some(first)) => what_if(scene, first, trace, &evidence),
+        (Hints::Full, Some(first)) => WhatIf::of(scene, first, trace, &evidence),
         _ => None,
     };
     let steps = WrongSteps::new(StepChoice::None);
@@ -191,16 +189,4 @@ pub(super) fn card(source: &Source<'_>) -> Option<Card> {
     let has_trace = names.1.is_some();
     let case = Case { check, scene, evidence: Some(&evidence), what_if: what_if.as_ref(), hints, has_trace };
     Card::of(&case, depth)
-}
-
-/// The run of the reference with the mistake that is named, beside the trace.
-pub(super) fn what_if(scene: &Scene, named: &Explanation, trace: &[u8], evidence: &Evidence) -> Option<WhatIf> {
-    // What is not shown as a whole is not made as a whole either.
-    if named.reproduced == 0 || !evidence.window.is_whole(evidence.layout.steps) {
-        return None;
-    }
-    let row = student::find(&named.key)?;
-    let run = student::trace(scene, student::Student::new(Some(row.mistake))).unwrap_or_else(|(part, _)| part);
-    let track = Track::read(&run[..], evidence.layout, evidence.window);
-    Some(WhatIf { id: named.key.clone(), sentence: explanation::what(named), track, equal: run == trace })
 }

@@ -1,7 +1,11 @@
 //! Traces as inputs: streams, decompressed on the way.
 use super::{asset, no_asset, open, shown};
 use crate::files::{Identity, patient};
-use crate::{cli::output::has_extension, suite::library};
+use crate::{
+    cli::output::has_extension,
+    report::check::{LOOKED_AT, looks_like},
+    suite::library,
+};
 use anyhow::{Context, Result, bail};
 use std::{
     io::{self, BufReader, Cursor, Read},
@@ -97,45 +101,6 @@ pub(in crate::cli) fn is_scene(name: &Path) -> bool {
         return is_read && (start.starts_with(b"<?xml") || start.starts_with(b"<scene"));
     }
     false
-}
-
-/// The number of bytes that show the kind of a file.
-const LOOKED_AT: u64 = 512;
-
-/// The kind of a file that begins with these bytes, if it can't be a trace: a trace begins with the bits of a position.
-fn looks_like(start: &[u8]) -> Option<&'static str> {
-    const MARKS: [(&[u8], &str); 8] = [
-        (b"\x7fELF", "looks like a program (ELF)"),
-        (b"PK\x03\x04", "looks like a zip archive"),
-        (b"\x1f\x8b", "looks like a gzip file; unpack it first"),
-        (b"\xfd7zXZ", "looks like an xz file; unpack it first"),
-        (b"%PDF", "looks like a PDF"),
-        (b"\x89PNG", "looks like a picture (PNG)"),
-        (b"\xff\xd8\xff", "looks like a picture (JPEG)"),
-        (b"GIF8", "looks like a picture (GIF)"),
-    ];
-    if start.is_empty() {
-        return Some("is empty");
-    }
-    if let Some((_, what)) = MARKS.iter().find(|(mark, _)| start.starts_with(mark)) {
-        return Some(what);
-    }
-    let is_text = |byte: &u8| matches!(byte, b'\t' | b'\n' | b'\r' | 0x1b | 0x20..=0x7e);
-    let words = std::str::from_utf8(start).map_or_else(|error| &start[..error.valid_up_to()], str::as_bytes);
-    if words.len() + 3 < start.len() || !words.iter().all(|byte| is_text(byte) || *byte >= 0x80) {
-        return None;
-    }
-    let words = words.trim_ascii_start().to_ascii_lowercase();
-    let begins = |marks: &[&[u8]]| marks.iter().any(|mark| words.starts_with(mark));
-    Some(if begins(&[b"<!doctype html", b"<html"]) {
-        "looks like HTML"
-    } else if begins(&[b"<?xml", b"<scene"]) {
-        "looks like a scene or other XML; SCENE comes first, then TRACE"
-    } else if begins(&[b"{", b"["]) {
-        "looks like JSON"
-    } else {
-        "looks like text"
-    })
 }
 
 /// Remembers what the operating system said when reading failed.

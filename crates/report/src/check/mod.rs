@@ -4,6 +4,7 @@
 //! same and depend on nothing but the outcome.
 
 mod advice;
+mod asked;
 mod books;
 mod closer;
 mod divergence;
@@ -11,10 +12,13 @@ mod fair;
 mod fair_view;
 mod first;
 pub(crate) mod follows;
+mod looks_like;
 mod plots;
 mod steps;
 mod text;
 
+pub use asked::{is_wrong, no_verdict};
+pub use looks_like::{LOOKED_AT, looks_like};
 pub use plots::plots;
 pub use steps::{LISTED, StepChoice, WrongSteps};
 pub(crate) use text::headline;

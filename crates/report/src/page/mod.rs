@@ -9,6 +9,7 @@ mod card;
 mod case;
 mod class;
 mod data;
+mod examined;
 mod explained;
 mod graded;
 mod markup;
@@ -20,6 +21,7 @@ mod tests;
 
 pub use card::Card;
 pub use class::ClassPage;
+pub use examined::of_examined;
 pub use explained::{Explained, ExplainedCase};
 pub use graded::{Audience, GradePage};
 
@@ -99,9 +101,22 @@ fn script() -> &'static str {
     &SCRIPT
 }
 
+/// The style sheet of all pages, for a page that looks like them.
+#[must_use]
+pub fn style() -> String {
+    format!("{}{STYLE}", fosssim_render::plot::STYLE)
+}
+
+/// The sources of script and style by which the policy of a page that shows a report in a frame allows the report's: a
+/// frame inherits the policy of the page around it.
+#[must_use]
+pub fn framed() -> [String; 2] {
+    [script(), &style()].map(|text| format!("'{}'", digest(text)))
+}
+
 /// A file around a body: one style sheet, at most one script, and a policy that allows these and nothing else.
 fn document(title: &str, body: &str, script: &str) -> String {
-    let style = format!("{}{STYLE}", fosssim_render::plot::STYLE);
+    let style = style();
     let allowed = if script.is_empty() { "'none'".to_owned() } else { format!("'{}'", digest(script)) };
     let policy = format!(
         "default-src 'none'; script-src {allowed}; style-src '{}'; img-src blob: data:; media-src blob:; base-uri 'none'; \
@@ -123,7 +138,8 @@ fn document(title: &str, body: &str, script: &str) -> String {
 }
 
 /// The digest by which a policy allows a script or a style sheet.
-fn digest(text: &str) -> String {
+#[must_use]
+pub fn digest(text: &str) -> String {
     use base64::Engine;
     format!("sha256-{}", base64::engine::general_purpose::STANDARD.encode(Sha256::digest(text)))
 }

@@ -1,0 +1,110 @@
+// One pair under the glass: what the reference computes for it, redrawn while it is changed.
+const PAIRS = {
+  pe: { points: [["x1", "the particle"], ["x2", "the edge's first end"], ["x3", "the edge's second end"]], radii: ["the particle", "the edge"] },
+  pp: { points: [["x1", "the first particle"], ["x2", "the second particle"]], radii: ["the first particle", "the second particle"] },
+  ph: { points: [["x1", "the particle"]], radii: ["the particle"], plane: true },
+};
+const PRESETS = {
+  first: { kind: "pe", points: [[3, 1, 4, 1], [5, 9, 2, 6], [5, 3, 5, 8]], radii: [1, 1] },
+  second: { kind: "pe", points: [[1, 4, 1, 4], [2, 1, 3, 5], [6, 2, 3, 7]], radii: [1, 2] },
+  balls: { kind: "pp", points: [[-2, 0, 3, 0.5], [2, 0.3, -3, 0]], radii: [0.5, 0.7] },
+  edge: { kind: "pe", points: [[0, 2, 0.5, -4], [-3, 0, 0, 0.5], [3, 0, 0, -0.5]], radii: [0.4, 0.2] },
+  plane: { kind: "ph", points: [[0, 2, 1, -3]], radii: [0.5], plane: [0, 0, 0.2, 1] },
+};
+const pair = { oracle: new Oracle(), now: structuredClone(PRESETS.first) };
+
+function controls() {
+  const { kind, points, radii, plane } = pair.now, { points: names, radii: owners } = PAIRS[kind];
+  // A number and a slider of the same value.
+  const field = (label, list, index, least) => {
+    const value = list[index];
+    const number = el("input", { type: "number", step: "any", min: least ?? false, value, "aria-label": label });
+    const slider = el("input", { type: "range", min: least ?? Math.min(-10, value - 10), max: Math.max(10, value + 10), step: "0.05", "aria-label": `${label}, slider` });
+    slider.value = value;
+    const change = (from, other) => () => { if (from.value === "" || !Number.isFinite(from.valueAsNumber)) return; list[index] = from.valueAsNumber; other.value = from.value; look(); };
+    number.addEventListener("input", change(number, slider));
+    slider.addEventListener("input", change(slider, number));
+    return el("div", { class: "field" }, el("span", { "aria-hidden": "true" }, label.replace(/^.*: /, "")), number, slider);
+  };
+  const group = (name, ...fields) => el("fieldset", {}, el("legend", {}, name), ...fields);
+  const parts = ["x", "y", "dx", "dy"];
+  $("numbers").replaceChildren(
+    ...names.map(([short, name], point) => group(`${short}: ${name}`, ...parts.map((part, index) => field(`${short}: ${part}`, points[point], index)))),
+    ...(plane ? [group("the half-plane", ...["point x", "point y", "normal x", "normal y"].map((name, index) => field(`half-plane: ${name}`, plane, index)))] : []),
+    group("radii", ...owners.map((owner, index) => field(`radius: ${owner}`, radii, index, 0))),
+  );
+}
+
+// The pair at the start (lines) and at the end (dashes), with arrows between.
+function sketch() {
+  const { kind, points, radii, plane } = pair.now;
+  const all = points.flatMap(([x, y, dx, dy], point) => { const r = kind === "pe" && point > 0 ? radii[1] : radii[Math.min(point, radii.length - 1)]; return [[x - r, y - r], [x + r, y + r], [x + dx - r, y + dy - r], [x + dx + r, y + dy + r]]; });
+  if (plane) all.push([plane[0], plane[1]]);
+  const low = [0, 1].map((axis) => Math.min(...all.map((one) => one[axis]))), high = [0, 1].map((axis) => Math.max(...all.map((one) => one[axis])));
+  const size = Math.max(high[0] - low[0], (high[1] - low[1]) * 1.5, 1e-9) * 1.1, middle = [0, 1].map((axis) => (low[axis] + high[axis]) / 2);
+  const X = (x) => 300 + ((x - middle[0]) / size) * 600, Y = (y) => 200 - ((y - middle[1]) / size) * 600, R = (r) => (r / size) * 600;
+  const svg = (tag, attributes) => { const node = document.createElementNS("http://www.w3.org/2000/svg", tag); for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value); return node; };
+  const shapes = [];
+  if (plane) {
+    const [x, y, nx, ny] = plane, length = Math.hypot(nx, ny) || 1, [tx, ty] = [-ny / length * size, nx / length * size], [dx, dy] = [-nx / length * size, -ny / length * size];
+    shapes.push(svg("path", { class: "ground", d: `M${X(x - tx)} ${Y(y - ty)}L${X(x + tx)} ${Y(y + ty)}L${X(x + tx + dx)} ${Y(y + ty + dy)}L${X(x - tx + dx)} ${Y(y - ty + dy)}Z` }));
+  }
+  for (const t of [1, 0]) {
+    const look = t ? "then" : "now", at = points.map(([x, y, dx, dy]) => [x + t * dx, y + t * dy]);
+    if (kind === "pe") shapes.push(svg("line", { class: `edge ${look}`, x1: X(at[1][0]), y1: Y(at[1][1]), x2: X(at[2][0]), y2: Y(at[2][1]), "stroke-width": Math.max(2, 2 * R(radii[1])) }), svg("line", { class: `axis ${look}`, x1: X(at[1][0]), y1: Y(at[1][1]), x2: X(at[2][0]), y2: Y(at[2][1]) }));
+    const discs = kind === "pp" ? at : [at[0]];
+    discs.forEach(([x, y], number) => shapes.push(svg("circle", { class: look, cx: X(x), cy: Y(y), r: Math.max(1, R(radii[number])) })));
+  }
+  for (const [x, y, dx, dy] of points) if (dx || dy) shapes.push(svg("line", { class: "way", x1: X(x), y1: Y(y), x2: X(x + dx), y2: Y(y + dy), "marker-end": "url(#tip)" }));
+  points.forEach(([x, y], point) => { const label = svg("text", { x: X(x) + 6, y: Y(y) - 6 }); label.textContent = `x${point + 1}`; shapes.push(label); });
+  $("sketch").replaceChildren(...shapes);
+}
+
+const number = (value) => (Object.is(value, -0) ? "-0" : String(value));
+function command() {
+  const { kind, points, radii, plane } = pair.now;
+  const moving = ([x, y, dx, dy]) => `${number(x)},${number(y)}+${number(dx)},${number(dy)}`;
+  const rest = plane ? [`${number(plane[0])},${number(plane[1])}`, `${number(plane[2])},${number(plane[3])}`] : [];
+  return `fosssim-oracle detect ${[kind, ...points.map(moving), ...rest].join(":")} --radii ${radii.map(number).join(",")}`;
+}
+
+function asked() {
+  const { kind, points, radii, plane } = pair.now;
+  if (kind === "pp") return { do: "detect", kind, centres: points, radii };
+  if (kind === "pe") return { do: "detect", kind, centre: points[0], ends: points.slice(1), radii };
+  return { do: "detect", kind, centre: points[0], radius: radii[0], point: plane.slice(0, 2), normal: plane.slice(2) };
+}
+
+// One answer at a time is asked for; the last wish counts.
+async function look() {
+  sketch();
+  $("command").textContent = command();
+  if (pair.looking) { pair.again = true; return; }
+  pair.looking = true;
+  do {
+    pair.again = false;
+    try {
+      const { value, parts } = await pair.oracle.ask(asked());
+      pair.svg = parts[2];
+      pair.json = parts[1];
+      $("decision").textContent = value.decision;
+      $("decision").className = value.collides ? "hit" : "";
+      $("curves").innerHTML = text(parts[3]);
+      $("words").textContent = text(parts[0]);
+    } catch (error) {
+      $("decision").textContent = error.message;
+      $("curves").replaceChildren();
+      $("words").textContent = "";
+    }
+  } while (pair.again);
+  pair.looking = false;
+  document.documentElement.dataset.looked = command();
+}
+
+$("preset").addEventListener("change", ({ target }) => { pair.now = structuredClone(PRESETS[target.value]); controls(); look(); });
+$("save-curves").addEventListener("click", () => save("pair.svg", pair.svg, "image/svg+xml"));
+$("save-pair").addEventListener("click", () => save("pair.json", pair.json, "application/json"));
+shown.set("pair", () => { if (!$("numbers").children.length) { controls(); look(); } });
+
+open({ "#try": "try", "#pair": "pair" }[location.hash] ?? "check");
+unpacked.then(() => { document.documentElement.dataset.ready = ""; }, (error) => say(`This browser can't run the checker: ${error.message}. Take Chrome 103, Firefox 113, Safari 16.4 or newer.`, "bad"));

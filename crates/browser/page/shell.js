@@ -1,0 +1,109 @@
+// What the parts of the page share: elements, the worker, tabs, files to save.
+const $ = (id) => document.getElementById(id);
+const el = (tag, attributes = {}, ...children) => {
+  const node = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (name.startsWith("on")) node.addEventListener(name.slice(2), value);
+    else if (value === true) node.setAttribute(name, "");
+    else if (value !== false && value !== null) node.setAttribute(name, value);
+  }
+  node.append(...children);
+  return node;
+};
+const text = (bytes) => new TextDecoder().decode(bytes);
+const bytesOf = (words) => new TextEncoder().encode(words);
+const counted = (count, what) => `${count.toLocaleString("en")} ${what}${count === 1 ? "" : "s"}`;
+
+const unpacked = (async () => {
+  const packed = Uint8Array.from(atob($("module").textContent.trim()), (c) => c.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
+  return WebAssembly.compile(await new Response(stream).arrayBuffer());
+})();
+
+// A worker that is asked one thing at a time. What is asked while it works waits; `stop` ends the worker, and whoever
+// waited for it gets nothing.
+class Oracle {
+  #worker = null;
+  #waiting = new Map();
+  #last = 0;
+
+  async ask(request, { blobs = [], files = [], progress = () => {} } = {}) {
+    const module = await unpacked;
+    if (!this.#worker) this.#start();
+    const id = ++this.#last;
+    return new Promise((resolve, reject) => {
+      this.#waiting.set(id, { resolve, reject, progress });
+      this.#worker.postMessage({ id, request, blobs, files, module });
+    });
+  }
+
+  get isBusy() { return this.#waiting.size > 0; }
+
+  stop() {
+    this.#worker?.terminate();
+    this.#worker = null;
+    for (const { resolve } of this.#waiting.values()) resolve(null);
+    this.#waiting.clear();
+  }
+
+  #start() {
+    const url = URL.createObjectURL(new Blob([$("worker").textContent], { type: "text/javascript" }));
+    this.#worker = new Worker(url);
+    this.#worker.onmessage = ({ data: { id, value, parts, error, progress } }) => {
+      const one = this.#waiting.get(id);
+      if (!one) return;
+      if (progress) return one.progress(...progress);
+      this.#waiting.delete(id);
+      if (error) one.reject(new Error(error)); else one.resolve({ value, parts });
+    };
+    this.#worker.onerror = (event) => {
+      for (const { reject } of this.#waiting.values()) reject(new Error(`the checker could not be started: ${event.message ?? "unknown"}`));
+      this.#waiting.clear();
+      this.#worker = null;
+    };
+  }
+}
+
+function save(name, bytes, type) {
+  const url = URL.createObjectURL(new Blob([bytes], { type }));
+  el("a", { href: url, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(url), 60_000);
+}
+
+// Tabs, as the ARIA practices describe them: arrows go from one to the next.
+const tabs = [...document.querySelectorAll("[role=tab]")];
+const shown = new Map();
+function open(name, focus) {
+  for (const tab of tabs) {
+    const own = tab.dataset.panel === name;
+    tab.setAttribute("aria-selected", String(own));
+    tab.tabIndex = own ? 0 : -1;
+    $(tab.dataset.panel).hidden = !own;
+    if (own && focus) tab.focus();
+  }
+  document.body.classList.toggle("reads", name === "check" && !$("frame").hidden);
+  shown.get(name)?.();
+}
+tabs.forEach((tab, number) => {
+  tab.addEventListener("click", () => open(tab.dataset.panel));
+  tab.addEventListener("keydown", (event) => {
+    const to = { ArrowRight: number + 1, ArrowLeft: number - 1, Home: 0, End: tabs.length - 1 }[event.key];
+    if (to === undefined) return;
+    event.preventDefault();
+    open(tabs[(to + tabs.length) % tabs.length].dataset.panel, true);
+  });
+});
+const current = () => tabs.find((tab) => tab.getAttribute("aria-selected") === "true").dataset.panel;
+
+// The scenes that are inside, as the choices of a list.
+const inside = (async () => {
+  const { value } = await new Oracle().ask({ do: "scenes" });
+  return value;
+})();
+const choices = async (select) => {
+  for (const { title, groups } of await inside) {
+    for (const { group, names } of groups) {
+      select.append(el("optgroup", { label: `${title}: ${group}` }, ...names.map((name) => el("option", { value: `${group}/${name}` }, name))));
+    }
+  }
+};

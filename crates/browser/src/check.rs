@@ -1,0 +1,120 @@
+//! `check`: the same reports as the command's.
+use crate::{
+    dropped::{Dropped, Host},
+    scenes,
+    session::Answer,
+};
+use fosssim_evidence::{self as evidence, Keep, examine};
+use fosssim_judge::{
+    Outcome, Rules, Stop, Unreadable,
+    replay::{Options, Progress, Remark, WrongStep},
+};
+use fosssim_model::scene::{self, Scene};
+use fosssim_report::{
+    check::{Check, LOOKED_AT, StepChoice, WrongSteps, is_wrong, looks_like, no_verdict},
+    page, problems,
+};
+use serde::Deserialize;
+use serde_json::json;
+use std::{
+    io::{BufReader, Cursor, Read},
+    sync::atomic::{AtomicBool, Ordering},
+};
+
+/// A trace to be judged.
+#[derive(Debug, Deserialize)]
+pub(crate) struct Request {
+    /// The scene's name: `asset:Group/name` for one of those inside, else that of its file.
+    scene: String,
+    /// The name of the trace's file.
+    trace: String,
+    /// The number of the dropped file.
+    #[serde(default)]
+    file: u32,
+    #[serde(default)]
+    rules: Rules,
+    /// Whether the page is asked for, and not the JSON alone.
+    #[serde(default)]
+    html: bool,
+}
+
+/// How many bytes the browser is asked for at once: each call takes some 0.1 ms.
+const PIECE: usize = 1 << 20;
+
+/// Judges a trace: the second part of the answer is `check --format json`, the third `check --format html`.
+pub(crate) fn answer(request: &Request, xml: Option<&[u8]>, host: &dyn Host) -> Answer {
+    let scene = read_scene(&request.scene, xml)?;
+    let failed = AtomicBool::new(false);
+    let opened = || BufReader::with_capacity(PIECE, Dropped::new(host, request.file, &failed));
+    let (mut trace, mut start) = (opened(), Vec::new());
+    // What can't be read is noticed below.
+    let _ = trace.by_ref().take(LOOKED_AT).read_to_end(&mut start);
+    let looks_like = looks_like(&start);
+    let options = Options { threads: 1, fair: request.rules.ask_fair(), ..Options::default() };
+    let mut heard = Heard { host, all: scene.steps(), wrong: WrongSteps::new(StepChoice::None) };
+    let examined = examine(&scene, Cursor::new(start).chain(trace), Keep::All, &options, &mut heard);
+    let outcome = &examined.outcome;
+    if let Some(why) = no_verdict(outcome, &request.scene) {
+        return Err(why);
+    }
+    if failed.load(Ordering::Relaxed) {
+        return Err(unreadable(&request.trace, outcome));
+    }
+    let explanations = if is_wrong(outcome) { examined.explain() } else { Vec::new() };
+    let check = Check {
+        scene: &request.scene,
+        trace: &request.trace,
+        outcome,
+        explanations: &explanations,
+        rules: request.rules,
+        steps: &heard.wrong,
+        audit: false,
+        tables: false,
+        looks_like,
+    };
+    let mut parts = vec![check.json().into_bytes()];
+    if request.html {
+        let mut again = (!examined.trace.is_whole()).then(opened);
+        let evidence = examined.evidence(again.as_mut().map(|trace| trace as &mut dyn Read), evidence::BUDGET);
+        parts.push(page::of_examined(check, &examined, &evidence).into_bytes());
+    }
+    Ok((json!({ "accepted": check.accepted(), "verdict": check.verdict() }), parts))
+}
+
+/// A scene that was dropped, or one of those inside.
+pub(crate) fn read_scene(name: &str, xml: Option<&[u8]>) -> Result<Scene, String> {
+    let xml = match (xml, name.strip_prefix("asset:")) {
+        (Some(xml), _) => xml,
+        (None, Some(asset)) => scenes::xml(asset)?,
+        (None, None) => return Err("the scene is missing".to_owned()),
+    };
+    match scene::read(name, xml) {
+        Ok(loaded) => Ok(loaded.scene),
+        Err(refused) => Err(problems::errors(name, xml, &refused)),
+    }
+}
+
+fn unreadable(trace: &str, outcome: &Outcome) -> String {
+    let place = match &outcome.stop {
+        Some(Stop::Trace { cause: Unreadable::Io, offset, .. }) => format!(" at byte {offset}"),
+        _ => String::new(),
+    };
+    format!("cannot read the trace {trace}{place}: it has changed or is gone; drop it again")
+}
+
+/// Tells how far judging is, and gathers the wrong steps.
+struct Heard<'a> {
+    host: &'a dyn Host,
+    all: u32,
+    wrong: WrongSteps,
+}
+
+impl Progress for Heard<'_> {
+    fn step_judged(&mut self, step: u32, _: &[Remark]) {
+        self.host.progress(step, self.all);
+    }
+
+    fn step_wrong(&mut self, wrong: &WrongStep<'_>) {
+        self.wrong.step_wrong(wrong);
+    }
+}

@@ -1,0 +1,70 @@
+//! `detect`: one pair, looked at closely.
+use crate::session::Answer;
+use fosssim_judge::study::Study;
+use fosssim_model::sim::{PairMotion, PointMotion};
+use fosssim_num::vector::Vec2;
+use fosssim_render::{detection, plot::Embedding};
+use fosssim_report::{detect::Detect, style::Style};
+use serde::Deserialize;
+use serde_json::json;
+
+/// A pair with its motion. A moving point is `[x, y, dx, dy]`.
+#[derive(Debug, Deserialize)]
+#[serde(tag = "kind")]
+pub(crate) enum Request {
+    /// Two particles.
+    #[serde(rename = "pp")]
+    Particles { centres: [[f64; 4]; 2], radii: [f64; 2] },
+    /// A particle and an edge.
+    #[serde(rename = "pe")]
+    Edge { centre: [f64; 4], ends: [[f64; 4]; 2], radii: [f64; 2] },
+    /// A particle and a half-plane.
+    #[serde(rename = "ph")]
+    HalfPlane { centre: [f64; 4], radius: f64, point: [f64; 2], normal: [f64; 2] },
+}
+
+impl Request {
+    fn motion(&self) -> Result<PairMotion, String> {
+        let moving = |&[x, y, dx, dy]: &[f64; 4]| PointMotion { start: Vec2::new(x, y), shift: Vec2::new(dx, dy) };
+        let vector = |&[x, y]: &[f64; 2]| Vec2::new(x, y);
+        let not_negative = |radii: &[f64]| match radii.iter().all(|&radius| radius >= 0.0) {
+            true => Ok(()),
+            false => Err("a radius is negative".to_owned()),
+        };
+        Ok(match self {
+            Self::Particles { centres, radii } => {
+                not_negative(radii)?;
+                PairMotion::Particles { centres: centres.each_ref().map(moving), radii: *radii }
+            }
+            Self::Edge { centre, ends, radii } => {
+                not_negative(radii)?;
+                PairMotion::Edge { centre: moving(centre), ends: ends.each_ref().map(moving), radii: *radii }
+            }
+            Self::HalfPlane { centre, radius, point, normal } => {
+                not_negative(&[*radius])?;
+                if *normal == [0.0, 0.0] {
+                    return Err("the half-plane's normal is zero".to_owned());
+                }
+                let (point, normal) = (vector(point), vector(normal));
+                PairMotion::HalfPlane { centre: moving(centre), radius: *radius, point, normal }
+            }
+        })
+    }
+}
+
+/// Looks at a pair. The parts behind the first are those of `detect --format text`, `json` and `svg`, and the picture
+/// once more for a page that has the style of plots.
+pub(crate) fn answer(request: &Request) -> Answer {
+    let study = Study::of(&request.motion()?)
+        .map_err(|_| "there is no answer: the numbers are too large or too small, and the original hangs here")?;
+    let report = Detect { study: &study, place: None };
+    let picture = |embedding| detection::picture(&study, &report.title(), embedding).into_bytes();
+    let value = json!({ "decision": report.decision(), "collides": study.answer.collides() });
+    let parts = vec![
+        report.text(Style::Plain).into_bytes(),
+        report.json().into_bytes(),
+        picture(Embedding::Alone),
+        picture(Embedding::Inline),
+    ];
+    Ok((value, parts))
+}

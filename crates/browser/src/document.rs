@@ -1,0 +1,56 @@
+//! The page: one HTML file with the module inside, which asks for nothing else.
+//!
+//! Its policy allows its script, its style and those of the reports that it shows by their digests, the module, and a
+//! worker that the page makes itself; no address is among the sources.
+use base64::{Engine, engine::general_purpose::STANDARD};
+use fosssim_report::page::{digest, framed, style};
+use miniz_oxide::deflate::compress_to_vec;
+
+/// The page's script, in the order in which its parts need each other.
+const SCRIPT: [&str; 4] = [
+    include_str!("../page/shell.js"),
+    include_str!("../page/check.js"),
+    include_str!("../page/try.js"),
+    include_str!("../page/pair.js"),
+];
+
+/// The worker's.
+const WORKER: [&str; 2] = [include_str!("../page/engine.js"), include_str!("../page/worker.js")];
+
+const BODY: &str = include_str!("../page/body.html");
+const STYLE: &str = include_str!("../page/page.css");
+
+/// The page around the module (WebAssembly, not packed).
+#[must_use]
+pub fn page(module: &[u8]) -> String {
+    let script = format!("\"use strict\";\n(() => {{\n{}}})();\n", lines(&SCRIPT));
+    let worker = lines(&WORKER);
+    let style = style() + STYLE;
+    let [framed_script, framed_style] = framed();
+    let policy = format!(
+        "default-src 'none'; script-src '{}' {framed_script} 'wasm-unsafe-eval'; worker-src blob:; \
+         style-src '{}' {framed_style}; img-src blob: data:; media-src blob:; base-uri 'none'; form-action 'none'",
+        digest(&script),
+        digest(&style)
+    );
+    let module = STANDARD.encode(compress_to_vec(module, 10));
+    format!(
+        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta http-equiv=\"Content-Security-Policy\" content=\"{policy}\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <title>fosssim-oracle in the browser</title>\n<style>{style}</style>\n</head>\n<body>\n{BODY}\
+         <script type=\"application/octet-stream\" id=\"module\">{module}</script>\n\
+         <script type=\"text/plain\" id=\"worker\">{worker}</script>\n\
+         <script>{script}</script>\n</body>\n</html>\n"
+    )
+}
+
+/// A script without what only its authors need: indentation and lines that are comments. But for scenes, no text in it
+/// goes over several lines.
+fn lines(parts: &[&str]) -> String {
+    let lines = parts.iter().flat_map(|part| part.lines());
+    lines
+        .filter(|line| !line.trim().is_empty() && !line.trim_start().starts_with("//"))
+        .flat_map(|line| [line, "\n"])
+        .collect()
+}

@@ -1,0 +1,253 @@
+//! A scene that is being written: what its strict reader says, and the reference's motion.
+use crate::{dropped::Host, session::Answer};
+use fosssim_model::{
+    scene::{self, Loaded, Problem, Scene, Severity},
+    sim::{RootSearch, Simulation},
+    trace::{Layout, Recorder},
+};
+use fosssim_render::{
+    Extent, Painter, PictureOptions, Raster, Size,
+    film::{Apng, Gif, Rate, png},
+    svg,
+};
+use fosssim_report::describe::step_error;
+use serde::Deserialize;
+use serde_json::{Value, json};
+use std::io::{self, Write};
+
+/// The most numbers of a motion that are kept; the largest course scene has 70,444.
+const MOST_NUMBERS: usize = 1 << 24;
+
+/// The longest trace that is made at once, in bytes.
+const LONGEST_TRACE: usize = 1 << 30;
+
+/// Films of more pictures leave some out, as those of the command line do.
+const LONG_FILM: usize = 1500;
+
+/// Pictures per second of a film.
+const RATE: u16 = 25;
+
+/// How many steps go by between two words about progress.
+const NEWS: u32 = 64;
+
+/// A scene to be simulated.
+#[derive(Debug, Deserialize)]
+pub(crate) struct Request {
+    /// The scene's name, for messages.
+    scene: String,
+}
+
+/// A picture of the motion.
+#[derive(Debug, Deserialize)]
+pub(crate) struct Picture {
+    step: usize,
+    width: u32,
+    height: u32,
+    form: Form,
+}
+
+/// How a picture is given.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Form {
+    /// Four bytes a pixel, for a canvas.
+    Pixels,
+    Png,
+    Svg,
+}
+
+/// The kind of a film.
+#[derive(Debug, Deserialize)]
+pub(crate) struct Kind {
+    width: u32,
+    height: u32,
+    /// An animated PNG, and not a GIF.
+    apng: bool,
+}
+
+/// The motion of a scene.
+#[derive(Debug)]
+pub(crate) struct Film {
+    scene: Scene,
+    /// Positions after each step, the start first.
+    positions: Vec<f64>,
+    steps: usize,
+    extent: Extent,
+    /// The painter of the last picture and the step of its next one: particles leave paths, so pictures follow each
+    /// other.
+    painter: Option<(Painter, usize)>,
+}
+
+/// Reads a scene and, if it is right, simulates it.
+pub(crate) fn simulate(request: &Request, xml: &[u8], host: &dyn Host) -> (Value, Option<Film>) {
+    let (scene, problems, more) = match scene::read(&request.scene, xml) {
+        Ok(Loaded { scene, warnings, .. }) => (Some(scene), warnings, 0),
+        Err(refused) => (None, refused.list, refused.omitted),
+    };
+    let problems: Vec<Value> = problems.iter().map(view).collect();
+    let Some(scene) = scene else { return (json!({ "problems": problems, "more": more }), None) };
+    let (film, stopped) = Film::of(scene, host);
+    let Film { scene, steps, .. } = &film;
+    let value = json!({
+        "problems": problems,
+        "more": more,
+        "steps": steps,
+        "of": scene.steps(),
+        "dt": scene.time_step,
+        "particles": scene.particles.len(),
+        "edges": scene.edges.len(),
+        "halfPlanes": scene.half_planes.len(),
+        "stopped": stopped,
+    });
+    (value, Some(film))
+}
+
+fn view(problem: &Problem) -> Value {
+    let Problem { severity, line, column, span, message, help, .. } = problem;
+    json!({
+        "error": *severity == Severity::Error, "line": line, "column": column, "from": span.start, "to": span.end,
+        "message": message, "help": help,
+    })
+}
+
+impl Film {
+    /// The motion, and why it ends before the scene does.
+    fn of(scene: Scene, host: &dyn Host) -> (Self, Option<String>) {
+        let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
+        let mut positions = simulation.state().positions.clone();
+        let start = Extent::of(&scene, &positions);
+        let (mut extent, mut steps, mut stopped) = (start, 0, None);
+        for step in 1..=scene.steps() {
+            if positions.len() + 2 * scene.particles.len() > MOST_NUMBERS {
+                stopped = Some(format!("it is too long to be shown from step {step} on"));
+                break;
+            }
+            if let Err(error) = simulation.step(&mut ()) {
+                let (step, words) = step_error(&error);
+                stopped = Some(format!("step {step} has no result, because {words}"));
+                break;
+            }
+            extent.add(&scene, &simulation.state().positions);
+            positions.extend(&simulation.state().positions);
+            steps += 1;
+            if step % NEWS == 0 {
+                host.progress(step, scene.steps());
+            }
+        }
+        let extent = extent.near(&start);
+        (Self { scene, positions, steps, extent, painter: None }, stopped)
+    }
+
+    fn at(&self, step: usize) -> &[f64] {
+        let width = 2 * self.scene.particles.len();
+        &self.positions[step * width..(step + 1) * width]
+    }
+
+    fn painter(&self, size: Size) -> Painter {
+        Painter::new(&self.scene, &self.extent, PictureOptions { size, label: true })
+    }
+
+    /// One picture, as the only part behind the first.
+    pub(crate) fn picture(&mut self, asked: &Picture) -> Answer {
+        let size = Size::new(asked.width, asked.height).map_err(|error| error.to_string())?;
+        let step = asked.step.min(self.steps);
+        let follows = |(painter, next): &(Painter, usize)| *next <= step && painter.size() == size;
+        let (mut painter, mut next) = self.painter.take().filter(follows).unwrap_or_else(|| (self.painter(size), 0));
+        if self.scene.display.paths.is_empty() {
+            next = step;
+        }
+        let mut shapes = Vec::new();
+        for step in next..=step {
+            shapes = painter.picture(u32::try_from(step).unwrap_or(u32::MAX), self.at(step), None);
+        }
+        let background = painter.background();
+        let bytes = if asked.form == Form::Svg {
+            svg::document(size, background, &format!("step {step}"), &shapes).into_bytes()
+        } else {
+            let mut raster = Raster::new(size);
+            raster.draw(background, &shapes);
+            let mut packed = Vec::new();
+            match asked.form {
+                Form::Png => {
+                    png(&raster, &mut packed).map_err(|error| format!("the picture can't be encoded: {error}"))?;
+                    packed
+                }
+                _ => raster.rgba().to_vec(),
+            }
+        };
+        self.painter = Some((painter, step + 1));
+        Ok((json!({ "step": step }), vec![bytes]))
+    }
+
+    /// All pictures as a film, as `render` makes it.
+    pub(crate) fn film(&self, kind: &Kind, host: &dyn Host) -> Answer {
+        let size = Size::new(kind.width, kind.height).map_err(|error| error.to_string())?;
+        let rate = Rate::new(RATE).ok_or("no such rate")?;
+        let every = self.steps.div_ceil(LONG_FILM).max(1);
+        let pictures = u32::try_from(self.steps / every + 1).unwrap_or(u32::MAX);
+        let (mut painter, mut raster, mut bytes) = (self.painter(size), Raster::new(size), Vec::new());
+        let (background, colours) = (painter.background(), painter.colours());
+        let mut draw = |take: &mut dyn FnMut(&Raster) -> io::Result<()>| -> io::Result<()> {
+            for (number, step) in (0..=self.steps).step_by(every).enumerate() {
+                let shapes = painter.picture(u32::try_from(step).unwrap_or(u32::MAX), self.at(step), None);
+                raster.draw(background, &shapes);
+                take(&raster)?;
+                host.progress(u32::try_from(number).unwrap_or(u32::MAX), pictures);
+            }
+            Ok(())
+        };
+        let made = if kind.apng {
+            Apng::new(&mut bytes, size, rate, pictures).and_then(|mut film| {
+                draw(&mut |raster| film.picture(raster))?;
+                film.finish()
+            })
+        } else {
+            Gif::new(&mut bytes, size, rate, &colours).and_then(|mut film| {
+                draw(&mut |raster| film.picture(raster))?;
+                film.finish()
+            })
+        };
+        made.map_err(|error| format!("the film can't be encoded: {error}"))?;
+        Ok((json!({ "pictures": pictures }), vec![bytes]))
+    }
+
+    /// The reference's trace, byte for byte that of `simulate`.
+    pub(crate) fn trace(&self, host: &dyn Host) -> Result<Vec<u8>, String> {
+        let mut simulation = Simulation::new(&self.scene, RootSearch::WhereNeeded);
+        let kept = Limited(Vec::new());
+        let mut recorder = Recorder::start(kept, Layout::of(&self.scene), simulation.state());
+        for step in 1..=self.scene.steps() {
+            if let Err(error) = simulation.step(&mut recorder) {
+                let (step, words) = step_error(&error);
+                return Err(format!("there is no trace: step {step} has no result, because {words}"));
+            }
+            if recorder.failed() {
+                break;
+            }
+            if step % NEWS == 0 {
+                host.progress(step, self.scene.steps());
+            }
+        }
+        let (kept, _) = recorder.finish().map_err(|_| {
+            "the trace has more than 1 GiB, which is too much for a browser: use the command `fosssim-oracle simulate`"
+        })?;
+        Ok(kept.0)
+    }
+}
+
+/// Memory for one trace.
+struct Limited(Vec<u8>);
+
+impl Write for Limited {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.0.len() + bytes.len() > LONGEST_TRACE {
+            return Err(io::Error::other("too long"));
+        }
+        self.0.extend(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}

@@ -1,0 +1,66 @@
+//! The module's surface: three functions that the page calls, three that it gives. What goes from one side to the other
+//! lies in the module's memory.
+#![expect(unsafe_code, reason = "names of exported and imported functions")]
+use crate::{Host, Session};
+use std::{cell::RefCell, panic, sync::Once};
+
+#[link(wasm_import_module = "page")]
+unsafe extern "C" {
+    /// Reads bytes of a dropped file into `into`; returns how many, or -1.
+    safe fn read(file: u32, offset: f64, into: *mut u8, length: usize) -> i32;
+    safe fn progress(done: u32, all: u32);
+    /// Is told why the module is about to trap.
+    safe fn panicked(words: *const u8, length: usize);
+}
+
+struct Page;
+
+impl Host for Page {
+    #[expect(clippy::cast_precision_loss, reason = "files have fewer bytes than 2^53")]
+    fn read(&self, file: u32, offset: u64, into: &mut [u8]) -> Option<usize> {
+        usize::try_from(read(file, offset as f64, into.as_mut_ptr(), into.len())).ok()
+    }
+
+    fn progress(&self, done: u32, all: u32) {
+        progress(done, all);
+    }
+}
+
+thread_local! {
+    static SESSION: RefCell<Session> = RefCell::default();
+    static MESSAGE: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
+}
+
+/// Makes room for the bytes of a request, and returns where they go.
+#[unsafe(no_mangle)]
+extern "C" fn room(length: usize) -> *mut u8 {
+    MESSAGE.with_borrow_mut(|message| {
+        message.clear();
+        message.resize(length, 0);
+        message.as_mut_ptr()
+    })
+}
+
+/// Answers the request, and returns where the answer begins.
+#[unsafe(no_mangle)]
+extern "C" fn answer() -> *const u8 {
+    static HOOK: Once = Once::new();
+    HOOK.call_once(|| {
+        panic::set_hook(Box::new(|fault| {
+            let words = fault.to_string();
+            panicked(words.as_ptr(), words.len());
+        }));
+    });
+    let request = MESSAGE.take();
+    let answer = SESSION.with_borrow_mut(|session| session.answer(&request, &Page));
+    MESSAGE.with_borrow_mut(|message| {
+        *message = answer;
+        message.as_ptr()
+    })
+}
+
+/// The length of the answer.
+#[unsafe(no_mangle)]
+extern "C" fn length() -> usize {
+    MESSAGE.with_borrow(Vec::len)
+}

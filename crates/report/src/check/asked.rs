@@ -1,0 +1,24 @@
+//! What commands ask of an outcome before they report it.
+use fosssim_findings::{Outcome, Overall, Stop};
+use fosssim_judge::fair::FairVerdict;
+use fosssim_model::sim::StepError;
+
+/// Whether there is something to explain: the fair rules know better what is a mistake.
+#[must_use]
+pub fn is_wrong(outcome: &Outcome) -> bool {
+    match &outcome.fair {
+        Some(fair) => fair.verdict == FairVerdict::Rejected,
+        None => outcome.parity.overall != Overall::Passed,
+    }
+}
+
+/// Why a scene has no verdict, whatever the trace; `None` for nearly all scenes.
+#[must_use]
+pub fn no_verdict(outcome: &Outcome, scene: &str) -> Option<String> {
+    match &outcome.stop {
+        Some(Stop::Step(StepError::VortexHessian { .. })) => Some(format!(
+            "the scene {scene} has a vortexforce, which has no Hessian: choose an integrator that is not implicit"
+        )),
+        _ => None,
+    }
+}

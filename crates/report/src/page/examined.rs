@@ -1,0 +1,34 @@
+//! The page about a trace that has just been judged.
+use super::{Case, Page, WhatIf};
+use crate::{check::Check, words::explanation};
+use fosssim_evidence::{Evidence, Examined, Track};
+use fosssim_findings::Hints;
+use fosssim_mistakes::{diagnose::Explanation, student};
+use fosssim_model::scene::Scene;
+
+impl WhatIf {
+    /// The run of the reference with the mistake that is named, beside the trace. Nothing where the reference with it
+    /// writes another trace, or where the evidence does not hold the whole motion.
+    #[must_use]
+    pub fn of(scene: &Scene, named: &Explanation, trace: &[u8], evidence: &Evidence) -> Option<Self> {
+        // What is not shown as a whole is not made as a whole either.
+        if named.reproduced == 0 || !evidence.window.is_whole(evidence.layout.steps) {
+            return None;
+        }
+        let row = student::find(&named.key)?;
+        let run = student::trace(scene, student::Student::new(Some(row.mistake))).unwrap_or_else(|(part, _)| part);
+        let track = Track::read(&run[..], evidence.layout, evidence.window);
+        Some(Self { id: named.key.clone(), sentence: explanation::what(named), track, equal: run == trace })
+    }
+}
+
+/// The page about one trace that was judged, with all hints: its author has asked.
+#[must_use]
+pub fn of_examined(check: Check<'_>, examined: &Examined<'_>, evidence: &Evidence) -> String {
+    let scene = examined.trace.scene();
+    let what_if = check.explanations.first().and_then(|first| WhatIf::of(scene, first, &examined.bytes(), evidence));
+    let title = format!("{}: {}", check.verdict(), check.scene);
+    let (evidence, what_if) = (Some(evidence), what_if.as_ref());
+    let case = Case { check, scene, evidence, what_if, hints: Hints::Full, has_trace: true };
+    Page { title: &title, cases: vec![case] }.html()
+}

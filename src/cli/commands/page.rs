@@ -1,0 +1,41 @@
+//! `page`: the page that checks traces in a browser.
+use crate::{
+    cli::{arguments::Page, exit, output::Output},
+    files::{Identity, open_for_reading, read_limited},
+};
+use anyhow::{Context, Result, bail};
+use std::borrow::Cow;
+
+/// The module that was compiled into the program (build.rs).
+#[cfg(has_module)]
+const MODULE: Option<&[u8]> = Some(include_bytes!(env!("FOSSSIM_MODULE_FILE")));
+#[cfg(not(has_module))]
+const MODULE: Option<&[u8]> = None;
+
+/// No module is larger.
+const LARGEST: u64 = 64 << 20;
+
+/// The first bytes of every module.
+const MAGIC: &[u8] = b"\0asm";
+
+pub(super) fn run(arguments: &Page) -> Result<u8> {
+    let (module, inputs) = match (&arguments.module, MODULE) {
+        (Some(name), _) => {
+            let context = || format!("cannot read the module {}", name.display());
+            let (file, metadata) = open_for_reading(name).with_context(context)?;
+            let module = read_limited(file, &metadata, LARGEST).with_context(context)?;
+            (Cow::Owned(module), vec![Identity::of(&metadata)])
+        }
+        (None, Some(module)) => (Cow::Borrowed(module), Vec::new()),
+        (None, None) => bail!(
+            "this program was built without the page: run scripts/browser-page in the sources, or build with \
+             FOSSSIM_MODULE (docs/page.md)"
+        ),
+    };
+    if !module.starts_with(MAGIC) {
+        bail!("the module is no WebAssembly; scripts/browser-page makes one");
+    }
+    let target = Output::create(&arguments.output, &inputs)?;
+    target.finish_and_tell(fosssim_browser::page(&module).as_bytes(), true)?;
+    Ok(exit::ACCEPTED)
+}

@@ -1,0 +1,239 @@
+// The page in the browser: traces are dropped on it, scenes written, pairs moved; and its answers are the program's, to
+// the last bit. FOSSSIM_PAGE names the page (scripts/browser-page); without it, and without the target, nothing is tried.
+import { strict as assert } from "node:assert";
+import { execFileSync, spawnSync } from "node:child_process";
+import { copyFileSync, existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync, truncateSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join, resolve } from "node:path";
+import { after, before, test as node } from "node:test";
+import { judgeAccessibility, launch, opened, programs, root } from "./browser.js";
+
+const html = resolve(process.env.FOSSSIM_PAGE ?? join(root, "target/page/oracle.html"));
+const skip = existsSync(html) ? false : `there is no ${html}: scripts/browser-page makes it`;
+const test = (name, run) => node(name, { skip }, run);
+const MOST_BYTES = 2_500_000;
+
+let browser, folder;
+before(async () => {
+  if (skip) return;
+  folder = mkdtempSync(join(tmpdir(), "fosssim-page-"));
+  browser = await launch();
+});
+after(async () => {
+  await browser?.close();
+  if (folder) rmSync(folder, { recursive: true, force: true });
+});
+
+const scene = (name) => join(root, "assets/t2m2", `${name}.xml`);
+const oracle = (...words) => spawnSync(join(programs, "fosssim-oracle"), words, { encoding: "utf8", cwd: folder, maxBuffer: 1 << 28 });
+
+function trace(name, mistake, file = "trace.bin") {
+  execFileSync(join(programs, "fosssim-sample"), [...(mistake ? ["--mistake", mistake] : []), "-s", scene(name), "-d", "0", "-o", join(folder, file)]);
+  return join(folder, file);
+}
+
+const WRONG = ["GeometricTests/pair-becomes-rigid", "failsafe-angular-overwritten"];
+const said = (page) => page.locator("#said").innerText();
+async function drop(page, files) {
+  const before = await page.evaluate(() => document.documentElement.dataset.checked ?? "0");
+  await page.locator("#pick").setInputFiles(files);
+  await page.waitForFunction((before) => (document.documentElement.dataset.checked ?? "0") !== before, before);
+}
+const report = (page) => page.frameLocator("#frame");
+async function saved(page, name, selector = page.getByRole("button", { name, exact: true })) {
+  const [download] = await Promise.all([page.waitForEvent("download"), selector.click()]);
+  return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
+}
+
+test("the page is one file of a bounded size, whose policy names no address", () => {
+  const page = readFileSync(html, "utf8");
+  assert.ok(statSync(html).size < MOST_BYTES, `${statSync(html).size} bytes`);
+  const [, policy] = page.match(/http-equiv="Content-Security-Policy" content="([^"]*)"/);
+  assert.match(policy, /^default-src 'none'; /);
+  assert.ok(!/https?:|\*|'unsafe-(inline|eval)'|'self'/.test(policy), policy);
+  assert.ok(!/<(script|link|img)[^>]*\b(src|href)=/.test(page.replace(/srcdoc/g, "")));
+});
+
+test("a right trace is recognised and accepted", async () => {
+  const { page, complaints, close } = await opened(browser, html);
+  await drop(page, trace("ContinuousTimeTests/head-on-equal-masses"));
+  assert.match(await said(page), /^trace\.bin: accepted, judged in/);
+  assert.match(await report(page).locator("h1").innerText(), /ACCEPTED/);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+for (const [name, mistake, words] of [
+  [...WRONG, /angular momentum is overwritten/],
+  ["ContinuousTimeTests/spinning-edge-sweeps-balls", "pe-linear-one-ab", /likely mistake/],
+  ["ContinuousTimeTests/row-struck-in-one-step", "decision-half-step", /likely mistake/],
+  ["ContinuousTimeTests/head-on-equal-masses", "pp-contact-reversed", /likely mistake/],
+  ["ImpulsesTests/off-centre-on-turning-edge", "decision-alpha-margin", /likely mistake/],
+]) {
+  test(`${mistake}: the page's files are the program's, byte for byte, and its viewer runs`, async () => {
+    const { page, complaints, close } = await opened(browser, html);
+    await drop(page, trace(name, mistake));
+    assert.match(await said(page), /^trace\.bin: wrong answer/);
+    await report(page).locator("html[data-ready]").waitFor();
+    assert.match(await report(page).locator("main").innerText(), words);
+    for (const [button, format] of [["Save report", "html"], ["Save JSON", "json"]]) {
+      const { bytes } = await saved(page, button);
+      const own = oracle("check", `asset:${name}`, "trace.bin", "--format", format);
+      assert.equal(own.status, 1, own.stderr);
+      assert.ok(bytes.toString() === own.stdout, `${format} differs: ${bytes.length} and ${own.stdout.length} bytes`);
+    }
+    assert.deepEqual(complaints, []);
+    await close();
+  });
+}
+
+test("a trace that is cut, one of another scene, a text, an empty file: each has its words, and nothing breaks", async () => {
+  const { page, complaints, close } = await opened(browser, html);
+  const file = trace("ContinuousTimeTests/head-on-equal-masses");
+  truncateSync(file, 1501);
+  await drop(page, file);
+  assert.match(await said(page), /bad trace/);
+  trace("ContinuousTimeTests/head-on-equal-masses", null, "other.bin");
+  await page.getByRole("button", { name: "Another trace" }).click();
+  await page.locator("#scene").selectOption("GeometricTests/pair-becomes-rigid");
+  await page.waitForFunction(() => document.documentElement.dataset.checked === "2");
+  await drop(page, join(folder, "other.bin"));
+  assert.match(await report(page).locator("main").innerText(), /Is this trace of this scene\?/);
+  for (const [content, words] of [["Dear grader", /looks like text/], ["", /is empty/]]) {
+    writeFileSync(join(folder, "notes.bin"), content);
+    await drop(page, join(folder, "notes.bin"));
+    const { bytes } = await saved(page, "Save JSON");
+    assert.match(bytes.toString(), words);
+  }
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test("a scene of one's own is dropped with its trace; a broken one gets the strict reader's words", async () => {
+  const { page, complaints, close } = await opened(browser, html);
+  const file = trace(...WRONG);
+  copyFileSync(scene(WRONG[0]), join(folder, "own.xml"));
+  await drop(page, [join(folder, "own.xml"), file]);
+  const { bytes } = await saved(page, "Save JSON");
+  assert.equal(bytes.toString(), oracle("check", "own.xml", "trace.bin", "--format", "json").stdout);
+  writeFileSync(join(folder, "broken.xml"), readFileSync(scene(WRONG[0]), "utf8").replace('radius="', 'radios="'));
+  await drop(page, [join(folder, "broken.xml"), file]);
+  assert.match(await said(page), /broken\.xml:\d+:\d+: unknown attribute `radios`.*did you mean `radius`/s);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test("a trace of 1 GiB is streamed, and told to be too long", async (t) => {
+  const { page, complaints, close } = await opened(browser, html);
+  const file = trace("ContinuousTimeTests/head-on-equal-masses", null, "huge.bin");
+  truncateSync(file, 2 ** 30);
+  await drop(page, file);
+  t.diagnostic(await said(page));
+  assert.match(await said(page), /huge\.bin: /);
+  const { bytes } = await saved(page, "Save JSON");
+  assert.equal(bytes.toString(), oracle("check", "asset:ContinuousTimeTests/head-on-equal-masses", "huge.bin", "--format", "json").stdout);
+  rmSync(file);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test("everybody can use it: light, dark, a phone's width, without a mouse", async () => {
+  const file = trace(...WRONG);
+  for (const [scheme, width] of [["light", 1440], ["dark", 1440], ["dark", 390]]) {
+    const { page, complaints, close } = await opened(browser, html, { scheme });
+    await page.setViewportSize({ width, height: 844 });
+    const looks = async () => {
+      await judgeAccessibility(page);
+      assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= width);
+    };
+    await looks();
+    await drop(page, file);
+    await looks();
+    // Arrows go from tab to tab.
+    await page.locator("#tab-check").focus();
+    await page.keyboard.press("ArrowRight");
+    await page.waitForSelector("html[data-tried]");
+    await looks();
+    await page.keyboard.press("End");
+    await page.waitForSelector("html[data-looked]");
+    await looks();
+    await page.keyboard.press("Home");
+    assert.equal(await page.evaluate(() => document.activeElement.id), "tab-check");
+    // The last trace is read again with one key.
+    await page.keyboard.press("r");
+    await page.waitForFunction(() => document.documentElement.dataset.checked === "2");
+    // axe talks to frames by messages, which those of a file refuse.
+    assert.deepEqual(complaints.filter((one) => !one.includes("postMessage")), []);
+    await close();
+  }
+});
+
+test("a scene is written: messages in place, its motion, and files that are the program's", async () => {
+  const { page, complaints, close } = await opened(browser, html);
+  await page.locator("#tab-try").click();
+  await page.waitForSelector("#canvas[data-step]");
+  await page.locator("#start").selectOption("ContinuousTimeTests/head-on-equal-masses");
+  await page.waitForFunction(() => document.documentElement.dataset.tried === String(document.getElementById("source").value.length));
+  const { bytes } = await saved(page, "reference trace");
+  const own = oracle("simulate", "asset:ContinuousTimeTests/head-on-equal-masses", "--output", "own.bin");
+  assert.equal(own.status, 0, own.stderr);
+  assert.ok(bytes.equals(readFileSync(join(folder, "own.bin"))));
+  const film = await saved(page, "film (GIF)");
+  oracle("render", "asset:ContinuousTimeTests/head-on-equal-masses", "--size", "640x400", "--fps", "25", "--output", "own.gif");
+  assert.ok(film.bytes.equals(readFileSync(join(folder, "own.gif"))));
+  await page.locator("#source").fill('<scene>\n  <duration time="x"/>\n</scene>\n');
+  await page.getByRole("button", { name: "2:19" }).click();
+  assert.equal(await page.locator("#source").evaluate((area) => area.value.slice(area.selectionStart, area.selectionEnd)), "x");
+  assert.match(await page.locator("#problems").innerText(), /`time` of .* is `x`, which is no number/);
+  assert.equal(await page.locator("#marks mark").last().innerText(), "x");
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test("a pair is moved: its numbers are those of the command beside them", async () => {
+  const { page, complaints, close } = await opened(browser, html);
+  await page.locator("#tab-pair").click();
+  await page.waitForSelector("html[data-looked]");
+  for (const [preset, words] of [["first", /-361 t\^4 - 304 t\^3 - 468 t\^2 - 288 t/], ["second", /-16 t\^4 \+ 0 t\^3 - 68 t\^2 \+ 36 t - 16/], ["plane", /half-plane/], ["balls", /they collide/]]) {
+    await page.locator("#preset").selectOption(preset);
+    await page.waitForFunction(() => document.documentElement.dataset.looked === document.getElementById("command").textContent);
+    assert.match(await page.locator("#words").textContent(), words);
+  }
+  await page.getByRole("slider", { name: "x1: dy, slider" }).press("ArrowRight");
+  await page.waitForFunction(() => document.documentElement.dataset.looked === document.getElementById("command").textContent);
+  const { bytes } = await saved(page, "Save JSON", page.locator("#save-pair"));
+  const [, ...words] = (await page.locator("#command").innerText()).split(" ");
+  assert.equal(bytes.toString(), oracle(...words, "--format", "json").stdout);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test("all scenes have the same recordings as natively", async (t) => {
+  const { page, close } = await opened(browser, html);
+  // The module in the page's own browser, one scene after the other.
+  const names = ["t2m2", "earlier"].flatMap((assignment) => readdirSync(join(root, "assets", assignment), { withFileTypes: true }).filter((one) => one.isDirectory()).flatMap(({ name: group }) => readdirSync(join(root, "assets", assignment, group)).map((file) => `${group}/${file.replace(".xml", "")}`)));
+  const digests = await page.evaluate(async (names) => {
+    const worker = new Worker(URL.createObjectURL(new Blob([document.getElementById("worker").textContent])));
+    const packed = Uint8Array.from(atob(document.getElementById("module").textContent.trim()), (c) => c.charCodeAt(0));
+    const module = await WebAssembly.compile(await new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate-raw"))).arrayBuffer());
+    const ask = (request, blobs = []) => new Promise((resolve, reject) => {
+      worker.onmessage = ({ data }) => { if (data.error) reject(new Error(data.error)); else if (data.value) resolve(data.parts); };
+      worker.postMessage({ id: 0, request, blobs, files: [], module });
+    });
+    const found = {};
+    for (const name of names) {
+      const [xml] = await ask({ do: "scene", name });
+      await ask({ do: "simulate", scene: name }, [xml]);
+      const [trace] = await ask({ do: "trace" });
+      found[name] = [...new Uint8Array(await crypto.subtle.digest("SHA-256", trace))].map((byte) => byte.toString(16).padStart(2, "0")).join("");
+    }
+    return found;
+  }, names);
+  const { createHash } = await import("node:crypto");
+  for (const name of names) {
+    const own = spawnSync(join(programs, "fosssim-oracle"), ["simulate", `asset:${name}`, "--output", "-", "--quiet"], { maxBuffer: 1 << 28 });
+    assert.equal(digests[name], createHash("sha256").update(own.stdout).digest("hex"), name);
+  }
+  t.diagnostic(`${names.length} scenes recorded`);
+  await close();
+});
