@@ -8,6 +8,7 @@ pub mod cli;
 pub mod db;
 pub mod health;
 pub mod instruments;
+mod late;
 pub mod ledger;
 pub mod lti;
 pub mod net;

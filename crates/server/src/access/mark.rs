@@ -154,10 +154,15 @@ impl Staff {
                 "INSERT INTO extension (assignment, account, due_at, set_by, set_at) VALUES (?, ?, ?, ?, {now})";
             transaction.execute(statement, values![assignment.id, account, due, self.account.id]).await?;
         }
+        let statement = "SELECT max(id) AS id FROM submission WHERE assignment = ? AND account = ?";
+        if let Some(last) = transaction.one(statement, values![assignment.id, account]).await?.maybe_int("id")? {
+            score::changed(&mut transaction, last).await?;
+        }
         let until = due_at.map_or("as all others".to_owned(), |due| format!("until {} UTC", calendar::minute(due)));
         let text = format!("{login} hands in {until}");
         self.note(&mut transaction, "extension", Some(assignment.id), &text).await?;
         transaction.commit().await?;
+        self.app.0.notifier.wake();
         Ok(())
     }
 }

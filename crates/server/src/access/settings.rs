@@ -2,6 +2,7 @@
 use super::{Suites, file_name::is_file_name};
 use crate::{
     calendar,
+    late::LatePolicy,
     problem::Problem,
     store::Digest,
     task::{Form, Input, Suite, Task},
@@ -51,10 +52,17 @@ pub struct Settings {
     /// Submissions per student within an hour; 0 for as many as they like.
     #[schema(maximum = 4_294_967_295_i64)]
     pub per_hour: u32,
-    /// No uploads of students after this moment: milliseconds since 1970, or a date with its time zone (ISO 8601).
+    /// No uploads of students after this moment, or `late_days` later: milliseconds since 1970, or a date with its time
+    /// zone (ISO 8601).
     #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "moment")]
     #[schema(schema_with = moment_schema)]
     pub due_at: Option<i64>,
+    /// The days after the due date in which uploads are still taken, at a price.
+    #[schema(maximum = 365)]
+    pub late_days: u32,
+    /// How many percent of the grader's points a submission loses for each day that has begun after it was due.
+    #[schema(maximum = 100)]
+    pub late_percent: u32,
 }
 
 /// Reads a moment: a number, or a date.
@@ -99,6 +107,8 @@ impl Default for Settings {
             attempts: 0,
             per_hour: 20,
             due_at: None,
+            late_days: 0,
+            late_percent: 0,
         }
     }
 }
@@ -157,6 +167,9 @@ impl Settings {
                  milliseconds, or a date such as 2026-12-01T23:59:00+01:00"
             )));
         }
+        if self.late_days > 365 || self.late_percent > 100 {
+            return Err(Problem::invalid("late_days is at most 365, and late_percent at most 100"));
+        }
         if !(1..=3600).contains(&self.seconds) {
             return Err(Problem::invalid("seconds is between 1 and 3600"));
         }
@@ -164,6 +177,12 @@ impl Settings {
             return Err(Problem::invalid("max_bytes is between 1 and 1073741824"));
         }
         Ok(())
+    }
+
+    /// What they say about being late.
+    pub(super) fn late_policy(&self) -> LatePolicy {
+        let Self { due_at, late_days, late_percent, .. } = *self;
+        LatePolicy { due_at, late_days, late_percent }
     }
 
     /// Whether a form of this name may be handed in.

@@ -78,6 +78,10 @@ impl Staff {
             ));
         }
         let mut transaction = self.app.0.database.begin().await?;
+        let before = transaction
+            .row("SELECT settings FROM assignment WHERE course = ? AND slug = ?", values![self.course, slug])
+            .await?;
+        let before = before.map(|row| row.text("settings")).transpose()?;
         let statement = "INSERT INTO assignment (course, slug, title, visible, settings, created_at)
             VALUES (?, ?, ?, ?, ?, {now})
             ON CONFLICT (course, slug) DO UPDATE SET title = excluded.title, visible = excluded.visible,
@@ -85,6 +89,11 @@ impl Staff {
             RETURNING id, slug, title, visible, settings, published_at";
         let row = transaction.one(statement, values![self.course, slug, title, visible, settings.text()]).await?;
         let assignment = view::read_assignment(&row)?;
+        // What late submissions are worth may be something else now.
+        let before = before.and_then(|text| Settings::read(&text).ok());
+        if before.is_some_and(|before| before.late_policy() != settings.late_policy()) {
+            score::send_all(&mut transaction, assignment.id, false).await?;
+        }
         // What waits because nothing could be graded is tried by the new settings.
         bulk::resume(&mut transaction, &assignment).await?;
         let text = format!("{slug} ({title}), {}: {}", if visible { "visible" } else { "hidden" }, settings.text());

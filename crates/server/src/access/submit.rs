@@ -149,7 +149,7 @@ impl Member {
         let row = transaction.one(statement, values![HOUR, assignment.id, self.account.id]).await?;
         if mark::due(transaction, assignment, self.account.id)
             .await?
-            .is_some_and(|due| row.int("now").is_ok_and(|now| now > due))
+            .is_some_and(|due| row.int("now").is_ok_and(|now| now > settings.late_policy().closes_at(due)))
         {
             return Err(Problem::conflict("the assignment was due before", "ask the course's staff"));
         }

@@ -3,6 +3,7 @@ use super::{App, Settings};
 use crate::{
     db::{DbError, FromRow, Row, Transaction, Value, from_row},
     health,
+    late::Late,
     problem::Problem,
     queue::{self, Lane, Progress},
     shown::Shown,
@@ -83,6 +84,9 @@ pub struct Submission {
     /// The result that counts.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grade: Option<Graded>,
+    /// How late it came, where that costs points; staff's points cost nothing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub late: Option<Late>,
     /// What staff says of it by hand.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mark: Option<Mark>,
@@ -255,6 +259,7 @@ macro_rules! submissions {
                 job.lane, job.last_fault, grade.result, result.verdict,
                 result.code, result.points, result.max_points, result.summary, result.version, result.seconds,
                 result.grader, result.essence, result.shown, result.created_at AS graded_at,
+                assignment.settings, extension.due_at AS own_due,
                 mark.points AS mark_points, mark.comment, mark.marked_at, mark.request, mark.requested_at,
                 marker.login AS marker
              FROM submission
@@ -263,6 +268,7 @@ macro_rules! submissions {
              LEFT JOIN job ON job.submission = submission.id AND job.campaign IS NULL AND job.replaced = 0
              LEFT JOIN grade ON grade.submission = submission.id
              LEFT JOIN result ON result.id = grade.result
+             LEFT JOIN extension ON extension.assignment = assignment.id AND extension.account = account.id
              LEFT JOIN mark ON mark.submission = submission.id
              LEFT JOIN account AS marker ON marker.id = mark.marked_by
              WHERE ",
@@ -319,6 +325,7 @@ fn read_submission(row: &Row) -> Result<Submission, DbError> {
         fault: row.maybe_text("last_fault")?,
         job: row.maybe_int("job")?,
         account: row.int("account")?,
+        late: Late::of(row)?,
         mark,
     };
     submission.overrule();
@@ -333,12 +340,13 @@ fn progress(row: &Row) -> Result<Option<Progress>, DbError> {
 }
 
 impl Submission {
-    /// Points that staff gave count instead of the grader's.
+    /// Points that staff gave count instead of the grader's, of which being late costs some.
     pub(super) fn overrule(&mut self) {
-        if let (Some(grade), Some(points)) = (&mut self.grade, self.mark.as_ref().and_then(|mark| mark.points.clone()))
-        {
-            grade.outcome.points = Some(points);
-        }
+        let Some(grade) = &mut self.grade else { return };
+        let given = self.mark.as_ref().and_then(|mark| mark.points.clone());
+        let points = grade.outcome.points.take();
+        grade.outcome.points =
+            given.or_else(|| points.map(|points| self.late.map_or(points.clone(), |late| late.left_of(&points))));
     }
 }
 

@@ -7,6 +7,7 @@
 use super::Platform;
 use crate::{
     db::{DbError, Row, Transaction},
+    late::Late,
     queue::{self, Lane, NewJob, Notifier, Turn},
     shown::Shown,
     task::rounded,
@@ -183,7 +184,9 @@ pub(super) async fn prepare(transaction: &mut Transaction, order: Order) -> Resu
 /// platform is told that they come, and when the grader failed, that somebody has to look: never a zero that nobody
 /// earned. Of groups that are hidden and not published platforms hear nothing: they show what they hear.
 async fn content(transaction: &mut Transaction, assignment: i64, account: i64) -> Result<Option<Value>, DbError> {
-    let statement = "SELECT job.state, result.points, result.max_points, assignment.published_at, result.shown, mark.points AS mark FROM submission
+    let statement = "SELECT job.state, result.points, result.max_points, assignment.published_at, result.shown, mark.points AS mark,
+           submission.created_at, assignment.settings, extension.due_at AS own_due FROM submission
+        LEFT JOIN extension ON extension.assignment = submission.assignment AND extension.account = submission.account
         LEFT JOIN mark ON mark.submission = submission.id
         JOIN assignment ON assignment.id = submission.assignment
         LEFT JOIN job ON job.submission = submission.id AND job.campaign IS NULL AND job.replaced = 0
@@ -201,7 +204,10 @@ async fn content(transaction: &mut Transaction, assignment: i64, account: i64) -
             Some(shown) => shown.points(),
             None => (row.maybe_text("points")?, row.maybe_text("max_points")?),
         };
-        let points = row.maybe_text("mark")?.or(points);
+        let late = Late::of(row)?;
+        let points = row
+            .maybe_text("mark")?
+            .or_else(|| points.map(|points| late.map_or(points.clone(), |late| late.left_of(&points))));
         let number =
             |text: Option<String>| text.and_then(|text| text.parse().ok()).filter(|number: &f64| number.is_finite());
         if let (Some(points), Some(most)) = (number(points), number(most))

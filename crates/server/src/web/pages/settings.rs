@@ -116,10 +116,16 @@ pub(super) struct NewSettings {
     due: String,
     #[serde(default)]
     due_zone: String,
+    #[serde(default)]
+    late_days: String,
+    #[serde(default)]
+    late_percent: String,
 }
 
 impl NewSettings {
     fn over(&self, before: &Settings) -> Result<Settings, Problem> {
+        // A form from before they were there.
+        let late = |what: &str, text: &str, before: u32| if text.is_empty() { Ok(before) } else { number(what, text) };
         let megabytes: f64 = number("the largest upload", &self.megabytes)?;
         if !(0.0..=1024.0).contains(&megabytes) {
             return Err(Problem::invalid("the largest upload is at most 1024 MiB"));
@@ -131,6 +137,8 @@ impl NewSettings {
             max_bytes: (megabytes * MIB).round() as u64,
             attempts: number("submissions in all", &self.attempts)?,
             per_hour: number("submissions in an hour", &self.per_hour)?,
+            late_days: late("days", &self.late_days, before.late_days)?,
+            late_percent: late("percent", &self.late_percent, before.late_percent)?,
             due_at: moment(&self.due, &self.due_zone, before.due_at)?,
             ..self.grading.over(before)?
         })

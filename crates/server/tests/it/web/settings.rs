@@ -12,7 +12,7 @@ async fn settings_are_a_form(fresh: Fresh) {
     server.course(&admin, "physics");
     let settings = || admin.get("/api/v1/courses/physics/assignments/m1").expect(200).json()["settings"].clone();
     let form = "title=Milestone+one&visible=on&suite=course-2027&rules=&hints=what&program=FOSSSim&seconds=90&form_sources=on\
-                &megabytes=0.5&attempts=3&per_hour=0";
+                &megabytes=0.5&attempts=3&per_hour=0&late_days=2&late_percent=25";
     let path = "/c/physics/a/m1/settings";
     // Without a script the field is in UTC, and says so; with one in the reader's zone.
     admin.post_form(path, &format!("{form}&due=2026-12-01T22:59&due_zone=0")).expect(303);
@@ -22,7 +22,8 @@ async fn settings_are_a_form(fresh: Fresh) {
     assert_eq!(
         utc,
         serde_json::json!({"suite": "course-2027", "hints": "what", "program": "FOSSSim", "seconds": 90,
-            "forms": ["sources"], "max_bytes": 524_288, "attempts": 3, "per_hour": 0, "due_at": 1_796_165_940_000_i64})
+            "forms": ["sources"], "max_bytes": 524_288, "attempts": 3, "per_hour": 0, "due_at": 1_796_165_940_000_i64,
+            "late_days": 2, "late_percent": 25})
     );
     let page = admin.get(path).expect(200).text();
     for part in

@@ -3,8 +3,13 @@ use crate::support::{
     engines::{Fresh, on_both_engines},
     server::{JSON, Server, program},
 };
+use std::time::{Duration, SystemTime};
 
-on_both_engines!(a_class_comes_in_by_a_table, staff_overrules_answers_and_gives_time);
+on_both_engines!(
+    a_class_comes_in_by_a_table,
+    staff_overrules_answers_and_gives_time,
+    late_work_is_taken_and_costs_points,
+);
 
 async fn a_class_comes_in_by_a_table(fresh: Fresh) {
     let mut server = Server::start(&fresh, &["--workers", "0"]);
@@ -101,4 +106,44 @@ async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
     // Nothing of it is left when the person goes.
     teacher.send("PUT", extension, JSON, br#"{"due_at": "2096-01-01T00:00Z"}"#).expect(204);
     admin.send("DELETE", "/api/v1/accounts/ada/data", &[], b"").expect(204);
+}
+
+async fn late_work_is_taken_and_costs_points(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "1"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let teacher = server.member(&admin, "physics", "teacher", "staff");
+    let ada = server.member(&admin, "physics", "ada", "student");
+    let before = SystemTime::now() - Duration::from_secs(36 * 3600);
+    let due = before.duration_since(SystemTime::UNIX_EPOCH).expect("a time").as_millis();
+    let set = |days: u32| {
+        let settings = format!(r#"{{"due_at": {due}, "late_days": {days}, "late_percent": 10}}"#);
+        let wish = format!(r#"{{"title": "M", "visible": true, "settings": {settings}}}"#);
+        teacher.send("PUT", "/api/v1/courses/physics/assignments/m1", JSON, wish.as_bytes())
+    };
+    set(366).expect(400);
+    set(3).expect(200);
+    let place = ada.get("/c/physics/a/m1").expect(200).text();
+    assert!(place.contains("taken for 3 more days; each day that has begun takes 10 %"), "{place}");
+    let id = ada.submit("physics", &program("AC", 95));
+    ada.wait_for_grade("physics", id);
+    let seen = || ada.get(&format!("/api/v1/courses/physics/submissions/{id}")).expect(200).json();
+    assert_eq!(seen()["late"], serde_json::json!({"days": 2, "percent": 20}));
+    assert_eq!(seen()["grade"]["points"], "76");
+    let page = ada.get(&format!("/c/physics/s/{id}")).expect(200).text();
+    assert!(page.contains("76 / 100 points") && page.contains("2 days late, which takes 20 %"), "{page}");
+    assert!(teacher.get("/c/physics/a/m1/class").expect(200).text().contains("76 / 100"), "staff sees the same");
+    assert!(teacher.get("/api/v1/courses/physics/assignments/m1/export").expect(200).text().contains(",76,"));
+    // More time for one makes it early, and points by hand cost nothing.
+    let extension = "/api/v1/courses/physics/assignments/m1/extensions/ada";
+    teacher.send("PUT", extension, JSON, br#"{"due_at": "2096-01-01T00:00Z"}"#).expect(204);
+    assert_eq!((&seen()["grade"]["points"], seen()["late"].is_null()), (&"95".into(), true));
+    teacher.send("DELETE", extension, &[], b"").expect(204);
+    let mark = format!("/api/v1/courses/physics/submissions/{id}/mark");
+    teacher.send("PUT", &mark, JSON, br#"{"points": 90, "comment": "ill"}"#).expect(200);
+    assert_eq!(seen()["grade"]["points"], "90");
+    // The days are over.
+    set(1).expect(200);
+    let upload = "/api/v1/courses/physics/assignments/m1/submissions?name=FOSSSim";
+    ada.send("POST", upload, &[], &program("AC", 100)).expect(409);
 }

@@ -1,0 +1,77 @@
+//! What a submission is worth that came after it was due.
+use crate::db::{DbError, Row};
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// A day in milliseconds.
+const DAY: i64 = 86_400_000;
+
+/// What an assignment's settings say about being late.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(default)]
+pub(crate) struct LatePolicy {
+    pub(crate) due_at: Option<i64>,
+    pub(crate) late_days: u32,
+    pub(crate) late_percent: u32,
+}
+
+/// How late a submission came.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
+pub struct Late {
+    /// Days after the due date; a day that has begun counts.
+    pub days: i64,
+    /// How many percent of the grader's points it loses.
+    pub percent: i64,
+}
+
+impl LatePolicy {
+    /// The last moment at which an upload is taken of somebody for whom it is due then.
+    pub(crate) fn closes_at(&self, due: i64) -> i64 {
+        due + i64::from(self.late_days) * DAY
+    }
+
+    /// How late a submission is that came at this moment, of somebody who has another due date than the others, or not.
+    /// Nothing where it came in time, or where the assignment takes nothing late.
+    fn late(&self, own_due: Option<i64>, came_at: i64) -> Option<Late> {
+        let after = came_at - self.due_at.map(|due| own_due.unwrap_or(due))?;
+        // At most as late as anything may be: it was in time by an extension that was taken back.
+        let days = (after + DAY - 1).div_euclid(DAY).min(self.late_days.into());
+        let percent = (days * i64::from(self.late_percent)).min(100);
+        (days > 0).then_some(Late { days, percent })
+    }
+}
+
+impl Late {
+    /// How late a submission came, by its row with `created_at`, the assignment's `settings` and its owner's own due
+    /// date, `own_due`.
+    pub(crate) fn of(row: &Row) -> Result<Option<Self>, DbError> {
+        let policy: LatePolicy = serde_json::from_str(&row.text("settings")?).unwrap_or_default();
+        Ok(policy.late(row.maybe_int("own_due")?, row.int("created_at")?))
+    }
+
+    /// What is left of the grader's points.
+    pub(crate) fn left_of(self, points: &str) -> String {
+        let left = |points: f64| (points * (100 - self.percent) as f64 / 100.0).to_string();
+        points.parse().map_or_else(|_| points.to_owned(), left)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_day_that_has_begun_costs_the_same() {
+        let due = 1_700_000_000_000;
+        let policy = LatePolicy { due_at: Some(due), late_days: 3, late_percent: 40 };
+        let late = |after| policy.late(None, due + after).map(|late| (late.days, late.percent));
+        assert_eq!([late(-DAY), late(0), late(1)], [None, None, Some((1, 40))]);
+        assert_eq!([late(DAY), late(DAY + 1)], [Some((1, 40)), Some((2, 80))]);
+        assert_eq!([late(3 * DAY), late(9 * DAY)], [Some((3, 100)); 2], "it never costs more than all");
+        assert_eq!(policy.late(Some(due + DAY), due + DAY), None, "an extension moves the due date");
+        assert_eq!(policy.closes_at(due), due + 3 * DAY);
+        let never = LatePolicy { late_days: 0, ..policy };
+        assert_eq!(never.late(None, due + 1), None, "where nothing is taken late, nothing is late");
+        assert_eq!(Late { days: 1, percent: 10 }.left_of("85.5"), "76.95");
+    }
+}
