@@ -1,13 +1,13 @@
 //! What the fuzz target of the service does with its bytes; the service's tests replay the seeds, and what becomes of
 //! them when bytes change, through the same function.
 use fosssim_server::{
-    archive::{self, Limits},
+    archive::{self, ArchiveLimits},
     web,
 };
 use std::{collections::BTreeSet, fs, path::Path};
 
 /// Small enough to be reached.
-const LIMITS: Limits = Limits { bytes: 1 << 16, entries: 64 };
+const LIMITS: ArchiveLimits = ArchiveLimits { bytes: 1 << 16, entries: 64 };
 
 /// Looks through an archive that a stranger sent, and unpacks it. Whether it is accepted.
 pub fn archive(bytes: &[u8]) -> bool {

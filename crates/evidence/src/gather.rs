@@ -200,7 +200,7 @@ impl<'a> Gathering<'a> {
 
     /// Makes a step of the reference's own run.
     fn run_freely(&mut self, step: u32) {
-        let mut midway = Midway::default();
+        let mut midway = MidState::default();
         self.free_goes_on = self.free_goes_on && self.free.step(&mut midway).is_ok();
         if self.free_goes_on {
             if let (Some(state), true) = (&midway.state, self.holds(step, true)) {
@@ -227,12 +227,12 @@ impl<'a> Gathering<'a> {
         before: &State,
         (mid, end): (&'f LenientFrame, &'f LenientFrame),
         wanted: Option<&[(WantedCalls, Pair)]>,
-    ) -> Option<Count<'f>> {
+    ) -> Option<PassCount<'f>> {
         self.own.state_mut().clone_from(before);
         self.own.set_steps_done(step - 1);
         // The mid record of `continuous-time` equals the end record, so it is compared with the end of the step.
         let mid_state = matches!(self.scene.collision, Collision::Hybrid { .. }).then_some(&mid.state);
-        let mut count = Count::new(mid_state);
+        let mut count = PassCount::new(mid_state);
         let Some(wanted) = wanted else {
             return self.work.step(&mut self.own, &mut count).is_ok().then_some(count);
         };
@@ -253,7 +253,7 @@ impl<'a> Gathering<'a> {
         self.free_goes_on && largest(&self.free.state().positions, &end.positions) > APART
     }
 
-    fn keep_step(&mut self, class: StepClass, count: &Count<'_>, end: &LenientFrame) {
+    fn keep_step(&mut self, class: StepClass, count: &PassCount<'_>, end: &LenientFrame) {
         let [position, velocity] = apart(self.own.state(), &end.state);
         self.evidence.steps.push(Step {
             class,
@@ -296,11 +296,11 @@ fn worse(one: f64, other: f64) -> f64 {
 
 /// Keeps the state of the synchronisation point.
 #[derive(Default)]
-struct Midway {
+struct MidState {
     state: Option<State>,
 }
 
-impl Observer for Midway {
+impl Observer for MidState {
     fn synchronise(&mut self, state: &mut State) -> Resume {
         self.state = Some(state.clone());
         Resume::Own
@@ -308,7 +308,7 @@ impl Observer for Midway {
 }
 
 /// Counts passes and calls, and has the step go on with the trace's mid record.
-struct Count<'a> {
+struct PassCount<'a> {
     mid: Option<&'a State>,
     passes: u32,
     polynomials: usize,
@@ -316,7 +316,7 @@ struct Count<'a> {
     apart: [f64; 2],
 }
 
-impl<'a> Count<'a> {
+impl<'a> PassCount<'a> {
     const fn new(mid: Option<&'a State>) -> Self {
         Self { mid, passes: 0, polynomials: 0, apart: [0.0; 2] }
     }
@@ -332,7 +332,7 @@ impl<'a> Count<'a> {
     }
 }
 
-impl Observer for Count<'_> {
+impl Observer for PassCount<'_> {
     fn begin_pass(&mut self, _pass: Pass) {
         self.passes += 1;
     }

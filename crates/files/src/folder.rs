@@ -350,5 +350,4 @@ pub fn open_file(path: &Path, follow: bool) -> Result<(File, u64), FileError> {
 }
 
 #[cfg(test)]
-#[path = "folder_tests.rs"]
 mod tests;

@@ -263,7 +263,7 @@ pub enum Failure {
         /// The panic.
         fault: String,
         /// Where the trace is that it failed on.
-        trace: Option<KeptTrace>,
+        trace: Option<SavedTrace>,
     },
 }
 
@@ -280,7 +280,7 @@ pub enum Activity {
 
 /// What became of a trace on which the grader failed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub enum KeptTrace {
+pub enum SavedTrace {
     /// It is in this file.
     In(PathBuf),
     /// It could not be kept.

@@ -4,7 +4,7 @@
 //! value. Reports that lay values out side by side use the fields of [`FindingDetail`] instead.
 use super::finding::{Finding, FindingDetail, FindingKind, Part, PolynomialPlace, RecordPart, Role};
 use fosssim_model::{
-    sim::{Pair, PairKind, Pass, Stage},
+    sim::{Impulse, Pair, PairKind, Pass, Stage},
     trace::LoggedImpulse,
 };
 use fosssim_num::vector::{self, Vec2};
@@ -17,18 +17,18 @@ impl Display for Finding {
 }
 
 /// A finding without its step.
-struct What<'a>(&'a Finding);
+struct WithoutStep<'a>(&'a Finding);
 
 impl Finding {
     /// The finding in words, without its step: what stands in the first record starts, what stands in others ends
     /// there.
     #[must_use]
     pub fn what(&self) -> impl Display + '_ {
-        What(self)
+        WithoutStep(self)
     }
 }
 
-impl Display for What<'_> {
+impl Display for WithoutStep<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let Finding { step, detail, .. } = self.0;
         match *detail {
@@ -56,24 +56,16 @@ const DROPPING: &str = "the course's library drops leading ones below 1e-12";
 
 impl Display for FindingDetail {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        match self {
+        match *self {
             Self::MissedCollision { expected } => {
-                let [x, y] = [expected.normal.x, expected.normal.y];
-                write!(
-                    f,
-                    "{} collide at time {} with normal ({x}, {y}), the trace misses it",
-                    PairWords(expected.pair),
-                    expected.time
-                )
+                let Impulse { pair, normal: Vec2 { x, y }, time } = expected;
+                let pair = PairWords(pair);
+                write!(f, "{pair} collide at time {time} with normal ({x}, {y}), the trace misses it")
             }
             Self::SuperfluousCollision { actual } => {
-                let [x, y] = [actual.normal.x, actual.normal.y];
-                write!(
-                    f,
-                    "the trace has {} collide at time {} with normal ({x}, {y}), they do not",
-                    LoggedPair(actual),
-                    actual.time
-                )
+                let LoggedImpulse { normal: Vec2 { x, y }, time, .. } = actual;
+                let pair = LoggedPair(&actual);
+                write!(f, "the trace has {pair} collide at time {time} with normal ({x}, {y}), they do not")
             }
             Self::WrongNormal { expected, actual, .. } => {
                 let pair = PairWords(expected.pair);
@@ -83,13 +75,10 @@ impl Display for FindingDetail {
             }
             Self::PolynomialCount { expected, actual, per_pass } => {
                 write!(f, "{actual} polynomials logged, expected {expected}")?;
-                write_passes(f, passes(*expected, *actual, *per_pass))
+                write_passes(f, passes(expected, actual, per_pass))
             }
             Self::PassCount { part, expected, actual } => {
-                let part = match part {
-                    Part::Impulses => "before the mid record",
-                    Part::Geometric => "in the geometric part",
-                };
+                let part = if part == Part::Impulses { "before the mid record" } else { "in the geometric part" };
                 write!(f, "{actual} detection passes {part}, expected {expected}")
             }
             Self::PolynomialDegree { place, expected, actual_size, .. } => write!(
@@ -101,25 +90,19 @@ impl Display for FindingDetail {
                 write!(f, "{place}: the reference's coefficients all vanish, the trace's do not")
             }
             Self::Coefficient { place, power, expected, actual, .. } => {
-                write!(f, "{place}, {}: {actual}, expected {expected}", Power(*power))
+                write!(f, "{place}, {}: {actual}, expected {expected}", Power(power))
             }
             Self::Position { particle, expected, actual, .. } => {
-                let (expected, actual) = (*expected, *actual);
                 write!(f, "particle {particle} ends at {}", Apart { expected, actual })
             }
             Self::Velocity { particle, expected, actual, .. } => {
-                let (expected, actual) = (*expected, *actual);
                 write!(f, "particle {particle} ends with velocity {}", Apart { expected, actual })
             }
-            Self::ContactTime { expected, actual } => write!(
-                f,
-                "{} collide at time {}, the trace says {}",
-                PairWords(expected.pair),
-                expected.time,
-                actual.time
-            ),
+            Self::ContactTime { expected: Impulse { pair, time, .. }, actual } => {
+                write!(f, "{} collide at time {time}, the trace says {}", PairWords(pair), actual.time)
+            }
             Self::RepeatedCollision { actual } => {
-                write!(f, "the collision of {} is logged more than once", LoggedPair(actual))
+                write!(f, "the collision of {} is logged more than once", LoggedPair(&actual))
             }
             Self::PassPositions { place } => write!(
                 f,
@@ -133,20 +116,14 @@ impl Display for FindingDetail {
             }),
             Self::ImpossibleLog => f.write_str("a polynomial has more coefficients than any detection has"),
             Self::TrimmedDecision { place, collides } => {
-                let outcome = if *collides { "collide" } else { "do not collide" };
-                write!(
-                    f,
-                    "{} ({}) {outcome}; {LACKING}, and decide otherwise ({DROPPING})",
-                    PairWords(place.pair),
-                    PassWords(place.pass)
-                )
+                let outcome = if collides { "collide" } else { "do not collide" };
+                let (pair, pass) = (PairWords(place.pair), PassWords(place.pass));
+                write!(f, "{pair} ({pass}) {outcome}; {LACKING}, and decide otherwise ({DROPPING})")
             }
-            Self::TrimmedTime { place, expected, actual } => write!(
-                f,
-                "{} ({}) collide at time {expected}; {LACKING}, and have time {actual} ({DROPPING})",
-                PairWords(place.pair),
-                PassWords(place.pass)
-            ),
+            Self::TrimmedTime { place, expected, actual } => {
+                let (pair, pass) = (PairWords(place.pair), PassWords(place.pass));
+                write!(f, "{pair} ({pass}) collide at time {expected}; {LACKING}, and have time {actual} ({DROPPING})")
+            }
             Self::BeyondReach { particle, position: [x, y], velocity: [vx, vy] } => write!(
                 f,
                 "the step starts or ends with particle {particle} at ({x}, {y}) with velocity ({vx}, {vy}): no \

@@ -16,7 +16,7 @@ use fosssim_evidence::StepRulings;
 use fosssim_files::Place;
 use fosssim_judge::{
     Outcome, Rules,
-    kept::Keeper,
+    kept::{Keeper, KeptTrace},
     recorded::{self, RecordingError},
     replay::{Options, Progress, Remark},
 };
@@ -105,23 +105,11 @@ impl Runner<'_> {
         let bytes = AtomicU64::new(0);
         // Not within the judging, which may panic: its trace is put aside then.
         let keeper = Keeper::new(&task.scene, KEPT_TRACE);
-        let options =
-            Options { stop_by: self.rules.official(), threads: 1, fair: self.rules.ask_fair(), ..Options::default() };
         let mut watch = Watch { on_step };
         let mut rulings = StepRulings::new(&mut watch);
         let judged = match running.trace() {
-            Some(inner) => {
-                let mut trace = Counted { inner, bytes: &bytes };
-                let judged = guarded(|| {
-                    fault::injected(Activity::Judging, &program.program);
-                    self.judge(task, &keeper, &mut trace, &options, &mut rulings)
-                });
-                // What the judge did not want is read all the same, within the limit: a program must not die of our
-                // closing the pipe. An error here ends the program as well, and its outcome says so.
-                let _ = io::copy(&mut keeper.reader(trace), &mut io::sink());
-                judged
-            }
-            None => guarded(|| self.judge(task, &keeper, io::empty(), &options, &mut rulings)),
+            Some(inner) => self.judge_pipe(program, task, &keeper, Counted { inner, bytes: &bytes }, &mut rulings),
+            None => guarded(|| self.judge(task, &keeper, io::empty(), &mut rulings)),
         };
         let outcome = running.wait()?;
         match is_untouched {
@@ -145,24 +133,10 @@ impl Runner<'_> {
             hints: self.hints,
             limits: self.limits,
         };
-        let mut explaining = guarded(|| fault::injected(Activity::Explaining, &program.program)).err();
-        let explain = |look: Look| {
-            let found = || match look {
-                Look::NotFinite => diagnose::not_finite(&kept),
-                Look::Mistakes => diagnose::explain_kept(&kept),
-            };
-            guarded(found).unwrap_or_else(|fault| {
-                explaining = Some(fault);
-                Vec::new()
-            })
-        };
-        let mut result = match guarded(|| conclude(&run, explain)) {
+        let mut result = match explained(&run, &kept, &program.program) {
             Ok(result) => result,
-            Err(fault) => return Ok(failed(Activity::Judging, &fault)),
+            Err((activity, fault)) => return Ok(failed(activity, &fault)),
         };
-        if let Some(fault) = explaining {
-            return Ok(failed(Activity::Explaining, &fault));
-        }
         result.measured.judging = begin.elapsed().saturating_sub(result.measured.wall);
         if let Some(cards) = self.cards
             && !(result.verdict.is_accepted() && result.differs.is_none())
@@ -178,15 +152,14 @@ impl Runner<'_> {
                 rules: self.rules,
                 hints: self.hints,
             };
-            match guarded(|| cards.keep(&judged)) {
-                Ok(card) => result.card = card.map_err(ExecuteError::Folder)?,
+            let kept = guarded(|| cards.keep(&judged));
+            result.card = match kept {
+                Ok(card) => card.map_err(ExecuteError::Folder)?,
                 Err(fault) => return Ok(failed(Activity::Reporting, &fault)),
-            }
+            };
         }
-        if let Some(path) = self.traces.map(|path| path(task))
-            && !result.verdict.is_accepted()
-        {
-            path.write(&beginning()).map_err(ExecuteError::Folder)?;
+        if let Some(path) = self.traces.filter(|_| !result.verdict.is_accepted()) {
+            path(task).write(&beginning()).map_err(ExecuteError::Folder)?;
         }
         match guarded(|| (self.rehearse)(&result)) {
             Ok(()) => Ok(result),
@@ -236,16 +209,36 @@ impl Runner<'_> {
         Ok((self.backend.start(&job)?, folder))
     }
 
+    /// Judges the trace that a program writes. What the judge did not want is read all the same, within the limit: a
+    /// program must not die of our closing the pipe.
+    fn judge_pipe(
+        &self,
+        program: &Staged,
+        task: &SceneTask,
+        keeper: &Keeper<'_>,
+        mut trace: impl Read + Send,
+        watch: &mut dyn Progress,
+    ) -> Result<Result<Outcome, ExecuteError>, Fault> {
+        let judged = guarded(|| {
+            fault::injected(Activity::Judging, &program.program);
+            self.judge(task, keeper, &mut trace, watch)
+        });
+        // An error here ends the program as well, and its outcome says so.
+        let _ = io::copy(&mut keeper.reader(trace), &mut io::sink());
+        judged
+    }
+
     fn judge(
         &self,
         task: &SceneTask,
         keeper: &Keeper<'_>,
         trace: impl Read + Send,
-        options: &Options,
         watch: &mut dyn Progress,
     ) -> Result<Outcome, ExecuteError> {
+        let options =
+            Options { stop_by: self.rules.official(), threads: 1, fair: self.rules.ask_fair(), ..Options::default() };
         if !self.recorded {
-            return Ok(keeper.judge(trace, options, watch));
+            return Ok(keeper.judge(trace, &options, watch));
         }
         let packed = task.recording.ok_or_else(|| ExecuteError::NoRecording(task.name.clone()))?;
         let recording = zstd::Decoder::with_buffer(packed).map_err(ExecuteError::Recording)?;
@@ -278,6 +271,23 @@ impl Runner<'_> {
             ..Limits::default()
         }
     }
+}
+
+/// The result of a judged run with its explanations, or what panicked.
+fn explained(run: &Run<'_>, kept: &KeptTrace<'_>, program: &Path) -> Result<SceneResult, (Activity, Fault)> {
+    let mut explaining = guarded(|| fault::injected(Activity::Explaining, program)).err();
+    let explain = |look: Look| {
+        let found = || match look {
+            Look::NotFinite => diagnose::not_finite(kept),
+            Look::Mistakes => diagnose::explain_kept(kept),
+        };
+        guarded(found).unwrap_or_else(|fault| {
+            explaining = Some(fault);
+            Vec::new()
+        })
+    };
+    let result = guarded(|| conclude(run, explain)).map_err(|fault| (Activity::Judging, fault))?;
+    explaining.map_or(Ok(result), |fault| Err((Activity::Explaining, fault)))
 }
 
 /// Why a scene could not be run: always our fault or the machine's.

@@ -2,7 +2,7 @@
 //! who mends it.
 use super::{
     guard::Fault,
-    result::{Activity, Failure, KeptTrace, Reason, SceneResult},
+    result::{Activity, Failure, Reason, SavedTrace, SceneResult},
     task::SceneTask,
     verdict::Verdict,
 };
@@ -15,8 +15,8 @@ use std::{
 /// The result of a scene on which the grader failed, with the beginning of its trace.
 pub(super) fn result(task: &SceneTask, folder: &Place, stage: Activity, fault: &Fault, trace: &[u8]) -> SceneResult {
     let kept = match keep(folder, task, trace) {
-        Ok(path) => KeptTrace::In(path),
-        Err(error) => KeptTrace::Lost { folder: folder.path(), error: error.to_string() },
+        Ok(path) => SavedTrace::In(path),
+        Err(error) => SavedTrace::Lost { folder: folder.path(), error: error.to_string() },
     };
     let failure = Failure::Panic { stage: Some(stage), fault: fault.to_string(), trace: Some(kept) };
     SceneResult::without_run(&task.name, task.scene.steps(), Verdict::JudgeError, Reason::Failed(failure))

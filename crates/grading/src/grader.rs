@@ -1,6 +1,6 @@
 //! Grades one submission: the unit of which everything that grades consists.
 //!
-//! A single submission, a class and an autograder all go through a `Grading`, scene by scene: a caller with several
+//! A single submission, a class and an autograder all go through a `SubmissionGrading`, scene by scene: a caller with several
 //! jobs shares the scenes out among them ([`batch`](super::batch)). A result is kept before it is told; what is found
 //! is not run again. A panic in the work on one scene is a judge error of that scene.
 use super::{
@@ -188,7 +188,7 @@ impl Done {
 }
 
 /// The progress of a scene.
-pub(super) enum Progress {
+pub(super) enum SceneProgress {
     /// It begins.
     Begins,
     /// Steps have been judged up to this one; not every step is told.
@@ -197,7 +197,7 @@ pub(super) enum Progress {
 
 /// One submission at work. Any number of jobs may take its scenes: it is staged once, by the first job that has to run
 /// it, and its copy stays until the grade is drawn.
-pub(super) struct Grading<'a> {
+pub(super) struct SubmissionGrading<'a> {
     pub(super) grader: &'a Grader<'a>,
     pub(super) shared: &'a Shared<'a>,
     pub(super) submission: &'a Submission,
@@ -215,7 +215,7 @@ struct Known {
     end: Option<(usize, NotRunReason)>,
 }
 
-impl<'a> Grading<'a> {
+impl<'a> SubmissionGrading<'a> {
     /// A submission of which nothing is known yet.
     pub(super) fn new(grader: &'a Grader<'a>, shared: &'a Shared<'a>, submission: &'a Submission) -> Self {
         let done = vec![None; grader.plan.scenes().count()];
@@ -235,7 +235,7 @@ impl<'a> Grading<'a> {
         &self,
         number: usize,
         scene: &SceneTask,
-        tell: &mut dyn FnMut(Progress),
+        tell: &mut dyn FnMut(SceneProgress),
     ) -> (SceneResult, bool) {
         let done = guarded(|| self.find_or_run(number, scene, tell)).unwrap_or_else(|fault| {
             let failure = Failure::Panic { stage: None, fault: fault.to_string(), trace: None };
@@ -250,13 +250,13 @@ impl<'a> Grading<'a> {
         (result, cached)
     }
 
-    fn find_or_run(&self, number: usize, scene: &SceneTask, tell: &mut dyn FnMut(Progress)) -> Done {
+    fn find_or_run(&self, number: usize, scene: &SceneTask, tell: &mut dyn FnMut(SceneProgress)) -> Done {
         let without_run =
             |verdict, why| Done::unkept(SceneResult::without_run(&scene.name, scene.scene.steps(), verdict, why));
         if let Some(why) = self.left_out(number) {
             return Done::unkept(patience::left_out(scene, why));
         }
-        tell(Progress::Begins);
+        tell(SceneProgress::Begins);
         let (grader, shared, submission) = (self.grader, self.shared, self.submission);
         let trace = grader.traces.map(|path| path(submission, scene));
         let trace = trace.as_ref();
@@ -293,7 +293,7 @@ impl<'a> Grading<'a> {
         staged: &Staged,
         scene: &SceneTask,
         trace: Option<&Place>,
-        tell: &mut dyn FnMut(Progress),
+        tell: &mut dyn FnMut(SceneProgress),
     ) -> SceneResult {
         let grader = self.grader;
         let mut told = Instant::now();
@@ -301,7 +301,7 @@ impl<'a> Grading<'a> {
             // A display can't show more, and a channel should not hold more.
             if told.elapsed() > Duration::from_millis(100) {
                 told = Instant::now();
-                tell(Progress::Step(step));
+                tell(SceneProgress::Step(step));
             }
         };
         let to = trace.map(|trace| move |_: &SceneTask| trace.clone());

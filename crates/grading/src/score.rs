@@ -2,7 +2,7 @@
 use super::{
     config::{Credit, MOST_POINTS, Marking, Visibility},
     grade::{Grade, GroupGrade, SceneGrade},
-    grader::{Grading, lock},
+    grader::{SubmissionGrading, lock},
     located::{Contents, Failing, Located, Tried, locate},
     one_file, patience,
     result::{Reason, SceneResult},
@@ -107,7 +107,7 @@ fn follows(group: &GroupGrade) -> bool {
 /// The number of accepted scenes that are checked for evidence against a likely mistake.
 const WITNESSES: usize = 12;
 
-impl Grading<'_> {
+impl SubmissionGrading<'_> {
     /// The grade, of the results of all scenes in the plan's order, each with the word whether it was found. The
     /// submission's copy goes away now.
     pub(super) fn grade(&self, mut results: Vec<(SceneResult, bool)>) -> Grade {

@@ -320,14 +320,14 @@ fn too_large() -> CopyError {
 }
 
 /// How many bytes and files of a submission may still be copied.
-struct Budget {
+struct CopyBudget {
     bytes: u64,
     files: u64,
 }
 
 /// Copies a submission's folder to a new one that only we may enter.
 fn copy_sources(from: &Path, to: &Path) -> Result<(), CopyError> {
-    let mut budget = Budget { bytes: LARGEST_FOLDER, files: MOST_FILES };
+    let mut budget = CopyBudget { bytes: LARGEST_FOLDER, files: MOST_FILES };
     let source = OpenFolder::open(from).map_err(|error| unreadable(from, error))?;
     fs::DirBuilder::new().mode(0o700).create(to).map_err(at(to))?;
     let target = OpenFolder::open(to).map_err(at(to))?;
@@ -340,7 +340,7 @@ fn copy_folder(
     name: &Path,
     to: &OpenFolder,
     depth: u32,
-    budget: &mut Budget,
+    budget: &mut CopyBudget,
 ) -> Result<(), CopyError> {
     if depth > DEEPEST {
         let top = name.components().next().map(|part| part.as_os_str().to_string_lossy().escape_debug().to_string());

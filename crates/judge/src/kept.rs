@@ -33,14 +33,14 @@ const PIECE: usize = 64 * 1024;
 #[derive(Debug)]
 pub struct Keeper<'a> {
     scene: &'a Scene,
-    store: Mutex<Store>,
+    store: Mutex<KeptBytes>,
 }
 
 impl<'a> Keeper<'a> {
     /// For a trace of this scene; at most `most` bytes of its beginning are kept, and nothing at all with 0.
     #[must_use]
     pub fn new(scene: &'a Scene, most: usize) -> Self {
-        Self { scene, store: Mutex::new(Store::new(Layout::of(scene), most)) }
+        Self { scene, store: Mutex::new(KeptBytes::new(Layout::of(scene), most)) }
     }
 
     /// Judges the trace, which is kept as it is read.
@@ -77,19 +77,19 @@ impl<'a> Keeper<'a> {
         KeptTrace { scene: self.scene, store: self.store.into_inner().unwrap_or_else(PoisonError::into_inner) }
     }
 
-    fn store(&self) -> MutexGuard<'_, Store> {
+    fn store(&self) -> MutexGuard<'_, KeptBytes> {
         lock(&self.store)
     }
 }
 
-fn lock(store: &Mutex<Store>) -> MutexGuard<'_, Store> {
+fn lock(store: &Mutex<KeptBytes>) -> MutexGuard<'_, KeptBytes> {
     store.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// A reader whose bytes are kept.
 #[derive(Debug)]
 pub struct KeepingReader<'k, R> {
-    store: &'k Mutex<Store>,
+    store: &'k Mutex<KeptBytes>,
     /// Whether steps are judged as they are read, so that it is soon known which need not be kept.
     is_judged: bool,
     inner: R,
@@ -139,7 +139,7 @@ impl Progress for KeepingProgress<'_, '_> {
 
 /// The kept steps, and the bytes behind the steps that are judged.
 #[derive(Debug)]
-struct Store {
+struct KeptBytes {
     layout: Layout,
     most: usize,
     /// The beginning of the trace, piece by piece.
@@ -182,7 +182,7 @@ pub struct LateStep {
     pub records: Vec<u8>,
 }
 
-impl Store {
+impl KeptBytes {
     fn new(layout: Layout, most: usize) -> Self {
         Self {
             layout,
@@ -324,7 +324,7 @@ impl Store {
 #[derive(Debug)]
 pub struct KeptTrace<'a> {
     scene: &'a Scene,
-    store: Store,
+    store: KeptBytes,
 }
 
 impl KeptTrace<'_> {
@@ -446,5 +446,4 @@ impl Read for Beginning<'_> {
 }
 
 #[cfg(test)]
-#[path = "kept_tests.rs"]
 mod tests;

@@ -40,7 +40,7 @@ const DONE_STEPS: usize = 16;
 
 /// One step as read, and what judging it yields.
 #[derive(Debug, Default)]
-struct Slot {
+struct StepSlot {
     step: u32,
     before: State,
     /// Byte offset of the record that `before` comes from.
@@ -72,7 +72,7 @@ struct Slot {
     bytes: usize,
 }
 
-impl Slot {
+impl StepSlot {
     /// Where the step lies.
     fn place(&self) -> StepPlace {
         let &Self { step, before_at: before, begin_at: begin, end_at: last, behind: end, is_own, .. } = self;
@@ -83,7 +83,7 @@ impl Slot {
 /// Steps in a row; slots are reused from batch to batch.
 #[derive(Default)]
 struct Batch {
-    slots: Vec<Mutex<Slot>>,
+    slots: Vec<Mutex<StepSlot>>,
     filled: usize,
     bytes: usize,
 }
@@ -127,7 +127,7 @@ pub(super) fn judge_within<R: Read + Send>(
 
 /// Which parts of a step are compared.
 #[derive(Debug, Clone, Copy)]
-struct Shape<'a> {
+struct StepRules<'a> {
     layout: Layout,
     logs_impulses: bool,
     /// Whether the fair rules are asked, too, and what they need.
@@ -138,7 +138,7 @@ struct Shape<'a> {
 struct Replay<'a, R> {
     scene: &'a Scene,
     reader: Lenient<R>,
-    shape: Shape<'a>,
+    shape: StepRules<'a>,
     /// The end state of the last step that was read.
     state: State,
     /// Byte offset of its record.
@@ -225,7 +225,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         Self {
             scene,
             reader,
-            shape: Shape { layout, logs_impulses, fair: fair.then(|| Context::new(scene)) },
+            shape: StepRules { layout, logs_impulses, fair: fair.then(|| Context::new(scene)) },
             state: State::default(),
             state_at: 0,
             steps_read: 0,
@@ -296,7 +296,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         None
     }
 
-    fn read_step(&mut self, slot: &mut Slot) -> Result<(), Stop> {
+    fn read_step(&mut self, slot: &mut StepSlot) -> Result<(), Stop> {
         slot.step = self.steps_read + 1;
         slot.damage = None;
         slot.error = None;
@@ -335,7 +335,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
     }
 
     /// Reads a step and judges it, if it is the reference's byte for byte.
-    fn read_at_once(&mut self, slot: &mut Slot) -> bool {
+    fn read_at_once(&mut self, slot: &mut StepSlot) -> bool {
         let (context, rest) = (self.shape.fair.as_ref(), self.budget.rest());
         let Some(found) = self.identical.find(&mut self.reader, slot.step, &self.state, context, rest) else {
             return false;
@@ -433,7 +433,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
 }
 
 /// The first number that is not finite in the state that a step starts from, with its place in the trace.
-fn not_finite(slot: &Slot, layout: Layout) -> Option<Damage> {
+fn not_finite(slot: &StepSlot, layout: Layout) -> Option<Damage> {
     let State { positions, velocities } = &slot.before;
     let (index, value) = positions.iter().chain(velocities).enumerate().find(|(_, value)| !value.is_finite())?;
     let (names, place) = match index.checked_sub(positions.len()) {
@@ -451,7 +451,7 @@ fn not_finite(slot: &Slot, layout: Layout) -> Option<Damage> {
 }
 
 /// The stop at an end record that is as long as the reference's, and longer than what was kept.
-fn beyond_limit(slot: &Slot, layout: Layout) -> Stop {
+fn beyond_limit(slot: &StepSlot, layout: Layout) -> Stop {
     let (logged, kept) = (slot.end.logged, slot.end.polynomials.len());
     Stop::Trace {
         frame: u64::from(slot.step) * u64::from(layout.records_per_step()),
@@ -485,10 +485,9 @@ fn copy_state(target: &mut State, source: &State) {
     target.velocities.clone_from(&source.velocities);
 }
 
-fn lock(slot: &mut Mutex<Slot>) -> &mut Slot {
+fn lock(slot: &mut Mutex<StepSlot>) -> &mut StepSlot {
     slot.get_mut().unwrap_or_else(std::sync::PoisonError::into_inner)
 }
 
 #[cfg(test)]
-#[path = "replay_tests.rs"]
 mod tests;

@@ -7,7 +7,7 @@ use super::{
 };
 use fosssim_model::{
     sim::SearchCounts,
-    trace::{EventCounts, Written},
+    trace::{EventCounts, WrittenTrace},
 };
 use serde_json::json;
 
@@ -23,7 +23,7 @@ pub struct SimulationSummary<'a> {
     /// The events of the steps.
     pub counts: EventCounts,
     /// Size of the trace.
-    pub written: Written,
+    pub written: WrittenTrace,
     /// The root searches, when they were audited.
     pub audited: Option<SearchCounts>,
 }

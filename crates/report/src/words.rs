@@ -10,7 +10,7 @@ use fosssim_findings::{
     FindingPlace, Grade, Unfit, Verdict,
     disclosure::{DisclosedBook, DisclosedFinding},
     result::{
-        Activity, BadTrace, BuildEnd, Ended, Failure, FolderContents, KeptTrace, Limit, NotRunReason, Reached, Reason,
+        Activity, BadTrace, BuildEnd, Ended, Failure, FolderContents, Limit, NotRunReason, Reached, Reason, SavedTrace,
         SceneResult, Unusable, Wrong,
     },
 };
@@ -73,10 +73,10 @@ pub fn details(result: &SceneResult) -> Vec<String> {
     }
     if let Reason::Failed(Failure::Panic { trace: Some(trace), .. }) = &result.reason {
         lines.push(match trace {
-            KeptTrace::In(path) => {
+            SavedTrace::In(path) => {
                 format!("the trace is kept in {}; please report this with the scene and the trace", path.display())
             }
-            KeptTrace::Lost { folder, error } => {
+            SavedTrace::Lost { folder, error } => {
                 format!("the trace could not be kept in {}: {error}", folder.display())
             }
         });

@@ -19,14 +19,14 @@ use super::{
     fake::FakeRun,
     fault::{SandboxError, set_up_failed},
     job::{Identity, Job, Policy},
-    keepers::{Host, Keeper, Kind as Keeping, Pool},
+    keepers::{Host, Keeper, KeeperPool, Kind as Keeping},
     layers::{self, Layer, LayerReport},
     outcome::StartProblem,
     own, program, room,
     running::{Running, Supervised},
     supervisor::{MODE_KEEP, MODE_PROBE, MODE_RUN},
     sys,
-    wire::{self, Event, Order, Probe, SUPERVISOR_ARGUMENT, Walls},
+    wire::{self, Event, Probe, RunOrder, SUPERVISOR_ARGUMENT, Walls},
 };
 
 /// The program that is started as the supervisor: one whose `main` calls [`supervisor_main`](super::supervisor_main).
@@ -74,7 +74,7 @@ impl Supervisor {
     }
 
     /// Starts it for a run, with the descriptors that the run's walls need.
-    fn spawn_for(&self, order: &Order) -> Result<Asked, SandboxError> {
+    fn spawn_for(&self, order: &RunOrder) -> Result<Asked, SandboxError> {
         let (name, command) = match order.walls.bubblewrap {
             true => ("in bubblewrap".into(), self.wrapped(MODE_RUN, Some(&wire::path(&order.folder)))),
             false => (self.program.display().to_string(), Ok(self.command(MODE_RUN))),
@@ -93,10 +93,10 @@ impl Supervisor {
     /// Asks a keeper of runs of this kind, and starts one if there is none; with the word whether it was there before.
     fn ask_keeper(
         &self,
-        order: &Order,
+        order: &RunOrder,
         files: &[(String, Vec<u8>)],
         kind: Keeping,
-        pool: &Arc<Pool>,
+        pool: &Arc<KeeperPool>,
     ) -> Result<(Asked, bool), SandboxError> {
         if let Some(keeper) = pool.take(&kind)
             && let Ok((control, answers)) = keeper.ask(order, files)
@@ -192,7 +192,7 @@ pub struct Backend {
 
 #[derive(Clone)]
 enum Kind {
-    Launcher { supervisor: Supervisor, walls: Walls, keepers: Arc<Pool> },
+    Launcher { supervisor: Supervisor, walls: Walls, keepers: Arc<KeeperPool> },
     Fake(Arc<dyn Fn(&Job) -> FakeRun + Send + Sync>),
 }
 
@@ -415,7 +415,7 @@ fn handed_over(control: &UnixStream, with_pipe: bool) -> io::Result<(OwnedFd, Op
 }
 
 /// The order for a job, with absolute paths, to a supervisor that is this program.
-fn order(job: &Job, walls: Walls, examined: program::Program, supervisor: &Path) -> Result<Order, SandboxError> {
+fn order(job: &Job, walls: Walls, examined: program::Program, supervisor: &Path) -> Result<RunOrder, SandboxError> {
     let folder = job.folder.canonicalize().and_then(|folder| match folder.is_dir() {
         true => Ok(folder),
         false => Err(io::ErrorKind::NotADirectory.into()),
@@ -434,7 +434,7 @@ fn order(job: &Job, walls: Walls, examined: program::Program, supervisor: &Path)
     let environment = given.chain(set).collect();
     let program = std::path::absolute(&job.program).unwrap_or_else(|_| job.program.clone());
     let limits = &job.limits;
-    Ok(Order {
+    Ok(RunOrder {
         program: wire::raw(&program),
         folder: wire::raw(&folder),
         arguments: job.arguments.iter().map(bytes).collect(),

@@ -6,29 +6,29 @@
 
 use super::{
     outcome::{Ended, StartProblem, Stream},
-    wire::{Cause, Order, Report},
+    wire::{Report, RunOrder, StopCause},
 };
 
 /// The exit code of the dynamic loader when it finds no library.
 const LOADER_FAILED: i32 = 127;
 
 /// How the run of `order` ended, given the facts and what the program wrote to standard error.
-pub(super) fn ended(order: &Order, report: &Report, stderr: &[u8]) -> Ended {
+pub(super) fn ended(order: &RunOrder, report: &Report, stderr: &[u8]) -> Ended {
     if let Some(errno) = report.exec_errno {
         return Ended::CouldNotStart(start_problem(errno));
     }
     if let Some(cause) = &report.cause {
         return match cause {
-            Cause::Cpu => Ended::CpuLimit,
-            Cause::Wall => Ended::WallLimit,
-            Cause::Memory => Ended::MemoryLimit,
-            Cause::Stdout => Ended::OutputLimit(Stream::Stdout),
-            Cause::Stderr => Ended::OutputLimit(Stream::Stderr),
-            Cause::Trace => Ended::OutputLimit(Stream::Trace),
-            Cause::Processes => Ended::ProcessLimit,
-            Cause::Folder => Ended::FolderLimit,
-            Cause::Call(call) => Ended::Violation { call: call.clone() },
-            Cause::Cancelled => Ended::Cancelled,
+            StopCause::Cpu => Ended::CpuLimit,
+            StopCause::Wall => Ended::WallLimit,
+            StopCause::Memory => Ended::MemoryLimit,
+            StopCause::Stdout => Ended::OutputLimit(Stream::Stdout),
+            StopCause::Stderr => Ended::OutputLimit(Stream::Stderr),
+            StopCause::Trace => Ended::OutputLimit(Stream::Trace),
+            StopCause::Processes => Ended::ProcessLimit,
+            StopCause::Folder => Ended::FolderLimit,
+            StopCause::Call(call) => Ended::Violation { call: call.clone() },
+            StopCause::Cancelled => Ended::Cancelled,
         };
     }
     let signal = libc::WIFSIGNALED(report.status).then(|| libc::WTERMSIG(report.status));
@@ -133,7 +133,7 @@ fn wants_display(stderr: &str) -> bool {
 mod tests {
     use super::*;
 
-    fn order() -> Order {
+    fn order() -> RunOrder {
         serde_json::from_value(serde_json::json!({
             "program": [], "folder": [], "arguments": [], "environment": [], "readable": [], "executable": [], "named": [],
             "libraries": [], "missing": ["libglut.so.3"], "own": [], "pipe": null, "files": [], "volatile": false, "interpreter": null, "words": [], "tools": false, "sanitised": false,
@@ -150,7 +150,7 @@ mod tests {
 
     #[test]
     fn the_reason_to_kill_outranks_the_kill() {
-        let report = Report { status: libc::SIGKILL, cause: Some(Cause::Wall), ..Report::default() };
+        let report = Report { status: libc::SIGKILL, cause: Some(StopCause::Wall), ..Report::default() };
         assert_eq!(ended(&order(), &report, b""), Ended::WallLimit);
         assert_eq!(ended(&order(), &Report { cause: None, ..report }, b""), Ended::Signalled(libc::SIGKILL));
     }

@@ -19,14 +19,14 @@ use super::{
     outcome::StartProblem,
     program::Program,
     sys,
-    wire::{self, Order, Report},
+    wire::{self, Report, RunOrder},
 };
 
 /// The properties that all runs of one keeper share: all of the order but arguments, environment and working folder
 /// with its contents, and the very files that it names.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Kind {
-    order: Order,
+    order: RunOrder,
     program: Option<Identity>,
     files: Vec<Option<(u64, u64)>>,
 }
@@ -34,16 +34,16 @@ pub(super) struct Kind {
 impl Kind {
     /// Whether there can be a keeper for this order. Otherwise its supervisor serves no other run: where there are no
     /// namespaces, which end with the run, or processes that nobody counts.
-    pub(super) fn exists_for(order: &Order) -> bool {
+    pub(super) fn exists_for(order: &RunOrder) -> bool {
         order.volatile && !order.tools && order.walls.namespaces && order.walls.seccomp
     }
 
     /// The kind of this order; `None` when there can be no keeper for it.
-    pub(super) fn of(order: &Order) -> Option<Self> {
+    pub(super) fn of(order: &RunOrder) -> Option<Self> {
         if !Self::exists_for(order) {
             return None;
         }
-        let common = Order {
+        let common = RunOrder {
             folder: Vec::new(),
             arguments: Vec::new(),
             environment: Vec::new(),
@@ -73,7 +73,7 @@ impl Keeper {
 
     /// Asks for a run of an order of its kind, whose files have these contents; the answer is the way to its
     /// supervisor, and what that says.
-    pub(super) fn ask(&self, order: &Order, files: &[(String, Vec<u8>)]) -> io::Result<(UnixStream, File)> {
+    pub(super) fn ask(&self, order: &RunOrder, files: &[(String, Vec<u8>)]) -> io::Result<(UnixStream, File)> {
         let folder = File::open(wire::path(&order.folder))?;
         let (control, theirs) = UnixStream::pair()?;
         let (answers, told) = io::pipe()?;
@@ -102,13 +102,13 @@ impl Drop for Keeper {
 
 /// The keepers of a backend that have no run now. There are never more keepers than there were runs at one time.
 #[derive(Debug, Default)]
-pub(super) struct Pool {
+pub(super) struct KeeperPool {
     idle: Mutex<Vec<Keeper>>,
     /// The last result of examining a copy of ours.
     known: Mutex<Option<(PathBuf, Identity, Program)>>,
 }
 
-impl Pool {
+impl KeeperPool {
     /// The properties of the job's program, examined or remembered: a copy of ours that is still the same file needs no
     /// second look.
     pub(super) fn examined(
@@ -152,7 +152,7 @@ pub(super) enum Host {
     /// A process of its own.
     Own(Child),
     /// A keeper, and where it goes afterwards.
-    Kept(Box<Keeper>, Arc<Pool>),
+    Kept(Box<Keeper>, Arc<KeeperPool>),
 }
 
 impl Host {
@@ -200,17 +200,17 @@ fn has_simply_ended(report: &Report) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::wire::{Cause, Walls};
+    use crate::wire::{StopCause, Walls};
 
-    fn order() -> Order {
+    fn order() -> RunOrder {
         let walls = Walls { namespaces: true, seccomp: true, ..Walls::default() };
-        Order { program: b"/bin/sh".to_vec(), volatile: true, walls, ..Order::default() }
+        RunOrder { program: b"/bin/sh".to_vec(), volatile: true, walls, ..RunOrder::default() }
     }
 
     #[test]
     fn runs_of_one_submission_are_of_one_kind() {
         let kind = Kind::of(&order()).unwrap();
-        let same = Order {
+        let same = RunOrder {
             folder: b"/x".to_vec(),
             arguments: vec![b"-s".to_vec()],
             pipe: Some(b"t".to_vec()),
@@ -219,9 +219,9 @@ mod tests {
         };
         assert_eq!(Kind::of(&same).unwrap(), kind);
         for other in [
-            Order { program: b"/bin/ls".to_vec(), ..order() },
-            Order { memory: 7, ..order() },
-            Order { readable: vec![b"/etc/hostname".to_vec()], ..order() },
+            RunOrder { program: b"/bin/ls".to_vec(), ..order() },
+            RunOrder { memory: 7, ..order() },
+            RunOrder { readable: vec![b"/etc/hostname".to_vec()], ..order() },
         ] {
             assert_ne!(Kind::of(&other).unwrap(), kind);
         }
@@ -231,7 +231,7 @@ mod tests {
     fn a_program_that_was_exchanged_is_of_another_kind() {
         let folder = tempfile::tempdir().unwrap();
         let program = folder.path().join("program");
-        let kind = || Kind::of(&Order { program: wire::raw(&program), ..order() }).unwrap();
+        let kind = || Kind::of(&RunOrder { program: wire::raw(&program), ..order() }).unwrap();
         std::fs::write(&program, "one").unwrap();
         let before = kind();
         assert_eq!(kind(), before);
@@ -242,9 +242,9 @@ mod tests {
 
     #[test]
     fn tools_and_runs_without_namespaces_have_supervisors_of_their_own() {
-        assert!(Kind::of(&Order { tools: true, ..order() }).is_none());
-        assert!(Kind::of(&Order { volatile: false, ..order() }).is_none());
-        assert!(Kind::of(&Order { walls: Walls::default(), ..order() }).is_none());
+        assert!(Kind::of(&RunOrder { tools: true, ..order() }).is_none());
+        assert!(Kind::of(&RunOrder { volatile: false, ..order() }).is_none());
+        assert!(Kind::of(&RunOrder { walls: Walls::default(), ..order() }).is_none());
     }
 
     #[test]
@@ -252,7 +252,7 @@ mod tests {
         let exited = Report { status: 7 << 8, ..Report::default() };
         assert!(has_simply_ended(&exited));
         for report in [
-            Report { cause: Some(Cause::Wall), ..exited.clone() },
+            Report { cause: Some(StopCause::Wall), ..exited.clone() },
             Report { status: libc::SIGKILL, ..exited.clone() },
             Report { survivors: 1, ..exited.clone() },
             Report { folder_over: true, ..exited.clone() },

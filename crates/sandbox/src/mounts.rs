@@ -26,7 +26,7 @@ const MOVE_MOUNT_FROM_DESCRIPTOR: u32 = 4;
 
 /// The kernel's `mount_attr`.
 #[repr(C)]
-struct Attributes {
+struct MountAttributes {
     set: u64,
     clear: u64,
     propagation: u64,
@@ -100,8 +100,8 @@ pub(super) fn restrict_at(path: &CStr, attributes: u64) -> io::Result<()> {
 }
 
 fn set_attributes(start: RawFd, path: &CStr, flags: u32, attributes: u64) -> io::Result<()> {
-    let wanted = Attributes { set: attributes, clear: 0, propagation: 0, user_namespace: 0 };
-    let size = size_of::<Attributes>();
+    let wanted = MountAttributes { set: attributes, clear: 0, propagation: 0, user_namespace: 0 };
+    let size = size_of::<MountAttributes>();
     // SAFETY: path and structure outlive the call and the size is the structure's.
     let answer =
         unsafe { libc::syscall(libc::SYS_mount_setattr, start, path.as_ptr(), flags, &raw const wanted, size) };

@@ -19,13 +19,13 @@ use super::{
     layers::LayerReport,
     outcome::{Captured, RunOutcome},
     supervisor::orphans,
-    wire::{self, COMMAND_CANCEL, COMMAND_TRACE_LIMIT, Event, Order},
+    wire::{self, COMMAND_CANCEL, COMMAND_TRACE_LIMIT, Event, RunOrder},
 };
 
 /// The way to the supervisor; gone when the run is over.
-type Control = Arc<Mutex<Option<UnixStream>>>;
+type ControlSocket = Arc<Mutex<Option<UnixStream>>>;
 
-fn command(control: &Control, command: u8) {
+fn command(control: &ControlSocket, command: u8) {
     let mut control = control.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(control) = control.as_mut() {
         // A supervisor that has ended needs no command.
@@ -60,7 +60,7 @@ pub(super) struct Supervised {
     pub(super) answers: File,
     pub(super) session: Option<i32>,
     pub(super) user: Option<u32>,
-    pub(super) order: Order,
+    pub(super) order: RunOrder,
     pub(super) trace_limit: u64,
     pub(super) layers: Arc<[LayerReport]>,
 }
@@ -88,7 +88,7 @@ impl Running {
 
     /// A run whose outcome is known already.
     pub(super) fn known(outcome: RunOutcome, trace: Option<Vec<u8>>, trace_bytes: u64) -> Self {
-        let control = Control::default();
+        let control = ControlSocket::default();
         let traced = Arc::new(AtomicU64::new(0));
         let trace = trace.map(|bytes| TraceReader {
             source: Source::Bytes(io::Cursor::new(bytes)),
@@ -229,7 +229,7 @@ fn receive(answers: &mut File) -> io::Result<(Event, Vec<u8>, Vec<u8>)> {
 /// Stops a program; harmless when it has ended.
 #[derive(Debug, Clone)]
 pub struct Canceller {
-    control: Control,
+    control: ControlSocket,
 }
 
 impl Canceller {
@@ -253,7 +253,7 @@ pub struct TraceReader {
     source: Source,
     limit: u64,
     traced: Arc<AtomicU64>,
-    control: Control,
+    control: ControlSocket,
 }
 
 #[derive(Debug)]

@@ -596,5 +596,4 @@ pub(super) fn landlock_version() -> i32 {
 }
 
 #[cfg(test)]
-#[path = "sys_tests.rs"]
 mod tests;

@@ -1,6 +1,6 @@
 //! The messages between the grader and its supervisor process.
 //!
-//! The grader writes one length-prefixed [`Order`] to the supervisor's standard input, a socket, and then, if need be,
+//! The grader writes one length-prefixed [`RunOrder`] to the supervisor's standard input, a socket, and then, if need be,
 //! single command bytes. A working folder in memory comes back there, open, and so does its trace pipe. The supervisor
 //! answers on its standard output with length-prefixed [`Event`]s; the last one is followed by the captured bytes.
 //! Paths travel as bytes, because they need not be UTF-8.
@@ -70,7 +70,7 @@ pub(super) struct Walls {
 
 /// The order for one run.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) struct Order {
+pub(super) struct RunOrder {
     pub(super) program: Raw,
     pub(super) folder: Raw,
     pub(super) arguments: Vec<Raw>,
@@ -137,7 +137,7 @@ impl Failure {
 
 /// Why the supervisor killed the program.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) enum Cause {
+pub(super) enum StopCause {
     Cpu,
     Wall,
     Memory,
@@ -154,7 +154,7 @@ pub(super) enum Cause {
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Report {
     /// The first reason to kill, if any.
-    pub(super) cause: Option<Cause>,
+    pub(super) cause: Option<StopCause>,
     /// The main process's raw wait status.
     pub(super) status: i32,
     /// The error number of `execve`, if the program never ran.
@@ -252,7 +252,7 @@ pub fn read_messages(bytes: &[u8]) -> usize {
         }
         count
     }
-    all::<Order>(bytes) + all::<Event>(bytes) + all::<Probe>(bytes)
+    all::<RunOrder>(bytes) + all::<Event>(bytes) + all::<Probe>(bytes)
 }
 
 #[cfg(test)]

@@ -16,14 +16,14 @@ use thiserror::Error;
 
 /// How large what is unpacked may be.
 #[derive(Debug, Clone, Copy)]
-pub struct Limits {
+pub struct ArchiveLimits {
     /// Bytes in all.
     pub bytes: u64,
     /// Files and folders.
     pub entries: usize,
 }
 
-impl Limits {
+impl ArchiveLimits {
     /// Enough for a suite with all its scenes, and for a student's sources with a library in them.
     pub const USUAL: Self = Self { bytes: 1 << 30, entries: 20_000 };
 }
@@ -69,7 +69,7 @@ enum Target<'a> {
 ///
 /// # Errors
 /// What is wrong with it.
-pub fn look_through(archive: &Path, limits: Limits) -> Result<Vec<PathBuf>, ArchiveError> {
+pub fn look_through(archive: &Path, limits: ArchiveLimits) -> Result<Vec<PathBuf>, ArchiveError> {
     walk(archive, limits, &Target::Nowhere)
 }
 
@@ -77,13 +77,13 @@ pub fn look_through(archive: &Path, limits: Limits) -> Result<Vec<PathBuf>, Arch
 ///
 /// # Errors
 /// What is wrong with it; the folder may hold a part of it then.
-pub fn unpack(archive: &Path, folder: &Path, limits: Limits) -> Result<Vec<PathBuf>, ArchiveError> {
+pub fn unpack(archive: &Path, folder: &Path, limits: ArchiveLimits) -> Result<Vec<PathBuf>, ArchiveError> {
     walk(archive, limits, &Target::Folder(folder))
 }
 
 /// An archive being walked through.
 struct Walk<'a> {
-    limits: Limits,
+    limits: ArchiveLimits,
     target: &'a Target<'a>,
     entries: usize,
     bytes: u64,
@@ -92,7 +92,7 @@ struct Walk<'a> {
     files: Vec<PathBuf>,
 }
 
-fn walk(archive: &Path, limits: Limits, target: &Target<'_>) -> Result<Vec<PathBuf>, ArchiveError> {
+fn walk(archive: &Path, limits: ArchiveLimits, target: &Target<'_>) -> Result<Vec<PathBuf>, ArchiveError> {
     let file = File::open(archive).map_err(ArchiveError::Folder)?;
     let mut walk = Walk {
         limits,

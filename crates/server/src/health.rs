@@ -2,7 +2,7 @@
 //! work to others, and a suite by which nothing can be graded waits for staff.
 use crate::{
     db::{DbError, Transaction},
-    queue::{Claimant, Policy},
+    queue::{Claimant, QueuePolicy},
     values,
 };
 use std::time::Duration;
@@ -17,7 +17,7 @@ const LONGEST_ASIDE: Duration = Duration::from_secs(60);
 const BROKEN: i64 = 5;
 
 /// How long after its last sign of life a worker counts as alive, in milliseconds.
-pub fn recent(policy: &Policy) -> i64 {
+pub fn recent(policy: &QueuePolicy) -> i64 {
     i64::try_from(2 * policy.lease.as_millis()).unwrap_or(i64::MAX)
 }
 
@@ -57,7 +57,7 @@ pub async fn seen(
 /// What the database says.
 pub async fn may_claim(
     transaction: &mut Transaction,
-    policy: &Policy,
+    policy: &QueuePolicy,
     claimant: Claimant<'_>,
 ) -> Result<bool, DbError> {
     let recent = recent(policy);
@@ -107,7 +107,7 @@ pub(crate) async fn graded(transaction: &mut Transaction, worker: &str) -> Resul
 /// one. Whether it was paused.
 pub(crate) async fn pause_broken(
     transaction: &mut Transaction,
-    policy: &Policy,
+    policy: &QueuePolicy,
     assignment: i64,
     task: &str,
     fault: &str,

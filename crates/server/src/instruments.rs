@@ -70,7 +70,7 @@ impl Instruments {
         storage: &Storage,
         queue: Option<&Metrics>,
     ) -> Result<String, prometheus::Error> {
-        let page = Page(Registry::new());
+        let page = MetricsPage(Registry::new());
         page.0.register(Box::new(self.requests.clone()))?;
         page.0.register(Box::new(self.seconds.clone()))?;
         page.0.register(Box::new(self.in_flight.clone()))?;
@@ -133,9 +133,9 @@ pub struct Metrics {
 }
 
 /// What is shown at this moment; names begin with `fosssim_`, and a label without a name is none.
-struct Page(Registry);
+struct MetricsPage(Registry);
 
-impl Page {
+impl MetricsPage {
     fn gauge(&self, name: &str, help: &str, label: &str, values: &[(&str, i64)]) -> Result<(), prometheus::Error> {
         let labels: Vec<&str> = Some(label).filter(|label| !label.is_empty()).into_iter().collect();
         let series = GaugeVec::new(Opts::new(format!("fosssim_{name}"), help), &labels)?;

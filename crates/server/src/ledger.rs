@@ -3,7 +3,7 @@ use crate::{
     db::{Database, DbError, Transaction},
     health,
     lti::score,
-    queue::{self, Buried, Completion, Failure, Lease, Policy, Tick},
+    queue::{self, Buried, Completion, Failure, Lease, QueuePolicy, Tick},
     suspect,
     task::{JUDGE_ERROR, Outcome, rounded},
     values,
@@ -32,7 +32,7 @@ pub async fn finish(transaction: &mut Transaction, lease: &Lease, outcome: &Outc
 /// What the database says.
 pub async fn fail(
     transaction: &mut Transaction,
-    policy: &Policy,
+    policy: &QueuePolicy,
     lease: &Lease,
     fault: &str,
 ) -> Result<Failure, DbError> {
@@ -65,7 +65,7 @@ pub async fn fail(
 ///
 /// # Errors
 /// What the database says.
-pub async fn tick(database: &Database, policy: &Policy) -> Result<(), DbError> {
+pub async fn tick(database: &Database, policy: &QueuePolicy) -> Result<(), DbError> {
     let mut transaction = database.begin().await?;
     let tick = queue::tick(&mut transaction, policy).await?;
     bury_all(&mut transaction, &tick.buried).await?;
@@ -86,7 +86,7 @@ pub async fn tick(database: &Database, policy: &Policy) -> Result<(), DbError> {
 ///
 /// # Errors
 /// What the database says.
-pub async fn abandon(transaction: &mut Transaction, policy: &Policy, worker: &str) -> Result<Tick, DbError> {
+pub async fn abandon(transaction: &mut Transaction, policy: &QueuePolicy, worker: &str) -> Result<Tick, DbError> {
     let tick = queue::abandon(transaction, policy, worker).await?;
     bury_all(transaction, &tick.buried).await?;
     Ok(tick)

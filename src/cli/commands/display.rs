@@ -9,7 +9,7 @@ use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 use std::{collections::BTreeMap, io, path::Path};
 
 /// The display of one grading; it goes away when dropped.
-pub(super) struct Display<'a> {
+pub(super) struct LiveDisplay<'a> {
     plan: &'a Plan,
     submissions: &'a [Submission],
     bars: Option<Bars>,
@@ -22,7 +22,7 @@ struct Bars {
     running: BTreeMap<(usize, usize), ProgressBar>,
 }
 
-impl<'a> Display<'a> {
+impl<'a> LiveDisplay<'a> {
     /// A display for these submissions.
     pub(super) fn new(plan: &'a Plan, submissions: &'a [Submission]) -> Self {
         let bars = console::wants_bars().then(|| {
@@ -129,7 +129,7 @@ impl Counter {
     }
 }
 
-impl Drop for Display<'_> {
+impl Drop for LiveDisplay<'_> {
     fn drop(&mut self) {
         if let Some(bars) = &self.bars {
             bars.overall.finish_and_clear();

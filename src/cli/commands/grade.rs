@@ -1,7 +1,7 @@
 //! `grade`: runs programs on a suite in the sandbox, keeps every result, and writes the reports.
 use super::{
     closer::Closer,
-    display::{Counter, Display},
+    display::{Counter, LiveDisplay},
     ending::{exit_code, file_name, file_of_scene, shown, with_class},
     last_run::LastRun,
     pages::{self, Pages},
@@ -117,7 +117,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     let draws = pictures || folder.is_some() || reports.iter().any(|report| report.format == Format::Html);
     let pages = if draws { Some(Pages::new(folder.as_deref())?) } else { None };
     let (plan, backend, cancellation) = (&plan, &backend, &cancellation);
-    let session = Session { arguments, plan, backend, cancellation, folder, pages, is_part, sharding, passed_over };
+    let session =
+        GradingSession { arguments, plan, backend, cancellation, folder, pages, is_part, sharding, passed_over };
     if arguments.watch {
         return session.watch(&submissions, &reports, &mut last_run);
     }
@@ -137,7 +138,7 @@ pub(super) fn backend(unsafe_no_sandbox: bool) -> Result<Backend> {
 }
 
 /// Everything that stays the same between two gradings of `--watch`.
-struct Session<'a> {
+struct GradingSession<'a> {
     arguments: &'a Arguments,
     plan: &'a Plan,
     backend: &'a Backend,
@@ -152,7 +153,7 @@ struct Session<'a> {
     passed_over: Vec<PassedOver>,
 }
 
-impl Session<'_> {
+impl GradingSession<'_> {
     fn grade_and_report(
         &self,
         submissions: &[Submission],
@@ -237,7 +238,7 @@ impl Session<'_> {
             cards: self.pages.as_ref().map(|pages| Cards { folder: pages.cards(), draw: &draw }),
             rehearse: &grade::rehearse,
         };
-        let mut display = Display::new(self.plan, submissions);
+        let mut display = LiveDisplay::new(self.plan, submissions);
         let mut counter = self.arguments.progress.as_deref().map(|file| self.counter(file, submissions)).transpose()?;
         let mut log_error = None;
         let mut on_event = |event: batch::Event<'_>| {

@@ -1,7 +1,7 @@
 //! `suite`: writes, checks and explains suites.
 use super::{
     scene,
-    suite_report::{Contents, Undecided, list, list_json, text},
+    suite_report::{SuiteContents, Undecided, list, list_json, text},
 };
 use crate::{
     cli::{
@@ -30,7 +30,7 @@ pub(super) fn run(suite: &Suite) -> Result<u8> {
         }
         Suite::Check(SuiteCheck { suite, missing }) => {
             let plan = plan::find(suite)?;
-            let contents = Contents { coverage: coverage(&plan), lists_missing: *missing };
+            let contents = SuiteContents { coverage: coverage(&plan), lists_missing: *missing };
             console::report(&text(&plan, &contents, &undecided(&plan), console::style()))?;
         }
         Suite::List(SuiteList { format }) => {

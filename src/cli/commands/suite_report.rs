@@ -25,7 +25,7 @@ const LISTED: usize = 3;
 
 /// The contents of a suite's scenes, with or without a list of the missing ones.
 #[derive(Debug)]
-pub(super) struct Contents {
+pub(super) struct SuiteContents {
     /// The measured coverage.
     pub(super) coverage: Coverage,
     /// Whether each missing pair of properties has a line.
@@ -33,7 +33,7 @@ pub(super) struct Contents {
 }
 
 /// The whole report; `undecided` holds the scenes of which there is something to say.
-pub(super) fn text(plan: &Plan, contents: &Contents, undecided: &[Undecided], style: Style) -> String {
+pub(super) fn text(plan: &Plan, contents: &SuiteContents, undecided: &[Undecided], style: Style) -> String {
     let mut text = head(plan, style);
     for group in &plan.groups {
         text += &of_group(group, style);
@@ -157,7 +157,7 @@ fn of_group(group: &PlannedGroup, style: Style) -> String {
 }
 
 /// How much of what can happen in steps the scenes contain; nothing for scenes of earlier assignments.
-fn of_contents(contents: &Contents, style: Style) -> String {
+fn of_contents(contents: &SuiteContents, style: Style) -> String {
     let coverage = &contents.coverage;
     if coverage.is_empty() {
         return String::new();

@@ -79,7 +79,7 @@ fn grade(plan: &Plan, folder: &Path, submission: String, pages: Option<&Pages>) 
     let tasks: Vec<&SceneTask> = plan.scenes().collect();
     // In the plan's order, whatever the number of threads.
     let opened = Folder::open(folder);
-    let judged: Vec<Judgement> = tasks.par_iter().map(|task| scene(plan, task, &opened, pages)).collect();
+    let judged: Vec<JudgedScene> = tasks.par_iter().map(|task| scene(plan, task, &opened, pages)).collect();
     let (results, passed_over): (Vec<_>, Vec<_>) = judged.into_iter().unzip();
     let mut results = results.into_iter();
     let groups: Vec<_> = plan
@@ -122,10 +122,10 @@ fn grade(plan: &Plan, folder: &Path, submission: String, pages: Option<&Pages>) 
 }
 
 /// The result of one scene, and what of it was passed over.
-type Judgement = (SceneResult, Option<String>);
+type JudgedScene = (SceneResult, Option<String>);
 
 /// The result of one scene. A panic is its judge error.
-fn scene(plan: &Plan, task: &SceneTask, folder: &io::Result<Folder>, pages: Option<&Pages>) -> Judgement {
+fn scene(plan: &Plan, task: &SceneTask, folder: &io::Result<Folder>, pages: Option<&Pages>) -> JudgedScene {
     let failed = |failure| {
         SceneResult::without_run(&task.name, task.scene.steps(), Verdict::JudgeError, Reason::Failed(failure))
     };
@@ -140,7 +140,7 @@ fn scene(plan: &Plan, task: &SceneTask, folder: &io::Result<Folder>, pages: Opti
     }
 }
 
-fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) -> io::Result<Judgement> {
+fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) -> io::Result<JudgedScene> {
     let (trace, passed_over) = read(folder, &task.name, plan.limits.trace)?;
     let options =
         Options { stop_by: plan.rules.official(), threads: 1, fair: plan.rules.ask_fair(), ..Options::default() };

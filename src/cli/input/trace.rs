@@ -56,7 +56,7 @@ impl Failure {
 pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
     let shown = shown(name);
     let failure = Failure::default();
-    let watched = |reader| Watched { reader, failure: failure.clone() };
+    let watched = |reader| WatchedReader { reader, failure: failure.clone() };
     let (mut reader, length, identity): (Box<dyn Read + Send>, _, _) = if let Some(asset) = asset(name) {
         let recording = library::recording(asset).with_context(|| no_asset("recording", asset))?;
         (decompressed(Box::new(Cursor::new(recording)), &[], &failure)?, None, None)
@@ -104,12 +104,12 @@ pub(in crate::cli) fn is_scene(name: &Path) -> bool {
 }
 
 /// Remembers what the operating system said when reading failed.
-struct Watched {
+struct WatchedReader {
     reader: Box<dyn Read + Send>,
     failure: Failure,
 }
 
-impl Read for Watched {
+impl Read for WatchedReader {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         self.reader.read(buffer).inspect_err(|error| {
             if error.kind() != io::ErrorKind::Interrupted {

@@ -5,7 +5,7 @@
 use super::{
     cancellation::Cancellation,
     grade::Grade,
-    grader::{Grader, Grading, Progress, Shared, Submission},
+    grader::{Grader, SceneProgress, Shared, Submission, SubmissionGrading},
     guard::{Fault, guarded},
     result::SceneResult,
     results::{KeepError, Results},
@@ -77,8 +77,8 @@ pub enum GradeFault {
 }
 
 /// A message of a job about a submission's scene.
-enum Message {
-    Progress(Progress),
+enum BatchMessage {
+    Progress(SceneProgress),
     /// The result, and whether it was taken from an earlier run.
     Done(Box<SceneResult>, bool),
 }
@@ -110,8 +110,8 @@ pub fn run(
 ) -> Graded {
     temporary::sweep();
     let shared = Shared::new(grader, results, cancellation);
-    let gradings: Vec<Grading<'_>> =
-        submissions.iter().map(|submission| Grading::new(grader, &shared, submission)).collect();
+    let gradings: Vec<SubmissionGrading<'_>> =
+        submissions.iter().map(|submission| SubmissionGrading::new(grader, &shared, submission)).collect();
     let mut telling = None;
     let mut tell = |event: Event<'_>| {
         if let Err(panic) = guarded(|| on_event(event)) {
@@ -127,7 +127,7 @@ pub fn run(
 }
 
 /// Jobs take scene after scene; this thread hears of them, and draws each grade with its submission's last result.
-fn share_out(grader: &Grader<'_>, gradings: &[Grading<'_>], tell: &mut dyn FnMut(Event<'_>)) -> Vec<Grade> {
+fn share_out(grader: &Grader<'_>, gradings: &[SubmissionGrading<'_>], tell: &mut dyn FnMut(Event<'_>)) -> Vec<Grade> {
     let scenes: Vec<&SceneTask> = grader.plan.scenes().collect();
     let tasks = gradings.len() * scenes.len();
     let next = AtomicUsize::new(0);
@@ -146,18 +146,18 @@ fn share_out(grader: &Grader<'_>, gradings: &[Grading<'_>], tell: &mut dyn FnMut
                     }
                     let (submission, scene) = (task / scenes.len(), task % scenes.len());
                     let send = |message| drop(sender.send((submission, scene, message)));
-                    let mut progress = |progress| send(Message::Progress(progress));
+                    let mut progress = |progress| send(BatchMessage::Progress(progress));
                     let (result, cached) = gradings[submission].scene(scene, scenes[scene], &mut progress);
-                    send(Message::Done(Box::new(result), cached));
+                    send(BatchMessage::Done(Box::new(result), cached));
                 }
             });
         }
         drop(sender);
         for (submission, scene, message) in receiver {
             match message {
-                Message::Progress(Progress::Begins) => tell(Event::SceneBegins { submission, scene }),
-                Message::Progress(Progress::Step(step)) => tell(Event::Step { submission, scene, step }),
-                Message::Done(result, cached) => {
+                BatchMessage::Progress(SceneProgress::Begins) => tell(Event::SceneBegins { submission, scene }),
+                BatchMessage::Progress(SceneProgress::Step(step)) => tell(Event::Step { submission, scene, step }),
+                BatchMessage::Done(result, cached) => {
                     tell(Event::SceneDone { submission, scene, result: &result, cached });
                     let results = &mut results[submission];
                     results[scene] = Some((*result, cached));

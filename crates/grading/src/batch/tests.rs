@@ -5,7 +5,7 @@ use crate::{
     grader::Options,
     located::Failing,
     plan::{self, Plan},
-    result::{Activity, BadTrace, Failure, KeptTrace, NotRunReason, Reason, Wrong},
+    result::{Activity, BadTrace, Failure, NotRunReason, Reason, SavedTrace, Wrong},
     results::FolderResults,
     verdict::Verdict,
 };
@@ -162,7 +162,7 @@ fn a_fault_of_the_grader_is_a_judge_error_of_its_scene_and_the_batch_goes_on() {
                 continue;
             };
             assert_eq!(scene.verdict, Verdict::JudgeError);
-            let Reason::Failed(Failure::Panic { stage: Some(doing), fault, trace: Some(KeptTrace::In(path)) }) =
+            let Reason::Failed(Failure::Panic { stage: Some(doing), fault, trace: Some(SavedTrace::In(path)) }) =
                 &scene.reason
             else {
                 panic!("{scene:?}")

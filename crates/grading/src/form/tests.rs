@@ -5,7 +5,7 @@ use crate::{
     Key, Verdict,
     disclosure::{DisclosedBook, DisclosedFinding, Disclosure},
     result::{
-        Activity, BadTrace, Failure, FolderContents, KeptTrace, Limit, Measurements, NotRunReason, Reached, Reason,
+        Activity, BadTrace, Failure, FolderContents, Limit, Measurements, NotRunReason, Reached, Reason, SavedTrace,
         Unusable, Wrong,
     },
 };
@@ -213,8 +213,8 @@ fn every_reason_and_every_end_reads_back() {
     reasons.push(Reason::Unusable(Unusable::CouldNotStart(missing.clone())));
     reasons.push(Reason::Unusable(Unusable::Unreadable("closed".to_owned())));
     reasons.push(Reason::Failed(Failure::Machine("no space".to_owned())));
-    let kept = KeptTrace::In(PathBuf::from("faults/a.bin"));
-    let lost = KeptTrace::Lost { folder: PathBuf::from("faults"), error: "full".to_owned() };
+    let kept = SavedTrace::In(PathBuf::from("faults/a.bin"));
+    let lost = SavedTrace::Lost { folder: PathBuf::from("faults"), error: "full".to_owned() };
     for (stage, trace) in [
         (None, None),
         (Some(Activity::Judging), Some(kept)),

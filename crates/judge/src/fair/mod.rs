@@ -35,11 +35,7 @@ mod contact;
 mod context;
 mod factors;
 mod follow;
-#[cfg(test)]
-mod forged_tests;
 pub mod formulas;
-#[cfg(test)]
-mod hostile_tests;
 mod judgement;
 mod ordinary;
 mod pending;
@@ -49,6 +45,8 @@ mod reach;
 mod sensitivity;
 mod step;
 mod step_judgement;
+#[cfg(test)]
+mod tests;
 
 pub use borderline::borderline;
 pub use cause::cause;

@@ -90,7 +90,7 @@ fn run(
     simulation.set_steps_done(records.step - 1);
     let still = Deviation::zeros(start.positions.len());
     let run = Run { passes: Vec::new(), mid: still.clone(), end: still, hits: Vec::new() };
-    let mut probe = Probe { records, decisions, seed, run, stale: true, pass: 0, motion: None, context };
+    let mut probe = PerturbedRun { records, decisions, seed, run, stale: true, pass: 0, motion: None, context };
     simulation.step(&mut probe).ok()?;
     let mut run = probe.run;
     let end = simulation.state();
@@ -115,7 +115,7 @@ fn perturb(state: &mut State, seed: u64) {
     }
 }
 
-impl Probe<'_> {
+impl PerturbedRun<'_> {
     /// The same hit, a little later or earlier: no root finder is exact.
     fn late(&self, time: f64) -> Option<Decision> {
         let motion = self.motion.as_ref()?;
@@ -130,7 +130,7 @@ impl Probe<'_> {
 }
 
 /// Takes the known decisions, and notes what would have been decided.
-struct Probe<'a> {
+struct PerturbedRun<'a> {
     records: &'a Records<'a>,
     decisions: &'a [Followed],
     seed: u64,
@@ -143,7 +143,7 @@ struct Probe<'a> {
     context: &'a Context<'a>,
 }
 
-impl Observer for Probe<'_> {
+impl Observer for PerturbedRun<'_> {
     fn begin_pass(&mut self, pass: Pass) {
         self.pass = pass.index as usize;
         self.stale = true;

@@ -1,5 +1,5 @@
 //! The threads that judge what was read. Nothing of the results depends on how many there are.
-use super::{Batch, Shape, Slot, copy_state};
+use super::{Batch, StepRules, StepSlot, copy_state};
 use crate::{
     fair::{self, Records},
     options::Options,
@@ -65,7 +65,7 @@ impl<'a> Workers<'a> {
 
     /// Judges a batch, beside which nothing is read; one that is the trace's last on one thread unless more are asked
     /// for.
-    pub(super) fn judge(&mut self, batch: &Batch, shape: &Shape<'_>, rest: u64, is_last: bool) {
+    pub(super) fn judge(&mut self, batch: &Batch, shape: &StepRules<'_>, rest: u64, is_last: bool) {
         if is_last && self.threads == 0 && self.pool.is_none() || !self.has_pool() {
             self.grow_to(1);
             judge_batch(batch, &mut self.list[..1], shape, rest);
@@ -75,7 +75,13 @@ impl<'a> Workers<'a> {
     }
 
     /// Judges a batch on all threads, and does something else meanwhile.
-    pub(super) fn judge_beside(&mut self, batch: &Batch, shape: &Shape<'_>, rest: u64, other: impl FnOnce() + Send) {
+    pub(super) fn judge_beside(
+        &mut self,
+        batch: &Batch,
+        shape: &StepRules<'_>,
+        rest: u64,
+        other: impl FnOnce() + Send,
+    ) {
         let Some(pool) = &self.pool else { return };
         let workers = &mut self.list[..];
         pool.install(|| rayon::join(|| judge_batch(batch, workers, shape, rest), other));
@@ -93,7 +99,7 @@ impl<'a> Workers<'a> {
 ///
 /// Steps are begun in their order, and a step that is begun is done, or has alone taken more than is left. So the first
 /// step that the budget does not reach is always among those that were begun, whatever the number of threads.
-fn judge_batch(batch: &Batch, workers: &mut [Worker], shape: &Shape<'_>, rest: u64) {
+fn judge_batch(batch: &Batch, workers: &mut [Worker], shape: &StepRules<'_>, rest: u64) {
     let slots = &batch.slots[..batch.filled];
     let (next, work) = (AtomicUsize::new(0), AtomicU64::new(0));
     let run = |worker: &mut Worker| {
@@ -122,9 +128,19 @@ fn judge_batch(batch: &Batch, workers: &mut [Worker], shape: &Shape<'_>, rest: u
     }
 }
 
-fn judge_step(slot: &mut Slot, worker: &mut Worker, shape: &Shape<'_>) {
-    let Slot {
-        step, before, mid, end, result, fair: judged, is_extraordinary, is_put_off, error, beyond_limit, ..
+fn judge_step(slot: &mut StepSlot, worker: &mut Worker, shape: &StepRules<'_>) {
+    let StepSlot {
+        step,
+        before,
+        mid,
+        end,
+        result,
+        fair: judged,
+        is_extraordinary,
+        is_put_off,
+        error,
+        beyond_limit,
+        ..
     } = slot;
     let Worker { simulation, buffers, searches } = worker;
     copy_state(simulation.state_mut(), before);

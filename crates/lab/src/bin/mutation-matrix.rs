@@ -74,7 +74,7 @@ struct Case {
 
 /// The result of one sample on one scene.
 #[derive(Clone)]
-enum Cell {
+enum MatrixCell {
     /// The trace is the correct one.
     Same,
     /// Another trace; what the rule books say of it.
@@ -87,7 +87,7 @@ fn main() -> anyhow::Result<ExitCode> {
     let cases = cases(&folder)?;
     let rows: Vec<&Row> =
         CATALOGUE.iter().filter(|row| row.kind != student::RowKind::Hostile && row.id.contains(&part)).collect();
-    let matrix: Vec<Vec<Cell>> =
+    let matrix: Vec<Vec<MatrixCell>> =
         rows.par_iter().map(|row| cases.iter().map(|case| cell(row, case)).collect()).collect();
     for (book, (name, _)) in RULE_BOOKS.iter().enumerate() {
         print_book(name, book, &rows, &cases, &matrix);
@@ -96,7 +96,7 @@ fn main() -> anyhow::Result<ExitCode> {
         .iter()
         .zip(&matrix)
         .filter(|(row, cells)| {
-            row.kind == student::RowKind::Wrong && cells.iter().all(|cell| matches!(cell, Cell::Same))
+            row.kind == student::RowKind::Wrong && cells.iter().all(|cell| matches!(cell, MatrixCell::Same))
         })
         .map(|(row, _)| row.id)
         .collect();
@@ -107,7 +107,13 @@ fn main() -> anyhow::Result<ExitCode> {
 }
 
 /// The rows of a kind that some scene catches under a rule book, or that none does.
-fn ids(rows: &[&Row], matrix: &[Vec<Cell>], book: usize, kind: student::RowKind, caught: bool) -> Vec<&'static str> {
+fn ids(
+    rows: &[&Row],
+    matrix: &[Vec<MatrixCell>],
+    book: usize,
+    kind: student::RowKind,
+    caught: bool,
+) -> Vec<&'static str> {
     rows.iter()
         .zip(matrix)
         .filter(|(row, cells)| row.kind == kind && caught == cells.iter().any(|cell| refused(cell, book)))
@@ -116,7 +122,12 @@ fn ids(rows: &[&Row], matrix: &[Vec<Cell>], book: usize, kind: student::RowKind,
 }
 
 /// The correct variants that a rule book refuses, each with the scene.
-fn accused<'a>(book: usize, rows: &[&'a Row], cases: &'a [Case], matrix: &[Vec<Cell>]) -> Vec<(&'a Row, &'a str)> {
+fn accused<'a>(
+    book: usize,
+    rows: &[&'a Row],
+    cases: &'a [Case],
+    matrix: &[Vec<MatrixCell>],
+) -> Vec<(&'a Row, &'a str)> {
     rows.iter()
         .zip(matrix)
         .filter(|(row, _)| row.kind == student::RowKind::Variant)
@@ -149,20 +160,20 @@ fn trace(scene: &Scene, row: Option<&Row>) -> Vec<u8> {
     student::trace(scene, Student::new(row.map(|row| row.mistake))).unwrap_or_else(|(bytes, _)| bytes)
 }
 
-fn cell(row: &Row, case: &Case) -> Cell {
+fn cell(row: &Row, case: &Case) -> MatrixCell {
     let trace = trace(&case.scene, Some(row));
     if trace == case.correct {
-        return Cell::Same;
+        return MatrixCell::Same;
     }
-    Cell::Other(RULE_BOOKS.iter().map(|(_, rules)| rules(&case.scene, &trace)).collect())
+    MatrixCell::Other(RULE_BOOKS.iter().map(|(_, rules)| rules(&case.scene, &trace)).collect())
 }
 
 /// Whether this rule book refuses the trace.
-fn refused(cell: &Cell, book: usize) -> bool {
-    matches!(cell, Cell::Other(answers) if answers[book] == Answer::Refused)
+fn refused(cell: &MatrixCell, book: usize) -> bool {
+    matches!(cell, MatrixCell::Other(answers) if answers[book] == Answer::Refused)
 }
 
-fn print_book(name: &str, book: usize, rows: &[&Row], cases: &[Case], matrix: &[Vec<Cell>]) {
+fn print_book(name: &str, book: usize, rows: &[&Row], cases: &[Case], matrix: &[Vec<MatrixCell>]) {
     println!(
         "rules: {name}\n  . the correct trace   - another trace, accepted   X refused   l lost coefficients change a decision\n"
     );
@@ -174,8 +185,8 @@ fn print_book(name: &str, book: usize, rows: &[&Row], cases: &[Case], matrix: &[
         let marks: String = cells
             .iter()
             .map(|cell| match cell {
-                Cell::Same => '.',
-                Cell::Other(answers) => match answers[book] {
+                MatrixCell::Same => '.',
+                MatrixCell::Other(answers) => match answers[book] {
                     Answer::Accepted => '-',
                     Answer::Lost => 'l',
                     Answer::Refused => 'X',
@@ -210,7 +221,7 @@ fn print_list(title: &str, names: &[&str]) {
 
 /// A small set of scenes that catches every mistake that can be caught: the scene with the most new ones first, then
 /// without those that others made superfluous.
-fn sufficient(book: usize, rows: &[&Row], scenes: usize, matrix: &[Vec<Cell>]) -> BTreeSet<usize> {
+fn sufficient(book: usize, rows: &[&Row], scenes: usize, matrix: &[Vec<MatrixCell>]) -> BTreeSet<usize> {
     let caught = |scene: usize| -> BTreeSet<usize> {
         (0..rows.len())
             .filter(|&row| rows[row].kind == student::RowKind::Wrong && refused(&matrix[row][scene], book))

@@ -3,7 +3,7 @@ use super::{Mutant, row};
 use fosssim_num::vector::Vec2;
 use fosssim_oracle::student::{
     Area,
-    hooks::{Body, Change, Encounter},
+    hooks::{Change, Encounter, MovingBody},
 };
 
 const PP: &str = "particle-particle";
@@ -59,7 +59,7 @@ struct Vectors {
 }
 
 impl Vectors {
-    fn new([one, two, three]: &[Body; 3]) -> Self {
+    fn new([one, two, three]: &[MovingBody; 3]) -> Self {
         Self {
             x12: one.start - two.start,
             x32: three.start - two.start,

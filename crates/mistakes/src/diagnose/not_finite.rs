@@ -6,7 +6,7 @@ use super::{
     Explanation,
     about::About,
     fault::{NanStage, NotFinite},
-    sampling::{Capture, Reference, Source, StepFrames, Steps},
+    sampling::{Capture, Reference, Source, StepFrames, StepReader},
 };
 use fosssim_judge::kept::KeptTrace;
 use fosssim_model::{
@@ -24,7 +24,8 @@ pub fn not_finite(trace: &KeptTrace<'_>) -> Vec<Explanation> {
 
 /// The same, of what records are at hand.
 pub(super) fn of_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
-    let (mut steps, mut reference, mut first) = (Steps::new(scene, source), Reference::new(scene), First::default());
+    let (mut steps, mut reference, mut first) =
+        (StepReader::new(scene, source), Reference::new(scene), First::default());
     first.begin(&steps.frames);
     while let (Some(step), false) = (steps.next(), first.is_found) {
         first.step(&mut reference, scene, step, &steps.frames);

@@ -3,7 +3,7 @@ use fosssim_num::vector::Vec2;
 
 /// Something round on its way through the step: it moves from `start` by `displacement`, evenly.
 #[derive(Clone, Copy)]
-pub struct Body {
+pub struct MovingBody {
     /// Where its centre is at the start of the step.
     pub start: Vec2,
     /// How far it goes within the step.
@@ -12,7 +12,7 @@ pub struct Body {
     pub radius: f64,
 }
 
-impl Body {
+impl MovingBody {
     /// A point that moves from `start` to `end`.
     pub(super) fn new(start: Vec2, end: Vec2, radius: f64) -> Self {
         Self { start, displacement: end - start, radius }
@@ -32,15 +32,15 @@ impl Body {
 /// The two objects of a pair, ready for the formulas.
 pub enum Encounter {
     /// Two particles.
-    Particles(Body, Body),
+    Particles(MovingBody, MovingBody),
     /// A particle, the edge's two endpoints, and the edge's radius.
-    Edge([Body; 3], f64),
+    Edge([MovingBody; 3], f64),
     /// A particle, and the half-plane's point and normal.
-    HalfPlane(Body, Vec2, Vec2),
+    HalfPlane(MovingBody, Vec2, Vec2),
 }
 
 /// The parameter of the closest point on the infinite line at time `t`: 0 at the first endpoint, 1 at the second.
-pub fn alpha([one, two, three]: &[Body; 3], t: f64) -> f64 {
+pub fn alpha([one, two, three]: &[MovingBody; 3], t: f64) -> f64 {
     let to_particle = one.start + t * one.displacement - two.start - t * two.displacement;
     let along = three.start + t * three.displacement - two.start - t * two.displacement;
     to_particle.dot(&along) / along.dot(&along)

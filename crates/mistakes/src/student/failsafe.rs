@@ -6,7 +6,7 @@ use fosssim_num::{
 
 use super::{
     catalogue::{Area, Mistake},
-    hooks::{Change, Place, Turn},
+    hooks::{Change, Place, ZoneTurn},
     objects::State,
     objects::Zone,
     rounding::single,
@@ -110,12 +110,12 @@ impl<'a> Rigid<'a> {
     }
 
     /// The motion, for what the catalogue does not have.
-    fn turn(&self, zone: &Zone) -> Turn {
+    fn turn(&self, zone: &Zone) -> ZoneTurn {
         let disc = |&particle: &usize| {
             let particle = &self.world.scene.particles[particle];
             particle.mass * particle.radius * particle.radius
         };
-        Turn {
+        ZoneTurn {
             centre: self.centre,
             shift: self.shift,
             angle: self.angle,

@@ -5,9 +5,9 @@ use fosssim_num::vector::{at, length, over};
 use super::{step_failure::StepFailure, world::World};
 
 /// A 2 x 2 block, `block[row][column]`.
-type Block = [[f64; 2]; 2];
+type Matrix2 = [[f64; 2]; 2];
 
-const IDENTITY: Block = [[1.0, 0.0], [0.0, 1.0]];
+const IDENTITY: Matrix2 = [[1.0, 0.0], [0.0, 1.0]];
 
 /// The system matrix `M + h Hv + h^2 Hx`, column by column, with the rows and columns of fixed particles replaced by
 /// those of the identity.
@@ -37,7 +37,7 @@ pub fn system_matrix(world: &World, x: &[f64], v: &[f64]) -> Result<Vec<f64>, St
 }
 
 /// Adds `block` on the diagonal blocks of particles `a` and `b`, and subtracts it beside the diagonal.
-fn add_pair(matrix: &mut [f64], size: usize, (a, b): (usize, usize), block: &Block) {
+fn add_pair(matrix: &mut [f64], size: usize, (a, b): (usize, usize), block: &Matrix2) {
     for (row_particle, column_particle, sign) in [(a, a, 1.0), (b, b, 1.0), (a, b, -1.0), (b, a, -1.0)] {
         for (row, entries) in block.iter().enumerate() {
             for (column, entry) in entries.iter().enumerate() {
@@ -47,7 +47,7 @@ fn add_pair(matrix: &mut [f64], size: usize, (a, b): (usize, usize), block: &Blo
     }
 }
 
-fn block(entry: impl Fn(usize, usize) -> f64) -> Block {
+fn block(entry: impl Fn(usize, usize) -> f64) -> Matrix2 {
     [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]]
 }
 

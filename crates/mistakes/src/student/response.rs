@@ -27,7 +27,7 @@ pub fn restitution(world: &World) -> f64 {
 /// Changes `result` so that `contact` does not happen. The impulse is computed from the motion from `q_start` to
 /// `predicted.x`, which may be an earlier state than the one that is changed.
 pub fn respond(world: &World, contact: &Contact, q_start: &[f64], predicted: &State, result: &mut State) {
-    let mut response = Response::new(world, contact, q_start, predicted, result);
+    let mut response = PairResponse::new(world, contact, q_start, predicted, result);
     let particle = contact.pair.particle;
     match contact.pair.object {
         Object::Particle(other) => response.particle_particle(particle, other),
@@ -41,7 +41,7 @@ pub fn respond(world: &World, contact: &Contact, q_start: &[f64], predicted: &St
     }
 }
 
-struct Response<'a> {
+struct PairResponse<'a> {
     world: &'a World,
     contact: &'a Contact,
     q_start: &'a [f64],
@@ -55,7 +55,7 @@ struct Response<'a> {
     kind: usize,
 }
 
-impl<'a> Response<'a> {
+impl<'a> PairResponse<'a> {
     fn new(
         world: &'a World,
         contact: &'a Contact,

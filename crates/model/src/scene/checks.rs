@@ -5,7 +5,7 @@
 //! is looked at; what happens later is the simulator's business.
 use super::document::Document;
 use super::model::{Collision, Edge, Force, HalfPlane, Integrator, Particle};
-use super::problem::{Finding, Report};
+use super::problem::{Report, SceneFinding};
 use super::tag::Tag;
 use super::xml::{Part, Parts};
 use fosssim_num::vector::Vec2;
@@ -36,8 +36,8 @@ pub(super) fn check(document: &Document<'_>, parts: &Parts<'_, '_>, report: &mut
 }
 
 /// An error or warning about an element.
-fn about(tag: &Tag<'_>, message: String, help: &str) -> Finding {
-    Finding::new(tag.span.clone(), message).element(tag.rule.name).help(help)
+fn about(tag: &Tag<'_>, message: String, help: &str) -> SceneFinding {
+    SceneFinding::new(tag.span.clone(), message).element(tag.rule.name).help(help)
 }
 
 fn steps(parts: &Parts<'_, '_>, report: &mut Report) {
@@ -62,7 +62,7 @@ fn size(document: &Document<'_>, parts: &Parts<'_, '_>, report: &mut Report) {
     let count = parts.particles.len();
     if count == 0 && !report.has_errors() {
         let span = document.scene.clone().unwrap_or(0..0);
-        report.warning(|| Finding::new(span, "the scene has no particles").help("its trace holds no state"));
+        report.warning(|| SceneFinding::new(span, "the scene has no particles").help("its trace holds no state"));
     }
     if let (Some(part), Some(true)) = (&parts.integrator, is_implicit(parts))
         && count > LARGEST_IMPLICIT

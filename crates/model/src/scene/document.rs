@@ -8,7 +8,7 @@ use std::ops::Range;
 use quick_xml::errors::{Error, SyntaxError};
 use quick_xml::events::Event;
 
-use super::problem::{Finding, MOST_PROBLEMS, Report, quote};
+use super::problem::{MOST_PROBLEMS, Report, SceneFinding, quote};
 use super::tag::{self, Tag, is_space, offset};
 use super::{grammar, rule::Rule};
 
@@ -31,7 +31,7 @@ pub(super) struct Document<'t> {
 
 /// Reads the text, reporting every problem of the XML, of names and of nesting.
 pub(super) fn read<'t>(text: &'t str, report: &mut Report) -> Document<'t> {
-    let reading = Reading {
+    let reading = DocumentReader {
         text,
         report,
         document: Document::default(),
@@ -52,7 +52,7 @@ struct Open<'t> {
     complained: bool,
 }
 
-struct Reading<'t, 'r> {
+struct DocumentReader<'t, 'r> {
     text: &'t str,
     report: &'r mut Report,
     document: Document<'t>,
@@ -64,7 +64,7 @@ struct Reading<'t, 'r> {
     stray: bool,
 }
 
-impl<'t> Reading<'t, '_> {
+impl<'t> DocumentReader<'t, '_> {
     fn all(mut self) -> Document<'t> {
         // The reader drops a byte order mark without counting it.
         let skipped = if self.text.starts_with('\u{feff}') { 3 } else { 0 };
@@ -110,7 +110,7 @@ impl<'t> Reading<'t, '_> {
         if let Some(open) = self.open.last() {
             if !self.document.broken {
                 self.report.error(|| {
-                    Finding::new(open.span.clone(), format!("`<{}>` is never closed", quote(open.name)))
+                    SceneFinding::new(open.span.clone(), format!("`<{}>` is never closed", quote(open.name)))
                         .element(open.name)
                         .help(format!("end it with `/>` or with `</{}>`", quote(open.name)))
                 });
@@ -126,14 +126,14 @@ impl<'t> Reading<'t, '_> {
         };
         let first = self.text.get(at..).and_then(|rest| rest.chars().next());
         let end = at + first.map_or(0, char::len_utf8);
-        self.report.error(|| Finding::new(at..end, message).maybe_help(help));
+        self.report.error(|| SceneFinding::new(at..end, message).maybe_help(help));
     }
 
     fn document_type(&mut self, span: Range<usize>) {
         let declares = self.text[span.clone()].contains('[');
         if declares {
             self.report.error(|| {
-                Finding::new(span, "a document type with declarations, which the original ignores")
+                SceneFinding::new(span, "a document type with declarations, which the original ignores")
                     .help("remove it and write out what it declares")
             });
         }
@@ -149,7 +149,7 @@ impl<'t> Reading<'t, '_> {
         let at = offset(self.text, text);
         self.report.error(|| {
             let place = if outside { "outside the scene" } else { "between the elements" };
-            Finding::new(at..at + text.len(), format!("text {place}: `{}`", quote(text)))
+            SceneFinding::new(at..at + text.len(), format!("text {place}: `{}`", quote(text)))
                 .help("only elements count here; remove it or make it a comment, `<!-- ... -->`")
         });
     }
@@ -160,7 +160,7 @@ impl<'t> Reading<'t, '_> {
         let name = &inner[..name_length];
         if name.is_empty() {
             self.document.broken = true;
-            self.report.error(|| Finding::new(span.clone(), "no element name after `<`"));
+            self.report.error(|| SceneFinding::new(span.clone(), "no element name after `<`"));
             return;
         }
         let name_span = span.start..span.start + 1 + name_length;
@@ -185,7 +185,7 @@ impl<'t> Reading<'t, '_> {
         let glued = behind.len() < inner.len() - name.len() && behind.bytes().next().is_some_and(|b| !is_space(b));
         if glued && behind != "/" {
             self.report.error(|| {
-                Finding::new(
+                SceneFinding::new(
                     span.clone(),
                     format!("only a line break between `{}` and its first attribute", quote(name)),
                 )
@@ -212,10 +212,10 @@ impl<'t> Reading<'t, '_> {
                     "everything stands in one element `scene`",
                 ),
             };
-            self.report.error(|| Finding::new(span.clone(), message).element(name).help(help));
+            self.report.error(|| SceneFinding::new(span.clone(), message).element(name).help(help));
         } else if !self.in_scene {
             self.report.error(|| {
-                Finding::new(span.clone(), "a second `scene`")
+                SceneFinding::new(span.clone(), "a second `scene`")
                     .element(name)
                     .help("only the first one counts; move its elements there or to a file of their own")
             });
@@ -233,9 +233,12 @@ impl<'t> Reading<'t, '_> {
         }
         self.document.broken = true;
         self.report.error(|| {
-            Finding::new(span.clone(), format!("`{}` inside `{}`", quote(name), quote(parent.name))).element(name).help(
-                format!("only elements directly in `scene` count; is the end of `{}` missing?", quote(parent.name)),
-            )
+            SceneFinding::new(span.clone(), format!("`{}` inside `{}`", quote(name), quote(parent.name)))
+                .element(name)
+                .help(format!(
+                    "only elements directly in `scene` count; is the end of `{}` missing?",
+                    quote(parent.name)
+                ))
         });
     }
 
@@ -254,7 +257,7 @@ impl<'t> Reading<'t, '_> {
         self.report.error(|| {
             let similar = grammar::similar_element(name);
             meant.extend(similar);
-            Finding::new(span.clone(), format!("unknown element `{}`", quote(name))).element(name).help(
+            SceneFinding::new(span.clone(), format!("unknown element `{}`", quote(name))).element(name).help(
                 similar.map_or_else(
                     || "the original ignores it silently".to_owned(),
                     |similar| format!("did you mean `{similar}`?"),
@@ -275,7 +278,7 @@ impl<'t> Reading<'t, '_> {
                 let nested = self.in_scene && self.open.get(1).is_some_and(|open| open.complained);
                 if !nested {
                     self.report.error(|| {
-                        Finding::new(last.span.clone(), format!("`<{}>` is not closed", quote(last.name)))
+                        SceneFinding::new(last.span.clone(), format!("`<{}>` is not closed", quote(last.name)))
                             .element(last.name)
                             .help(format!("end it with `/>` or with `</{}>`", quote(last.name)))
                     });
@@ -288,7 +291,9 @@ impl<'t> Reading<'t, '_> {
                 let slip = last.is_some_and(|open| grammar::closest(name, [open.name].into_iter()).is_some());
                 self.report.error(|| {
                     let help = last.map(|open| format!("open is `<{}>`", quote(open.name)));
-                    Finding::new(span, format!("`</{}>` closes nothing", quote(name))).element(name).maybe_help(help)
+                    SceneFinding::new(span, format!("`</{}>` closes nothing", quote(name)))
+                        .element(name)
+                        .maybe_help(help)
                 });
                 if !slip {
                     return;

@@ -9,7 +9,7 @@ use quick_xml::escape::{EscapeError, unescape};
 use super::grammar;
 use super::model::Color;
 use super::numbers::{self, Flaw};
-use super::problem::{Finding, Report, Severity, quote};
+use super::problem::{Report, SceneFinding, Severity, quote};
 use super::tag::{Attribute, Tag, list};
 use fosssim_num::vector::Vec2;
 
@@ -72,7 +72,7 @@ impl<'d, 't, 'r> Fields<'d, 't, 'r> {
         let (span, tag, number) = (self.span(name), self.tag, self.number);
         let finding = || {
             let (message, help) = words();
-            Finding::new(span, format!("`{name}` of {} {message}", who(tag, number)))
+            SceneFinding::new(span, format!("`{name}` of {} {message}", who(tag, number)))
                 .element(tag.rule.name)
                 .attribute(name)
                 .help(help)
@@ -208,7 +208,7 @@ impl<'d, 't, 'r> Fields<'d, 't, 'r> {
         if attribute.is_none() && !self.tag.broken && !self.tag.meant.contains(name) {
             let (tag, number) = (self.tag, self.number);
             self.report.error(|| {
-                Finding::new(tag.span.clone(), format!("{} has no `{name}`", who(tag, number)))
+                SceneFinding::new(tag.span.clone(), format!("{} has no `{name}`", who(tag, number)))
                     .element(tag.rule.name)
                     .attribute(name)
                     .help(format!("required: {what}"))

@@ -17,11 +17,11 @@ mod numbers;
 pub mod original;
 mod problem;
 mod reader;
-#[cfg(test)]
-mod reader_tests;
 mod rule;
 mod scale;
 mod tag;
+#[cfg(test)]
+mod tests;
 mod write;
 mod xml;
 

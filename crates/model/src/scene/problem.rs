@@ -93,7 +93,7 @@ impl std::error::Error for Problems {}
 
 /// A problem whose line and column are not known yet.
 #[derive(Debug)]
-pub(super) struct Finding {
+pub(super) struct SceneFinding {
     span: Range<usize>,
     element: Option<String>,
     attribute: Option<String>,
@@ -101,7 +101,7 @@ pub(super) struct Finding {
     help: Option<String>,
 }
 
-impl Finding {
+impl SceneFinding {
     pub(super) fn new(span: Range<usize>, message: impl Into<String>) -> Self {
         Self { span, element: None, attribute: None, message: message.into(), help: None }
     }
@@ -127,13 +127,13 @@ impl Finding {
 /// length.
 #[derive(Debug, Default)]
 pub(super) struct Report {
-    errors: Vec<Finding>,
-    warnings: Vec<Finding>,
+    errors: Vec<SceneFinding>,
+    warnings: Vec<SceneFinding>,
     omitted: usize,
 }
 
 impl Report {
-    pub(super) fn error(&mut self, finding: impl FnOnce() -> Finding) {
+    pub(super) fn error(&mut self, finding: impl FnOnce() -> SceneFinding) {
         if self.errors.len() < MOST_PROBLEMS {
             self.errors.push(finding());
         } else {
@@ -141,7 +141,7 @@ impl Report {
         }
     }
 
-    pub(super) fn warning(&mut self, finding: impl FnOnce() -> Finding) {
+    pub(super) fn warning(&mut self, finding: impl FnOnce() -> SceneFinding) {
         if self.warnings.len() < MOST_PROBLEMS {
             self.warnings.push(finding());
         } else {
@@ -160,9 +160,9 @@ impl Report {
         let mut findings: Vec<_> = errors.chain(warnings).collect();
         findings.sort_by_key(|(severity, finding)| (finding.span.start, *severity));
         let mut place = Place::at_start(text);
-        let problem = |(severity, finding): (Severity, Finding)| {
+        let problem = |(severity, finding): (Severity, SceneFinding)| {
             let (line, column) = place.advance(text, finding.span.start);
-            let Finding { span, element, attribute, message, help } = finding;
+            let SceneFinding { span, element, attribute, message, help } = finding;
             Problem { severity, line, column, span, element, attribute, message, help }
         };
         (findings.into_iter().map(problem).collect(), self.omitted)
@@ -219,9 +219,9 @@ mod tests {
     fn places_count_lines_and_characters() {
         let text = "\u{feff}a\né b\r\nc".as_bytes();
         let mut report = Report::default();
-        report.warning(|| Finding::new(13..13, "third"));
-        report.error(|| Finding::new(8..9, "second").help("do this"));
-        report.error(|| Finding::new(3..4, "first").element("e"));
+        report.warning(|| SceneFinding::new(13..13, "third"));
+        report.error(|| SceneFinding::new(8..9, "second").help("do this"));
+        report.error(|| SceneFinding::new(3..4, "first").element("e"));
         let (list, omitted) = report.finish(text);
         let shown = Problems { source: "x".into(), list, omitted }.to_string();
         assert_eq!(shown, "1:1: first\n2:3: second (do this)\n3:2: warning: third");
@@ -231,9 +231,9 @@ mod tests {
     fn the_list_is_capped_and_the_rest_counted() {
         let mut report = Report::default();
         for _ in 0..MOST_PROBLEMS + 3 {
-            report.error(|| Finding::new(0..0, "e"));
+            report.error(|| SceneFinding::new(0..0, "e"));
         }
-        report.warning(|| Finding::new(0..0, "w"));
+        report.warning(|| SceneFinding::new(0..0, "w"));
         let (list, omitted) = report.finish(b"");
         assert_eq!((list.len(), omitted), (MOST_PROBLEMS + 1, 3));
         let shown = Problems { source: String::new(), list, omitted }.to_string();

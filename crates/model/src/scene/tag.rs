@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use quick_xml::events::attributes::{AttrError, Attributes};
 
-use super::problem::{Finding, Report, quote};
+use super::problem::{Report, SceneFinding, quote};
 use super::{grammar, rule::Rule};
 
 /// An attribute as written.
@@ -78,14 +78,14 @@ impl<'t> Tag<'t> {
                     None if rule.attributes.is_empty() => format!("`{}` has none", rule.name),
                     None => format!("`{}` has {}", rule.name, list(rule.attributes)),
                 };
-                Finding::new(name_span, format!("unknown attribute `{}` of `{}`", quote(name), rule.name))
+                SceneFinding::new(name_span, format!("unknown attribute `{}` of `{}`", quote(name), rule.name))
                     .element(rule.name)
                     .attribute(name)
                     .help(help)
             });
         } else if self.attributes.iter().any(|other| other.name == name) {
             report.error(|| {
-                Finding::new(name_span, format!("a second `{name}` of `{}`", rule.name))
+                SceneFinding::new(name_span, format!("a second `{name}` of `{}`", rule.name))
                     .element(rule.name)
                     .attribute(name)
                     .help("the original takes the first; remove one")
@@ -99,7 +99,7 @@ impl<'t> Tag<'t> {
 }
 
 /// The fault in the form of an attribute. `start` is where `inner` starts in the text.
-fn broken(rule: &Rule, inner: &str, start: usize, error: &AttrError) -> Finding {
+fn broken(rule: &Rule, inner: &str, start: usize, error: &AttrError) -> SceneFinding {
     let (at, message) = match *error {
         AttrError::ExpectedEq(at) => (at, "`=` and a value are missing after"),
         AttrError::ExpectedValue(at) => (at, "a value is missing after"),
@@ -118,7 +118,7 @@ fn broken(rule: &Rule, inner: &str, start: usize, error: &AttrError) -> Finding 
     } else {
         (word, format!("{message} `{}`", quote(&before[word..])), "attributes are written `name=\"value\"`")
     };
-    Finding::new(start + from..start + before.len(), format!("{message} in `{}`", rule.name))
+    SceneFinding::new(start + from..start + before.len(), format!("{message} in `{}`", rule.name))
         .element(rule.name)
         .help(help)
 }

@@ -97,7 +97,7 @@ fn display(out: &mut String, scene: &Scene) -> fmt::Result {
         writeln!(out, r#"  <viewport cx="{cx}" cy="{cy}" size="{size}"/>"#)?;
     }
     if let Some(background) = display.background {
-        writeln!(out, "  <backgroundcolor {}/>", Paint(background))?;
+        writeln!(out, "  <backgroundcolor {}/>", ColorText(background))?;
     }
     if let Some(tag) = &display.tag {
         writeln!(out, r#"  <scenetag tag="{}"/>"#, Text(tag))?;
@@ -139,11 +139,11 @@ fn colors(out: &mut String, scene: &Scene) -> fmt::Result {
         ("halfplanecolor", &display.half_plane_colors),
     ] {
         for (index, color) in colors {
-            writeln!(out, r#"  <{name} i="{index}" {}/>"#, Paint(*color))?;
+            writeln!(out, r#"  <{name} i="{index}" {}/>"#, ColorText(*color))?;
         }
     }
     for path in &display.paths {
-        let (duration, color) = (Number(path.duration), Paint(path.color));
+        let (duration, color) = (Number(path.duration), ColorText(path.color));
         writeln!(out, r#"  <particlepath i="{}" duration="{duration}" {color}/>"#, path.particle)?;
     }
     Ok(())
@@ -160,9 +160,9 @@ impl fmt::Display for Number {
 }
 
 /// A colour's three attributes.
-struct Paint(Color);
+struct ColorText(Color);
 
-impl fmt::Display for Paint {
+impl fmt::Display for ColorText {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Color { red, green, blue } = self.0;
         write!(f, r#"r="{}" g="{}" b="{}""#, Number(red), Number(green), Number(blue))

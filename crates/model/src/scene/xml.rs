@@ -5,7 +5,7 @@ use super::document::Document;
 use super::fields::{Count, Fields};
 use super::forces::{ForceKind, Source};
 use super::model::{Collision, Display, Edge, Force, HalfPlane, Integrator, Particle, ParticlePath, Scene, Viewport};
-use super::problem::{Finding, Report};
+use super::problem::{Report, SceneFinding};
 use super::tag::Tag;
 use crate::assignments::CollisionType;
 
@@ -52,7 +52,7 @@ impl Parts<'_, '_> {
 
 /// Reads all elements. `None` when the scene is of a kind that is not simulated here.
 pub(super) fn read<'d, 't>(document: &'d Document<'t>, report: &mut Report) -> Option<Parts<'d, 't>> {
-    let mut reading = Reading { document, report };
+    let mut reading = SceneBuilder { document, report };
     if reading.is_rigid() {
         return None;
     }
@@ -78,12 +78,12 @@ pub(super) fn read<'d, 't>(document: &'d Document<'t>, report: &mut Report) -> O
     })
 }
 
-struct Reading<'d, 't, 'r> {
+struct SceneBuilder<'d, 't, 'r> {
     document: &'d Document<'t>,
     report: &'r mut Report,
 }
 
-impl<'d, 't> Reading<'d, 't, '_> {
+impl<'d, 't> SceneBuilder<'d, 't, '_> {
     fn tags(&self, name: &str) -> impl Iterator<Item = &'d Tag<'t>> + use<'d, 't> {
         let name = name.to_owned();
         self.document.tags.iter().filter(move |tag| tag.rule.name == name)
@@ -110,7 +110,7 @@ impl<'d, 't> Reading<'d, 't, '_> {
         let tag = tags.next()?;
         for other in tags {
             self.report.error(|| {
-                Finding::new(other.span.clone(), format!("a second `{name}`"))
+                SceneFinding::new(other.span.clone(), format!("a second `{name}`"))
                     .element(name)
                     .help("the original takes the first and ignores the others; remove one")
             });
@@ -140,7 +140,7 @@ impl<'d, 't> Reading<'d, 't, '_> {
             && !self.document.meant.contains(name)
         {
             self.report.error(|| {
-                Finding::new(scene.clone(), format!("the scene has no `{name}`"))
+                SceneFinding::new(scene.clone(), format!("the scene has no `{name}`"))
                     .element(name)
                     .help(format!("add `<{name} {attributes}/>`"))
             });
@@ -168,7 +168,7 @@ impl<'d, 't> Reading<'d, 't, '_> {
         if self.document.rigid_bodies && !rigid {
             let scene = self.document.scene.clone().unwrap_or(0..0);
             self.report.error(|| {
-                Finding::new(scene, "the scene has rigid bodies").help(format!("{stub}; use particles and edges"))
+                SceneFinding::new(scene, "the scene has rigid bodies").help(format!("{stub}; use particles and edges"))
             });
         }
         rigid
@@ -188,7 +188,7 @@ impl<'d, 't> Reading<'d, 't, '_> {
     fn display(&mut self, particles: Count, edges: Count, half_planes: Count) -> Option<Display> {
         if let Some(part) = self.single("collisiondetection", |_| Some(())) {
             self.report.warning(|| {
-                Finding::new(part.tag.span.clone(), "`collisiondetection` has no effect")
+                SceneFinding::new(part.tag.span.clone(), "`collisiondetection` has no effect")
                     .element("collisiondetection")
                     .help("it belongs to Theme 2 Milestone 3; this program tests all pairs as Milestone 2 does")
             });

@@ -35,4 +35,4 @@ pub use reader::{FRAME_LIMIT, Reader, TRAILING_LIMIT};
 pub use recorder::Recorder;
 pub use step_bytes::StepBytes;
 pub use summary::{StepView, Summary};
-pub use writer::{Writer, Written};
+pub use writer::{Writer, WrittenTrace};

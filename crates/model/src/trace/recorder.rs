@@ -5,7 +5,7 @@
 use super::{
     layout::Layout,
     log::Log,
-    writer::{Writer, Written},
+    writer::{Writer, WrittenTrace},
 };
 use crate::sim::{Detection, Impulse, Observer, Pass, Resume, State, Wanted};
 use std::io::{self, Write};
@@ -32,7 +32,7 @@ impl<W: Write> Recorder<W> {
 
     /// The bytes and records written so far, those in the buffer included.
     #[must_use]
-    pub fn written(&self) -> Written {
+    pub fn written(&self) -> WrittenTrace {
         self.writer.written()
     }
 
@@ -46,7 +46,7 @@ impl<W: Write> Recorder<W> {
     ///
     /// # Errors
     /// The first error that the stream reported, now or earlier.
-    pub fn finish(mut self) -> io::Result<(W, Written)> {
+    pub fn finish(mut self) -> io::Result<(W, WrittenTrace)> {
         self.writer.hand_on(self.log.polynomials.all());
         self.writer.finish()
     }
@@ -127,7 +127,7 @@ mod tests {
         recorder.end_step(1, &state(1.0));
         let (bytes, written) = recorder.finish().unwrap();
         assert_eq!(bytes.len(), 40 + 2 * (40 + 36 + 28 + 4));
-        assert_eq!(written, Written { records: 3, bytes: bytes.len() as u64 });
+        assert_eq!(written, WrittenTrace { records: 3, bytes: bytes.len() as u64 });
         assert_eq!(bytes[32..40], [0; 8], "the initial record has empty lists");
         assert_eq!(bytes[40..148], bytes[148..]);
         assert_eq!(bytes[72..88], [1, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0]);
@@ -177,7 +177,7 @@ mod tests {
         }
         let (bytes, written) = recorder.finish().unwrap();
         assert!(bytes == expected);
-        assert_eq!(written, Written { records: 201, bytes: expected.len() as u64 });
+        assert_eq!(written, WrittenTrace { records: 201, bytes: expected.len() as u64 });
         assert!(expected.len() > 1 << 21, "{}", expected.len());
     }
 

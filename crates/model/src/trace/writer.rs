@@ -22,7 +22,7 @@ const LISTS: usize = 128;
 
 /// The bytes and records written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Written {
+pub struct WrittenTrace {
     /// Records.
     pub records: u64,
     /// Bytes.
@@ -40,7 +40,7 @@ pub struct Writer<W: Write> {
     lists: Vec<(usize, Range<usize>)>,
     /// Their bytes.
     listed: usize,
-    written: Written,
+    written: WrittenTrace,
     error: Option<io::Error>,
 }
 
@@ -53,7 +53,7 @@ impl<W: Write> Writer<W> {
             buffer: Vec::with_capacity(2 * PIECE),
             lists: Vec::with_capacity(LISTS),
             listed: 0,
-            written: Written::default(),
+            written: WrittenTrace::default(),
             error: None,
         }
     }
@@ -102,8 +102,11 @@ impl<W: Write> Writer<W> {
 
     /// The bytes and records written so far, those in the buffer included.
     #[must_use]
-    pub fn written(&self) -> Written {
-        Written { records: self.written.records, bytes: self.written.bytes + (self.buffer.len() + self.listed) as u64 }
+    pub fn written(&self) -> WrittenTrace {
+        WrittenTrace {
+            records: self.written.records,
+            bytes: self.written.bytes + (self.buffer.len() + self.listed) as u64,
+        }
     }
 
     /// Whether writing has failed; what follows is thrown away then.
@@ -116,7 +119,7 @@ impl<W: Write> Writer<W> {
     ///
     /// # Errors
     /// The first error that the stream reported, now or earlier.
-    pub fn finish(mut self) -> io::Result<(W, Written)> {
+    pub fn finish(mut self) -> io::Result<(W, WrittenTrace)> {
         self.hand_on(&[]);
         if let Some(error) = self.error {
             return Err(error);
@@ -206,10 +209,10 @@ mod tests {
         let mut writer = Writer::new(Vec::new(), layout());
         writer.frame(&frame());
         writer.frame(&frame());
-        assert_eq!(writer.written(), Written { records: 2, bytes: 64 });
+        assert_eq!(writer.written(), WrittenTrace { records: 2, bytes: 64 });
         let (bytes, written) = writer.finish().unwrap();
         assert_eq!(bytes.len(), 64);
-        assert_eq!(written, Written { records: 2, bytes: 64 });
+        assert_eq!(written, WrittenTrace { records: 2, bytes: 64 });
         assert_eq!(bytes[24..32], 4.0_f64.to_le_bytes());
     }
 

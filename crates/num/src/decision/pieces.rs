@@ -47,7 +47,7 @@ pub(crate) struct Search {
 
 /// Searches `[0, 1]` for the first time at which all polynomials are positive.
 pub(crate) fn search(problem: &Problem) -> Search {
-    let mut walk = Walk { problem, first_open: None, slack: f64::INFINITY, pieces: 0 };
+    let mut walk = PieceWalk { problem, first_open: None, slack: f64::INFINITY, pieces: 0 };
     let mut controls = Controls::new();
     for (index, polynomial) in problem.polynomials().iter().enumerate() {
         controls.push(Control { index, ..polynomial.control() });
@@ -95,14 +95,14 @@ impl Controls {
 }
 
 /// The state of a search.
-struct Walk<'a> {
+struct PieceWalk<'a> {
     problem: &'a Problem,
     first_open: Option<f64>,
     slack: f64,
     pieces: u32,
 }
 
-impl Walk<'_> {
+impl PieceWalk<'_> {
     /// Visits the piece from `lo` to `hi`; `Some` with the first time at which all were seen to be positive.
     fn visit(&mut self, lo: f64, hi: f64, controls: &Controls, depth: u32) -> Option<f64> {
         self.pieces += 1;

@@ -39,7 +39,7 @@ use fosssim_mistakes::diagnose::Explanation;
 use fosssim_model::sim::SearchCounts;
 use serde::Serialize;
 use std::collections::BTreeMap;
-use steps::StepView;
+use steps::WrongStepView;
 
 /// A judged trace with the names under which people know it.
 #[derive(Debug, Clone, Copy)]
@@ -210,7 +210,7 @@ struct CheckView<'a> {
     steps_judged: u32,
     wrong_steps: u64,
     wrong_step_numbers: Vec<u32>,
-    shown_steps: Option<Vec<StepView>>,
+    shown_steps: Option<Vec<WrongStepView>>,
     problem: Option<StopView>,
     damage: Option<DamageView>,
     trailing_bytes: bool,

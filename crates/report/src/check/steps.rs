@@ -197,15 +197,15 @@ fn block(check: &Check<'_>, step: &Step, style: Style) -> String {
 
 /// The findings in one step, for programs.
 #[derive(Debug, Serialize)]
-pub(super) struct StepView {
+pub(super) struct WrongStepView {
     step: u32,
     findings: Vec<CountedView>,
 }
 
 /// The steps that were asked for; nothing when none was.
-pub(super) fn views(check: &Check<'_>) -> Option<Vec<StepView>> {
+pub(super) fn views(check: &Check<'_>) -> Option<Vec<WrongStepView>> {
     let (book, steps) = steps_of(check);
-    let view = |step: &Step| StepView {
+    let view = |step: &Step| WrongStepView {
         step: step.number,
         findings: step
             .firsts
@@ -227,7 +227,7 @@ pub(super) fn views(check: &Check<'_>) -> Option<Vec<StepView>> {
                 .iter()
                 .map(|&number| {
                     let found = steps.kept.iter().find(|step| step.number == number);
-                    found.map_or(StepView { step: number, findings: Vec::new() }, view)
+                    found.map_or(WrongStepView { step: number, findings: Vec::new() }, view)
                 })
                 .collect(),
         ),

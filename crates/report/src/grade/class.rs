@@ -11,7 +11,7 @@ use std::{collections::BTreeMap, fmt::Write};
 
 /// How many submissions were run on a scene, and how many of these it was accepted for.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(crate) struct Share {
+pub(crate) struct SceneShare {
     pub(crate) accepted: usize,
     pub(crate) run: usize,
 }
@@ -75,13 +75,13 @@ pub(crate) fn head(grades: &[Grade]) -> String {
 
 /// The scenes that are not accepted for everybody, those that fewest have right first, and how many others there are.
 /// What was not run and what the grader failed on does not count.
-pub(crate) fn hardest(grades: &[Grade]) -> (Vec<(&str, Share)>, usize) {
-    let mut shares: BTreeMap<&str, Share> = BTreeMap::new();
+pub(crate) fn hardest(grades: &[Grade]) -> (Vec<(&str, SceneShare)>, usize) {
+    let mut shares: BTreeMap<&str, SceneShare> = BTreeMap::new();
     let mut order = Vec::new();
     for scene in grades.iter().flat_map(Grade::scenes) {
         let share = shares.entry(&scene.scene).or_insert_with(|| {
             order.push(scene.scene.as_str());
-            Share::default()
+            SceneShare::default()
         });
         if !matches!(scene.verdict, Verdict::NotRun | Verdict::JudgeError) {
             share.run += 1;

@@ -9,7 +9,7 @@ use serde::Serialize;
 const SCHEMA: u32 = 4;
 
 #[derive(Serialize)]
-struct Document {
+struct GradeDocument {
     schema: u32,
     version: &'static str,
     grades: Vec<GradeView>,
@@ -100,7 +100,7 @@ struct SceneView {
 /// All grades in one document.
 pub(super) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     let (grades, passed_over) = (grades.iter().map(view).collect(), passed_over.iter().map(passed).collect());
-    let document = Document { schema: SCHEMA, version: env!("CARGO_PKG_VERSION"), grades, passed_over };
+    let document = GradeDocument { schema: SCHEMA, version: env!("CARGO_PKG_VERSION"), grades, passed_over };
     let mut text = serde_json::to_string_pretty(&document).unwrap_or_default();
     text.push('\n');
     text

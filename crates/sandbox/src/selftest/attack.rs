@@ -12,7 +12,7 @@ use crate::{
 
 /// The needs of an attack, without which it proves nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Need {
+pub(super) enum AttackNeed {
     FileRules,
     /// Files of the host are closed to programs, or out of sight.
     HiddenFiles,
@@ -21,7 +21,7 @@ pub(super) enum Need {
     X86,
 }
 
-impl Need {
+impl AttackNeed {
     const ALL: [Self; 5] = [Self::FileRules, Self::HiddenFiles, Self::SignalScope, Self::NamedCalls, Self::X86];
 
     pub(super) fn name(self) -> &'static str {
@@ -68,7 +68,7 @@ pub(super) struct Attack {
     pub(super) expected: Vec<Expected>,
     pub(super) policy: Policy,
     pub(super) wall: Option<Duration>,
-    pub(super) needs: Vec<Need>,
+    pub(super) needs: Vec<AttackNeed>,
     /// The expected `trace.bin`: `nothing`, `refused`, or this text.
     pub(super) leaves: Option<String>,
     /// Whether the trace is a pipe, and how many bytes must come through it.
@@ -109,7 +109,7 @@ impl Attack {
                     attack.wall = Some(Duration::from_millis(milliseconds));
                 }
                 "needs" => {
-                    let need = Need::ALL.into_iter().find(|need| need.name() == value);
+                    let need = AttackNeed::ALL.into_iter().find(|need| need.name() == value);
                     attack.needs.push(need.ok_or_else(|| format!("unknown need: {value}"))?);
                 }
                 "leaves" => attack.leaves = Some(value.into()),
@@ -143,7 +143,7 @@ mod tests {
         let attack = Attack::parse("a", text).unwrap();
         assert_eq!(attack.policy, Policy::Tools);
         assert_eq!(attack.wall, Some(Duration::from_millis(300)));
-        assert_eq!((attack.needs, attack.pipe), (vec![Need::FileRules], Some(Some(6))));
+        assert_eq!((attack.needs, attack.pipe), (vec![AttackNeed::FileRules], Some(Some(6))));
         let matches = |ended: &Ended| attack.expected.iter().any(|expected| expected.matches(ended));
         assert!(matches(&Ended::Exited(0)) && !matches(&Ended::Exited(66)));
         assert!(matches(&Ended::Violation { call: "ptrace".into() }));

@@ -24,9 +24,9 @@ pub(super) struct Decoy {
 }
 
 /// The state of the decoys: for every path its facts and contents.
-pub(super) struct State(BTreeMap<PathBuf, (Facts, Vec<u8>)>);
+pub(super) struct State(BTreeMap<PathBuf, (DecoyFacts, Vec<u8>)>);
 
-type Facts = [i64; 7];
+type DecoyFacts = [i64; 7];
 
 impl State {
     /// The first path that differs, if any.
@@ -120,7 +120,7 @@ impl Drop for Decoy {
     }
 }
 
-fn record(path: &Path, state: &mut BTreeMap<PathBuf, (Facts, Vec<u8>)>) -> io::Result<()> {
+fn record(path: &Path, state: &mut BTreeMap<PathBuf, (DecoyFacts, Vec<u8>)>) -> io::Result<()> {
     let metadata = path.symlink_metadata()?;
     let mut contents = Vec::new();
     if metadata.is_dir() {

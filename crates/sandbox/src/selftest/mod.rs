@@ -21,7 +21,7 @@ use std::{
 use include_dir::{Dir, include_dir};
 
 use self::{
-    attack::{Attack, Need},
+    attack::{Attack, AttackNeed},
     decoy::Decoy,
 };
 use super::{
@@ -252,14 +252,14 @@ impl Place<'_> {
         Ok(PromiseState::Held)
     }
 
-    fn offers(&self, need: Need) -> bool {
+    fn offers(&self, need: AttackNeed) -> bool {
         let active = |layer| self.backend.layers().iter().any(|report| report.layer == layer && report.active);
         match need {
-            Need::FileRules => active(Layer::FileRules),
-            Need::HiddenFiles => active(Layer::FileRules) || active(Layer::Namespaces),
-            Need::SignalScope => active(Layer::Scopes) || active(Layer::OwnUser),
-            Need::NamedCalls => active(Layer::NamedCalls),
-            Need::X86 => cfg!(target_arch = "x86_64"),
+            AttackNeed::FileRules => active(Layer::FileRules),
+            AttackNeed::HiddenFiles => active(Layer::FileRules) || active(Layer::Namespaces),
+            AttackNeed::SignalScope => active(Layer::Scopes) || active(Layer::OwnUser),
+            AttackNeed::NamedCalls => active(Layer::NamedCalls),
+            AttackNeed::X86 => cfg!(target_arch = "x86_64"),
         }
     }
 

@@ -22,7 +22,7 @@ use seccompiler::BpfProgram;
 use super::{filter, filter::Purpose, processes, walls};
 use crate::{
     sys,
-    wire::{self, Failure, Order, Raw},
+    wire::{self, Failure, Raw, RunOrder},
 };
 
 /// The stage whose failure is the program's and not ours.
@@ -32,11 +32,11 @@ pub(super) const LISTENER: u8 = b'L';
 
 /// All that the child needs, prepared by the supervisor.
 pub(super) struct Plan {
-    pub(super) order: Rc<Order>,
+    pub(super) order: Rc<RunOrder>,
     pub(super) supervisor: u32,
     pub(super) folder: OwnedFd,
     /// The program or script, opened while we could still reach it, for a user who cannot.
-    pub(super) opened: Option<Opened>,
+    pub(super) opened: Option<OpenedFile>,
     /// The program to execute, open under a number beyond the limit of descriptors, where execution is not announced.
     pub(super) entrance: Option<OwnedFd>,
     pub(super) rules: Option<RulesetCreated>,
@@ -123,7 +123,7 @@ fn prepare(plan: &mut Plan) -> Result<(Strings, Strings), Failure> {
 }
 
 /// The resource limits; they are the second line behind the supervisor's own watch, except for file sizes.
-fn limits(order: &Order, own_user: bool) -> io::Result<()> {
+fn limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
     // What Linux gives by default, so that a deep recursion ends alike on every grading host.
     const STACK: u64 = 8 << 20;
     const SPARE_MEMORY: u64 = 512 << 20;
@@ -158,7 +158,7 @@ fn limits(order: &Order, own_user: bool) -> io::Result<()> {
 pub(super) type Filters = Rc<(Purpose, Vec<BpfProgram>)>;
 
 /// The purpose of the filters of a child with this number.
-pub(super) fn purpose(order: &Order, own_user: bool, entrance: Option<u64>, number: i32) -> Purpose {
+pub(super) fn purpose(order: &RunOrder, own_user: bool, entrance: Option<u64>, number: i32) -> Purpose {
     let walls = order.walls;
     Purpose {
         tools: order.tools,
@@ -209,7 +209,7 @@ fn execute(plan: &Plan, arguments: &[CString], environment: &[CString]) -> io::E
 fn execute_once(plan: &Plan, arguments: &[CString], environment: &[CString]) -> io::Error {
     let path = plan.order.interpreter.as_ref().unwrap_or(&plan.order.program);
     let Ok(path) = c_string(path) else { return io::Error::from_raw_os_error(libc::EINVAL) };
-    let open = |opened: &Opened| sys::execute_open(opened.file.as_fd(), arguments, environment);
+    let open = |opened: &OpenedFile| sys::execute_open(opened.file.as_fd(), arguments, environment);
     if let Some(entrance) = &plan.entrance {
         return sys::execute_open(entrance.as_fd(), arguments, environment);
     }
@@ -234,14 +234,14 @@ fn arguments(plan: &Plan) -> io::Result<Strings> {
 }
 
 /// The script, if its interpreter has to read it by a descriptor, because its path is closed to the run's user.
-fn script_by_descriptor(plan: &Plan) -> Option<&Opened> {
+fn script_by_descriptor(plan: &Plan) -> Option<&OpenedFile> {
     let opened = plan.opened.as_ref().filter(|_| plan.order.interpreter.is_some())?;
     let readable = c_string(&plan.order.program).is_ok_and(|path| sys::accessible(&path, libc::R_OK));
     (!readable).then_some(opened)
 }
 
 /// The few variables that every program gets, then those of the job.
-fn environment(order: &Order) -> io::Result<Strings> {
+fn environment(order: &RunOrder) -> io::Result<Strings> {
     let folder = c_string(&order.folder)?;
     // A folder whose parents are closed to the sandbox's user is reached from within, as the current one.
     let home = if sys::accessible(&folder, libc::W_OK | libc::X_OK) { order.folder.clone() } else { b".".to_vec() };
@@ -267,12 +267,12 @@ fn c_string(raw: &Raw) -> io::Result<CString> {
 }
 
 /// The program as an open file that any user may execute.
-pub(super) struct Opened {
+pub(super) struct OpenedFile {
     file: OwnedFd,
     copied: bool,
 }
 
-impl Opened {
+impl OpenedFile {
     /// Opens the program: the file itself, or a copy in memory when its permission bits are for the owner only or
     /// nothing may be executed where it lies. A program that its user may not read would be closed to the supervisor's
     /// looks as well.

@@ -26,7 +26,7 @@ const BLOCK: u64 = 512;
 
 /// The contents of a folder, counted.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(super) struct Contents {
+pub(super) struct FolderUsage {
     /// Bytes on disk.
     pub(super) bytes: u64,
     /// Files and folders.
@@ -37,7 +37,7 @@ pub(super) struct Contents {
     pub(super) over: bool,
 }
 
-impl Contents {
+impl FolderUsage {
     /// The larger numbers of both.
     pub(super) fn at_least(self, other: Self) -> Self {
         Self {
@@ -51,16 +51,16 @@ impl Contents {
 
 /// The contents of the file system whose root is `folder`, by the kernel's own count: removed files that are in use as
 /// well.
-pub(super) fn in_use(folder: BorrowedFd<'_>) -> Contents {
+pub(super) fn in_use(folder: BorrowedFd<'_>) -> FolderUsage {
     // The root itself, and the trace pipe, if there is one.
     const OWN_FILES: u64 = 2;
     let (bytes, files) = sys::file_system_usage(folder).unwrap_or_default();
-    Contents { bytes, files: files.saturating_sub(OWN_FILES), ..Contents::default() }
+    FolderUsage { bytes, files: files.saturating_sub(OWN_FILES), ..FolderUsage::default() }
 }
 
 /// Counts the folder's contents and stops as soon as a limit is passed. Pipes are not counted.
-pub(super) fn measure(folder: BorrowedFd<'_>, most_bytes: u64, most_files: u64) -> Contents {
-    let mut contents = Contents::default();
+pub(super) fn measure(folder: BorrowedFd<'_>, most_bytes: u64, most_files: u64) -> FolderUsage {
+    let mut contents = FolderUsage::default();
     let whole = walk(folder, 0, &mut |_, metadata| {
         if !metadata.file_type().is_fifo() {
             contents.bytes += metadata.blocks() * BLOCK;

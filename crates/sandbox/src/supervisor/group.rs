@@ -16,7 +16,7 @@ use std::{
     time::{Duration, SystemTime, UNIX_EPOCH},
 };
 
-use crate::{sys, wire::Order};
+use crate::{sys, wire::RunOrder};
 
 /// How the names of our groups begin.
 const PREFIX: &str = "fosssim-oracle-";
@@ -54,7 +54,7 @@ impl Group {
     ///
     /// No hierarchy with a place for which we have permission, or only one of version 2 on a kernel before 5.14, which
     /// cannot end a group.
-    pub(super) fn make(order: &Order) -> io::Result<Self> {
+    pub(super) fn make(order: &RunOrder) -> io::Result<Self> {
         let mounts = std::fs::read_to_string("/proc/self/mountinfo")?;
         let groups = std::fs::read_to_string("/proc/self/cgroup")?;
         let mut problem = io::Error::other("no control groups are mounted");
@@ -118,7 +118,7 @@ impl Group {
         self.parts.iter().find(|part| part.kind == Kind::Unified)
     }
 
-    fn set_limits(&self, order: &Order) -> io::Result<()> {
+    fn set_limits(&self, order: &RunOrder) -> io::Result<()> {
         // Files count here, the working folder's above all, and so do buffers of others, but not for the program's own
         // limit.
         let memory = order.memory.saturating_add(order.folder_bytes).saturating_add(SPARE_MEMORY);
@@ -423,7 +423,7 @@ mod tests {
             Part { kind, folder: File::open(&path).unwrap(), path, limits: Vec::new() }
         };
         let mut group = Group { parts: vec![part(Kind::Unified, &unified), part(Kind::Memory, &memory)] };
-        let order = Order { memory: 1 << 20, folder_bytes: 1 << 10, processes: 4, ..Order::default() };
+        let order = RunOrder { memory: 1 << 20, folder_bytes: 1 << 10, processes: 4, ..RunOrder::default() };
         group.set_limits(&order).unwrap();
         assert!(group.controls().is_empty() && !group.was_out_of_memory() && group.cpu().is_zero());
         std::fs::write(unified.path().join("pids.max"), "").unwrap();

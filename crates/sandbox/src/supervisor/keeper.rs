@@ -31,7 +31,7 @@ use super::{
 use crate::{
     mounts,
     sys::{self, Fork, Readiness},
-    wire::{self, Event, Failure, Order, Raw},
+    wire::{self, Event, Failure, Raw, RunOrder},
 };
 
 /// A keeper without orders goes after this time, so that its user is there for others.
@@ -62,7 +62,7 @@ pub(super) fn main() -> ExitCode {
 
 /// One run: what to do, the way to and from the grader, the working folder on the disk, and what else shall lie there.
 struct Request {
-    order: Order,
+    order: RunOrder,
     control: File,
     answers: File,
     folder: OwnedFd,
@@ -80,7 +80,7 @@ impl Request {
         let (wire::RUN, Ok([control, answers, folder])) = (byte[0], <[OwnedFd; 3]>::try_from(descriptors)) else {
             return Err(io::ErrorKind::InvalidData.into());
         };
-        let order: Order = wire::receive(socket)?;
+        let order: RunOrder = wire::receive(socket)?;
         let file = |(name, length): &(Raw, u64)| Ok((name.clone(), wire::receive_bytes(socket, *length)?));
         let files = order.files.iter().map(file).collect::<io::Result<_>>()?;
         Ok(Some(Self { order, control: control.into(), answers: answers.into(), folder, files }))
@@ -97,7 +97,7 @@ enum Side {
 }
 
 /// Takes the resources that a run has to itself, and prepares its world in a child.
-fn settle(order: &Order) -> Result<Side, Failure> {
+fn settle(order: &RunOrder) -> Result<Side, Failure> {
     let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
     sys::new_session().map_err(stage("start the supervisor's session"))?;
     let alone = sys::single_thread().map_err(stage("fork"))?;

@@ -14,7 +14,7 @@ use super::view;
 use crate::{
     mounts,
     sys::{self, Fork},
-    wire::{Failure, Order},
+    wire::{Failure, RunOrder},
 };
 
 /// Where a supervisor finds itself after [`enter`].
@@ -30,7 +30,7 @@ pub(super) enum Side {
 /// # Errors
 ///
 /// The step that failed. The process is then somewhere between the worlds and must end.
-pub(super) fn enter(order: &Order) -> Result<Side, Failure> {
+pub(super) fn enter(order: &RunOrder) -> Result<Side, Failure> {
     let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
     match leave()? {
         Fork::Parent(inside) => Ok(Side::Outside(sys::wait_for(inside).map_err(stage("wait"))?)),

@@ -8,7 +8,7 @@ use super::{child, filter, group::Group, slot, walls};
 use crate::{
     mounts,
     sys::{self, Fork, SingleThread},
-    wire::{Failure, Order},
+    wire::{Failure, RunOrder},
 };
 
 /// The resources that a run has to itself on this machine, for as long as this is held.
@@ -21,7 +21,7 @@ pub(super) struct Held {
 
 impl Held {
     /// Takes the resources that the order asks for.
-    pub(super) fn take(order: &Order) -> Result<Self, Failure> {
+    pub(super) fn take(order: &RunOrder) -> Result<Self, Failure> {
         let taken = |error: io::Error| Failure::new(format!("take a user of its own ({error})"), &error);
         let slot = order.walls.own_user.then(slot::take).transpose().map_err(taken)?;
         let group = order.walls.group.then(|| Group::make(order)).transpose();
@@ -41,7 +41,7 @@ pub(super) struct Prepared {
 
 impl Prepared {
     /// For orders like this one, whose programs have this number, in a process that has one thread.
-    pub(super) fn of(order: &Order, number: i32, alone: SingleThread) -> Result<Self, Failure> {
+    pub(super) fn of(order: &RunOrder, number: i32, alone: SingleThread) -> Result<Self, Failure> {
         let open = || walls::Places::of(order).out_of_the_way();
         let purpose = child::purpose(order, order.walls.own_user, None, number);
         let filters =
@@ -68,7 +68,7 @@ impl Prepared {
     }
 
     /// The file rules of an order, if there are to be any.
-    pub(super) fn rules(&self, order: &Order, folder: BorrowedFd<'_>) -> io::Result<Option<RulesetCreated>> {
+    pub(super) fn rules(&self, order: &RunOrder, folder: BorrowedFd<'_>) -> io::Result<Option<RulesetCreated>> {
         match &self.places {
             _ if !order.walls.landlock => Ok(None),
             Some(places) => walls::rules(order, places, folder).map(Some),

@@ -20,7 +20,7 @@ use super::{
 };
 use crate::{
     sys::{self, Fork},
-    wire::{self, Failure, Order, Probe},
+    wire::{self, Failure, Probe, RunOrder},
 };
 
 /// The first kernel interface whose rules also confine signals and abstract sockets.
@@ -113,7 +113,7 @@ fn try_execution() -> (Option<String>, bool) {
 
 /// Ends a child by its control group; the answer is the limits of such a group, and whether it could end the child.
 fn try_group() -> io::Result<(Vec<&'static str>, bool)> {
-    let group = Group::make(&Order { memory: 1 << 30, processes: 64, ..Order::default() })?;
+    let group = Group::make(&RunOrder { memory: 1 << 30, processes: 64, ..RunOrder::default() })?;
     let mut entrances = group.entrances()?;
     let (mut waits, entered) = io::pipe()?;
     let Fork::Parent(child) = sys::fork()? else {
@@ -141,8 +141,11 @@ fn try_group() -> io::Result<(Vec<&'static str>, bool)> {
 
 /// Moves into namespaces in a child that then ends, with a folder in sight that every Linux has.
 fn try_namespaces() -> Option<String> {
-    let order =
-        Order { program: wire::raw(Path::new("/bin/sh")), folder: wire::raw(Path::new("/usr")), ..Order::default() };
+    let order = RunOrder {
+        program: wire::raw(Path::new("/bin/sh")),
+        folder: wire::raw(Path::new("/usr")),
+        ..RunOrder::default()
+    };
     let tried = || -> io::Result<Option<String>> {
         let (answer, mut told) = io::pipe()?;
         if let Fork::Parent(child) = sys::fork()? {

@@ -15,20 +15,20 @@ use std::{
 use super::{
     answers::{self, SharedWaits},
     calls,
-    child::{self, Opened, Plan},
+    child::{self, OpenedFile, Plan},
     filter,
-    folder::{self, Contents},
+    folder::{self, FolderUsage},
     group::Group,
     holdings, locks, modes,
     namespaces::{self, Side},
     prepared::{Held, Prepared},
     processes, slot,
-    streams::{Capture, Stalled},
+    streams::{CapturedStream, Stalled},
 };
 use crate::{
     job::Limits,
     sys::{self, Fork, Readiness},
-    wire::{self, Cause, Event, Failure, Order, Report},
+    wire::{self, Event, Failure, Report, RunOrder, StopCause},
 };
 
 /// How often clocks and counters are looked at. A look costs some ten microseconds.
@@ -42,7 +42,7 @@ pub(super) fn main() -> ExitCode {
         Ok((io::stdin().as_fd().try_clone_to_owned()?.into(), io::stdout().as_fd().try_clone_to_owned()?.into()))
     };
     let Ok((mut control, mut answers)) = streams() else { return ExitCode::from(2) };
-    let settled = wire::receive::<Order>(&mut control)
+    let settled = wire::receive::<RunOrder>(&mut control)
         .map_err(|error| Failure::new("read the order", &error))
         .and_then(|order| settle(order, control));
     ExitCode::from(match settled {
@@ -54,7 +54,7 @@ pub(super) fn main() -> ExitCode {
 }
 
 /// Says how it ended. The answer is the supervisor's exit code: 0 when the grader has heard it.
-pub(super) fn tell(finished: Result<Option<Finished>, Failure>, answers: &mut File) -> u8 {
+pub(super) fn tell(finished: Result<Option<FinishedRun>, Failure>, answers: &mut File) -> u8 {
     let sent = match finished {
         Ok(Some((report, stdout, stderr))) => wire::send(&mut *answers, &Event::Done(report))
             .and_then(|()| answers.write_all(&stdout))
@@ -73,7 +73,7 @@ enum Settled {
 }
 
 /// Finds a user and a world for the run, and starts it there.
-fn settle(order: Order, control: File) -> Result<Settled, Failure> {
+fn settle(order: RunOrder, control: File) -> Result<Settled, Failure> {
     let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
     // Alone in its session, the supervisor does not get the terminal's Ctrl-C; the grader tells it to stop.
     sys::new_session().map_err(stage("start the supervisor's session"))?;
@@ -87,11 +87,11 @@ fn settle(order: Order, control: File) -> Result<Settled, Failure> {
 }
 
 /// The report, standard output and standard error.
-pub(super) type Finished = (Report, Vec<u8>, Vec<u8>);
+pub(super) type FinishedRun = (Report, Vec<u8>, Vec<u8>);
 
 /// A program at work, seen from its supervisor.
 pub(super) struct Run {
-    order: Rc<Order>,
+    order: Rc<RunOrder>,
     control: File,
     folder: OwnedFd,
     /// Keeps the trace pipe open until every process is dead, so that its reader sees the end then and not before.
@@ -106,13 +106,13 @@ pub(super) struct Run {
     told: Vec<u8>,
     listener: Option<OwnedFd>,
     waits: SharedWaits,
-    stdout: Capture,
-    stderr: Capture,
+    stdout: CapturedStream,
+    stderr: CapturedStream,
     began: Instant,
     stalled: Stalled,
-    folder_before: Contents,
+    folder_before: FolderUsage,
     main_status: Option<i32>,
-    cause: Option<Cause>,
+    cause: Option<StopCause>,
     peak_memory: u64,
     /// Memory that the last look at mappings found and that is resident for nobody.
     unseen_memory: u64,
@@ -121,7 +121,7 @@ pub(super) struct Run {
 
 impl Run {
     /// Prepares everything and forks.
-    pub(super) fn start(order: Order, control: File, held: Held, prepared: &Prepared) -> Result<Self, Failure> {
+    pub(super) fn start(order: RunOrder, control: File, held: Held, prepared: &Prepared) -> Result<Self, Failure> {
         let (order, Held { slot, group }) = (Rc::new(order), held);
         let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
         sys::become_reaper().map_err(stage("become the reaper"))?;
@@ -148,7 +148,7 @@ impl Run {
         let (stderr, error) = io::pipe().map_err(stage("make a pipe"))?;
         let (status, child_status) = UnixStream::pair().map_err(stage("make a socket"))?;
         status.set_nonblocking(true).map_err(stage("make a socket"))?;
-        let opened = Opened::new(&wire::path(&order.program), slot.is_some()).map_err(stage("open the program"))?;
+        let opened = OpenedFile::new(&wire::path(&order.program), slot.is_some()).map_err(stage("open the program"))?;
         let entrance = entrance(&order, &opened)?;
         let rules = prepared.rules(&order, folder.as_fd()).map_err(stage("prepare Landlock"))?;
         let plan = Plan {
@@ -175,8 +175,8 @@ impl Run {
         // What was prepared for the child is closed here, so that the ends of pipes and sockets can be seen.
         drop(plan);
         Ok(Self {
-            stdout: Capture::new(stdout, order.output_bytes).map_err(stage("read standard output"))?,
-            stderr: Capture::new(stderr, order.output_bytes).map_err(stage("read standard error"))?,
+            stdout: CapturedStream::new(stdout, order.output_bytes).map_err(stage("read standard output"))?,
+            stderr: CapturedStream::new(stderr, order.output_bytes).map_err(stage("read standard error"))?,
             order,
             control,
             folder,
@@ -201,7 +201,7 @@ impl Run {
     }
 
     /// Watches until the program has ended or must end, ends everything, and reports. `None` when the grader is gone.
-    pub(super) fn finish(mut self, answers: &mut File) -> Result<Option<Finished>, Failure> {
+    pub(super) fn finish(mut self, answers: &mut File) -> Result<Option<FinishedRun>, Failure> {
         let user = self.slot.as_ref().map(|(slot, _)| slot.user);
         // A grader that is gone shows as the end of the control pipe, too.
         let walls = self.order.walls;
@@ -254,9 +254,12 @@ impl Run {
             None => None,
         };
         // A process that the kernel holds is the host's matter; any other that did not end has caused this itself.
-        self.blame_if(left.count > 0 && !left.held, Cause::Call("none, but it left processes that do not end".into()));
+        self.blame_if(
+            left.count > 0 && !left.held,
+            StopCause::Call("none, but it left processes that do not end".into()),
+        );
         let out_of_memory = self.group.as_ref().is_some_and(Group::was_out_of_memory);
-        self.blame_if(out_of_memory, Cause::Memory);
+        self.blame_if(out_of_memory, StopCause::Memory);
         let (cpu, largest) = sys::children_usage().map_err(|error| Failure::new("ask for the usage", &error))?;
         let report = Report {
             cause: self.cause.take(),
@@ -314,8 +317,8 @@ impl Run {
                 // reaped.
                 Readiness::HungUp => self.listener = None,
             }
-            self.blame_if(self.stdout.truncated, Cause::Stdout);
-            self.blame_if(self.stderr.truncated, Cause::Stderr);
+            self.blame_if(self.stdout.truncated, StopCause::Stdout);
+            self.blame_if(self.stderr.truncated, StopCause::Stderr);
             let now = Instant::now();
             if let Some(listener) = &self.listener {
                 self.waits.answer(listener.as_fd(), now);
@@ -334,7 +337,7 @@ impl Run {
     }
 
     /// Notes the first cause.
-    fn blame_if(&mut self, condition: bool, cause: Cause) {
+    fn blame_if(&mut self, condition: bool, cause: StopCause) {
         if condition && self.cause.is_none() {
             self.cause = Some(cause);
         }
@@ -344,8 +347,8 @@ impl Run {
     fn obey(&mut self) {
         let mut command = [0];
         match self.control.read(&mut command) {
-            Ok(1) if command[0] == wire::COMMAND_TRACE_LIMIT => self.blame_if(true, Cause::Trace),
-            Ok(1) => self.blame_if(true, Cause::Cancelled),
+            Ok(1) if command[0] == wire::COMMAND_TRACE_LIMIT => self.blame_if(true, StopCause::Trace),
+            Ok(1) => self.blame_if(true, StopCause::Cancelled),
             _ => self.orphaned = true,
         }
     }
@@ -436,7 +439,7 @@ impl Run {
         } else if executes {
             call.push_str(" (it started another program)");
         }
-        self.blame_if(true, Cause::Call(call));
+        self.blame_if(true, StopCause::Call(call));
         Ok(())
     }
 
@@ -458,13 +461,13 @@ impl Run {
         let reaped = sys::children_usage().map_or(Duration::ZERO, |(cpu, _)| cpu);
         let memory = usage.memory + self.unseen_memory;
         self.peak_memory = self.peak_memory.max(memory);
-        self.blame_if(memory > self.order.memory, Cause::Memory);
-        self.blame_if(usage.threads > u64::from(self.order.processes), Cause::Processes);
+        self.blame_if(memory > self.order.memory, StopCause::Memory);
+        self.blame_if(usage.threads > u64::from(self.order.processes), StopCause::Processes);
         let cpu = (usage.cpu + reaped).max(self.uncounted_cpu());
-        self.blame_if(micros(cpu) > self.order.cpu_micros, Cause::Cpu);
+        self.blame_if(micros(cpu) > self.order.cpu_micros, StopCause::Cpu);
         let full = self.pipe.as_ref().is_some_and(|pipe| sys::is_full(pipe.as_fd()));
         self.stalled.look(full, Instant::now());
-        self.blame_if(micros(self.wall()) > self.order.wall_micros, Cause::Wall);
+        self.blame_if(micros(self.wall()) > self.order.wall_micros, StopCause::Wall);
     }
 
     /// Time on the clock that is the program's own: without that in which it waited for the reader of its trace.
@@ -486,7 +489,7 @@ impl Run {
             contents = contents.at_least(folder::in_use(self.folder.as_fd()));
         }
         let over = self.over(&contents);
-        self.blame_if(over, Cause::Folder);
+        self.blame_if(over, StopCause::Folder);
         if self.order.volatile && !self.can_hide_memory() {
             return;
         }
@@ -500,7 +503,7 @@ impl Run {
         }
         self.unseen_memory = held.memory;
         let over = self.over(&contents);
-        self.blame_if(over, Cause::Folder);
+        self.blame_if(over, StopCause::Folder);
     }
 
     /// Whether there may be memory that is resident for nobody: files that are neither in the folder nor refused by
@@ -514,13 +517,13 @@ impl Run {
         self.order.tools || !self.order.walls.seccomp
     }
 
-    fn over(&self, contents: &Contents) -> bool {
+    fn over(&self, contents: &FolderUsage) -> bool {
         contents.over || contents.bytes > self.order.folder_bytes || contents.files > self.order.folder_files
     }
 }
 
 /// The contents of the order's folder.
-fn contents(order: &Order, folder: BorrowedFd<'_>) -> Contents {
+fn contents(order: &RunOrder, folder: BorrowedFd<'_>) -> FolderUsage {
     let contents = folder::measure(folder, u64::MAX, u64::MAX);
     if order.volatile { contents.at_least(folder::in_use(folder)) } else { contents }
 }
@@ -548,11 +551,11 @@ fn owner_before(folder: BorrowedFd<'_>, user: u32) -> io::Result<(u32, u32)> {
 }
 
 /// The number of the descriptor by which alone the program can be executed, where only the filter decides that.
-fn entrance(order: &Order, opened: &Opened) -> Result<Option<OwnedFd>, Failure> {
+fn entrance(order: &RunOrder, opened: &OpenedFile) -> Result<Option<OwnedFd>, Failure> {
     if !order.walls.seccomp || order.walls.notify || order.tools {
         return Ok(None);
     }
-    let interpreter = order.interpreter.as_ref().map(|path| Opened::new(&wire::path(path), false)).transpose();
+    let interpreter = order.interpreter.as_ref().map(|path| OpenedFile::new(&wire::path(path), false)).transpose();
     let interpreter = interpreter.map_err(|error| Failure::new("open the interpreter", &error))?;
     let entrance = interpreter.as_ref().unwrap_or(opened).under_number(order.open_files);
     entrance.map(Some).map_err(|error| Failure::new("open the program once more", &error))

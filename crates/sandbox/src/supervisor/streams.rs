@@ -12,14 +12,14 @@ use crate::sys;
 const AT_ONE_GO: usize = 1 << 20;
 
 /// One captured stream.
-pub(super) struct Capture {
+pub(super) struct CapturedStream {
     pipe: Option<PipeReader>,
     limit: u64,
     pub(super) bytes: Vec<u8>,
     pub(super) truncated: bool,
 }
 
-impl Capture {
+impl CapturedStream {
     /// Captures the bytes from the pipe, up to `limit` of them.
     pub(super) fn new(pipe: PipeReader, limit: u64) -> io::Result<Self> {
         sys::set_blocking(pipe.as_fd(), false)?;
@@ -98,7 +98,7 @@ mod tests {
     fn a_stream_is_cut_at_its_limit_to_the_byte() {
         for (limit, truncated) in [(6, false), (5, true), (0, true)] {
             let (reader, mut writer) = io::pipe().unwrap();
-            let mut capture = Capture::new(reader, limit).unwrap();
+            let mut capture = CapturedStream::new(reader, limit).unwrap();
             capture.take();
             writer.write_all(b"abcdef").unwrap();
             drop(writer);

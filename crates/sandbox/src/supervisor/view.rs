@@ -21,7 +21,7 @@ use crate::{
     libraries,
     mounts::{self, NO_DEVICES, NO_SET_USER, READ_ONLY},
     sys,
-    wire::{self, Failure, Order, Raw},
+    wire::{self, Failure, Raw, RunOrder},
 };
 
 /// Where the new root is put together: a folder that every Linux has. It is in sight again once the roots have changed.
@@ -48,7 +48,7 @@ enum Access {
 /// # Errors
 ///
 /// The step that failed. The process then has half a root and must end.
-pub(super) fn build(order: &Order) -> Result<(), Failure> {
+pub(super) fn build(order: &RunOrder) -> Result<(), Failure> {
     let view = begin(order)?;
     let folder = wire::path(&order.folder);
     if order.volatile {
@@ -69,7 +69,7 @@ pub(super) fn build(order: &Order) -> Result<(), Failure> {
 /// # Errors
 ///
 /// As for [`build`].
-pub(super) fn prepare(order: &Order) -> Result<(), Failure> {
+pub(super) fn prepare(order: &RunOrder) -> Result<(), Failure> {
     begin(order)?;
     hide_own(order, Path::new("/"))?;
     if sys::user() != 0 {
@@ -86,7 +86,7 @@ pub(super) fn prepare(order: &Order) -> Result<(), Failure> {
 /// # Errors
 ///
 /// As for [`build`].
-pub(super) fn complete(order: &Order, folder: BorrowedFd<'_>, files: &[(Raw, Vec<u8>)]) -> Result<(), Failure> {
+pub(super) fn complete(order: &RunOrder, folder: BorrowedFd<'_>, files: &[(Raw, Vec<u8>)]) -> Result<(), Failure> {
     add_processes(order)?;
     if sys::user() != 0 {
         mounts::detach(&text(Path::new(WITNESS))?).map_err(stage("leave other processes"))?;
@@ -105,14 +105,14 @@ fn stage(name: &'static str) -> impl FnOnce(io::Error) -> Failure {
 }
 
 /// A new root with all that lies outside the working folder, and that folder where it does not lie in memory.
-fn begin(order: &Order) -> Result<View, Failure> {
+fn begin(order: &RunOrder) -> Result<FileView, Failure> {
     sys::file_mask(0o022);
     mounts::keep_to_ourselves().map_err(stage("keep mounts to itself"))?;
     mounts::mount(c"tmpfs", &text(Path::new(SITE))?, &text(Path::new(ROOM))?).map_err(stage("make a root folder"))?;
     let old = PathBuf::from(format!("{SITE}{HOST}"));
     std::fs::create_dir(&old).map_err(stage("make a root folder"))?;
     mounts::change_root(&text(Path::new(SITE))?, &text(&old)?).map_err(stage("change the root folder"))?;
-    let mut view = View { placed: Vec::new() };
+    let mut view = FileView { placed: Vec::new() };
     let mut readable = walls::in_sight(order);
     readable.sort_by_key(|path| path.as_os_str().len());
     for (path, access) in readable
@@ -137,7 +137,7 @@ fn begin(order: &Order) -> Result<View, Failure> {
 }
 
 /// Lays nothing over the grader's own files beneath a folder, as far as they are in sight.
-fn hide_own(order: &Order, beneath: &Path) -> Result<(), Failure> {
+fn hide_own(order: &RunOrder, beneath: &Path) -> Result<(), Failure> {
     let own: Vec<PathBuf> = order.own.iter().map(wire::path).filter(|path| path.starts_with(beneath)).collect();
     if own.is_empty() {
         return Ok(());
@@ -161,7 +161,7 @@ fn hide(path: &Path) -> io::Result<()> {
 }
 
 /// Shows the run's processes, and to a submission nothing else: other entries of `/proc` count for the whole machine.
-fn add_processes(order: &Order) -> Result<(), Failure> {
+fn add_processes(order: &RunOrder) -> Result<(), Failure> {
     let shown = if order.tools { c"" } else { c"subset=pid" };
     mounts::mount(c"proc", c"/proc", shown).map_err(stage("mount /proc"))
 }
@@ -176,7 +176,7 @@ fn close_root() -> Result<(), Failure> {
 }
 
 /// Puts a file system in memory at the path, with a copy of another folder's contents.
-fn lay_out(folder: &Path, from: &Path, order: &Order) -> io::Result<()> {
+fn lay_out(folder: &Path, from: &Path, order: &RunOrder) -> io::Result<()> {
     std::fs::create_dir_all(folder)?;
     let options = CString::new(volatile::options(order)).map_err(io::Error::other)?;
     mounts::mount_folder(&c_string(folder)?, &options, order.tools)?;
@@ -199,11 +199,11 @@ fn on_host(path: &Path) -> PathBuf {
 }
 
 /// The new root while it is made.
-struct View {
+struct FileView {
     placed: Vec<(PathBuf, Access)>,
 }
 
-impl View {
+impl FileView {
     /// Brings the file or folder at the path into sight under the same path. A path that the host lacks is left out,
     /// and so are its processes: `/proc` is made anew.
     fn place(&mut self, path: &Path, access: Access) -> io::Result<()> {

@@ -11,7 +11,7 @@ use std::{
     path::Path,
 };
 
-use crate::wire::{self, Order, Raw};
+use crate::wire::{self, Raw, RunOrder};
 
 /// A little more than the limit, so that a program that passes it is seen to.
 const SPARE_BYTES: u64 = 1 << 20;
@@ -20,7 +20,7 @@ const SPARE_FILES: u64 = 64;
 const AT_ONE_GO: usize = 1 << 16;
 
 /// The options of the file system for this order's folder.
-pub(super) fn options(order: &Order) -> String {
+pub(super) fn options(order: &RunOrder) -> String {
     let (bytes, files) =
         (order.folder_bytes.saturating_add(SPARE_BYTES), order.folder_files.saturating_add(SPARE_FILES));
     format!("mode=700,size={bytes},nr_inodes={files}")

@@ -23,7 +23,7 @@ use crate::{
     libraries::{FOLDERS, LOADERS},
     own::{self, Allowed},
     sys,
-    wire::{self, Order},
+    wire::{self, RunOrder},
 };
 
 /// The newest rules we know and have tried; older kernels enforce a part of them, which [`LayerReport`] names.
@@ -63,7 +63,7 @@ const SETTINGS: [&str; 8] = [
 
 /// Every path outside the working folder that has to be in sight for the order's program, devices aside. Where rules
 /// decide what may be read, whole folders are: each mount costs every run a little.
-pub(super) fn in_sight(order: &Order) -> Vec<PathBuf> {
+pub(super) fn in_sight(order: &RunOrder) -> Vec<PathBuf> {
     let libraries = match order.walls.landlock {
         true => FOLDERS.iter().chain(&LOADERS).chain(&[PROCESSORS]).map(PathBuf::from).collect(),
         false => order.libraries.iter().map(wire::path).collect::<Vec<_>>(),
@@ -79,7 +79,7 @@ pub(super) struct Places(Vec<(OwnedFd, BitFlags<AccessFs>)>);
 
 impl Places {
     /// Opens those of an order. Paths that this host lacks are left out.
-    pub(super) fn of(order: &Order) -> Self {
+    pub(super) fn of(order: &RunOrder) -> Self {
         let read = AccessFs::ReadFile | AccessFs::ReadDir;
         let execute = read | AccessFs::Execute;
         let own: Vec<PathBuf> = order.own.iter().map(wire::path).collect();
@@ -150,7 +150,7 @@ fn at_place(path: &Path) -> io::Result<File> {
 }
 
 /// Prepares the rules for an order whose working folder is open as `folder`.
-pub(super) fn rules(order: &Order, places: &Places, folder: BorrowedFd<'_>) -> io::Result<RulesetCreated> {
+pub(super) fn rules(order: &RunOrder, places: &Places, folder: BorrowedFd<'_>) -> io::Result<RulesetCreated> {
     let version = version(order.walls.landlock_version);
     let mut ruleset = handled(order.walls.scopes, version)?;
     for (opened, access) in &places.0 {

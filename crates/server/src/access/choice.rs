@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     db::{DbError, FromRow, Transaction, from_row},
-    lti::{self, Role},
+    lti::{self, LtiRole},
     problem::Problem,
     values,
 };
@@ -145,7 +145,7 @@ impl Person {
         let statement = "INSERT INTO member (course, account, role, platform, created_at) VALUES (?, ?, ?, ?, {now})
             ON CONFLICT (course, account) DO NOTHING";
         transaction
-            .execute(statement, values![course, self.account.id, Role::Staff.name(), pending.platform.id])
+            .execute(statement, values![course, self.account.id, LtiRole::Staff.name(), pending.platform.id])
             .await?;
         let text = format!("{} of {} is this course", arrival.context.id, pending.platform.name);
         let entry = Entry { course: Some(course), ..Entry::new("platform", self.account.id, &text) };

@@ -4,7 +4,7 @@ use crate::{
     db::{Database, DbError, Transaction},
     health,
     instruments::Metrics,
-    queue::{Lane, Policy},
+    queue::{Lane, QueuePolicy},
     values,
 };
 use std::time::{Duration, Instant};
@@ -25,7 +25,7 @@ pub struct Counts(Mutex<Option<(Instant, Metrics)>>);
 
 impl Counts {
     /// The numbers of this moment, or of a moment ago.
-    pub(super) async fn of(&self, database: &Database, policy: &Policy) -> Result<Metrics, DbError> {
+    pub(super) async fn of(&self, database: &Database, policy: &QueuePolicy) -> Result<Metrics, DbError> {
         let mut last = self.0.lock().await;
         if let Some((at, metrics)) = last.as_ref()
             && at.elapsed() < FRESH
@@ -81,7 +81,7 @@ const GROWING: [Growing; 6] = [
     growing!("result", "result", "created_at", "code <> 'JE'"),
 ];
 
-async fn count(database: &Database, policy: &Policy) -> Result<(Metrics, Vec<&'static Growing>), DbError> {
+async fn count(database: &Database, policy: &QueuePolicy) -> Result<(Metrics, Vec<&'static Growing>), DbError> {
     let mut transaction = database.read().await?;
     let mut metrics = Metrics::default();
     let mut grown = Vec::new();

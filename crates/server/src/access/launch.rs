@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     db::{DbError, Row, Transaction},
-    lti::{Arrival, Message, Platform, Refused, Role, score},
+    lti::{Arrival, LtiRole, Message, Platform, Refused, score},
     problem::Problem,
     values,
 };
@@ -195,14 +195,14 @@ async fn arrive(
     transaction: &mut Transaction,
     platform: &Platform,
     message: &Message,
-    role: Role,
+    role: LtiRole,
 ) -> Result<Launched, Problem> {
     let arrival = &message.arrival;
     let statement = "SELECT platform_course.id, platform_course.course, course.slug FROM platform_course
         JOIN course ON course.id = platform_course.course
         WHERE platform_course.platform = ? AND platform_course.deployment = ? AND platform_course.context = ?";
     let place = transaction.row(statement, values![platform.id, &arrival.deployment, &arrival.context.id]).await?;
-    let staff = role == Role::Staff;
+    let staff = role == LtiRole::Staff;
     let Some(place) = place else {
         if !staff {
             return Err(Problem::refused_launch("this course is not connected with the grading server yet"));
@@ -390,7 +390,7 @@ pub(super) async fn enrol(
     place: i64,
     course: i64,
     account: i64,
-    role: Role,
+    role: LtiRole,
 ) -> Result<(), DbError> {
     let statement = "INSERT INTO platform_member (platform_course, account) VALUES (?, ?)
         ON CONFLICT (platform_course, account) DO NOTHING";
@@ -404,7 +404,7 @@ pub(super) async fn enrol(
         return Ok(());
     }
     // A link or session from before must not do more than it could.
-    if role == Role::Staff && !identity::is_trusted(transaction, account).await? {
+    if role == LtiRole::Staff && !identity::is_trusted(transaction, account).await? {
         identity::end_all(transaction, account).await?;
     } else {
         identity::end_vouched(transaction, account, None).await?;

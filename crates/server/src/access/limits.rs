@@ -3,7 +3,7 @@
 use super::Member;
 use crate::{
     db::Transaction,
-    net::{Limit, Pass},
+    net::{Limit, Permit},
     problem::Problem,
     values,
 };
@@ -20,7 +20,7 @@ const MIB: u64 = 1 << 20;
 
 /// The limits, and what is being done at the moment.
 #[derive(Debug, Default)]
-pub struct Limits {
+pub struct TransferLimits {
     /// Up- and downloads, followed submissions included, of one account at one time.
     pub transfers: usize,
     /// Bytes of uploads and their reports that are kept: of one person, of one course, of all. 0 for any number.
@@ -37,11 +37,11 @@ pub struct Limits {
 /// Leave to transfer something, until it is dropped.
 #[derive(Debug)]
 pub struct Transfer {
-    _of_account: Pass<i64>,
-    _of_all: Pass<()>,
+    _of_account: Permit<i64>,
+    _of_all: Permit<()>,
 }
 
-impl Limits {
+impl TransferLimits {
     /// Limits of these sizes.
     pub fn new(transfers: usize, student: u64, course: u64, server: u64) -> Self {
         Self { transfers, student, course, server, ..Self::default() }

@@ -46,7 +46,7 @@ pub use identity::{NewSecret, Session};
 pub use import::Imported;
 pub use invitation::Invitation;
 pub use launch::{Launched, LoginAnswer, LoginRequest};
-pub use limits::{Limits, Transfer};
+pub use limits::{Transfer, TransferLimits};
 pub use mark::{Request, Work};
 pub use member::Member;
 pub use members::{Added, MemberInfo};
@@ -69,7 +69,7 @@ use crate::{
     db::Database,
     instruments::Instruments,
     lti::Lti,
-    queue::{Notifier, Policy, Subscription},
+    queue::{Notifier, QueuePolicy, Subscription},
     storage::Storage,
     store::Store,
 };
@@ -86,7 +86,7 @@ struct Parts {
     store: Store,
     notifier: Notifier,
     /// The queue's patience.
-    policy: Policy,
+    policy: QueuePolicy,
     /// Numbers for monitors.
     counts: Counts,
     /// Whether there is room, and whether it can be written.
@@ -115,7 +115,7 @@ pub struct Options {
     /// Requests of one account in a minute.
     pub requests_per_minute: u32,
     /// Transfers at one time, and bytes that are kept.
-    pub limits: Limits,
+    pub limits: TransferLimits,
     /// What signing in with passwords needs; nothing where that is not allowed.
     pub passwords: Option<Passwords>,
     /// Speaks with learning platforms.
@@ -140,7 +140,7 @@ impl App {
         database: Database,
         store: Store,
         notifier: Notifier,
-        policy: Policy,
+        policy: QueuePolicy,
         instruments: Instruments,
         options: Options,
     ) -> Self {

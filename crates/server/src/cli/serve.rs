@@ -6,13 +6,13 @@ use super::{
     worker::{Local, grader, policy},
 };
 use crate::{
-    access::{self, App, Limits, Options, Passwords, Suites},
+    access::{self, App, Options, Passwords, Suites, TransferLimits},
     db::{self, Address, Database},
     instruments::Instruments,
     ledger,
     lti::{self, Lti, PlatformWish},
     net,
-    queue::{Notifier, Policy},
+    queue::{Notifier, QueuePolicy},
     retention,
     store::Store,
     web,
@@ -67,7 +67,7 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
         public: public.clone(),
         patience,
         requests_per_minute: arguments.requests_per_minute,
-        limits: Limits::new(
+        limits: TransferLimits::new(
             arguments.transfers as usize,
             arguments.keep_of_person * MIB,
             arguments.keep_of_course * MIB,
@@ -93,39 +93,16 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
         Some(workers) => NonZeroUsize::new(workers),
         None => Some(std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN)),
     };
-    let working = match slots {
-        None => None,
-        Some(slots) => {
-            let grader = grader(arguments.work.grader.as_deref())?;
-            let local = Local { folders: folders.clone(), database: database.clone(), store, notifier, policy, grader };
-            let stop = stop.clone();
-            Some(async move { local.work(&arguments.work, Some(slots), None, stop).await })
-        }
-    };
-    let link = app.first_link().await.map_err(|problem| anyhow!("{}", problem.detail))?;
-    // On standard output, for people and scripts; the log is on standard error and holds no secrets.
-    let mut output = std::io::stdout();
-    writeln!(output, "Listening on {local}")?;
-    if let Some(link) = link {
-        writeln!(output, "Sign in as administrator, once, by {public}/welcome/{}", link.reveal())?;
-    }
-    if arguments.example {
-        let link = app.example().await.map_err(|problem| anyhow!("{}: {}", problem.detail, problem.remedy))?;
-        if let Some(link) = link {
-            writeln!(output, "Sign in as a student, once, by {public}/welcome/{}", link.reveal())?;
-        }
-        let program = folders.flawed_program.clone();
-        if !program.exists() {
-            write_flawed_program(arguments.work.grader.as_deref(), &program).await?;
-        }
-        writeln!(output, "A program with a mistake, to hand in: {}", program.display())?;
-    }
-    output.flush()?;
-    let manners = net::Manners {
-        patience,
-        connections: arguments.connections as usize,
-        proxies: arguments.trusted_proxies.clone(),
-    };
+    let grader = slots.map(|_| grader(arguments.work.grader.as_deref())).transpose()?;
+    let working = grader.map(|grader| {
+        let local = Local { folders: folders.clone(), database: database.clone(), store, notifier, policy, grader };
+        let stop = stop.clone();
+        async move { local.work(&arguments.work, slots, None, stop).await }
+    });
+    let example = arguments.example.then_some(folders.flawed_program.as_path());
+    greet(&app, [&local, &public], example, arguments.work.grader.as_deref()).await?;
+    let (connections, proxies) = (arguments.connections as usize, arguments.trusted_proxies.clone());
+    let manners = net::Manners { patience, connections, proxies };
     heartbeat::ready();
     let seen = database.clone();
     tokio::spawn(heartbeat::beat(folders.data.clone(), async move || db::version(&seen).await.is_ok()));
@@ -140,6 +117,28 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
     database.close().await;
     tracing::info!("stopped");
     Ok(())
+}
+
+/// Says on standard output, for people and scripts, where the server listens and how to come in; the log is on standard
+/// error and holds no secrets. With an example, also where its program is.
+async fn greet(app: &App, [local, public]: [&str; 2], example: Option<&Path>, grader: Option<&Path>) -> Result<()> {
+    let link = app.first_link().await.map_err(|problem| anyhow!("{}", problem.detail))?;
+    let mut output = std::io::stdout();
+    writeln!(output, "Listening on {local}")?;
+    if let Some(link) = link {
+        writeln!(output, "Sign in as administrator, once, by {public}/welcome/{}", link.reveal())?;
+    }
+    if let Some(program) = example {
+        let link = app.example().await.map_err(|problem| anyhow!("{}: {}", problem.detail, problem.remedy))?;
+        if let Some(link) = link {
+            writeln!(output, "Sign in as a student, once, by {public}/welcome/{}", link.reveal())?;
+        }
+        if !program.exists() {
+            write_flawed_program(grader, program).await?;
+        }
+        writeln!(output, "A program with a mistake, to hand in: {}", program.display())?;
+    }
+    Ok(output.flush()?)
 }
 
 /// Registers the learning platforms of a file: a table for each, by name.
@@ -230,7 +229,8 @@ pub(super) async fn admin_link(arguments: &AdminLink) -> Result<()> {
     let (database, _) = folders.open_database(&arguments.place).await?;
     let store = folders.store(&arguments.place)?;
     let options = Options { public: arguments.public_url.clone(), incoming: folders.incoming, ..Options::default() };
-    let app = App::new(database.clone(), store, Notifier::default(), Policy::default(), Instruments::new()?, options);
+    let app =
+        App::new(database.clone(), store, Notifier::default(), QueuePolicy::default(), Instruments::new()?, options);
     let link = app.admin_link(&arguments.login).await.map_err(|problem| anyhow!("{}", problem.detail))?;
     println!("{}/welcome/{}", arguments.public_url, link.reveal());
     database.close().await;

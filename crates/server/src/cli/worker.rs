@@ -7,7 +7,7 @@ use super::{
 use crate::{
     db::{self, Database},
     ledger,
-    queue::{Notifier, Policy},
+    queue::{Notifier, QueuePolicy},
     secret,
     store::Store,
     worker::{self, JobSource, Liveness, LocalSource, Options, Program, RemoteSource, SourceError},
@@ -119,9 +119,9 @@ fn slots(slots: Option<NonZeroUsize>) -> usize {
 }
 
 /// The queue's patience as the arguments have it.
-pub(super) fn policy(work: &Work) -> Policy {
+pub(super) fn policy(work: &Work) -> QueuePolicy {
     let lease = Duration::from_secs(work.lease);
-    Policy { lease, max_failures: work.tries, first_wait: lease / 30, longest_wait: lease * 4 }
+    QueuePolicy { lease, max_failures: work.tries, first_wait: lease / 30, longest_wait: lease * 4 }
 }
 
 /// The grader that was named, or the one beside this program.
@@ -142,7 +142,7 @@ pub(super) struct Local {
     pub(super) database: Database,
     pub(super) store: Store,
     pub(super) notifier: Notifier,
-    pub(super) policy: Policy,
+    pub(super) policy: QueuePolicy,
     pub(super) grader: PathBuf,
 }
 

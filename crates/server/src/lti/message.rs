@@ -45,14 +45,14 @@ pub enum Refused {
 
 /// What somebody is in a platform's course.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Role {
+pub enum LtiRole {
     /// A learner.
     Student,
     /// An instructor, a teaching assistant, or an administrator.
     Staff,
 }
 
-impl Role {
+impl LtiRole {
     /// As it stands in a course's list of members.
     pub fn name(self) -> &'static str {
         match self {
@@ -68,7 +68,7 @@ pub struct Message {
     /// The platform's name for the person, which never changes.
     pub subject: String,
     /// What they are in the course there; nothing for parents, guests and others.
-    pub role: Option<Role>,
+    pub role: Option<LtiRole>,
     /// What they are called, where the platform tells.
     pub name: Option<String>,
     /// Their address, where the platform tells; used for a login's name only.
@@ -277,7 +277,7 @@ pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &st
 
 /// What somebody is in the course by the platform's roles (LTI A.2.3). What they are in the institution or system says
 /// nothing of the course, unless they administer all of it and nothing else is said.
-pub(crate) fn role_of(roles: &[String]) -> Option<Role> {
+pub(crate) fn role_of(roles: &[String]) -> Option<LtiRole> {
     const COURSE: &str = "http://purl.imsglobal.org/vocab/lis/v2/membership";
     // The simple names are deprecated, and still sent.
     let in_course = |role: &str| -> Option<String> {
@@ -292,17 +292,17 @@ pub(crate) fn role_of(roles: &[String]) -> Option<Role> {
         roles.iter().filter_map(|role| if role.contains('/') { in_course(role) } else { Some(role.clone()) }).collect();
     let is = |name: &str| named.iter().any(|role| role == name);
     if is("Instructor") || is("Administrator") || is("ContentDeveloper") {
-        return Some(Role::Staff);
+        return Some(LtiRole::Staff);
     }
     if is("Learner") {
-        return Some(Role::Student);
+        return Some(LtiRole::Student);
     }
     let administers = |role: &String| {
         ["institution/person", "system/person"]
             .iter()
             .any(|place| *role == format!("http://purl.imsglobal.org/vocab/lis/v2/{place}#Administrator"))
     };
-    (named.is_empty() && roles.iter().any(administers)).then_some(Role::Staff)
+    (named.is_empty() && roles.iter().any(administers)).then_some(LtiRole::Staff)
 }
 
 /// The answer to who asked for a link to be chosen: one link to an assignment (DL 4.5), as a signed token.
@@ -350,15 +350,15 @@ mod tests {
         const MEMBER: &str = "http://purl.imsglobal.org/vocab/lis/v2/membership";
         const PERSON: &str = "http://purl.imsglobal.org/vocab/lis/v2/institution/person";
         let role = |roles: &[String]| role_of(roles);
-        assert_eq!(role(&[format!("{MEMBER}#Learner")]), Some(Role::Student));
-        assert_eq!(role(&["Learner".to_owned()]), Some(Role::Student));
-        assert_eq!(role(&[format!("{MEMBER}#Instructor"), format!("{MEMBER}#Learner")]), Some(Role::Staff));
-        assert_eq!(role(&[format!("{MEMBER}/Instructor#TeachingAssistant")]), Some(Role::Staff));
-        assert_eq!(role(&[format!("{MEMBER}#Administrator")]), Some(Role::Staff));
+        assert_eq!(role(&[format!("{MEMBER}#Learner")]), Some(LtiRole::Student));
+        assert_eq!(role(&["Learner".to_owned()]), Some(LtiRole::Student));
+        assert_eq!(role(&[format!("{MEMBER}#Instructor"), format!("{MEMBER}#Learner")]), Some(LtiRole::Staff));
+        assert_eq!(role(&[format!("{MEMBER}/Instructor#TeachingAssistant")]), Some(LtiRole::Staff));
+        assert_eq!(role(&[format!("{MEMBER}#Administrator")]), Some(LtiRole::Staff));
         // Teachers of the institution may learn something, too, and administrators take part as what they are here.
-        assert_eq!(role(&[format!("{PERSON}#Instructor"), format!("{MEMBER}#Learner")]), Some(Role::Student));
-        assert_eq!(role(&[format!("{PERSON}#Administrator"), format!("{MEMBER}#Learner")]), Some(Role::Student));
-        assert_eq!(role(&[format!("{PERSON}#Administrator")]), Some(Role::Staff));
+        assert_eq!(role(&[format!("{PERSON}#Instructor"), format!("{MEMBER}#Learner")]), Some(LtiRole::Student));
+        assert_eq!(role(&[format!("{PERSON}#Administrator"), format!("{MEMBER}#Learner")]), Some(LtiRole::Student));
+        assert_eq!(role(&[format!("{PERSON}#Administrator")]), Some(LtiRole::Staff));
         for other in [format!("{MEMBER}#Mentor"), format!("{PERSON}#Student"), format!("{PERSON}#Guest"), String::new()]
         {
             assert_eq!(role(std::slice::from_ref(&other)), None, "{other}");

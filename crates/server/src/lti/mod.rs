@@ -17,7 +17,7 @@ mod trust;
 
 pub use client::{Client, ServiceFault};
 pub use keys::{new_key, published};
-pub use message::{Arrival, Context, DeepLinking, Message, Refused, Resource, Role, deep_linking_response};
+pub use message::{Arrival, Context, DeepLinking, LtiRole, Message, Refused, Resource, deep_linking_response};
 pub use platform::{Platform, PlatformWish};
 pub use roster::{RosterMember, fetch as fetch_roster};
 pub use sender::run as send_scores;

@@ -1,6 +1,6 @@
 //! Who is in a platform's course, as the platform tells (NRPS 2).
 use super::{
-    Client, Platform, Role, ServiceFault,
+    Client, LtiRole, Platform, ServiceFault,
     client::{Ask, scope},
     message::role_of,
 };
@@ -24,11 +24,11 @@ pub struct RosterMember {
     /// Their address, where the platform tells.
     pub email: Option<String>,
     /// What they are; nothing for those who are none of ours, or not any more.
-    pub role: Option<Role>,
+    pub role: Option<LtiRole>,
 }
 
 #[derive(Deserialize)]
-struct Page {
+struct RosterPage {
     members: Vec<Member>,
 }
 
@@ -60,7 +60,7 @@ pub async fn fetch(
         let Some(address) = next else { return Ok(members) };
         let ask = Ask { address, accept: KIND, body: None };
         let told = client.call(database, platform, scope::MEMBERS, &ask).await?;
-        let page: Page = serde_json::from_slice(&told.body)
+        let page: RosterPage = serde_json::from_slice(&told.body)
             .map_err(|error| ServiceFault::Refused(format!("its members can't be read: {error}")))?;
         members.extend(page.members.into_iter().filter_map(read));
         if members.len() > MEMBERS {

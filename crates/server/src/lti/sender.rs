@@ -7,7 +7,7 @@ use super::{
 use crate::{
     calendar,
     db::{Database, DbError},
-    queue::{self, Claim, Claimant, Completion, Failure, Lane, Notifier, Policy},
+    queue::{self, Claim, Claimant, Completion, Failure, Lane, Notifier, QueuePolicy},
 };
 use serde::Deserialize;
 use serde_json::json;
@@ -48,7 +48,7 @@ const CLAIMANT: Claimant<'static> = Claimant { worker: "scores", is_idle: true, 
 pub async fn run<F: Future<Output = Result<(), DbError>>>(
     database: Database,
     notifier: Notifier,
-    policy: Policy,
+    policy: QueuePolicy,
     lti: Arc<Lti>,
     look: impl Fn() -> F,
     stop: CancellationToken,
@@ -83,7 +83,7 @@ pub async fn run<F: Future<Output = Result<(), DbError>>>(
 /// The next job, and a place to do it in.
 async fn take<F: Future<Output = Result<(), DbError>>>(
     database: &Database,
-    policy: &Policy,
+    policy: &QueuePolicy,
     room: &Arc<Semaphore>,
     look: impl Fn() -> F,
 ) -> Result<Option<(Claim, tokio::sync::OwnedSemaphorePermit)>, DbError> {
@@ -99,7 +99,7 @@ async fn take<F: Future<Output = Result<(), DbError>>>(
     Ok(claim.map(|claim| (claim, place)))
 }
 
-async fn work(database: &Database, policy: &Policy, lti: &Lti, claim: &Claim) -> Result<(), DbError> {
+async fn work(database: &Database, policy: &QueuePolicy, lti: &Lti, claim: &Claim) -> Result<(), DbError> {
     let sending = send(database, lti, claim);
     tokio::pin!(sending);
     let sent = loop {
@@ -129,7 +129,7 @@ async fn work(database: &Database, policy: &Policy, lti: &Lti, claim: &Claim) ->
                 ServiceFault::Away { after, .. } => (PATIENT, after.unwrap_or_default()),
                 ServiceFault::Refused(_) => (REFUSED, Duration::ZERO),
             };
-            let patient = Policy { max_failures: tries, longest_wait: LONGEST_WAIT, ..*policy };
+            let patient = QueuePolicy { max_failures: tries, longest_wait: LONGEST_WAIT, ..*policy };
             let failure = queue::fail_for(&mut transaction, &patient, &claim.lease, &text, least).await?;
             match (failure, serde_json::from_str::<Order>(&claim.payload)) {
                 (Failure::Buried, _) => {

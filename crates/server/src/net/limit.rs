@@ -17,25 +17,25 @@ impl<K> Default for Limit<K> {
 
 /// Leave to do one thing, until it is dropped.
 #[derive(Debug)]
-pub struct Pass<K: Hash + Eq> {
+pub struct Permit<K: Hash + Eq> {
     who: K,
     counts: Arc<Mutex<HashMap<K, usize>>>,
 }
 
 impl<K: Hash + Eq + Clone> Limit<K> {
     /// Leave for one more, if fewer than `most` are being done.
-    pub fn pass(&self, who: K, most: usize) -> Option<Pass<K>> {
+    pub fn pass(&self, who: K, most: usize) -> Option<Permit<K>> {
         let mut counts = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let count = counts.entry(who.clone()).or_insert(0);
         if *count >= most {
             return None;
         }
         *count += 1;
-        Some(Pass { who, counts: self.0.clone() })
+        Some(Permit { who, counts: self.0.clone() })
     }
 }
 
-impl<K: Hash + Eq> Drop for Pass<K> {
+impl<K: Hash + Eq> Drop for Permit<K> {
     fn drop(&mut self) {
         let mut counts = self.counts.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(count) = counts.get_mut(&self.who) {

@@ -9,7 +9,7 @@ mod paced;
 mod seats;
 
 pub use address::{ClientAddress, Networks};
-pub use limit::{Limit, Pass};
+pub use limit::{Limit, Permit};
 
 use crate::problem::Problem;
 use axum::{
@@ -186,7 +186,7 @@ async fn answer(
 struct Answered {
     body: Body,
     seat: Arc<Seat>,
-    _pass: Option<Pass<IpAddr>>,
+    _pass: Option<Permit<IpAddr>>,
 }
 
 impl hyper::body::Body for Answered {

@@ -1,5 +1,5 @@
 //! Claiming.
-use super::{Claim, Lane, Lease, Policy, SUSPECTED_AFTER, millis};
+use super::{Claim, Lane, Lease, QueuePolicy, SUSPECTED_AFTER, millis};
 use crate::{
     db::{DbError, Transaction},
     secret, values,
@@ -25,7 +25,7 @@ pub struct Claimant<'a> {
 /// What the database says.
 pub async fn claim(
     transaction: &mut Transaction,
-    policy: &Policy,
+    policy: &QueuePolicy,
     lane: Lane,
     claimant: Claimant<'_>,
 ) -> Result<Option<Claim>, DbError> {
@@ -65,7 +65,7 @@ pub async fn claim(
 ///
 /// # Errors
 /// What the database says.
-pub async fn is_due(transaction: &mut Transaction, policy: &Policy, lane: Lane) -> Result<bool, DbError> {
+pub async fn is_due(transaction: &mut Transaction, policy: &QueuePolicy, lane: Lane) -> Result<bool, DbError> {
     let statement = "SELECT id FROM job WHERE lane = ? AND (
            (state = 'waiting' AND (run_after <= {now} OR run_after > {now} + ?)) OR (state = 'running' AND lease_until < {now})
         ) LIMIT 1";

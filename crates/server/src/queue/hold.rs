@@ -1,5 +1,5 @@
 //! What the holder of a lease may say. Everything is fenced: it counts only while the job runs under this very lease.
-use super::{A_DAY, Lease, Policy, SUSPECTED_AFTER, SUSPECTED_LATER, millis};
+use super::{A_DAY, Lease, QueuePolicy, SUSPECTED_AFTER, SUSPECTED_LATER, millis};
 use crate::{
     db::{DbError, Row, Transaction},
     values,
@@ -49,7 +49,7 @@ pub struct Progress {
 /// What the database says.
 pub async fn renew(
     transaction: &mut Transaction,
-    policy: &Policy,
+    policy: &QueuePolicy,
     lease: &Lease,
     progress: Option<Progress>,
     most: Duration,
@@ -107,7 +107,7 @@ pub async fn release(transaction: &mut Transaction, lease: &Lease) -> Result<boo
 /// What the database says.
 pub async fn fail(
     transaction: &mut Transaction,
-    policy: &Policy,
+    policy: &QueuePolicy,
     lease: &Lease,
     fault: &str,
 ) -> Result<Failure, DbError> {
@@ -120,7 +120,7 @@ pub async fn fail(
 /// What the database says.
 pub async fn fail_for(
     transaction: &mut Transaction,
-    policy: &Policy,
+    policy: &QueuePolicy,
     lease: &Lease,
     fault: &str,
     least: Duration,
@@ -159,7 +159,7 @@ struct Loss<'a> {
 /// The worker of a job died, or may have: the row, which this transaction has locked, has the counts.
 pub(super) async fn die(
     transaction: &mut Transaction,
-    policy: &Policy,
+    policy: &QueuePolicy,
     row: &Row,
     fault: &str,
 ) -> Result<Failure, DbError> {

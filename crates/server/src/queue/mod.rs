@@ -4,7 +4,7 @@
 //! A worker **claims** a job and holds it under a lease, which it **renews**; it **finishes** it, gives it back
 //! (**releases**) or says that it **failed**. Every claim has a number of its own, the attempt, and a key that only the
 //! worker knows: whatever a worker says is looked at together with them, so that one who is late changes nothing. A job
-//! that failed waits again, later each time, and after [`Policy::max_failures`] failures it is **buried**: somebody is
+//! that failed waits again, later each time, and after [`QueuePolicy::max_failures`] failures it is **buried**: somebody is
 //! to look at it. A worker that died, or went silent, is no failure of its job. But a job that was there several times
 //! is **suspected**: it is run alone, and after the others that wait; only one that takes its worker down over and over
 //! while nothing else runs there is buried. What a job is about, and what is written when it ends, is the concern of
@@ -49,7 +49,7 @@ impl Lane {
     }
 
     /// How long a job of it may wait between two tries.
-    fn longest_wait(self, policy: &Policy) -> Duration {
+    fn longest_wait(self, policy: &QueuePolicy) -> Duration {
         match self {
             Self::Grading => policy.longest_wait,
             // Platforms may wish to be left alone for longer.
@@ -63,7 +63,7 @@ const A_DAY: Duration = Duration::from_secs(86_400);
 
 /// How patient the queue is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Policy {
+pub struct QueuePolicy {
     /// How long a worker may be silent.
     pub lease: Duration,
     /// After this many failures a job is buried.
@@ -74,7 +74,7 @@ pub struct Policy {
     pub longest_wait: Duration,
 }
 
-impl Default for Policy {
+impl Default for QueuePolicy {
     fn default() -> Self {
         Self {
             lease: Duration::from_secs(30),
@@ -85,7 +85,7 @@ impl Default for Policy {
     }
 }
 
-impl Policy {
+impl QueuePolicy {
     /// How often a worker renews its leases: two renewals may get lost.
     pub fn renew_every(&self) -> Duration {
         self.lease / 4
@@ -179,7 +179,7 @@ mod tests {
 
     #[test]
     fn each_failure_waits_longer_up_to_a_limit() {
-        let policy = Policy::default();
+        let policy = QueuePolicy::default();
         let waits: Vec<u64> = (1..=6).map(|failures| policy.longest(failures).as_secs()).collect();
         assert_eq!(waits, [1, 4, 16, 64, 120, 120]);
         assert_eq!(policy.longest(i64::MAX), policy.longest_wait);

@@ -1,5 +1,5 @@
 //! Where a job stands, and how long it may take.
-use super::{Lane, Policy, millis};
+use super::{Lane, QueuePolicy, millis};
 use crate::{
     db::{DbError, Transaction},
     values,
@@ -25,7 +25,7 @@ pub struct Place {
 /// What the database says.
 pub async fn place(
     transaction: &mut Transaction,
-    policy: &Policy,
+    policy: &QueuePolicy,
     lane: Lane,
     job: i64,
 ) -> Result<Option<Place>, DbError> {

@@ -2,7 +2,7 @@
 //!
 //! Everybody who is alive ticks, and leases run out only while somebody does: after a gap the database itself was away,
 //! nobody could renew, and every lease begins anew. So a restart of PostgreSQL costs no job a try.
-use super::{Failure, Policy, hold::die, millis};
+use super::{Failure, QueuePolicy, hold::die, millis};
 use crate::{
     db::{DbError, Row, Transaction},
     values,
@@ -33,11 +33,11 @@ pub struct Buried {
     pub fault: String,
 }
 
-/// Gives up on workers whose leases ran out, at most every [`Policy::tick_every`], by any caller.
+/// Gives up on workers whose leases ran out, at most every [`QueuePolicy::tick_every`], by any caller.
 ///
 /// # Errors
 /// What the database says.
-pub async fn tick(transaction: &mut Transaction, policy: &Policy) -> Result<Tick, DbError> {
+pub async fn tick(transaction: &mut Transaction, policy: &QueuePolicy) -> Result<Tick, DbError> {
     let pulse =
         transaction.row("SELECT beat_at, {now} AS now FROM pulse WHERE id = 1 {skip locked}", values![]).await?;
     // Somebody else is at it.
@@ -78,14 +78,19 @@ async fn set_back(transaction: &mut Transaction, by: i64) -> Result<(), DbError>
 ///
 /// # Errors
 /// What the database says.
-pub async fn abandon(transaction: &mut Transaction, policy: &Policy, worker: &str) -> Result<Tick, DbError> {
+pub async fn abandon(transaction: &mut Transaction, policy: &QueuePolicy, worker: &str) -> Result<Tick, DbError> {
     let statement = "SELECT id, attempt, failures, deaths, lone_deaths, is_alone, worker FROM job
         WHERE state = 'running' AND worker = ? ORDER BY id {skip locked}";
     let lost = transaction.rows(statement, values![worker]).await?;
     give_up(transaction, policy, lost, "its worker died").await
 }
 
-async fn give_up(transaction: &mut Transaction, policy: &Policy, lost: Vec<Row>, fault: &str) -> Result<Tick, DbError> {
+async fn give_up(
+    transaction: &mut Transaction,
+    policy: &QueuePolicy,
+    lost: Vec<Row>,
+    fault: &str,
+) -> Result<Tick, DbError> {
     let mut tick = Tick::default();
     for row in lost {
         let (job, attempt) = (row.int("id")?, row.int("attempt")?);

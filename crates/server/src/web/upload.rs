@@ -1,7 +1,7 @@
 //! Receiving files: as they come, into a file of the server's own, never whole in memory.
 use crate::{
     access::{App, is_file_name},
-    archive::{self, Limits},
+    archive::{self, ArchiveLimits},
     problem::Problem,
     task::Form,
 };
@@ -256,7 +256,7 @@ fn examine_now(file: &Path, said: Option<Form>) -> Result<Form, Problem> {
     match form {
         Form::Program if !is_program => Err(Problem::unusable(format!("looked for {PROGRAM}, and found {found}"))),
         Form::Program => Ok(form),
-        _ => match archive::look_through(file, Limits::USUAL) {
+        _ => match archive::look_through(file, ArchiveLimits::USUAL) {
             Ok(files) if files.is_empty() => Err(Problem::unusable(
                 "looked for files in the archive, and found none, or only those that a file manager adds by itself",
             )),

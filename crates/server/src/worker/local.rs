@@ -1,9 +1,9 @@
 //! The source of workers that hold the database themselves: those within the server, and those of who wants it so.
-use super::{Answer, GRACE, Job, JobSource, SourceError};
+use super::{Answer, ClaimedJob, GRACE, JobSource, SourceError};
 use crate::{
     db::{Database, DbError},
     health, ledger,
-    queue::{self, Claimant, Completion, Failure, Lane, Lease, Notifier, Policy, Progress, Subscription},
+    queue::{self, Claimant, Completion, Failure, Lane, Lease, Notifier, Progress, QueuePolicy, Subscription},
     shown,
     store::{Artefact, Digest, Store, StoreError},
     task::{Outcome, Task},
@@ -25,7 +25,7 @@ pub struct LocalSource {
     notifier: Notifier,
     /// What this copy has heard.
     subscription: Mutex<Subscription>,
-    policy: Policy,
+    policy: QueuePolicy,
     worker: String,
     /// The token that the worker came by, if any.
     token: Option<i64>,
@@ -55,7 +55,7 @@ impl From<StoreError> for SourceError {
 
 impl LocalSource {
     /// A source for the worker of this name.
-    pub fn new(database: Database, store: Store, notifier: Notifier, policy: Policy, worker: String) -> Self {
+    pub fn new(database: Database, store: Store, notifier: Notifier, policy: QueuePolicy, worker: String) -> Self {
         let subscription = Mutex::new(notifier.subscribe());
         Self { database, store, notifier, subscription, policy, worker, token: None }
     }
@@ -67,12 +67,12 @@ impl LocalSource {
 }
 
 /// A job's end comes no later than its grading's and so much more, for what is fetched, stored and waited for.
-fn longest(task: &Task, policy: &Policy) -> Duration {
+fn longest(task: &Task, policy: &QueuePolicy) -> Duration {
     Duration::from_secs(task.seconds) + GRACE + LEAST_MARGIN.max(policy.lease * 10)
 }
 
 impl JobSource for LocalSource {
-    async fn claim(&self, is_idle: bool) -> Result<Option<Job>, SourceError> {
+    async fn claim(&self, is_idle: bool) -> Result<Option<ClaimedJob>, SourceError> {
         let claimant = Claimant { worker: &self.worker, is_idle, token: self.token };
         ledger::tick(&self.database, &self.policy).await?;
         loop {
@@ -87,7 +87,12 @@ impl JobSource for LocalSource {
             match serde_json::from_str(&claim.payload) {
                 Ok(task) => {
                     let alone = claim.is_suspected();
-                    return Ok(Some(Job { lease: claim.lease, renew_every: self.policy.renew_every(), task, alone }));
+                    return Ok(Some(ClaimedJob {
+                        lease: claim.lease,
+                        renew_every: self.policy.renew_every(),
+                        task,
+                        alone,
+                    }));
                 }
                 // Written by another version of the program: not this worker's to do.
                 Err(error) => {

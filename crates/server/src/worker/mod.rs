@@ -22,5 +22,5 @@ pub use program::{Program, REPORTS};
 pub(crate) use reading::essence;
 pub use remote::RemoteSource;
 pub use slots::{Options, work};
-pub use source::{Answer, Job, JobSource, SourceError};
+pub use source::{Answer, ClaimedJob, JobSource, SourceError};
 pub use suite_check::check_suite;

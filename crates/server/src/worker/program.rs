@@ -6,7 +6,7 @@ use super::{
     reading,
 };
 use crate::{
-    archive::{self, Limits},
+    archive::{self, ArchiveLimits},
     store::digest_of_file,
     task::{Form, Suite, Task},
 };
@@ -222,31 +222,7 @@ impl Grader for Program {
         let mut command = self.command(task, &program, folder);
         command.stderr(fs::File::create(&messages).map_err(cannot("write the messages"))?);
         let child = Child::start(command).map_err(cannot("start the grader"))?;
-        let mut stopped = false;
-        let end = tokio::select! {
-            end = child.ended() => end,
-            () = stop.cancelled() => {
-                child.kill();
-                child.ended().await;
-                return Err(GraderFault::Stopped);
-            }
-            () = tokio::time::sleep(Duration::from_secs(task.seconds)) => {
-                stopped = true;
-                child.interrupt();
-                tokio::select! {
-                    end = child.ended() => end,
-                    () = stop.cancelled() => {
-                        child.kill();
-                        child.ended().await;
-                        return Err(GraderFault::Stopped);
-                    }
-                    () = tokio::time::sleep(GRACE) => {
-                        child.kill();
-                        child.ended().await
-                    }
-                }
-            }
-        };
+        let (end, stopped) = end_of(&child, Duration::from_secs(task.seconds), &stop).await?;
         let said = || last_words(&messages);
         match end {
             // 0 accepted, 1 not accepted, 130 stopped with partial results.
@@ -277,6 +253,29 @@ impl Grader for Program {
     }
 }
 
+/// How a grader ended, and whether that was because its time was over.
+async fn end_of(child: &Child, most: Duration, stop: &CancellationToken) -> Result<(End, bool), GraderFault> {
+    let (mut left, mut is_late) = (most, false);
+    loop {
+        tokio::select! {
+            end = child.ended() => return Ok((end, is_late)),
+            () = stop.cancelled() => {
+                child.kill();
+                child.ended().await;
+                return Err(GraderFault::Stopped);
+            }
+            () = tokio::time::sleep(left) => match is_late {
+                false => child.interrupt(),
+                true => {
+                    child.kill();
+                    return Ok((child.ended().await, true));
+                }
+            },
+        }
+        (left, is_late) = (GRACE, true);
+    }
+}
+
 fn cannot(what: &'static str) -> impl Fn(io::Error) -> GraderFault {
     move |error| GraderFault::Failed(format!("cannot {what}: {error}"))
 }
@@ -291,7 +290,7 @@ async fn unpack_all(archive: &Path, folder: PathBuf) -> Result<PathBuf, GraderFa
     let archive = archive.to_owned();
     let unpacking = tokio::task::spawn_blocking(move || {
         fs::create_dir(&folder).map_err(|error| error.to_string())?;
-        archive::unpack(&archive, &folder, Limits::USUAL).map_err(|error| error.to_string())?;
+        archive::unpack(&archive, &folder, ArchiveLimits::USUAL).map_err(|error| error.to_string())?;
         Ok::<_, String>(folder)
     });
     let unpacked = unpacking.await.map_err(|error| GraderFault::Failed(error.to_string()))?;

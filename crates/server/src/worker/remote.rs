@@ -1,5 +1,5 @@
 //! The source of workers on other machines: a server over HTTP. They hold a token, no password of a database.
-use super::{Answer, Job, JobSource, SourceError};
+use super::{Answer, ClaimedJob, JobSource, SourceError};
 use crate::{
     queue::{Lease, Progress},
     store::{Artefact, Digest, digest_of_file},
@@ -142,7 +142,7 @@ fn checked(mut answer: Response<Body>) -> Result<Response<Body>, SourceError> {
 }
 
 impl JobSource for RemoteSource {
-    async fn claim(&self, is_idle: bool) -> Result<Option<Job>, SourceError> {
+    async fn claim(&self, is_idle: bool) -> Result<Option<ClaimedJob>, SourceError> {
         let claimed: Option<Claimed> = self
             .call(move |parts| {
                 let path = if is_idle { "claim" } else { "claim?idle=false" };
@@ -156,7 +156,7 @@ impl JobSource for RemoteSource {
                     .map_err(|error| SourceError::Refused(format!("the job can't be read: {error}")))
             })
             .await?;
-        Ok(claimed.map(|claimed| Job {
+        Ok(claimed.map(|claimed| ClaimedJob {
             lease: claimed.lease,
             renew_every: Duration::from_millis(claimed.renew_every),
             task: claimed.task,

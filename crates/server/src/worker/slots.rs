@@ -1,6 +1,6 @@
 //! A worker's slots: each does one job after another.
 use super::{
-    Answer, Grader, GraderFault, Job, JobSource, PROGRESS, SourceError,
+    Answer, ClaimedJob, Grader, GraderFault, JobSource, PROGRESS, SourceError,
     health::{Health, job_folder},
 };
 use crate::{
@@ -92,8 +92,8 @@ async fn slot<D: JobSource, G: Grader>(
 ) {
     let mut wait = FIRST_WAIT;
     while health.well(&stop).await {
-        let pass = Pass::through(&gate).await;
-        match source.claim(matches!(pass, Pass::Alone(_))).await {
+        let pass = SlotPermit::through(&gate).await;
+        match source.claim(matches!(pass, SlotPermit::Alone(_))).await {
             Ok(None) => {
                 wait = FIRST_WAIT;
                 drop(pass);
@@ -112,7 +112,7 @@ async fn slot<D: JobSource, G: Grader>(
                 let done = tokio::spawn(running);
                 if let Err(error) = done.await {
                     tracing::error!(job = lease.job, %error, "the worker failed");
-                    settle(&source, &lease, Ending::Failed(format!("the worker failed: {error}")), &stop).await;
+                    settle(&source, &lease, JobEnding::Failed(format!("the worker failed: {error}")), &stop).await;
                 }
             }
             Err(error) => {
@@ -129,12 +129,12 @@ async fn slot<D: JobSource, G: Grader>(
 }
 
 /// The gate is held together by all slots that claim or work, or by one that has the worker for itself.
-enum Pass {
+enum SlotPermit {
     Shared(#[expect(dead_code, reason = "held")] OwnedRwLockReadGuard<()>),
     Alone(OwnedRwLockWriteGuard<()>),
 }
 
-impl Pass {
+impl SlotPermit {
     /// Alone where no other slot claims or works.
     async fn through(gate: &Arc<RwLock<()>>) -> Self {
         match gate.clone().try_write_owned() {
@@ -157,7 +157,7 @@ impl Pass {
 }
 
 /// How a job ended, to be told to the source.
-enum Ending {
+enum JobEnding {
     Finished(Box<Outcome>),
     Failed(String),
     /// The worker is to stop.
@@ -170,9 +170,9 @@ async fn run<D: JobSource, G: Grader>(
     source: D,
     grader: G,
     health: Health<G>,
-    job: Job,
+    job: ClaimedJob,
     folder: PathBuf,
-    pass: impl Future<Output = Pass>,
+    pass: impl Future<Output = SlotPermit>,
     stop: CancellationToken,
 ) {
     let lost = CancellationToken::new();
@@ -181,7 +181,7 @@ async fn run<D: JobSource, G: Grader>(
     let keeping = tokio::spawn(keep(source.clone(), job.lease.clone(), job.renew_every, progress, lost.clone()));
     let _pass = pass.await;
     let ending = match folder {
-        Err(error) => Ending::Failed(format!("no folder for the job: {error}")),
+        Err(error) => JobEnding::Failed(format!("no folder for the job: {error}")),
         Ok(folder) => {
             let halt = CancellationToken::new();
             let grading = attempt(&source, &grader, &job, folder.path(), halt.clone());
@@ -198,9 +198,9 @@ async fn run<D: JobSource, G: Grader>(
                     halt.cancel();
                     match grading.await {
                         // It was done at that very moment.
-                        Ending::Finished(outcome) if !lost.is_cancelled() => Ending::Finished(outcome),
-                        _ if lost.is_cancelled() => Ending::Lost,
-                        _ => Ending::GivenBack,
+                        JobEnding::Finished(outcome) if !lost.is_cancelled() => JobEnding::Finished(outcome),
+                        _ if lost.is_cancelled() => JobEnding::Lost,
+                        _ => JobEnding::GivenBack,
                     }
                 }
             }
@@ -208,9 +208,9 @@ async fn run<D: JobSource, G: Grader>(
     };
     // What the grader failed on may be the machine's fault; that costs the submission no try.
     let ending = match ending {
-        Ending::Failed(fault) if !health.survives(&stop).await => {
+        JobEnding::Failed(fault) if !health.survives(&stop).await => {
             tracing::warn!(job = job.lease.job, fault, "the job goes to another worker");
-            Ending::GivenBack
+            JobEnding::GivenBack
         }
         ending => ending,
     };
@@ -255,14 +255,14 @@ fn progress_in(file: &Path) -> Option<Progress> {
 async fn attempt<D: JobSource, G: Grader>(
     source: &D,
     grader: &G,
-    job: &Job,
+    job: &ClaimedJob,
     folder: &Path,
     halt: CancellationToken,
-) -> Ending {
+) -> JobEnding {
     match try_attempt(source, grader, job, folder, halt).await {
-        Ok(outcome) => Ending::Finished(Box::new(outcome)),
-        Err(GraderFault::Stopped) => Ending::GivenBack,
-        Err(GraderFault::Failed(fault)) => Ending::Failed(fault),
+        Ok(outcome) => JobEnding::Finished(Box::new(outcome)),
+        Err(GraderFault::Stopped) => JobEnding::GivenBack,
+        Err(GraderFault::Failed(fault)) => JobEnding::Failed(fault),
     }
 }
 
@@ -275,7 +275,7 @@ impl From<SourceError> for GraderFault {
 async fn try_attempt<D: JobSource, G: Grader>(
     source: &D,
     grader: &G,
-    job: &Job,
+    job: &ClaimedJob,
     folder: &Path,
     halt: CancellationToken,
 ) -> Result<Outcome, GraderFault> {
@@ -318,18 +318,18 @@ async fn patiently<T, F: Future<Output = Result<T, SourceError>>>(ask: impl Fn()
 
 /// Tells the source, as often as it takes: a result that is lost would have to be made again. A worker that is to stop
 /// says it a few times only; then the lease runs out.
-async fn settle<D: JobSource>(source: &D, lease: &Lease, ending: Ending, stop: &CancellationToken) {
+async fn settle<D: JobSource>(source: &D, lease: &Lease, ending: JobEnding, stop: &CancellationToken) {
     let mut wait = FIRST_WAIT;
     let mut tries_after_stop = 3;
     loop {
         let answer = match &ending {
-            Ending::Finished(outcome) => source.finish(lease, outcome).await,
-            Ending::Failed(fault) => {
+            JobEnding::Finished(outcome) => source.finish(lease, outcome).await,
+            JobEnding::Failed(fault) => {
                 tracing::warn!(job = lease.job, fault, "a try came to nothing");
                 source.fail(lease, fault).await
             }
-            Ending::GivenBack => source.release(lease).await,
-            Ending::Lost => return,
+            JobEnding::GivenBack => source.release(lease).await,
+            JobEnding::Lost => return,
         };
         match answer {
             Ok(Answer::Held) => return,

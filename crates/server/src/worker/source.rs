@@ -9,7 +9,7 @@ use thiserror::Error;
 
 /// A job that was claimed.
 #[derive(Debug, Clone)]
-pub struct Job {
+pub struct ClaimedJob {
     /// What to show from now on.
     pub lease: Lease,
     /// How often to renew it.
@@ -47,7 +47,7 @@ pub enum SourceError {
 pub trait JobSource: Clone + Send + Sync + 'static {
     /// The next job, if there is one. Not to be interrupted: the source might have given away a job that nobody gets. A
     /// worker that is idle also gets jobs that must run alone.
-    fn claim(&self, is_idle: bool) -> impl Future<Output = Result<Option<Job>, SourceError>> + Send;
+    fn claim(&self, is_idle: bool) -> impl Future<Output = Result<Option<ClaimedJob>, SourceError>> + Send;
 
     /// Waits until there may be a job, or `patience` is over. May be interrupted.
     fn wait(&self, patience: Duration) -> impl Future<Output = ()> + Send;

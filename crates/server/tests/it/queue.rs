@@ -2,7 +2,7 @@
 use crate::support::engines::{Fresh, on_all_engines};
 use fosssim_server::{
     db::Database,
-    queue::{self, Claim, Claimant, Completion, Failure, Lane, Lease, NewJob, Policy, Turn},
+    queue::{self, Claim, Claimant, Completion, Failure, Lane, Lease, NewJob, QueuePolicy, Turn},
     values,
 };
 use std::{collections::BTreeSet, time::Duration};
@@ -27,7 +27,7 @@ on_all_engines!(
     a_dead_worker_is_given_up_at_once,
 );
 
-const POLICY: Policy = Policy {
+const POLICY: QueuePolicy = QueuePolicy {
     lease: Duration::from_secs(60),
     max_failures: 3,
     first_wait: Duration::from_secs(1),

@@ -1,7 +1,7 @@
 //! Workers on a real queue, with graders that only tests have.
 use crate::support::engines::{Fresh, run};
 use fosssim_server::{
-    queue::{self, Lane, NewJob, Notifier, Policy, Turn},
+    queue::{self, Lane, NewJob, Notifier, QueuePolicy, Turn},
     store::{Artefact, Store},
     task::{Form, Input, Suite, Task},
     values,
@@ -143,7 +143,7 @@ fn a_broken_worker_costs_no_job_its_tries() {
             enqueue(&fresh, &artefact, 30, -1).await;
             let stop = CancellationToken::new();
             let (good, broken) = (Watchful::default(), Broken { knows, tried: Arc::default() });
-            let policy = Policy::default();
+            let policy = QueuePolicy::default();
             let options = |name: &str| Options { slots: 2, folder: folder.path().join(name) };
             let source = |name: &str| {
                 LocalSource::new(fresh.database.clone(), store.clone(), Notifier::default(), policy, name.to_owned())
@@ -180,7 +180,7 @@ fn a_job_that_may_kill_its_worker_runs_alone() {
             fresh.database.clone(),
             store,
             Notifier::default(),
-            Policy::default(),
+            QueuePolicy::default(),
             "worker".to_owned(),
         );
         let options = Options { slots: 3, folder: folder.path().join("work") };

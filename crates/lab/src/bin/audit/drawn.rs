@@ -89,7 +89,7 @@ fn draw(random: &mut Random, scene: &Scene) -> Option<Vec<u8>> {
         (0..layout.steps).try_for_each(|_| simulation.step(&mut recorder)).ok()?;
         recorder.finish().expect("memory").0
     };
-    let factors = Factors::draw(random);
+    let factors = RandomFactors::draw(random);
     let noise = [0.0, 1.0, random.log(0.0, 3.0)][random.below(3) as usize];
     let every = 1 + random.below(40);
     let seed = random.bits();
@@ -118,7 +118,7 @@ fn draw(random: &mut Random, scene: &Scene) -> Option<Vec<u8>> {
 }
 
 /// The factors of a program's polynomials.
-enum Factors {
+enum RandomFactors {
     /// One for all.
     One(f64),
     /// One for each of several in turn.
@@ -127,7 +127,7 @@ enum Factors {
     Each,
 }
 
-impl Factors {
+impl RandomFactors {
     fn draw(random: &mut Random) -> Self {
         match random.below(4) {
             0 => Self::One(1.0),

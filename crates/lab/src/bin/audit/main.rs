@@ -79,10 +79,10 @@ fn main() -> ExitCode {
     let blocks = detections.div_ceil(BLOCK);
     let next = AtomicU64::new(0);
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let mut total = Tally::default();
+    let mut total = AuditTally::default();
     std::thread::scope(|scope| {
         let run = || {
-            let mut tally = Tally::default();
+            let mut tally = AuditTally::default();
             loop {
                 let block = next.fetch_add(1, Ordering::Relaxed);
                 if block >= blocks {
@@ -108,7 +108,7 @@ const PAIRS: [&str; 4] = ["particle-particle", "particle-edge", "particle-half-p
 
 /// Counts per pair type; the last entry of a row counts what no level decided.
 #[derive(Default)]
-struct Tally {
+struct AuditTally {
     decided: [[u64; Level::ALL.len() + 1]; PAIRS.len()],
     needless: [u64; PAIRS.len()],
     endless: [u64; PAIRS.len()],
@@ -117,7 +117,7 @@ struct Tally {
     decisions: [Decisions; PAIRS.len()],
 }
 
-impl Tally {
+impl AuditTally {
     fn audit(&mut self, index: u64, random: &mut Random) {
         let (pair, geometry, lists) = draw(random);
         let values = |list: &Vec<Bounded>| list.iter().map(|coefficient| coefficient.value).collect::<Vec<f64>>();
@@ -276,14 +276,14 @@ fn dot(a: V, b: V) -> f64 {
 
 /// Three points with their displacements: a particle, and another one, an edge's ends, or a half-plane's point and
 /// normal (whose displacement is ignored).
-struct Motion {
+struct RandomMotion {
     x: [V; 3],
     d: [V; 3],
     radius: f64,
 }
 
 /// A distribution of motions.
-type Make = fn(&mut Random) -> Motion;
+type Make = fn(&mut Random) -> RandomMotion;
 
 /// Draws a detection: pair type, name of the distribution, polynomials.
 fn draw(random: &mut Random) -> (usize, &'static str, Vec<Vec<Bounded>>) {
@@ -343,7 +343,7 @@ fn product(random: &mut Random) -> Vec<Bounded> {
 }
 
 /// Every object has its own scale and speed.
-fn wide(random: &mut Random) -> Motion {
+fn wide(random: &mut Random) -> RandomMotion {
     let scale = random.log(-3.0, 4.0);
     let mut object = |spread: f64| {
         let size = scale * if random.chance(3) { random.log(-3.0, 3.0) } else { spread };
@@ -351,21 +351,21 @@ fn wide(random: &mut Random) -> Motion {
         (random.point(size), random.direction() * moves)
     };
     let [a, b, c] = [object(1.0), object(1.0), object(1.0)];
-    Motion { x: [a.0, b.0, c.0], d: [a.1, b.1, c.1], radius: scale * random.log(-3.0, 0.3) }
+    RandomMotion { x: [a.0, b.0, c.0], d: [a.1, b.1, c.1], radius: scale * random.log(-3.0, 0.3) }
 }
 
 /// Integers or simple fractions, where coincidences are frequent.
-fn grid(random: &mut Random) -> Motion {
+fn grid(random: &mut Random) -> RandomMotion {
     let unit = [1.0, 0.5, 0.25, 0.1, 1e-3][random.below(5) as usize];
     let (reach, speed) = (1 + random.below(12), random.below(5));
     let radius = unit * [0.5, 1.0, 1.5, 2.0, 3.0][random.below(5) as usize];
     let [a, b, c] = [(); 3].map(|()| random.grid(reach, unit));
     let [e, f, g] = [(); 3].map(|()| random.grid(speed, unit));
-    Motion { x: [a, b, c], d: [e, f, g], radius }
+    RandomMotion { x: [a, b, c], d: [e, f, g], radius }
 }
 
 /// The second and third object move almost alike.
-fn near_rigid(random: &mut Random) -> Motion {
+fn near_rigid(random: &mut Random) -> RandomMotion {
     let mut motion = wide(random);
     let relative = random.log(-17.0, -1.0);
     motion.d[2] =
@@ -374,7 +374,7 @@ fn near_rigid(random: &mut Random) -> Motion {
 }
 
 /// The particle touches, or nearly, and moves along or hardly at all.
-fn resting(random: &mut Random) -> Motion {
+fn resting(random: &mut Random) -> RandomMotion {
     let mut motion = bulk(random);
     let along = motion.x[2] - motion.x[1];
     let length = dot(along, along).sqrt();
@@ -388,7 +388,7 @@ fn resting(random: &mut Random) -> Motion {
 }
 
 /// The particle passes at about the sum of the radii at some time before, within or after the step.
-fn grazing(random: &mut Random) -> Motion {
+fn grazing(random: &mut Random) -> RandomMotion {
     let mut motion = if random.chance(2) { wide(random) } else { turning(random) };
     let time = random.uniform(-2.0, 4.0);
     let target = motion.x[1] + motion.d[1] * time;
@@ -406,7 +406,7 @@ fn grazing(random: &mut Random) -> Motion {
 }
 
 /// Far apart compared with radii and motion.
-fn far(random: &mut Random) -> Motion {
+fn far(random: &mut Random) -> RandomMotion {
     let mut motion = wide(random);
     let distance = motion.radius * random.log(0.0, 7.0);
     motion.x[0] = motion.x[1] + random.direction() * distance;
@@ -418,7 +418,7 @@ fn far(random: &mut Random) -> Motion {
 }
 
 /// An edge that turns by up to half a turn and stretches a little.
-fn turning(random: &mut Random) -> Motion {
+fn turning(random: &mut Random) -> RandomMotion {
     let scale = random.log(-2.0, 3.0);
     let (centre, half) = (random.point(scale), random.direction() * (scale * random.uniform(0.1, 1.0)));
     let angle = random.uniform(-1.0, 1.0) * random.log(-6.0, 0.5);
@@ -426,7 +426,7 @@ fn turning(random: &mut Random) -> Motion {
     let turned = (half * angle.cos() + half.turned() * angle.sin()) * stretch;
     let shift = random.direction() * (scale * random.log(-6.0, 0.5));
     let particle = random.direction() * (scale * random.log(-6.0, 0.5));
-    Motion {
+    RandomMotion {
         x: [random.point(2.0 * scale), centre + half, centre - half],
         d: [particle, shift + turned - half, shift - turned + half],
         radius: scale * random.log(-3.0, 0.0),
@@ -434,13 +434,13 @@ fn turning(random: &mut Random) -> Motion {
 }
 
 /// Everything moves together, with small differences; this is what most pairs of a scene look like.
-fn bulk(random: &mut Random) -> Motion {
+fn bulk(random: &mut Random) -> RandomMotion {
     let scale = random.log(-3.0, 4.0);
     let together = random.direction() * (scale * random.log(-8.0, 0.5));
     let spread = scale * random.log(-12.0, -0.5);
     let x = [(); 3].map(|()| random.point(scale));
     let d = [(); 3].map(|()| together + random.point(spread));
-    Motion { x, d, radius: scale * random.log(-3.0, -0.3) }
+    RandomMotion { x, d, radius: scale * random.log(-3.0, -0.3) }
 }
 
 /// A vector that may be off by a rounding.
@@ -449,21 +449,21 @@ fn rounded(v: V) -> Bounded2 {
 }
 
 /// The polynomials of collisions.md 2.
-fn particle_particle(motion: &Motion) -> Vec<Vec<Bounded>> {
+fn particle_particle(motion: &RandomMotion) -> Vec<Vec<Bounded>> {
     let [x1, x2, _] = motion.x.map(rounded);
     let [d1, d2, _] = motion.d.map(rounded);
     let (overlap, approach) = formulas::particle_particle(x1, d1, x2, d2, Bounded::rounded(motion.radius));
     vec![overlap.to_vec(), approach.to_vec()]
 }
 
-fn particle_half_plane(motion: &Motion) -> Vec<Vec<Bounded>> {
+fn particle_half_plane(motion: &RandomMotion) -> Vec<Vec<Bounded>> {
     let [x, point, normal] = motion.x.map(rounded);
     let (d, radius) = (rounded(motion.d[0]), Bounded::rounded(motion.radius));
     let (overlap, approach) = formulas::particle_half_plane(x, d, radius, point, normal, normal.dot(normal));
     vec![overlap.to_vec(), approach.to_vec()]
 }
 
-fn particle_edge(motion: &Motion) -> Vec<Vec<Bounded>> {
+fn particle_edge(motion: &RandomMotion) -> Vec<Vec<Bounded>> {
     let [x1, x2, x3] = motion.x.map(rounded);
     let [d1, d2, d3] = motion.d.map(rounded);
     let edge = formulas::EdgeMotions::new(x2, d2, x3, d3);

@@ -1,6 +1,6 @@
 //! What a trace shows not to be so, whatever else is wrong with it: stages that are not empty, zones that do not stop.
 use crate::{
-    diagnose::sampling::{Difference, KeptStep, Logged, PLAIN, ROUND_OFF, Scan, state_difference},
+    diagnose::sampling::{KeptStep, Logged, PLAIN, ROUND_OFF, Scan, StepDifference, state_difference},
     student::{CATALOGUE, Mistake},
 };
 use fosssim_model::{
@@ -32,7 +32,7 @@ pub(super) fn denied(scene: &Scene, scan: &Scan) -> Vec<String> {
 fn right_kinds(scene: &Scene, sample: &KeptStep) -> Vec<PairKind> {
     let logged = sample.records.end.polynomials.len();
     let right = match sample.difference {
-        Some(Difference::Polynomial(index)) => index.min(logged),
+        Some(StepDifference::Polynomial(index)) => index.min(logged),
         _ => logged,
     };
     let (mut next, mut kinds) = (0, Vec::new());

@@ -3,7 +3,7 @@ use super::resimulate::{Correct, resimulate};
 use crate::{
     diagnose::{
         Example, ExamplePlace, StepRecord,
-        sampling::{Capture, Difference, KeptStep, ROUND_OFF, Reference, same_impulse},
+        sampling::{Capture, KeptStep, ROUND_OFF, Reference, StepDifference, same_impulse},
     },
     student::{StepLog, World},
 };
@@ -22,7 +22,7 @@ pub(super) fn example(reference: &mut Reference<'_>, scene: &Scene, correct: Cor
     }
     let (ours, theirs) = (&capture.records, &kept.records);
     let (place, expected, actual) = match kept.difference {
-        Some(Difference::Polynomial(index)) => {
+        Some(StepDifference::Polynomial(index)) => {
             let list = |log: &fosssim_model::trace::PolynomialLog| {
                 if index < log.len() { log.get(index).to_vec() } else { Vec::new() }
             };
@@ -31,17 +31,19 @@ pub(super) fn example(reference: &mut Reference<'_>, scene: &Scene, correct: Cor
             });
             (place, list(&ours.end.polynomials), list(&theirs.end.polynomials))
         }
-        Some(Difference::PolynomialCount) => {
+        Some(StepDifference::PolynomialCount) => {
             let (ours, theirs) = (ours.end.polynomials.len(), theirs.end.polynomials.len());
             (ExamplePlace::PolynomialCount, count(ours), count(theirs))
         }
-        Some(Difference::Impulses) => contacts(&ours.end.impulses, &theirs.end.impulses),
-        Some(Difference::MidState(particle)) => match (&ours.mid, &theirs.mid) {
+        Some(StepDifference::Impulses) => contacts(&ours.end.impulses, &theirs.end.impulses),
+        Some(StepDifference::MidState(particle)) => match (&ours.mid, &theirs.mid) {
             (Some(ours), Some(theirs)) => state(particle, StepRecord::Mid, &ours.state, &theirs.state),
             _ => (ExamplePlace::MidParticle(particle), Vec::new(), Vec::new()),
         },
-        Some(Difference::EndState(particle)) => state(particle, StepRecord::End, &ours.end.state, &theirs.end.state),
-        Some(Difference::MidLists) | None => (ExamplePlace::MidLists, Vec::new(), Vec::new()),
+        Some(StepDifference::EndState(particle)) => {
+            state(particle, StepRecord::End, &ours.end.state, &theirs.end.state)
+        }
+        Some(StepDifference::MidLists) | None => (ExamplePlace::MidLists, Vec::new(), Vec::new()),
     };
     Example { step: kept.step, place, given: Vec::new(), expected, actual }
 }

@@ -1,7 +1,7 @@
 //! Programs with mistakes of the catalogue, tried on kept steps.
 use super::resimulate::{Correct, resimulate, step_work};
 use crate::{
-    diagnose::sampling::{Difference, KeptStep, ROUND_OFF, Reference, first_difference, same_polynomial},
+    diagnose::sampling::{KeptStep, ROUND_OFF, Reference, StepDifference, first_difference, same_polynomial},
     student::{Area, Row, StepLog, Student, World},
 };
 use fosssim_model::scene::Scene;
@@ -72,12 +72,12 @@ impl<'a> Trials<'a> {
         let Some(records) = records else { return failed.get().map_or(0.0, share) };
         match first_difference(&records, &kept.records, &ROUND_OFF) {
             None => 1.0,
-            Some(Difference::Polynomial(index)) => share(index),
-            Some(Difference::PolynomialCount) => share(records.end.polynomials.len().min(logged.len())),
-            Some(Difference::MidState(_)) => 0.6,
-            Some(Difference::Impulses) => 0.7,
-            Some(Difference::EndState(_)) => 0.8,
-            Some(Difference::MidLists) => 0.9,
+            Some(StepDifference::Polynomial(index)) => share(index),
+            Some(StepDifference::PolynomialCount) => share(records.end.polynomials.len().min(logged.len())),
+            Some(StepDifference::MidState(_)) => 0.6,
+            Some(StepDifference::Impulses) => 0.7,
+            Some(StepDifference::EndState(_)) => 0.8,
+            Some(StepDifference::MidLists) => 0.9,
         }
     }
 }

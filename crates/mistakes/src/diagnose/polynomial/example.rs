@@ -1,5 +1,5 @@
 //! The sample that shows a mistake best: wrong, with inputs that are quickly written down, early.
-use super::study::{Case, Study};
+use super::study::{Case, PolynomialStudy};
 use crate::assignments::t2m2::Input;
 use crate::diagnose::{Example, ExamplePlace, ExampleValue};
 use fosssim_model::sim::{PairMotion, PointMotion};
@@ -8,13 +8,13 @@ use fosssim_num::{polynomial::Polynomial, vector::Vec2};
 fosssim_model::drops_leading!();
 
 /// The example of a study, with the number of characters that its inputs take.
-pub(super) fn smallest(study: &Study) -> Option<(usize, Example)> {
+pub(super) fn smallest(study: &PolynomialStudy) -> Option<(usize, Example)> {
     let wrong = study.cases.iter().filter(|case| !case.right);
     let best = wrong.min_by_key(|case| (digits(case), case.sample.step, case.sample.pass))?;
     Some((digits(best), example(study, best)))
 }
 
-fn example(study: &Study, case: &Case) -> Example {
+fn example(study: &PolynomialStudy, case: &Case) -> Example {
     let sample = case.sample;
     let expected: Vec<f64> = case.expected.iter().map(|coefficient| coefficient.value).collect();
     Example {

@@ -37,7 +37,7 @@ use crate::assignments::t2m2::{
 use crate::student::{Area, CATALOGUE, Row, RowKind, Student, polynomials_of};
 use fosssim_model::sim::PairKind;
 use std::collections::{BTreeMap, BTreeSet};
-use study::{Candidate, Study};
+use study::{Candidate, PolynomialStudy};
 
 /// The greatest number of guesses about a polynomial that are kept besides the one that is told.
 const MOST_CLAIMS: usize = 32;
@@ -62,7 +62,7 @@ const AS_LIKELY: f64 = 1.6;
 pub fn explain(samples: &[Sample]) -> Vec<Explanation> {
     let subjects = PairKind::ALL.into_iter().flat_map(Subject::of).copied();
     let mut open: Vec<Suspect> = subjects
-        .filter_map(|subject| Study::new(subject, samples))
+        .filter_map(|subject| PolynomialStudy::new(subject, samples))
         .map(|study| Suspect { candidates: candidates(&study), study })
         .collect();
     let mut explanations: Vec<Explanation> = open.iter().filter_map(nearly_right).collect();
@@ -104,7 +104,7 @@ fn missing(samples: &[Sample]) -> Option<Explanation> {
 
 /// A wrong polynomial with the guesses about it, the best first.
 struct Suspect<'a> {
-    study: Study<'a>,
+    study: PolynomialStudy<'a>,
     candidates: Vec<Candidate>,
 }
 
@@ -170,7 +170,7 @@ fn claim(subject: Subject, candidate: &Candidate) -> String {
 
 /// The known mistakes of this kind's formulas, or of handing them over, that make this polynomial as it was logged, in
 /// all samples.
-fn known_makers(study: &Study<'_>) -> Vec<String> {
+fn known_makers(study: &PolynomialStudy<'_>) -> Vec<String> {
     let kind = study.subject.kind();
     let Some(number) = Subject::of(kind).iter().position(|&other| other == study.subject) else { return Vec::new() };
     let is_formula = |row: &&Row| {
@@ -203,7 +203,7 @@ fn detail(mut detail: PolynomialDetail, subjects: &[Subject]) -> Detail {
 }
 
 /// All guesses about a polynomial, the one that reproduces most first, among equals the likeliest.
-fn candidates(study: &Study) -> Vec<Candidate> {
+fn candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     let mut all = structure::candidates(study);
     all.extend(exchanged_inputs(study));
     all.extend(specials::candidates(study));
@@ -216,7 +216,7 @@ fn candidates(study: &Study) -> Vec<Candidate> {
     all
 }
 
-fn exchanged_inputs(study: &Study) -> Vec<Candidate> {
+fn exchanged_inputs(study: &PolynomialStudy) -> Vec<Candidate> {
     let formula = &readings(study.subject)[0];
     let of = |exchange: &Exchange| {
         let (reproduced, scaled) = study.count(|case| {

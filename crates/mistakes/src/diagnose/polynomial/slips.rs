@@ -1,5 +1,5 @@
 //! Right formulas with one wrong letter: scaled, of the wrong sign, or another dot product.
-use super::study::{Candidate, Study};
+use super::study::{Candidate, PolynomialStudy};
 use crate::assignments::t2m2::{
     Inputs, Reading,
     formulas::{Formula, Letter},
@@ -62,11 +62,11 @@ impl Trial<'_> {
 }
 
 /// One-letter slips that reproduce at least half of the wrong samples.
-pub(super) fn candidates(study: &Study) -> Vec<Candidate> {
+pub(super) fn candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     study.formulas().flat_map(|(reading, formula)| in_formula(study, formula, reading)).collect()
 }
 
-fn in_formula(study: &Study, formula: &Formula, reading: Reading) -> Vec<Candidate> {
+fn in_formula(study: &PolynomialStudy, formula: &Formula, reading: Reading) -> Vec<Candidate> {
     let pool = ingredients(study.subject.kind());
     let mut found = Vec::new();
     for (slot, letter) in formula.letters.iter().enumerate() {

@@ -23,7 +23,7 @@ const MOST_FOR_QUADRUPLES: usize = 26;
 const LONGEST: usize = 8;
 
 /// Columns of the same length, ready to be fitted.
-pub(super) struct Columns {
+pub(super) struct DesignMatrix {
     /// Original indices of the columns that are not zero, the likely ones first.
     indices: Vec<usize>,
     unit: Vec<Vec<f64>>,
@@ -32,7 +32,7 @@ pub(super) struct Columns {
     likely: usize,
 }
 
-impl Columns {
+impl DesignMatrix {
     /// Prepares the columns. `likely` says which of them are tried in larger combinations, too.
     pub fn new(columns: &[Vec<f64>], likely: impl Fn(usize) -> bool) -> Self {
         let norm = |column: &[f64]| column.iter().map(|value| value * value).sum::<f64>().sqrt();
@@ -183,7 +183,7 @@ impl Columns {
 }
 
 struct Problem<'a> {
-    columns: &'a Columns,
+    columns: &'a DesignMatrix,
     fits: &'a [f64],
     square: f64,
 }
@@ -270,7 +270,7 @@ mod tests {
     #[test]
     fn supports_of_every_size_are_found() {
         let all = columns(40, 100);
-        let prepared = Columns::new(&all, |index| index < 20);
+        let prepared = DesignMatrix::new(&all, |index| index < 20);
         for support in [
             vec![(33, -2.0)],
             vec![(2, 1.0), (31, 0.25)],
@@ -292,7 +292,7 @@ mod tests {
     fn columns_that_cannot_be_told_apart_are_all_reported() {
         let mut all = columns(6, 50);
         all[4] = all[1].iter().map(|value| 2.0 * value).collect();
-        let found = Columns::new(&all, |_| true).supports(&all[1], |_| true);
+        let found = DesignMatrix::new(&all, |_| true).supports(&all[1], |_| true);
         assert_eq!(found.len(), 2);
         assert_eq!((found[0][0].0, found[1][0].0), (1, 4));
         assert!((found[1][0].1 - 0.5).abs() < 1e-12);
@@ -301,6 +301,6 @@ mod tests {
     #[test]
     fn nothing_is_proposed_for_noise() {
         let all = columns(30, 100);
-        assert!(Columns::new(&all[1..], |_| true).supports(&all[0], |_| true).is_empty());
+        assert!(DesignMatrix::new(&all[1..], |_| true).supports(&all[0], |_| true).is_empty());
     }
 }

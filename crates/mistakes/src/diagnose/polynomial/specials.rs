@@ -1,10 +1,10 @@
 //! Tries misunderstandings that have a formula of their own.
-use super::study::{Candidate, Study};
+use super::study::{Candidate, PolynomialStudy};
 use crate::assignments::t2m2::specials::{SPECIALS, Special};
 use crate::diagnose::{Guess, PolynomialDetail};
 
 /// Those that reproduce at least half of the wrong samples.
-pub(super) fn candidates(study: &Study) -> Vec<Candidate> {
+pub(super) fn candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     let of = |special: &Special| {
         let (reproduced, scaled) = study.count(|case| (special.polynomial)(&case.inputs))?;
         Some(Candidate {

@@ -1,7 +1,7 @@
 //! Guesses about the whole list of coefficients: reversed, negated, cut, another polynomial's, not a number.
 use super::{
     compare::{expected_at, logged_at, matches},
-    study::{Candidate, Case, Study, median, ratio},
+    study::{Candidate, Case, PolynomialStudy, median, ratio},
 };
 use crate::assignments::t2m2::{Subject, formulas::readings};
 use crate::diagnose::{Guess, ListGuess, PolynomialDetail};
@@ -16,7 +16,7 @@ fosssim_model::drops_leading!();
 const SINGLE_ROUNDOFF: f64 = 1.0 / (1_u64 << 24) as f64;
 
 /// Structural guesses that reproduce at least half of the wrong samples.
-pub(super) fn candidates(study: &Study) -> Vec<Candidate> {
+pub(super) fn candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     let mut found = Vec::new();
     properties(study, &mut found);
     rearrangements(study, &mut found);
@@ -32,7 +32,7 @@ fn general(guess: ListGuess, detail: Option<PolynomialDetail>, cost: f64, reprod
 }
 
 /// Properties that need no prediction.
-fn properties(study: &Study, found: &mut Vec<Candidate>) {
+fn properties(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     let mut check = |guess, detail, cost, holds: &dyn Fn(&Case) -> bool| {
         if let Some(reproduced) = study.count_if(holds) {
             found.push(general(guess, detail, cost, reproduced));
@@ -86,7 +86,11 @@ fn reversed(list: &[Bounded]) -> Vec<Bounded> {
     list.iter().rev().copied().collect()
 }
 
-fn predicted(study: &Study, mut candidate: Candidate, predict: impl Fn(&Case) -> Vec<Bounded>) -> Option<Candidate> {
+fn predicted(
+    study: &PolynomialStudy,
+    mut candidate: Candidate,
+    predict: impl Fn(&Case) -> Vec<Bounded>,
+) -> Option<Candidate> {
     let (reproduced, scaled) = study.count(predict)?;
     candidate.reproduced = reproduced;
     candidate.cost += if scaled { 1.0 } else { 0.0 };
@@ -94,7 +98,7 @@ fn predicted(study: &Study, mut candidate: Candidate, predict: impl Fn(&Case) ->
 }
 
 /// The polynomial's own coefficients in another order or with another sign.
-fn rearrangements(study: &Study, found: &mut Vec<Candidate>) {
+fn rearrangements(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     let mut check = |guess, cost, change: &dyn Fn(&[Bounded]) -> Vec<Bounded>| {
         let candidate = general(guess, None, cost, 0);
         found.extend(predicted(study, candidate, |case| change(&case.expected)));
@@ -106,7 +110,7 @@ fn rearrangements(study: &Study, found: &mut Vec<Candidate>) {
 }
 
 /// Polynomials of the same detection in each other's places.
-fn other_polynomials(study: &Study, found: &mut Vec<Candidate>) {
+fn other_polynomials(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     for &other in Subject::of(study.subject.kind()) {
         if other == study.subject {
             continue;
@@ -121,7 +125,7 @@ fn other_polynomials(study: &Study, found: &mut Vec<Candidate>) {
 }
 
 /// The polynomial's first or last coefficients only.
-fn cuts(study: &Study, found: &mut Vec<Candidate>) {
+fn cuts(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     for length in 1..=study.subject.degree() {
         let guess = if length == 1 { ListGuess::ConstantOnly } else { ListGuess::Cut };
         let detail = PolynomialDetail::LastOnly(length);
@@ -136,7 +140,7 @@ fn cuts(study: &Study, found: &mut Vec<Candidate>) {
 }
 
 /// Every displacement with the same factor: velocities, for example, which shows as a power of it in each coefficient.
-fn scaled_displacements(study: &Study) -> Option<Candidate> {
+fn scaled_displacements(study: &PolynomialStudy) -> Option<Candidate> {
     let step = |case: &Case| Some(ratio(case, 1)? / ratio(case, 0)?);
     let factor = median(study.probes().filter_map(step).collect())?;
     let is_new = factor > 0.0 && (factor - 1.0).abs() > 1e-9;

@@ -43,7 +43,7 @@ pub(super) struct Case<'a> {
 }
 
 /// The samples of one polynomial.
-pub(super) struct Study<'a> {
+pub(super) struct PolynomialStudy<'a> {
     /// Which polynomial.
     pub subject: Subject,
     /// The samples that have it, with finite inputs.
@@ -69,7 +69,7 @@ pub(super) struct Candidate {
     pub general: bool,
 }
 
-impl<'a> Study<'a> {
+impl<'a> PolynomialStudy<'a> {
     /// Collects what was logged for a polynomial; `None` if no sample is wrong.
     pub fn new(subject: Subject, samples: &'a [Sample]) -> Option<Self> {
         let number = Subject::of(subject.kind()).iter().position(|&other| other == subject)?;

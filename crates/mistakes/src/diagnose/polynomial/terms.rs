@@ -2,8 +2,8 @@
 use super::{
     compare::{coefficient_matches, expected_at, logged_at},
     dictionary::Dictionary,
-    sparse::{Columns, Support},
-    study::{Candidate, Case, Study, median, spread},
+    sparse::{DesignMatrix, Support},
+    study::{Candidate, Case, PolynomialStudy, median, spread},
 };
 use crate::assignments::t2m2::{Reading, formulas::Formula};
 use crate::diagnose::{self, CoefficientGuess, PolynomialDetail, Weight};
@@ -41,7 +41,7 @@ enum Edit {
 }
 
 /// A guess about one coefficient.
-struct Guess {
+struct FormulaGuess {
     power: usize,
     edit: Edit,
     cost: f64,
@@ -49,11 +49,11 @@ struct Guess {
 }
 
 /// The reasons for each wrong coefficient, where at least one of them can be explained.
-pub(super) fn candidates(study: &Study) -> Vec<Candidate> {
+pub(super) fn candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     study.formulas().filter_map(|(reading, formula)| candidate(study, formula, reading)).collect()
 }
 
-fn candidate(study: &Study, formula: &'static Formula, reading: Reading) -> Option<Candidate> {
+fn candidate(study: &PolynomialStudy, formula: &'static Formula, reading: Reading) -> Option<Candidate> {
     let fitting = Fitting::new(study, formula);
     let mut guesses = Vec::new();
     for power in (0..=formula.degree).rev() {
@@ -87,7 +87,7 @@ fn candidate(study: &Study, formula: &'static Formula, reading: Reading) -> Opti
 
 /// The samples with the values of all products.
 struct Fitting<'a> {
-    study: &'a Study<'a>,
+    study: &'a PolynomialStudy<'a>,
     formula: &'static Formula,
     dictionary: Dictionary,
     expected: Vec<Vec<Bounded>>,
@@ -95,7 +95,7 @@ struct Fitting<'a> {
 }
 
 impl<'a> Fitting<'a> {
-    fn new(study: &'a Study<'a>, formula: &'static Formula) -> Self {
+    fn new(study: &'a PolynomialStudy<'a>, formula: &'static Formula) -> Self {
         let dictionary = Dictionary::new(study.subject, formula);
         let expected = study.cases.iter().map(|case| formula.polynomial(&case.inputs)).collect();
         let products = study.cases.iter().map(|case| dictionary.values(&case.inputs)).collect();
@@ -135,7 +135,7 @@ impl<'a> Fitting<'a> {
     }
 
     /// The likeliest explanation of a coefficient that holds for all samples.
-    fn explain(&self, power: usize) -> Guess {
+    fn explain(&self, power: usize) -> FormulaGuess {
         let factor = self.factor(power);
         let mut all = self.term_changes(power);
         all.sort_by(|one, two| one.1.total_cmp(&two.1));
@@ -143,13 +143,13 @@ impl<'a> Fitting<'a> {
         let terms = all.next();
         match (factor, terms) {
             (Some((factor, cost)), terms) if terms.as_ref().is_none_or(|(_, other)| cost < *other) => {
-                Guess { power, edit: Edit::Factor(factor), cost, alternatives: Vec::new() }
+                FormulaGuess { power, edit: Edit::Factor(factor), cost, alternatives: Vec::new() }
             }
             (_, Some((changes, cost))) => {
                 let alternatives = all.take(MOST_ALTERNATIVES).map(|(changes, _)| changes).collect();
-                Guess { power, edit: Edit::Terms(changes), cost, alternatives }
+                FormulaGuess { power, edit: Edit::Terms(changes), cost, alternatives }
             }
-            (_, None) => Guess { power, edit: Edit::Unknown, cost: UNKNOWN, alternatives: Vec::new() },
+            (_, None) => FormulaGuess { power, edit: Edit::Unknown, cost: UNKNOWN, alternatives: Vec::new() },
         }
     }
 
@@ -190,7 +190,7 @@ impl<'a> Fitting<'a> {
             .map(|product| rows.iter().map(|&index| scaled(index, self.products[index][product].value)).collect())
             .collect();
         let order = self.natural_order(power);
-        let prepared = Columns::new(&columns, |product| {
+        let prepared = DesignMatrix::new(&columns, |product| {
             let product = &self.dictionary.products[product];
             product.order == order && !product.foreign
         });
@@ -276,13 +276,13 @@ impl Telling<'_> {
         (expected, expected + change)
     }
 
-    fn guess(&self, guesses: &[Guess]) -> diagnose::Guess {
+    fn guess(&self, guesses: &[FormulaGuess]) -> diagnose::Guess {
         let powers = guesses.iter().map(|guess| guess.power).collect();
         diagnose::Guess::Coefficients { powers, wrong: self.wrong(guesses) }
     }
 
-    fn wrong(&self, guesses: &[Guess]) -> CoefficientGuess {
-        let [Guess { power, edit, .. }] = guesses else { return CoefficientGuess::Several };
+    fn wrong(&self, guesses: &[FormulaGuess]) -> CoefficientGuess {
+        let [FormulaGuess { power, edit, .. }] = guesses else { return CoefficientGuess::Several };
         match edit {
             Edit::Factor(factor) if factor.value == 0.0 => CoefficientGuess::Zero,
             Edit::Factor(factor) if factor.value == -1.0 => CoefficientGuess::Sign,
@@ -301,7 +301,7 @@ impl Telling<'_> {
         }
     }
 
-    fn details(&self, guess: &Guess) -> Vec<PolynomialDetail> {
+    fn details(&self, guess: &FormulaGuess) -> Vec<PolynomialDetail> {
         let power = guess.power;
         let changes = match &guess.edit {
             Edit::Factor(factor) => return vec![PolynomialDetail::Factor { power, factor: factor.value }],

@@ -86,7 +86,7 @@ pub struct StepRecords {
 
 /// Where the records of a step part first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Difference {
+pub enum StepDifference {
     /// This polynomial of the end record.
     Polynomial(usize),
     /// The number of polynomials.
@@ -136,25 +136,25 @@ impl Logged {
 }
 
 /// The first difference in the order in which a step computes; `None` when all is the same but for round-off.
-pub fn first_difference(expected: &StepRecords, actual: &StepRecords, by: &Tolerance) -> Option<Difference> {
+pub fn first_difference(expected: &StepRecords, actual: &StepRecords, by: &Tolerance) -> Option<StepDifference> {
     let (ours, theirs) = (&expected.end.polynomials, &actual.end.polynomials);
     let wrong = ours.iter().zip(theirs.iter()).position(|(ours, theirs)| !same_polynomial(ours, theirs, by));
     if let Some(index) = wrong {
-        return Some(Difference::Polynomial(index));
+        return Some(StepDifference::Polynomial(index));
     }
     if ours.len() != theirs.len() {
-        return Some(Difference::PolynomialCount);
+        return Some(StepDifference::PolynomialCount);
     }
     if let (Some(ours), Some(theirs)) = (&expected.mid, &actual.mid)
         && let Some(particle) = state_difference(&ours.state, &theirs.state, by)
     {
-        return Some(Difference::MidState(particle));
+        return Some(StepDifference::MidState(particle));
     }
     if !same_impulses(&expected.end.impulses, &actual.end.impulses, by) {
-        return Some(Difference::Impulses);
+        return Some(StepDifference::Impulses);
     }
     if let Some(particle) = state_difference(&expected.end.state, &actual.end.state, by) {
-        return Some(Difference::EndState(particle));
+        return Some(StepDifference::EndState(particle));
     }
     let same_mid = match (&expected.mid, &actual.mid) {
         (Some(ours), Some(theirs)) => {
@@ -163,7 +163,7 @@ pub fn first_difference(expected: &StepRecords, actual: &StepRecords, by: &Toler
         }
         (ours, theirs) => ours.is_none() == theirs.is_none(),
     };
-    (!same_mid).then_some(Difference::MidLists)
+    (!same_mid).then_some(StepDifference::MidLists)
 }
 
 /// Whether two lists hold the same polynomials in the same order.

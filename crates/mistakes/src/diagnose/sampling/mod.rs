@@ -9,13 +9,13 @@ mod source;
 
 pub use capture::Capture;
 pub use compare::{
-    Difference, Logged, PLAIN, ROUND_OFF, StepRecords, first_difference, same_formula, same_impulse, same_polynomial,
-    state_difference,
+    Logged, PLAIN, ROUND_OFF, StepDifference, StepRecords, first_difference, same_formula, same_impulse,
+    same_polynomial, state_difference,
 };
 pub use detections::{Detections, Sample};
 pub use reference::Reference;
 pub use scan::{KeptStep, Scan, Scanner};
-pub use source::{Source, StepFrames, Steps};
+pub use source::{Source, StepFrames, StepReader};
 
 use super::{Explanation, not_finite::First};
 use fosssim_model::scene::Scene;
@@ -34,7 +34,7 @@ pub struct Sampled<'a> {
 
 /// Reads a trace once.
 pub fn sampled<'a>(scene: &'a Scene, source: Source<'a>) -> Sampled<'a> {
-    let (mut steps, mut reference) = (Steps::new(scene, source), Reference::new(scene));
+    let (mut steps, mut reference) = (StepReader::new(scene, source), Reference::new(scene));
     let (mut first, mut scanner, mut detections) = (First::default(), Scanner::new(scene), Detections::new(scene));
     first.begin(&steps.frames);
     while let Some(step) = steps.next() {

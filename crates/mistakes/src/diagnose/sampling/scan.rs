@@ -1,7 +1,7 @@
 //! Finds the wrong steps of a trace, and keeps some of them, as diverse as possible.
 use super::{
     capture::Capture,
-    compare::{Difference, Logged, ROUND_OFF, SINGLE_PRECISION, StepRecords, first_difference, same_polynomial},
+    compare::{Logged, ROUND_OFF, SINGLE_PRECISION, StepDifference, StepRecords, first_difference, same_polynomial},
     reference::Reference,
     source::{Outline, StepFrames},
 };
@@ -33,7 +33,7 @@ pub struct KeptStep {
     /// What the submission logged.
     pub records: StepRecords,
     /// Where it differs first from the reference; `None` for right steps.
-    pub difference: Option<Difference>,
+    pub difference: Option<StepDifference>,
     /// What can only be seen with the record before.
     pub context: Context,
     /// Steps with the same one look alike.
@@ -144,10 +144,10 @@ impl Scanner {
     }
 
     /// Steps with the same number look alike: the same events in the reference, the same first difference.
-    fn signature(&self, difference: Option<Difference>) -> u64 {
+    fn signature(&self, difference: Option<StepDifference>) -> u64 {
         let first = match difference {
             None => 0,
-            Some(Difference::Polynomial(index)) => match self.capture.place(index) {
+            Some(StepDifference::Polynomial(index)) => match self.capture.place(index) {
                 Some((pair, pass, number)) => {
                     8 + u64::from(pass.index.min(2)) * 32
                         + u64::from(pair.kind.code().unsigned_abs()) * 8
@@ -155,11 +155,11 @@ impl Scanner {
                 }
                 None => 1,
             },
-            Some(Difference::PolynomialCount) => 2,
-            Some(Difference::MidState(_)) => 3,
-            Some(Difference::Impulses) => 4,
-            Some(Difference::EndState(_)) => 5,
-            Some(Difference::MidLists) => 6,
+            Some(StepDifference::PolynomialCount) => 2,
+            Some(StepDifference::MidState(_)) => 3,
+            Some(StepDifference::Impulses) => 4,
+            Some(StepDifference::EndState(_)) => 5,
+            Some(StepDifference::MidLists) => 6,
         };
         let logged = self.actual.end.impulses.iter().fold(0, |bits, impulse| bits | 1 << impulse.kind.clamp(0, 3));
         u64::from(self.capture.events()) | first << 32 | logged << 48

@@ -100,7 +100,7 @@ impl Outline {
 }
 
 /// Reads the steps of a trace: those of its first 64 MiB up to the first damage, then those that were kept beyond.
-pub struct Steps<'a> {
+pub struct StepReader<'a> {
     scene: &'a Scene,
     layout: Layout,
     reader: Lenient<Box<dyn Read + 'a>>,
@@ -114,7 +114,7 @@ pub struct Steps<'a> {
     pub outline: Outline,
 }
 
-impl<'a> Steps<'a> {
+impl<'a> StepReader<'a> {
     /// Reads the first record.
     pub fn new(scene: &'a Scene, source: Source<'a>) -> Self {
         let layout = Layout::of(scene);

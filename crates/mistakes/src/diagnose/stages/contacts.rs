@@ -2,7 +2,7 @@
 //! order in which pairs are looked at.
 use super::{
     ALIKE, Explanation, common_value,
-    events::{Facts, Hit},
+    events::{Hit, StepFacts},
     observation, ratios,
 };
 use crate::diagnose::{
@@ -16,8 +16,8 @@ use fosssim_model::{
 use fosssim_num::vector::{Vec2, length};
 
 /// The pairs of the first pass in another order: all its polynomials are there.
-pub(super) fn order(facts: &[Facts]) -> Option<Explanation> {
-    let wrong: Vec<&Facts> = facts.iter().filter(|facts| facts.has_wrong_formula).collect();
+pub(super) fn order(facts: &[StepFacts]) -> Option<Explanation> {
+    let wrong: Vec<&StepFacts> = facts.iter().filter(|facts| facts.has_wrong_formula).collect();
     let permuted = wrong.iter().filter(|facts| is_permuted(facts)).count();
     (permuted > 0 && 2 * permuted > wrong.len())
         .then(|| observation(StageFault::Order, vec![StageDetail::Order], permuted))
@@ -25,7 +25,7 @@ pub(super) fn order(facts: &[Facts]) -> Option<Explanation> {
 
 /// Whether nearly all pairs of the first pass are found as wholes, some of them out of their order. What a contact
 /// before them in the pass has moved is not found.
-fn is_permuted(facts: &Facts) -> bool {
+fn is_permuted(facts: &StepFacts) -> bool {
     let size = facts.pass_size();
     let (ours, theirs) = (&facts.expected.end.polynomials, &facts.actual.end.polynomials);
     if theirs.len() < size {
@@ -72,7 +72,7 @@ const INEXACT: f64 = 1e-5;
 
 /// What is known of the contacts of all steps.
 #[derive(Default)]
-struct Contacts {
+struct ContactStage {
     /// Kind and time of impact.
     right: Vec<(PairKind, f64)>,
     missed: Vec<(PairKind, f64)>,
@@ -82,8 +82,8 @@ struct Contacts {
 }
 
 /// What is wrong with the contacts of `continuous-time`, whose polynomials are right.
-pub(super) fn detection(facts: &[Facts]) -> Option<Explanation> {
-    let mut contacts = Contacts::default();
+pub(super) fn detection(facts: &[StepFacts]) -> Option<Explanation> {
+    let mut contacts = ContactStage::default();
     for facts in facts {
         if matches!(facts.passes.first().map(|pass| pass.stage), Some(Stage::ContinuousTime)) {
             contacts.look(facts);
@@ -93,9 +93,9 @@ pub(super) fn detection(facts: &[Facts]) -> Option<Explanation> {
     contacts.times().or_else(|| contacts.decisions()).or_else(|| contacts.vectors())
 }
 
-impl Contacts {
+impl ContactStage {
     /// Up to the first contact that is not the expected one; what comes behind it depends on that.
-    fn look(&mut self, facts: &Facts) {
+    fn look(&mut self, facts: &StepFacts) {
         let place = |theirs: &LoggedImpulse| {
             facts.detections.iter().position(|(pair, _)| {
                 (pair.kind.code(), pair.first.cast_signed(), pair.second.cast_signed())

@@ -117,7 +117,7 @@ impl Observer for NoCollisions {
 }
 
 /// A step of the submission beside the reference's.
-pub(super) struct Facts {
+pub(super) struct StepFacts {
     /// Whether anything differs.
     pub(super) is_wrong: bool,
     /// Whether a polynomial is wrong that depends on nothing but the state before the step.
@@ -136,7 +136,7 @@ pub(super) struct Facts {
     pub(super) detections: Vec<(Pair, usize)>,
 }
 
-impl Facts {
+impl StepFacts {
     /// How many polynomials a pass logs.
     pub(super) fn pass_size(&self) -> usize {
         self.passes.get(1).map_or(self.expected.end.polynomials.len(), |pass| pass.first)
@@ -184,7 +184,7 @@ impl Facts {
     }
 }
 
-impl Facts {
+impl StepFacts {
     /// The facts of a step; none where the reference has no result.
     pub(super) fn of(reference: &mut Reference<'_>, scene: &Scene, kept: &KeptStep) -> Option<Self> {
         let prediction = reference.step(kept.step, &kept.before, &mut NoCollisions)?.clone();
@@ -244,7 +244,7 @@ fn take_other_forms(expected: &mut StepRecords, actual: &StepRecords, others: &[
     expected.end.polynomials = replaced(&expected.end.polynomials);
 }
 
-impl Facts {
+impl StepFacts {
     /// How many polynomials depend on nothing but the state before the step: those of the first pass, in
     /// `continuous-time` up to the first contact's own.
     pub(super) fn certain_polynomials(&self) -> usize {

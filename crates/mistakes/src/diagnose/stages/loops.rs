@@ -3,7 +3,7 @@
 //! The polynomials of a round say where particles were when it began: what the round before left.
 use super::{
     ALIKE, Explanation,
-    events::Facts,
+    events::StepFacts,
     observation,
     responses::{Responses, bodies_of},
 };
@@ -15,9 +15,9 @@ use fosssim_model::{
 use std::cmp::Ordering;
 
 /// What is wrong with the impulse rounds, whose single contacts are right.
-pub(super) fn explain(scene: &Scene, facts: &[Facts], responses: &Responses) -> Option<Explanation> {
+pub(super) fn explain(scene: &Scene, facts: &[StepFacts], responses: &Responses) -> Option<Explanation> {
     let Collision::Hybrid { max_iterations, .. } = scene.collision else { return None };
-    let wrong: Vec<&Facts> = facts.iter().filter(|facts| facts.is_wrong && !facts.has_right_middle()).collect();
+    let wrong: Vec<&StepFacts> = facts.iter().filter(|facts| facts.is_wrong && !facts.has_right_middle()).collect();
     if wrong.is_empty() {
         return None;
     }
@@ -28,7 +28,7 @@ pub(super) fn explain(scene: &Scene, facts: &[Facts], responses: &Responses) -> 
 }
 
 /// What is wrong with whether the geometric part follows, where the impulse rounds are right.
-pub(super) fn geometric(facts: &[Facts]) -> Option<Explanation> {
+pub(super) fn geometric(facts: &[StepFacts]) -> Option<Explanation> {
     let (mut left, mut superfluous, mut followed) = (0, 0, 0);
     for facts in facts.iter().filter(|facts| facts.has_right_middle()) {
         let ran_out = facts.passes.iter().any(|pass| matches!(pass.stage, Stage::Geometric { .. }));
@@ -48,7 +48,7 @@ pub(super) fn geometric(facts: &[Facts]) -> Option<Explanation> {
 }
 
 /// Steps whose polynomials are right as far as they go, but of which there are too many or too few.
-fn rounds(wrong: &[&Facts], max_iterations: i32) -> Option<Explanation> {
+fn rounds(wrong: &[&StepFacts], max_iterations: i32) -> Option<Explanation> {
     let mut seen: Vec<(usize, usize)> = Vec::new();
     for facts in wrong {
         let (Some((passes, _)), Some((expected, actual))) = (facts.logged_passes(), facts.middles()) else { continue };
@@ -78,7 +78,7 @@ fn rounds(wrong: &[&Facts], max_iterations: i32) -> Option<Explanation> {
 }
 
 /// Steps whose later rounds look at the integrator's positions, which the first round has left.
-fn of_prediction(scene: &Scene, wrong: &[&Facts]) -> Option<Explanation> {
+fn of_prediction(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let mut count = 0;
     for facts in wrong {
         let (Some((passes, _)), Some((_, middle))) = (facts.logged_passes(), facts.middles()) else { return None };
@@ -103,7 +103,7 @@ fn differs(ours: &[f64], theirs: &[f64]) -> Option<usize> {
 }
 
 /// Steps whose polynomials are all right, but not the state behind the loop.
-fn handed_over(wrong: &[&Facts], responses: &Responses) -> Option<Explanation> {
+fn handed_over(wrong: &[&StepFacts], responses: &Responses) -> Option<Explanation> {
     let (mut ran_out, mut ended, mut positions, mut velocities) = (0, 0, false, false);
     let mut or_response = false;
     for facts in wrong {
@@ -149,7 +149,7 @@ struct SecondPass {
 }
 
 impl SecondPass {
-    fn look(&mut self, scene: &Scene, facts: &Facts) {
+    fn look(&mut self, scene: &Scene, facts: &StepFacts) {
         let Some(second) = facts.passes.get(1) else { return };
         let first: Vec<Pair> = facts.hits.iter().filter(|hit| hit.pass == 0).map(|hit| hit.pair).collect();
         for pair in &first {
@@ -169,9 +169,9 @@ impl SecondPass {
 }
 
 /// Steps whose later rounds are wrong though their first one is right.
-fn later(scene: &Scene, wrong: &[&Facts]) -> Option<Explanation> {
+fn later(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let reaches = |passes: usize| {
-        let is_right = |facts: &&Facts| facts.right_polynomials >= passes * facts.pass_size();
+        let is_right = |facts: &&StepFacts| facts.right_polynomials >= passes * facts.pass_size();
         wrong.iter().all(is_right) && wrong.iter().all(|facts| !facts.hits.is_empty())
     };
     if !reaches(1) {

@@ -18,7 +18,7 @@ use super::{
     fault::StageFault,
     sampling::{KeptStep, Reference},
 };
-use events::Facts;
+use events::StepFacts;
 use fosssim_model::scene::{Collision, Scene};
 
 /// The greatest number of steps that are compared.
@@ -41,14 +41,14 @@ pub(super) fn explain<'a>(
         return None;
     }
     let mut work = 0;
-    let facts: Vec<Facts> = steps
+    let facts: Vec<StepFacts> = steps
         .take(MOST_STEPS)
         .take_while(|kept| {
             let goes_on = work < WORK;
             work += kept.records.end.polynomials.len();
             goes_on
         })
-        .filter_map(|kept| Facts::of(reference, scene, kept))
+        .filter_map(|kept| StepFacts::of(reference, scene, kept))
         .collect();
     if facts.iter().all(|facts| !facts.is_wrong) {
         return None;

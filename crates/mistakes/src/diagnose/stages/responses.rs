@@ -1,7 +1,7 @@
 //! What isolated contacts change, body by body.
 use super::{
     ALIKE, Explanation, common_value,
-    events::{Facts, Hit},
+    events::{Hit, StepFacts},
     observation, ratios,
 };
 use crate::diagnose::{
@@ -38,7 +38,7 @@ pub(super) struct Responses {
 }
 
 impl Responses {
-    pub(super) fn new(scene: &Scene, facts: &[Facts]) -> Self {
+    pub(super) fn new(scene: &Scene, facts: &[StepFacts]) -> Self {
         let in_rounds = matches!(scene.collision, Collision::Hybrid { .. });
         let mut all = Self { changes: BTreeMap::new(), contacts: 0, unresolved: 0, in_rounds };
         for facts in facts {
@@ -73,7 +73,7 @@ impl Responses {
     }
 
     /// What is wrong with responses; nothing when those that can be seen are right.
-    pub(super) fn explain(&self, facts: &[Facts]) -> Option<Explanation> {
+    pub(super) fn explain(&self, facts: &[StepFacts]) -> Option<Explanation> {
         let changes = &self.changes;
         let wrong: BTreeMap<Changed, Vec<Change>> = changes
             .iter()
@@ -114,7 +114,7 @@ impl Responses {
 }
 
 /// The contacts of a step whose bodies have no other one, with the expected and the actual state behind them.
-fn isolated<'a>(scene: &'a Scene, facts: &'a Facts) -> Vec<(&'a Hit, &'a State, &'a State)> {
+fn isolated<'a>(scene: &'a Scene, facts: &'a StepFacts) -> Vec<(&'a Hit, &'a State, &'a State)> {
     let rounds = facts.passes.iter().filter(|pass| !matches!(pass.stage, Stage::Geometric { .. })).count();
     let hits = || facts.hits.iter().filter(move |hit| hit.pass < rounds);
     let is_alone = |hit: &&Hit| {
@@ -148,7 +148,7 @@ fn isolated<'a>(scene: &'a Scene, facts: &'a Facts) -> Vec<(&'a Hit, &'a State, 
 
 /// Whether nothing changes the bodies of an impulse round's contact a second time: all passes behind it are about the
 /// positions that the loop hands over.
-fn is_final(scene: &Scene, facts: &Facts, hit: &Hit) -> bool {
+fn is_final(scene: &Scene, facts: &StepFacts, hit: &Hit) -> bool {
     let (Some((passes, _)), Some((_, middle))) = (facts.logged_passes(), facts.middles()) else { return true };
     matches!(facts.passes.first().map(|pass| pass.stage), Some(Stage::ContinuousTime))
         || (hit.pass + 1..passes)
@@ -156,8 +156,8 @@ fn is_final(scene: &Scene, facts: &Facts, hit: &Hit) -> bool {
 }
 
 /// Steps with several contacts, all of which are right though the state is not.
-fn of_many(facts: &[Facts]) -> Option<Explanation> {
-    let is_right = |facts: &&Facts| {
+fn of_many(facts: &[StepFacts]) -> Option<Explanation> {
+    let is_right = |facts: &&StepFacts| {
         let (ours, theirs) = (&facts.expected.end.impulses, &facts.actual.end.impulses);
         facts.is_wrong
             && facts.passes.first().map(|pass| pass.stage) == Some(Stage::ContinuousTime)

@@ -4,7 +4,7 @@
 //! wrong with the failsafe is told of zones that are right: of one contact, or whose particles move as one body.
 use super::{
     ALIKE, Explanation, common_value,
-    events::Facts,
+    events::StepFacts,
     loops, observation, ratios,
     zones::{Fate, FirstRound, Group, SMALL, centre, near},
 };
@@ -20,12 +20,12 @@ use std::collections::BTreeMap;
 const LITTLE_TURN: f64 = 1e-6;
 
 /// What is wrong with the geometric part, whose start is right.
-pub(super) fn explain(scene: &Scene, facts: &[Facts]) -> Option<Explanation> {
+pub(super) fn explain(scene: &Scene, facts: &[StepFacts]) -> Option<Explanation> {
     if !matches!(scene.collision, Collision::Hybrid { .. }) {
         return None;
     }
-    let is_seen = |facts: &&Facts| facts.has_right_middle() && !hangs_on_round_off(scene, facts);
-    let wrong: Vec<&Facts> = facts.iter().filter(|facts| facts.is_wrong).filter(is_seen).collect();
+    let is_seen = |facts: &&StepFacts| facts.has_right_middle() && !hangs_on_round_off(scene, facts);
+    let wrong: Vec<&StepFacts> = facts.iter().filter(|facts| facts.is_wrong).filter(is_seen).collect();
     // Something else is wrong with the others, and may be with these.
     if wrong.is_empty() || facts.iter().any(|facts| facts.is_wrong && !facts.has_right_middle()) {
         return None;
@@ -45,7 +45,7 @@ pub(super) fn explain(scene: &Scene, facts: &[Facts]) -> Option<Explanation> {
 
 /// Whether the first geometric pass differs, and is right of where the rounds left the bodies, which is right within
 /// round-off: small coefficients hang on that.
-fn hangs_on_round_off(scene: &Scene, facts: &Facts) -> bool {
+fn hangs_on_round_off(scene: &Scene, facts: &StepFacts) -> bool {
     let Some((_, middle)) = facts.middles().filter(|_| facts.logged_passes().is_some()) else { return false };
     let pass = behind(facts, 0) / facts.pass_size();
     let differs = facts.right_polynomials < behind(facts, 1).min(facts.expected.end.polynomials.len());
@@ -53,18 +53,18 @@ fn hangs_on_round_off(scene: &Scene, facts: &Facts) -> bool {
 }
 
 /// The index of the first polynomial behind this number of passes of the geometric part.
-fn behind(facts: &Facts, passes: usize) -> usize {
+fn behind(facts: &StepFacts, passes: usize) -> usize {
     facts.middles().map_or(0, |(_, middle)| middle.polynomials.len()) + passes * facts.pass_size()
 }
 
 /// The first geometric pass, where it is not about what the impulse rounds left.
-fn first_positions(scene: &Scene, wrong: &[&Facts]) -> Option<Explanation> {
-    let is_wrong = |facts: &&&Facts| facts.logged_passes().is_some() && facts.right_polynomials < behind(facts, 1);
-    let seen: Vec<&&Facts> = wrong.iter().filter(is_wrong).collect();
+fn first_positions(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
+    let is_wrong = |facts: &&&StepFacts| facts.logged_passes().is_some() && facts.right_polynomials < behind(facts, 1);
+    let seen: Vec<&&StepFacts> = wrong.iter().filter(is_wrong).collect();
     if seen.is_empty() {
         return None;
     }
-    let is_prediction = |facts: &&&Facts| {
+    let is_prediction = |facts: &&&StepFacts| {
         let pass = behind(facts, 0) / facts.pass_size();
         facts.detects(scene, pass, &facts.prediction.positions, |_| true)
     };
@@ -73,8 +73,8 @@ fn first_positions(scene: &Scene, wrong: &[&Facts]) -> Option<Explanation> {
 }
 
 /// The second geometric pass, where it is about what was there before the failsafe, although that moves something.
-fn before_failsafe(scene: &Scene, wrong: &[&Facts]) -> Option<Explanation> {
-    let is_so = |facts: &&&Facts| {
+fn before_failsafe(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
+    let is_so = |facts: &&&StepFacts| {
         let Some((_, middle)) = facts.middles() else { return false };
         let (middle, end) = (&middle.state.positions, &facts.actual.end.state.positions);
         let pass = behind(facts, 1) / facts.pass_size();
@@ -88,7 +88,7 @@ fn before_failsafe(scene: &Scene, wrong: &[&Facts]) -> Option<Explanation> {
 }
 
 /// What is wrong behind the first round of zones.
-fn rounds(scene: &Scene, wrong: &[&Facts]) -> Option<Explanation> {
+fn rounds(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let (mut fewer, mut more, mut later, mut ends) = (0, 0, 0, Vec::new());
     for facts in wrong {
         let (ours, theirs) = (facts.expected.end.polynomials.len(), facts.actual.end.polynomials.len());
@@ -115,8 +115,8 @@ fn rounds(scene: &Scene, wrong: &[&Facts]) -> Option<Explanation> {
 }
 
 /// Steps whose polynomials are all right, but not their end: the velocities of zones, where positions are right.
-fn velocities(scene: &Scene, ends: &[&Facts]) -> Explanation {
-    let mut measured = Measured::default();
+fn velocities(scene: &Scene, ends: &[&StepFacts]) -> Explanation {
+    let mut measured = MotionErrors::default();
     for facts in ends {
         let (expected, actual) = (&facts.expected.end.state, &facts.actual.end.state);
         let count = scene.particles.len();
@@ -150,11 +150,11 @@ struct Moved {
     bent_of_many: usize,
     bent_of_one: usize,
     bent_stops: usize,
-    measured: Measured,
+    measured: MotionErrors,
 }
 
 impl Moved {
-    fn look(&mut self, scene: &Scene, facts: &Facts) {
+    fn look(&mut self, scene: &Scene, facts: &StepFacts) {
         let Some(first) = FirstRound::of(scene, facts) else { return };
         for zone in &first.zones {
             if !first.is_seen(zone) && (first.is_at_rest(zone) || !first.is_split(zone)) {
@@ -237,7 +237,7 @@ impl Moved {
 
 /// How zones that need not stop were moved, over how they should have been.
 #[derive(Default)]
-struct Measured {
+struct MotionErrors {
     shifts: Vec<f64>,
     has_side_shift: bool,
     turns: Vec<f64>,
@@ -246,7 +246,7 @@ struct Measured {
     has_other_velocity: bool,
 }
 
-impl Measured {
+impl MotionErrors {
     fn motion(&mut self, scene: &Scene, first: &FirstRound<'_>, zone: &Group) {
         let (start, expected, end) = (first.start(), first.expected(zone), first.end);
         let [from, ours, theirs] = [start, &expected, end].map(|state| centre(scene, zone, state));

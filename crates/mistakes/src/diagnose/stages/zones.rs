@@ -1,6 +1,6 @@
 //! What became of one impact zone in the first round of the geometric part: which particles were moved as one body
 //! shows which zones there were.
-use super::events::Facts;
+use super::events::StepFacts;
 use fosssim_model::{
     scene::Scene,
     sim::{PairKind, Stage, State},
@@ -81,7 +81,7 @@ pub(super) enum Fate {
 /// The first round of the geometric part of a step whose middle, and whose first geometric pass, are right.
 pub(super) struct FirstRound<'a> {
     scene: &'a Scene,
-    facts: &'a Facts,
+    facts: &'a StepFacts,
     pub(super) middle: &'a State,
     /// The end of the step: what the first round leaves of the zones that are looked at.
     pub(super) end: &'a State,
@@ -96,7 +96,7 @@ pub(super) struct FirstRound<'a> {
 
 impl<'a> FirstRound<'a> {
     /// None where the step has no first round, or where something before it is wrong.
-    pub(super) fn of(scene: &'a Scene, facts: &'a Facts) -> Option<Self> {
+    pub(super) fn of(scene: &'a Scene, facts: &'a StepFacts) -> Option<Self> {
         let (loop_passes, passes) = facts.logged_passes().filter(|_| facts.has_right_middle())?;
         let is_right = facts.right_polynomials >= (loop_passes + 1) * facts.pass_size();
         let (_, middle) = facts.middles()?;

@@ -6,7 +6,7 @@ use std::ops::{Add, Div, Mul, Sub};
 
 use fosssim_num::vector::Vec2;
 
-use crate::student::encounter::Body;
+use crate::student::encounter::MovingBody;
 
 /// The numbers of a program.
 pub trait Number:
@@ -109,12 +109,12 @@ fn rounded_vector<N: Number>(v: Vector<N>) -> Vec2 {
 }
 
 /// A centre at the time `t`.
-fn at<N: Number>(body: &Body, t: f64) -> Vector<N> {
+fn at<N: Number>(body: &MovingBody, t: f64) -> Vector<N> {
     plus(vector(body.start), N::from(t), vector(body.displacement))
 }
 
 /// Overlap and approach of two particles.
-pub fn particle_particle<N: Number>(one: &Body, two: &Body) -> Vec<Vec<f64>> {
+pub fn particle_particle<N: Number>(one: &MovingBody, two: &MovingBody) -> Vec<Vec<f64>> {
     let x: Vector<N> = minus(vector(two.start), vector(one.start));
     let d: Vector<N> = minus(vector(two.displacement), vector(one.displacement));
     let reach = N::from(one.radius) + N::from(two.radius);
@@ -125,7 +125,7 @@ pub fn particle_particle<N: Number>(one: &Body, two: &Body) -> Vec<Vec<f64>> {
 }
 
 /// Overlap and approach of a particle and a half-plane.
-pub fn particle_half_plane<N: Number>(one: &Body, point: Vec2, normal: Vec2) -> Vec<Vec<f64>> {
+pub fn particle_half_plane<N: Number>(one: &MovingBody, point: Vec2, normal: Vec2) -> Vec<Vec<f64>> {
     let q: Vector<N> = vector(normal);
     let s = dot(vector(one.displacement), q);
     let w = dot(minus(vector(point), vector(one.start)), q);
@@ -136,7 +136,7 @@ pub fn particle_half_plane<N: Number>(one: &Body, point: Vec2, normal: Vec2) -> 
 }
 
 /// Overlap, alpha > 0, alpha < 1 and approach of a particle and an edge.
-pub fn particle_edge<N: Number>(bodies: &[Body; 3], edge_radius: f64) -> Vec<Vec<f64>> {
+pub fn particle_edge<N: Number>(bodies: &[MovingBody; 3], edge_radius: f64) -> Vec<Vec<f64>> {
     let [one, two, three] = bodies;
     let between = |a: Vec2, b: Vec2| -> Vector<N> { minus(vector(a), vector(b)) };
     let (x12, x32) = (between(one.start, two.start), between(three.start, two.start));
@@ -206,12 +206,12 @@ fn quintic<N: Number>(x12: &Vector<N>, x32: &Vector<N>, d12: &Vector<N>, d32: &V
 }
 
 /// From the first centre to the second at time `t`.
-pub fn between_particles<N: Number>(one: &Body, two: &Body, t: f64) -> Vec2 {
+pub fn between_particles<N: Number>(one: &MovingBody, two: &MovingBody, t: f64) -> Vec2 {
     rounded_vector::<N>(minus(at(two, t), at(one, t)))
 }
 
 /// From the particle to the closest point of the edge's line at time `t`.
-pub fn to_edge<N: Number>([one, two, three]: &[Body; 3], t: f64) -> Vec2 {
+pub fn to_edge<N: Number>([one, two, three]: &[MovingBody; 3], t: f64) -> Vec2 {
     let along: Vector<N> = minus(at(three, t), at(two, t));
     let beside = minus(at(one, t), at(two, t));
     let alpha = dot(beside, along) / dot(along, along);
@@ -219,7 +219,7 @@ pub fn to_edge<N: Number>([one, two, three]: &[Body; 3], t: f64) -> Vec2 {
 }
 
 /// From the particle to the boundary of a half-plane at time `t`.
-pub fn to_half_plane<N: Number>(one: &Body, point: Vec2, normal: Vec2, t: f64) -> Vec2 {
+pub fn to_half_plane<N: Number>(one: &MovingBody, point: Vec2, normal: Vec2, t: f64) -> Vec2 {
     let q: Vector<N> = vector(normal);
     let share = dot(minus(vector(point), at(one, t)), q) / dot(q, q);
     rounded_vector([share * q[0], share * q[1]])

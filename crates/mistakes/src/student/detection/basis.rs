@@ -1,7 +1,7 @@
 //! Correct programs whose coefficients take a detour: by way of Bernstein's basis, or of values at some times.
 use fosssim_num::vector::Vec2;
 
-use crate::student::encounter::Body;
+use crate::student::encounter::MovingBody;
 
 /// A power basis list (highest power first) in Bernstein's basis over the step, and back.
 pub fn through_bernstein(list: &[f64]) -> Vec<f64> {
@@ -52,7 +52,7 @@ fn interpolated(degree: usize, value: impl Fn(f64) -> f64) -> Vec<f64> {
 }
 
 /// Overlap and approach of two particles, from values.
-pub fn particle_particle(one: &Body, two: &Body) -> Vec<Vec<f64>> {
+pub fn particle_particle(one: &MovingBody, two: &MovingBody) -> Vec<Vec<f64>> {
     let n = |t| two.at(t) - one.at(t);
     let reach = one.radius + two.radius;
     let closing = one.displacement - two.displacement;
@@ -60,7 +60,7 @@ pub fn particle_particle(one: &Body, two: &Body) -> Vec<Vec<f64>> {
 }
 
 /// Overlap and approach of a particle and a half-plane, from values.
-pub fn particle_half_plane(one: &Body, point: Vec2, normal: Vec2) -> Vec<Vec<f64>> {
+pub fn particle_half_plane(one: &MovingBody, point: Vec2, normal: Vec2) -> Vec<Vec<f64>> {
     let away = |t| (point - one.at(t)).dot(&normal);
     let reach = one.radius * one.radius * normal.dot(&normal);
     let speed = one.displacement.dot(&normal);
@@ -68,7 +68,7 @@ pub fn particle_half_plane(one: &Body, point: Vec2, normal: Vec2) -> Vec<Vec<f64
 }
 
 /// Overlap, alpha > 0 and alpha < 1 of a particle and an edge, from values; the approach stays as supplied.
-pub fn particle_edge([one, two, three]: &[Body; 3], square: f64) -> [Vec<f64>; 3] {
+pub fn particle_edge([one, two, three]: &[MovingBody; 3], square: f64) -> [Vec<f64>; 3] {
     let overlap = |t| {
         let (along, beside) = (three.at(t) - two.at(t), one.at(t) - two.at(t));
         let cross = along.x * beside.y - along.y * beside.x;

@@ -11,7 +11,7 @@ use fosssim_num::{
 use crate::student::{
     author::Student,
     catalogue::{Area, Mistake},
-    encounter::{Body, Encounter, alpha},
+    encounter::{Encounter, MovingBody, alpha},
     hooks::{Change, Place},
     objects::{Contact, Object, Pair},
     rounding::single,
@@ -55,7 +55,7 @@ impl Encounter {
             let end = frame.point(at(q_end, index), at(q_end, pair.particle));
             let partner = if role == 0 { other } else { pair.particle };
             let radius = student.index(Place::SeenRadius { kind, role }, index, partner, all);
-            let mut body = Body::new(start, end, world.scene.particles[radius].radius);
+            let mut body = MovingBody::new(start, end, world.scene.particles[radius].radius);
             body.displacement = student.vector(Place::SeenMotion { kind, role }, body.displacement);
             body
         };
@@ -135,7 +135,7 @@ fn axes_of(student: Student, pair: Pair) -> Axes {
 /// The polynomials that this student's formulas give for a pair of bodies, as they are handed to the root finder.
 #[must_use]
 pub fn polynomials_of(student: Student, motion: &PairMotion) -> Vec<Vec<f64>> {
-    let body = |point: &PointMotion, radius: f64| Body { start: point.start, displacement: point.shift, radius };
+    let body = |point: &PointMotion, radius: f64| MovingBody { start: point.start, displacement: point.shift, radius };
     let (encounter, object) = match motion {
         PairMotion::Particles { centres: [one, two], radii } => {
             (Encounter::Particles(body(one, radii[0]), body(two, radii[1])), Object::Particle(1))
@@ -292,7 +292,7 @@ fn rejected(student: Student, encounter: &Encounter, time: f64) -> bool {
 
 /// Whether the particles' paths stay far apart, judged by bounding circles. Nobody asked for this.
 fn out_of_reach(encounter: &Encounter) -> bool {
-    let far = |one: &Body, other: &Body| {
+    let far = |one: &MovingBody, other: &MovingBody| {
         length(other.start - one.start)
             > one.radius + other.radius + length(one.displacement) + length(other.displacement)
     };

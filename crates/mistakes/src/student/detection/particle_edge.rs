@@ -9,7 +9,7 @@ use super::{
 use crate::student::{
     author::Student,
     catalogue::{Area, Mistake},
-    encounter::{Body, alpha},
+    encounter::{MovingBody, alpha},
     hooks::Place,
 };
 
@@ -20,7 +20,7 @@ const FORMULAS: &[Area] = &[Area::ParticleEdge, Area::Handover, Area::ContactVec
 const VECTORS: &[Area] = &[Area::ContactVector, Area::Handover];
 
 /// Overlap (quartic), alpha > 0 (quadratic), alpha < 1 (quadratic), approach (quintic).
-pub fn polynomials(student: Student, bodies: &[Body; 3], edge_radius: f64) -> Vec<Vec<f64>> {
+pub fn polynomials(student: Student, bodies: &[MovingBody; 3], edge_radius: f64) -> Vec<Vec<f64>> {
     let mistake = student.mistake_in(FORMULAS);
     match mistake {
         Some(Mistake::ParticleEdgeEmpty) => return Vec::new(),
@@ -37,7 +37,7 @@ pub fn polynomials(student: Student, bodies: &[Body; 3], edge_radius: f64) -> Ve
     }
     let bodies = &seen(student, bodies);
     let square = reach_squared(student, bodies[0].radius, edge_radius);
-    let dots = Dots::new(bodies);
+    let dots = DotProducts::new(bodies);
     let overlap = match mistake {
         Some(Mistake::WideArithmetic) => arithmetic::particle_edge::<Wide>(bodies, edge_radius).swap_remove(0),
         Some(Mistake::FactorisedQuartic | Mistake::FactorisedAll) => factorised::quartic(bodies, square),
@@ -54,7 +54,7 @@ pub fn polynomials(student: Student, bodies: &[Body; 3], edge_radius: f64) -> Ve
 }
 
 /// The moving points as this student puts them into the formulas.
-fn seen(student: Student, bodies: &[Body; 3]) -> [Body; 3] {
+fn seen(student: Student, bodies: &[MovingBody; 3]) -> [MovingBody; 3] {
     let [mut one, mut two, mut three] = *bodies;
     match student.mistake_in(FORMULAS) {
         Some(Mistake::ParticleEdgeStill) => {
@@ -67,13 +67,13 @@ fn seen(student: Student, bodies: &[Body; 3]) -> [Body; 3] {
         Some(Mistake::ParticleEdgeOneDisplacement) => three.displacement = two.displacement,
         Some(Mistake::ParticleEdgeOtherDisplacement) => two.displacement = three.displacement,
         Some(Mistake::ParticleEdgeEndForDisplacement) => {
-            return bodies.map(|body| Body { displacement: body.end(), ..body });
+            return bodies.map(|body| MovingBody { displacement: body.end(), ..body });
         }
         Some(Mistake::ParticleEdgeDisplacementsSwapped) => {
             std::mem::swap(&mut two.displacement, &mut three.displacement);
         }
         Some(Mistake::ParticleEdgeEndPositions) => {
-            return bodies.map(|body| Body { start: body.end(), ..body });
+            return bodies.map(|body| MovingBody { start: body.end(), ..body });
         }
         Some(Mistake::ParticleEdgeEndpointsSwapped) => std::mem::swap(&mut two, &mut three),
         _ => {}
@@ -96,7 +96,7 @@ fn reach_squared(student: Student, particle: f64, edge: f64) -> f64 {
 }
 
 /// The dot products of the quartic, with the letters of the derivation.
-pub struct Dots {
+pub struct DotProducts {
     a: f64,
     b: f64,
     c: f64,
@@ -108,9 +108,9 @@ pub struct Dots {
     i: f64,
 }
 
-impl Dots {
+impl DotProducts {
     /// The nine dot products of a particle (1) and an edge (2, 3).
-    pub fn new([one, two, three]: &[Body; 3]) -> Self {
+    pub fn new([one, two, three]: &[MovingBody; 3]) -> Self {
         let (x12, x32, x21) = (one.start - two.start, three.start - two.start, two.start - one.start);
         let d12 = one.displacement - two.displacement;
         let d32 = three.displacement - two.displacement;
@@ -130,8 +130,8 @@ impl Dots {
 }
 
 /// The overlap with the line: `(r1 + re)^2 |x32|^2 - |x21|^2 |x32|^2 + (x12.x32)^2` along the motion.
-fn quartic(student: Student, dots: &Dots, s: f64) -> Vec<f64> {
-    let &Dots { a, b, c, d, e, f, g, h, i } = dots;
+fn quartic(student: Student, dots: &DotProducts, s: f64) -> Vec<f64> {
+    let &DotProducts { a, b, c, d, e, f, g, h, i } = dots;
     let mistake = student.mistake_in(FORMULAS);
     let t4 = match mistake {
         Some(Mistake::ParticleEdgeQuarticNoFi) => c * c,
@@ -180,8 +180,8 @@ fn quartic(student: Student, dots: &Dots, s: f64) -> Vec<f64> {
 }
 
 /// The same quartic with other parentheses.
-fn rearranged(dots: &Dots, s: f64) -> Vec<f64> {
-    let &Dots { a, b, c, d, e, f, g, h, i } = dots;
+fn rearranged(dots: &DotProducts, s: f64) -> Vec<f64> {
+    let &DotProducts { a, b, c, d, e, f, g, h, i } = dots;
     vec![
         c * c - i * f,
         2.0 * (b * c - (e * i + h * f)),
@@ -192,7 +192,7 @@ fn rearranged(dots: &Dots, s: f64) -> Vec<f64> {
 }
 
 /// The same quartic from its values at five times.
-fn interpolated(bodies: &[Body; 3], s: f64) -> Vec<f64> {
+fn interpolated(bodies: &[MovingBody; 3], s: f64) -> Vec<f64> {
     let value = |t: f64| {
         let [x1, x2, x3] = bodies.map(|body| body.at(t));
         let (along, beside) = (x3 - x2, x1 - x2);
@@ -209,8 +209,8 @@ fn interpolated(bodies: &[Body; 3], s: f64) -> Vec<f64> {
     vec![t4, t3, even1 - t4, odd1 - t3, middle]
 }
 
-fn alpha_above_zero(student: Student, bodies: &[Body; 3], dots: &Dots) -> Vec<f64> {
-    let &Dots { a, b, c, .. } = dots;
+fn alpha_above_zero(student: Student, bodies: &[MovingBody; 3], dots: &DotProducts) -> Vec<f64> {
+    let &DotProducts { a, b, c, .. } = dots;
     match student.mistake_in(FORMULAS) {
         Some(Mistake::AlphaLowSlopeSign) => vec![c, -b, a],
         Some(Mistake::AlphaLowNegated) => vec![-c, -b, -a],
@@ -226,8 +226,8 @@ fn alpha_above_zero(student: Student, bodies: &[Body; 3], dots: &Dots) -> Vec<f6
     }
 }
 
-fn alpha_below_one(student: Student, bodies: &[Body; 3], dots: &Dots) -> Vec<f64> {
-    let &Dots { a, b, c, g, h, i, .. } = dots;
+fn alpha_below_one(student: Student, bodies: &[MovingBody; 3], dots: &DotProducts) -> Vec<f64> {
+    let &DotProducts { a, b, c, g, h, i, .. } = dots;
     let [one, two, three] = bodies;
     let (x13, x23) = (one.start - three.start, two.start - three.start);
     let d13 = one.displacement - three.displacement;
@@ -247,7 +247,7 @@ fn alpha_below_one(student: Student, bodies: &[Body; 3], dots: &Dots) -> Vec<f64
 }
 
 /// From the particle to the closest point of the line at time `t`.
-pub fn contact_vector(student: Student, bodies: &[Body; 3], t: f64) -> Vec2 {
+pub fn contact_vector(student: Student, bodies: &[MovingBody; 3], t: f64) -> Vec2 {
     let mistake = student.mistake_in(VECTORS);
     let [one, two, three] = bodies;
     let t = match mistake {
@@ -287,12 +287,12 @@ pub fn contact_vector(student: Student, bodies: &[Body; 3], t: f64) -> Vec2 {
 mod tests {
     use super::*;
 
-    fn body(start: [f64; 2], displacement: [f64; 2], radius: f64) -> Body {
-        Body { start: start.into(), displacement: displacement.into(), radius }
+    fn body(start: [f64; 2], displacement: [f64; 2], radius: f64) -> MovingBody {
+        MovingBody { start: start.into(), displacement: displacement.into(), radius }
     }
 
     /// Integers, so that every order of evaluation is exact: an edge that turns and stretches.
-    fn turning() -> [Body; 3] {
+    fn turning() -> [MovingBody; 3] {
         [body([2.0, 5.0], [3.0, -7.0], 1.0), body([0.0, 1.0], [2.0, 4.0], 2.0), body([6.0, 3.0], [-1.0, 2.0], 2.0)]
     }
 

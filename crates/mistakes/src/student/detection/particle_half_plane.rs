@@ -2,7 +2,7 @@
 use fosssim_num::vector::{Vec2, unit};
 
 use super::{
-    Body,
+    MovingBody,
     arithmetic::{self, Fused},
     basis,
     wide::Wide,
@@ -19,7 +19,7 @@ const FORMULAS: &[Area] = &[Area::ParticleHalfPlane, Area::Handover, Area::Conta
 const VECTORS: &[Area] = &[Area::ContactVector, Area::Handover];
 
 /// Overlap (quadratic) and approach (linear).
-pub fn polynomials(student: Student, one: &Body, point: Vec2, normal: Vec2) -> Vec<Vec<f64>> {
+pub fn polynomials(student: Student, one: &MovingBody, point: Vec2, normal: Vec2) -> Vec<Vec<f64>> {
     let mistake = student.mistake_in(FORMULAS);
     let q = if mistake == Some(Mistake::HalfPlaneUnitNormal) { unit(normal) } else { normal };
     let s = match mistake {
@@ -80,7 +80,7 @@ fn overlap(student: Student, radius: f64, s: f64, w: f64, q: Vec2) -> Vec<f64> {
 }
 
 /// The same quadratic as a difference of squares.
-fn rearranged_overlap(one: &Body, s: f64, w: f64, q: Vec2) -> Vec<f64> {
+fn rearranged_overlap(one: &MovingBody, s: f64, w: f64, q: Vec2) -> Vec<f64> {
     let length = q.dot(&q).sqrt();
     let reach = one.radius * length;
     vec![-(s * s), s * w + w * s, (reach - w) * (reach + w)]
@@ -100,7 +100,7 @@ fn approach(student: Student, s: f64, w: f64) -> Vec<f64> {
 }
 
 /// From the centre to the boundary at time `t`.
-pub fn contact_vector(student: Student, one: &Body, point: Vec2, normal: Vec2, t: f64) -> Vec2 {
+pub fn contact_vector(student: Student, one: &MovingBody, point: Vec2, normal: Vec2, t: f64) -> Vec2 {
     let offset = point - one.start - t * one.displacement;
     let square = normal.dot(&normal);
     match student.mistake_in(VECTORS) {

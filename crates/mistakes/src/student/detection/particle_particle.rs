@@ -2,7 +2,7 @@
 use fosssim_num::vector::Vec2;
 
 use super::{
-    Body,
+    MovingBody,
     arithmetic::{self, Fused},
     basis,
     wide::Wide,
@@ -19,7 +19,7 @@ const FORMULAS: &[Area] = &[Area::ParticleParticle, Area::Handover, Area::Contac
 const VECTORS: &[Area] = &[Area::ContactVector, Area::Handover];
 
 /// Overlap (quadratic) and approach (linear).
-pub fn polynomials(student: Student, one: &Body, two: &Body) -> Vec<Vec<f64>> {
+pub fn polynomials(student: Student, one: &MovingBody, two: &MovingBody) -> Vec<Vec<f64>> {
     let mistake = student.mistake_in(FORMULAS);
     match mistake {
         Some(Mistake::ParticleParticleEmpty) => return Vec::new(),
@@ -94,7 +94,7 @@ fn overlap(student: Student, x: Vec2, d: Vec2, r1: f64, r2: f64) -> Vec<f64> {
 }
 
 /// The same quadratic, each dot product multiplied out into coordinates and added up in another order.
-fn rearranged_overlap(one: &Body, two: &Body) -> Vec<f64> {
+fn rearranged_overlap(one: &MovingBody, two: &MovingBody) -> Vec<f64> {
     let (x1, x2, d1, d2) = (one.start, two.start, one.displacement, two.displacement);
     let (dx, dy) = (d2.x - d1.x, d2.y - d1.y);
     let reach = one.radius + two.radius;
@@ -115,7 +115,7 @@ fn approach(student: Student, x: Vec2, d: Vec2, e: Vec2) -> Vec<f64> {
 }
 
 /// From the first centre to the second at time `t`.
-pub fn contact_vector(student: Student, one: &Body, two: &Body, t: f64) -> Vec2 {
+pub fn contact_vector(student: Student, one: &MovingBody, two: &MovingBody, t: f64) -> Vec2 {
     match student.mistake_in(VECTORS) {
         Some(Mistake::ParticleParticleContactAtStart) => two.start - one.start,
         Some(Mistake::ParticleParticleContactAtEnd) => two.end() - one.end(),

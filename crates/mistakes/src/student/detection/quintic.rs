@@ -1,5 +1,5 @@
 //! The approach of a particle and an edge: the quintic that the course supplies, and what becomes of it.
-use super::{Body, factorised};
+use super::{MovingBody, factorised};
 use crate::student::{
     author::Student,
     catalogue::{Area, Mistake},
@@ -9,7 +9,7 @@ use crate::student::{
 const HERE: &[Area] = &[Area::ParticleEdge];
 
 /// The quintic, or what this student puts in its place.
-pub fn approach(student: Student, bodies: &[Body; 3]) -> Vec<f64> {
+pub fn approach(student: Student, bodies: &[MovingBody; 3]) -> Vec<f64> {
     let supplied = || supplied(student, bodies);
     match student.mistake_in(HERE) {
         Some(Mistake::QuinticConstantAlpha) => constant_alpha(bodies),
@@ -28,7 +28,7 @@ pub fn approach(student: Student, bodies: &[Body; 3]) -> Vec<f64> {
 }
 
 /// The course's formula, term by term and in its order, its wrong cubic coefficient included unless that was put right.
-fn supplied(student: Student, [one, two, three]: &[Body; 3]) -> Vec<f64> {
+fn supplied(student: Student, [one, two, three]: &[MovingBody; 3]) -> Vec<f64> {
     let (x12, x32, x21) = (one.start - two.start, three.start - two.start, two.start - one.start);
     let d12 = one.displacement - two.displacement;
     let d32 = three.displacement - two.displacement;
@@ -75,7 +75,7 @@ fn supplied(student: Student, [one, two, three]: &[Body; 3]) -> Vec<f64> {
 }
 
 /// The simplification that the assignment warns of: alpha stays as it is at the start of the step.
-fn constant_alpha([one, two, three]: &[Body; 3]) -> Vec<f64> {
+fn constant_alpha([one, two, three]: &[MovingBody; 3]) -> Vec<f64> {
     let along = three.start - two.start;
     let alpha = (one.start - two.start).dot(&along) / along.dot(&along);
     let closing = one.displacement - two.displacement - alpha * (three.displacement - two.displacement);

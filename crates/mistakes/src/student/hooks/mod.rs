@@ -5,7 +5,7 @@ mod apply;
 mod places;
 
 pub use super::{
-    encounter::{Body, Encounter, alpha},
+    encounter::{Encounter, MovingBody, alpha},
     objects::Zone,
 };
 pub use places::{Mutation, Operator, Place};
@@ -34,7 +34,7 @@ pub struct Share {
 
 /// A zone's motion.
 #[derive(Debug, Clone, Copy)]
-pub struct Turn {
+pub struct ZoneTurn {
     /// The centre of mass at the start of the step.
     pub centre: Vec2,
     /// How far it moves.
@@ -81,9 +81,9 @@ pub enum Change {
     /// How many rounds the geometric part makes.
     GeometricRounds(u32),
     /// The motion of a zone.
-    Rigid(fn(&mut Turn)),
+    Rigid(fn(&mut ZoneTurn)),
     /// A moved particle: its start, its motion, where it is now, its velocity.
-    Moved(fn(Vec2, &Turn, &mut Vec2, &mut Vec2)),
+    Moved(fn(Vec2, &ZoneTurn, &mut Vec2, &mut Vec2)),
     /// A stopped particle: its velocity before.
     Stopped(fn(Vec2) -> Vec2),
 }

@@ -15,9 +15,9 @@
 mod item;
 mod markup;
 mod reader;
-#[cfg(test)]
-mod reader_tests;
 mod single;
+#[cfg(test)]
+mod tests;
 mod values;
 
 pub use reader::read;

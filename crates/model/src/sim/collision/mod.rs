@@ -22,7 +22,7 @@ mod zones;
 pub mod formulas {
     pub use super::{
         particle_edge::{
-            Coefficients as EdgeCoefficients, EdgeMotions, coefficients as particle_edge,
+            EdgeMotions, EdgePolynomials as EdgeCoefficients, coefficients as particle_edge,
             coefficients_and_right_cubic as particle_edge_and_right_cubic,
         },
         particle_half_plane::coefficients as particle_half_plane,

@@ -7,7 +7,7 @@ use crate::{
 use fosssim_findings::{Grade, GroupGrade};
 
 /// A column's cells, its heading first, and where they stand.
-struct Column {
+struct TextColumn {
     cells: Vec<String>,
     right: bool,
 }
@@ -18,14 +18,14 @@ struct Column {
 pub fn table(grades: &[Grade], width: Option<usize>, style: Style) -> String {
     let of = |heading: &str, right: bool, cell: &dyn Fn(&Grade) -> String| {
         let cells = std::iter::once(heading.to_owned()).chain(grades.iter().map(cell)).collect();
-        Column { cells, right }
+        TextColumn { cells, right }
     };
     let name = of("submission", false, &|grade| shortened(&one_line(&grade.submission)));
     let score = of("points", true, &|grade| reached(grade.points));
     let verdict = of("verdict", false, &|grade| grade.verdict.words().to_owned());
     let seconds = of("seconds", true, &|grade| format!("{:.2}", grade.wall.as_secs_f64()));
     let groups = grades.first().map_or(0, |grade| grade.groups.len());
-    let groups: Vec<Column> = (0..groups)
+    let groups: Vec<TextColumn> = (0..groups)
         .map(|number| {
             let heading: String = one_line(&grades[0].groups[number].name).chars().take(8).collect();
             of(&heading, false, &|grade| grade.groups.get(number).map_or_else(String::new, cell))
@@ -36,10 +36,10 @@ pub fn table(grades: &[Grade], width: Option<usize>, style: Style) -> String {
         format!("{accepted}/{}", grade.scenes().count())
     });
     let base = [&name, &score, &verdict];
-    let whole: Vec<&Column> = base.into_iter().chain(&groups).chain([&seconds]).collect();
-    let without_time: Vec<&Column> = base.into_iter().chain(&groups).collect();
-    let short: Vec<&Column> = base.into_iter().chain([&scenes]).collect();
-    let fits = |columns: &[&Column]| width.is_none_or(|width| total(columns) <= width);
+    let whole: Vec<&TextColumn> = base.into_iter().chain(&groups).chain([&seconds]).collect();
+    let without_time: Vec<&TextColumn> = base.into_iter().chain(&groups).collect();
+    let short: Vec<&TextColumn> = base.into_iter().chain([&scenes]).collect();
+    let fits = |columns: &[&TextColumn]| width.is_none_or(|width| total(columns) <= width);
     let chosen = [whole, without_time].into_iter().find(|columns| fits(columns)).unwrap_or(short);
     rows(&chosen, grades, style)
 }
@@ -73,15 +73,15 @@ pub fn shortened(name: &str) -> String {
     format!("{start}...{end}")
 }
 
-fn widest(column: &Column) -> usize {
+fn widest(column: &TextColumn) -> usize {
     column.cells.iter().map(|cell| columns(cell)).max().unwrap_or(0)
 }
 
-fn total(columns: &[&Column]) -> usize {
+fn total(columns: &[&TextColumn]) -> usize {
     columns.iter().map(|column| widest(column) + 2).sum::<usize>().saturating_sub(2)
 }
 
-fn rows(columns_of: &[&Column], grades: &[Grade], style: Style) -> String {
+fn rows(columns_of: &[&TextColumn], grades: &[Grade], style: Style) -> String {
     let mut text = String::new();
     for row in 0..=grades.len() {
         let mut line = String::new();

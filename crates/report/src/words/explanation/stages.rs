@@ -52,14 +52,7 @@ fn of_fault(fault: &StageFault) -> String {
             }
         },
         StageFault::ContactTimes => "the contacts are right, but not their times of impact",
-        StageFault::ContactVectors { wrong, .. } => match wrong {
-            WrongVectors::Perpendicular => "it is perpendicular to what it should be",
-            WrongVectors::Direction => "it has the wrong direction",
-            WrongVectors::Zero => "it has no length",
-            WrongVectors::Inexact => "it is right but for its last digits",
-            WrongVectors::Reversed => "it points the other way round",
-            WrongVectors::Length => "it has the right direction, but not the right length",
-        },
+        StageFault::ContactVectors { wrong, .. } => of_vectors(*wrong),
         StageFault::Responses { wrong, .. } => return of_responses(wrong),
         StageFault::ManyContacts => "the contacts are right, but not the state that they lead to",
         StageFault::Unresolved { all: true } => "contacts that the first round's polynomials show change nothing",
@@ -116,18 +109,7 @@ fn of_fault(fault: &StageFault) -> String {
                 "the zones are right at first, but not in later rounds, or there are not as many as there should be"
             }
         },
-        StageFault::Zones(wrong) => match wrong {
-            WrongZones::Partly => "some of a zone's particles are not moved with it",
-            WrongZones::PartlyStopped => "in zones that have to stop, some particles do not",
-            WrongZones::Unmoved => "zones are not moved that should be",
-            WrongZones::NotMerged => "zones that share particles are moved one after the other, not as one",
-            WrongZones::Joined => "zones that share no particle are moved as one",
-            WrongZones::Others => "particles are moved with a zone that do not belong to it",
-            WrongZones::MoveOn => "zones that have to stop move on as rigid bodies",
-            WrongZones::Stop => "zones stop in which nothing is fixed",
-            WrongZones::KeepPositions => "zones that have to stop do not go back to their start",
-            WrongZones::KeepVelocities => "zones that have to stop do not lose their velocity",
-        },
+        StageFault::Zones(wrong) => of_zones(*wrong),
         StageFault::Motion { wrong, .. } if wrong.is_empty() => "zones do not move as they should",
         StageFault::Motion { wrong, .. } => {
             let wrong: Vec<&str> = wrong.iter().map(|wrong| of_motion(*wrong)).collect();
@@ -135,6 +117,32 @@ fn of_fault(fault: &StageFault) -> String {
         }
     };
     fixed.to_owned()
+}
+
+const fn of_vectors(wrong: WrongVectors) -> &'static str {
+    match wrong {
+        WrongVectors::Perpendicular => "it is perpendicular to what it should be",
+        WrongVectors::Direction => "it has the wrong direction",
+        WrongVectors::Zero => "it has no length",
+        WrongVectors::Inexact => "it is right but for its last digits",
+        WrongVectors::Reversed => "it points the other way round",
+        WrongVectors::Length => "it has the right direction, but not the right length",
+    }
+}
+
+const fn of_zones(wrong: WrongZones) -> &'static str {
+    match wrong {
+        WrongZones::Partly => "some of a zone's particles are not moved with it",
+        WrongZones::PartlyStopped => "in zones that have to stop, some particles do not",
+        WrongZones::Unmoved => "zones are not moved that should be",
+        WrongZones::NotMerged => "zones that share particles are moved one after the other, not as one",
+        WrongZones::Joined => "zones that share no particle are moved as one",
+        WrongZones::Others => "particles are moved with a zone that do not belong to it",
+        WrongZones::MoveOn => "zones that have to stop move on as rigid bodies",
+        WrongZones::Stop => "zones stop in which nothing is fixed",
+        WrongZones::KeepPositions => "zones that have to stop do not go back to their start",
+        WrongZones::KeepVelocities => "zones that have to stop do not lose their velocity",
+    }
 }
 
 const fn of_motion(wrong: WrongMotion) -> &'static str {

@@ -76,6 +76,20 @@ fn guesses() -> Vec<Guess> {
         .collect()
 }
 
+/// All that can be wrong with zones.
+const ZONES: [WrongZones; 10] = [
+    WrongZones::Partly,
+    WrongZones::PartlyStopped,
+    WrongZones::NotMerged,
+    WrongZones::Joined,
+    WrongZones::Others,
+    WrongZones::MoveOn,
+    WrongZones::Unmoved,
+    WrongZones::Stop,
+    WrongZones::KeepPositions,
+    WrongZones::KeepVelocities,
+];
+
 /// All that can be wrong with a stage.
 fn faults() -> Vec<StageFault> {
     let changed = |body, quantity| Changed { kind: PairKind::ParticleEdge, body, quantity };
@@ -134,19 +148,7 @@ fn faults() -> Vec<StageFault> {
     }
     let rounds = [WrongZoneRounds::Growth, WrongZoneRounds::Fewer, WrongZoneRounds::More, WrongZoneRounds::Later];
     faults.extend(rounds.map(StageFault::ZoneRounds));
-    let zones = [
-        WrongZones::Partly,
-        WrongZones::PartlyStopped,
-        WrongZones::NotMerged,
-        WrongZones::Joined,
-        WrongZones::Others,
-        WrongZones::MoveOn,
-        WrongZones::Unmoved,
-        WrongZones::Stop,
-        WrongZones::KeepPositions,
-        WrongZones::KeepVelocities,
-    ];
-    faults.extend(zones.map(StageFault::Zones));
+    faults.extend(ZONES.map(StageFault::Zones));
     let motions = [
         vec![],
         vec![WrongMotion::Centre, WrongMotion::Distances, WrongMotion::Velocities],

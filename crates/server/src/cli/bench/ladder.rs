@@ -26,11 +26,11 @@ pub(super) async fn climb(arguments: &Bench) -> Result<()> {
     println!("load average at the start: {}; each notify {} s; p50 / p95 / p99 in ms\n", load(), arguments.seconds);
     println!("| students | {} | errors | jobs in a minute | memory | bound by |", STEPS.join(" | "));
     println!("|---:|{}---:|---:|---:|---|", "---:|".repeat(STEPS.len()));
-    let mut students: Vec<Student> = Vec::new();
+    let mut students: Vec<LadderStudent> = Vec::new();
     for &notify in &arguments.students {
         for number in students.len() + 1..=notify {
             let secret = stage.enrol(number).await?;
-            students.push(Student {
+            students.push(LadderStudent {
                 client: Client::new(stage.address, number),
                 secret: Some(secret),
                 number,
@@ -93,7 +93,7 @@ async fn empty(stage: &mut Stage) -> Result<()> {
     Ok(())
 }
 
-struct Student {
+struct LadderStudent {
     client: Client,
     /// Of the link that signs in once.
     secret: Option<String>,
@@ -101,7 +101,7 @@ struct Student {
     round: usize,
 }
 
-impl Student {
+impl LadderStudent {
     async fn study(mut self, until: Instant, program: Bytes) -> (Self, Times) {
         let mut times = Times::default();
         while Instant::now() < until {

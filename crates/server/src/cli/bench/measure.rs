@@ -47,7 +47,7 @@ pub(super) struct Spent {
 }
 
 /// Shares of the processors, in percent.
-pub(super) struct Shares {
+pub(super) struct TimeShares {
     pub(super) server: u64,
     pub(super) graders: u64,
     pub(super) clients: u64,
@@ -82,18 +82,18 @@ impl Spent {
         Self { server: own, graders, clients: of_process("self").0, busy: all - idle - waiting, waiting, all }
     }
 
-    pub(super) fn since(self, before: Self) -> Shares {
+    pub(super) fn since(self, before: Self) -> TimeShares {
         let all = (self.all - before.all).max(1);
         let percent = |now: u64, then: u64| now.saturating_sub(then) * 100 / all;
         let (server, graders) = (percent(self.server, before.server), percent(self.graders, before.graders));
         let clients = percent(self.clients, before.clients);
         let busy = percent(self.busy, before.busy);
         let others = busy.saturating_sub(server + graders + clients);
-        Shares { server, graders, clients, others, disk: percent(self.waiting, before.waiting) }
+        TimeShares { server, graders, clients, others, disk: percent(self.waiting, before.waiting) }
     }
 }
 
-impl Shares {
+impl TimeShares {
     /// What kept it from doing more.
     pub(super) fn bound(&self) -> String {
         let busy = self.server + self.graders + self.clients + self.others;

@@ -5,7 +5,7 @@ use super::super::{
 };
 use crate::{
     access::{Assignment, Member, Settings, Staff, Standing, moment, moment_schema},
-    archive::{self, Limits},
+    archive::{self, ArchiveLimits},
     problem::Problem,
     schema::Title,
     worker,
@@ -108,7 +108,8 @@ pub(in crate::web) async fn receive_suite(
 /// worker would read any other file of its machine for it.
 fn unpack_suite(archive: &Path, incoming: &Path) -> Result<tempfile::TempDir, Problem> {
     let folder = tempfile::tempdir_in(incoming)?;
-    archive::unpack(archive, folder.path(), Limits::USUAL).map_err(|error| Problem::unusable(error.to_string()))?;
+    archive::unpack(archive, folder.path(), ArchiveLimits::USUAL)
+        .map_err(|error| Problem::unusable(error.to_string()))?;
     let Ok(text) = std::fs::read_to_string(folder.path().join("suite.toml")) else {
         return Err(Problem::unusable("the archive has no suite.toml at its top, in UTF-8"));
     };

@@ -85,10 +85,82 @@ impl Dice {
     }
 }
 
+/// What became of all uploads.
+struct Grades {
+    wrong: Vec<String>,
+    buried: usize,
+    doubled: Vec<String>,
+    all: usize,
+}
+
+/// Waits for the grades of all uploads: each its number, and whether the grader fails on it.
+fn grades(server: &Server, students: &[Client], expected: &[(i64, bool)]) -> Grades {
+    let mut found = Grades { wrong: Vec::new(), buried: 0, doubled: Vec::new(), all: 0 };
+    let at = |student: &Client| Client { url: server.url.clone(), headers: student.headers.clone() };
+    for (number, (id, poison)) in expected.iter().enumerate() {
+        let client = at(&students[number % students.len()]);
+        let submission = client.wait_for_grade("physics", *id);
+        let right = if *poison { "JE".to_owned() } else { number.to_string() };
+        let got = if *poison { &submission["grade"]["code"] } else { &submission["grade"]["points"] };
+        found.buried += usize::from(submission["state"] == "buried" && !poison);
+        if *got != *right {
+            found.wrong.push(format!("{number}: {submission}"));
+        }
+        let history = client.get(&format!("/api/v1/courses/physics/submissions/{id}/history")).expect(200).json();
+        if history.as_array().map(Vec::len) != Some(1) {
+            found.doubled.push(format!("{number}: {history}"));
+        }
+    }
+    for student in students {
+        found.all += at(student).get(PATH).expect(200).json().as_array().expect("a list").len();
+    }
+    found
+}
+
+/// Uploads a program that earns its number, or one on which the grader fails. A client that hears nothing asks again, one
+/// of the servers, until it is told.
+fn upload(servers: &[Server; 2], dice: &mut Dice, student: &Client, number: usize) -> (i64, bool) {
+    let poison = number % 24 == 5;
+    let text = if poison { program("POISON", 0) } else { program("WA", u32::try_from(number).expect("few")) };
+    let key = format!("upload {number}");
+    let id = loop {
+        let client = Client { url: servers[dice.roll(2)].url.clone(), headers: student.headers.clone() };
+        match client.try_send("POST", PATH, &[("Idempotency-Key", &key)], &text) {
+            Ok(answer) if matches!(answer.status, 200 | 201) => break answer.json()["id"].as_i64(),
+            _ => std::thread::sleep(Duration::from_millis(50)),
+        }
+    };
+    (id.expect("a number"), poison)
+}
+
+fn engine(fresh: &Fresh) -> &'static str {
+    match (fresh.database.dialect(), &fresh.pooler) {
+        (Dialect::Sqlite, _) => "SQLite",
+        (Dialect::Postgres, None) => "PostgreSQL",
+        (Dialect::Postgres, Some(_)) => "PostgreSQL behind PgBouncer",
+    }
+}
+
+/// Waits until a server has cleaned up behind the dead, stops it, and counts what lies in its folders then.
+fn leaked(server: &mut Server, data: &Path) -> usize {
+    let begin = Instant::now();
+    let left = |folder: &str| fs::read_dir(data.join(folder)).map_or(0, Iterator::count);
+    while left("workers") > 1 {
+        assert!(begin.elapsed() < Duration::from_secs(60), "signs of dead workers stay");
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    server.stop();
+    left("workers") + left("work")
+}
+
+/// A small storm is enough here, if nobody asks for another: a server's start takes longer than a worker's.
+fn size() -> Size {
+    let is_asked = std::env::var_os("FOSSSIM_STORM").is_some();
+    if is_asked { Size::from_environment() } else { Size { submissions: 24, kills: 6 } }
+}
+
 async fn two_servers_lose_nothing(mut fresh: Fresh) {
-    let size = Size::from_environment();
-    // A small storm is enough here: a server's start takes longer than a worker's.
-    let size = if std::env::var_os("FOSSSIM_STORM").is_some() { size } else { Size { submissions: 24, kills: 6 } };
+    let size = size();
     let folder = tempfile::tempdir().expect("a folder");
     let options = ["--workers", "2", "--lease", "2", "--requests-per-minute", "1000000"];
     let data = folder.path().join("data");
@@ -118,19 +190,7 @@ async fn two_servers_lose_nothing(mut fresh: Fresh) {
         let due = (kills + 1) * size.submissions / size.kills.max(1);
         while expected.len() < due.min(size.submissions) {
             let number = expected.len();
-            let student = &students[number % students.len()];
-            let poison = number % 24 == 5;
-            let text = if poison { program("POISON", 0) } else { program("WA", u32::try_from(number).expect("few")) };
-            let key = format!("upload {number}");
-            // A client that hears nothing asks again, one of the servers, until it is told.
-            let id = loop {
-                let client = Client { url: servers[dice.roll(2)].url.clone(), headers: student.headers.clone() };
-                match client.try_send("POST", PATH, &[("Idempotency-Key", &key)], &text) {
-                    Ok(answer) if matches!(answer.status, 200 | 201) => break answer.json()["id"].as_i64(),
-                    _ => std::thread::sleep(Duration::from_millis(50)),
-                }
-            };
-            expected.push((id.expect("a number"), poison));
+            expected.push(upload(&servers, &mut dice, &students[number % students.len()], number));
         }
         std::thread::sleep(Duration::from_millis(u64::try_from(50 + dice.roll(300)).expect("short")));
         if let Some(store) = store.as_ref().filter(|_| kills > 20 * full.len()) {
@@ -141,67 +201,34 @@ async fn two_servers_lose_nothing(mut fresh: Fresh) {
             poolers += 1;
         }
         let victim = dice.roll(2);
-        match dice.roll(8) {
-            0 if freezes * 8 <= kills => {
-                freezes += 1;
-                servers[victim].signal(libc::SIGSTOP);
-                std::thread::sleep(Duration::from_secs(4));
-                servers[victim].signal(libc::SIGCONT);
-            }
-            1 => {
-                kills += 1;
-                machines[1] =
-                    Worker::start(&servers[victim], token, &folder.path().join(format!("machine-{kills}")), &good);
-            }
-            _ => {
-                kills += 1;
-                servers[victim].kill();
-                servers[victim].resume();
-            }
+        if dice.roll(8) == 0 && freezes * 8 <= kills {
+            freezes += 1;
+            servers[victim].signal(libc::SIGSTOP);
+            std::thread::sleep(Duration::from_secs(4));
+            servers[victim].signal(libc::SIGCONT);
+            continue;
+        }
+        kills += 1;
+        if dice.roll(7) == 0 {
+            let machine = folder.path().join(format!("machine-{kills}"));
+            machines[1] = Worker::start(&servers[victim], token, &machine, &good);
+        } else {
+            servers[victim].kill();
+            servers[victim].resume();
         }
     }
     let full = full.into_iter().map(|filling| filling.join().expect("room again")).count();
-    let (mut wrong, mut buried, mut doubled) = (Vec::new(), 0, Vec::new());
-    for (number, (id, poison)) in expected.iter().enumerate() {
-        let student = &students[number % students.len()];
-        let client = Client { url: servers[0].url.clone(), headers: student.headers.clone() };
-        let submission = client.wait_for_grade("physics", *id);
-        let right = if *poison { "JE".to_owned() } else { number.to_string() };
-        let got = if *poison { &submission["grade"]["code"] } else { &submission["grade"]["points"] };
-        buried += usize::from(submission["state"] == "buried" && !poison);
-        if *got != *right {
-            wrong.push(format!("{number}: {submission}"));
-        }
-        let history = client.get(&format!("/api/v1/courses/physics/submissions/{id}/history")).expect(200).json();
-        if history.as_array().map(Vec::len) != Some(1) {
-            doubled.push(format!("{number}: {history}"));
-        }
-    }
-    let mut all = 0;
-    for student in &students {
-        let client = Client { url: servers[0].url.clone(), headers: student.headers.clone() };
-        all += client.get(PATH).expect(200).json().as_array().expect("a list").len();
-    }
+    let Grades { wrong, buried, doubled, all } = grades(&servers[0], &students, &expected);
     // One that comes and goes cleans up behind the dead.
     drop(machines);
-    servers[1].stop();
-    servers[0].stop();
-    servers[0].resume();
-    let clean = Instant::now();
-    let left = |folder: &str| fs::read_dir(data.join(folder)).map_or(0, Iterator::count);
-    while left("workers") > 1 {
-        assert!(clean.elapsed() < Duration::from_secs(60), "signs of dead workers stay");
-        std::thread::sleep(Duration::from_millis(50));
+    for server in &mut servers {
+        server.stop();
     }
-    servers[0].stop();
-    let leaked = left("workers") + left("work");
-    let engine = match (fresh.database.dialect(), &fresh.pooler) {
-        (Dialect::Sqlite, _) => "SQLite",
-        (Dialect::Postgres, None) => "PostgreSQL",
-        (Dialect::Postgres, Some(_)) => "PostgreSQL behind PgBouncer",
-    };
+    servers[0].resume();
+    let leaked = leaked(&mut servers[0], &data);
     println!(
-        "| {engine} | {} | {kills} | {freezes} | {full} | {poolers} | {} | {} | {} | {buried} | {leaked} | {:.0} s |",
+        "| {} | {} | {kills} | {freezes} | {full} | {poolers} | {} | {} | {} | {buried} | {leaked} | {:.0} s |",
+        engine(&fresh),
         expected.len(),
         expected.len() - all.min(expected.len()),
         doubled.len() + all.saturating_sub(expected.len()),

@@ -1,5 +1,8 @@
 //! A course that has been used for years: rows made by the database itself.
-use fosssim_server::{db::Database, values};
+use fosssim_server::{
+    db::{Database, Transaction},
+    values,
+};
 
 /// How many submissions: `FOSSSIM_ROWS`, or some.
 pub(crate) fn count(some: i64) -> i64 {
@@ -71,6 +74,15 @@ pub(crate) async fn fill(database: &Database, assignment: i64, students: i64, su
         )
         .await
         .expect("grades");
+    add_events(&mut transaction, first).await;
+    transaction.commit().await.expect("commit");
+    let mut transaction = database.begin().await.expect("a transaction");
+    transaction.execute("ANALYZE", values![]).await.expect("statistics");
+    transaction.commit().await.expect("commit");
+}
+
+/// Adds the events of all submissions behind one, and sums up as servers that ran all the while have.
+async fn add_events(transaction: &mut Transaction, first: i64) {
     for kind in ["submitted", "graded"] {
         transaction
             .execute(
@@ -81,7 +93,6 @@ pub(crate) async fn fill(database: &Database, assignment: i64, students: i64, su
             .await
             .expect("events");
     }
-    // As servers that ran all the while have summed up.
     for (name, statement) in [
         (
             "submission",
@@ -101,8 +112,4 @@ pub(crate) async fn fill(database: &Database, assignment: i64, students: i64, su
     ] {
         transaction.execute(statement, values![name]).await.expect("a sum");
     }
-    transaction.commit().await.expect("commit");
-    let mut transaction = database.begin().await.expect("a transaction");
-    transaction.execute("ANALYZE", values![]).await.expect("statistics");
-    transaction.commit().await.expect("commit");
 }

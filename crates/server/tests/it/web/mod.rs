@@ -10,6 +10,7 @@ mod flows;
 mod hidden;
 mod hostile;
 mod limits;
+mod messages;
 mod metrics;
 mod passwords;
 mod people;

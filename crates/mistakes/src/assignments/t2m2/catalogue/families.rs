@@ -4,30 +4,30 @@ use super::{Area, CATALOGUE, RowKind, find};
 use std::collections::BTreeSet;
 
 /// The contents of one place of a family.
-enum Cell {
+enum FamilyCell {
     /// A row with this id.
     Is(&'static str),
     /// No row, because of this.
     None(&'static str),
 }
 
-use Cell::{Is, None as No};
+use FamilyCell::{Is, None as No};
 
 /// Rows that differ in one respect.
-struct Family {
+struct MistakeFamily {
     /// The sides, in the order of the cells.
     sides: &'static [&'static str],
     /// The mistakes, for each side.
-    rows: &'static [(&'static str, &'static [Cell])],
+    rows: &'static [(&'static str, &'static [FamilyCell])],
 }
 
-const SUPPLIED: Cell = No("the approach of edges is supplied; whoever changes it changes all of it");
-const PRODUCTS: Cell = No("the products of the overlap are told one by one");
-const ONE_RADIUS: Cell = No("a half-plane has no radius");
-const AT_REST: Cell = No("half-planes do not move");
-const ONE_IS_ENOUGH: Cell = No("it holds a tolerance of the rules, for which one kind is enough");
+const SUPPLIED: FamilyCell = No("the approach of edges is supplied; whoever changes it changes all of it");
+const PRODUCTS: FamilyCell = No("the products of the overlap are told one by one");
+const ONE_RADIUS: FamilyCell = No("a half-plane has no radius");
+const AT_REST: FamilyCell = No("half-planes do not move");
+const ONE_IS_ENOUGH: FamilyCell = No("it holds a tolerance of the rules, for which one kind is enough");
 
-const PAIRS: Family = Family {
+const PAIRS: MistakeFamily = MistakeFamily {
     sides: &["pp-", "pe-", "ph-"],
     rows: &[
         ("left empty", &[Is("pp-empty"), Is("pe-empty"), Is("ph-empty")]),
@@ -110,7 +110,7 @@ const PAIRS: Family = Family {
     ],
 };
 
-const ENDS: Family = Family {
+const ENDS: MistakeFamily = MistakeFamily {
     sides: &["first", "second"],
     rows: &[
         ("still", &[Is("pe-first-end-still"), Is("pe-second-end-still")]),
@@ -121,7 +121,7 @@ const ENDS: Family = Family {
     ],
 };
 
-const ALPHAS: Family = Family {
+const ALPHAS: MistakeFamily = MistakeFamily {
     sides: &["low", "high"],
     rows: &[
         ("slope's sign", &[Is("pe-alpha-low-slope-sign"), Is("pe-alpha-high-slope-sign")]),
@@ -135,7 +135,7 @@ const ALPHAS: Family = Family {
     ],
 };
 
-const PLACES: Family = Family {
+const PLACES: MistakeFamily = MistakeFamily {
     sides: &["first", "last"],
     rows: &[
         ("contact alone", &[Is("loop-first-only"), Is("loop-last-only")]),
@@ -149,7 +149,7 @@ const PLACES: Family = Family {
     ],
 };
 
-const QUANTITIES: Family = Family {
+const QUANTITIES: MistakeFamily = MistakeFamily {
     sides: &["position", "velocit"],
     rows: &[
         ("alone changed by contacts", &[Is("response-positions-only"), Is("response-velocities-only")]),
@@ -160,7 +160,7 @@ const QUANTITIES: Family = Family {
     ],
 };
 
-const ROUNDS: Family = Family {
+const ROUNDS: MistakeFamily = MistakeFamily {
     sides: &["too few", "too many"],
     rows: &[
         ("impulse rounds", &[Is("loop-one-fewer"), Is("loop-one-more")]),
@@ -171,7 +171,7 @@ const ROUNDS: Family = Family {
     ],
 };
 
-const SUMS: Family = Family {
+const SUMS: MistakeFamily = MistakeFamily {
     sides: &["centre", "momentum", "angular", "inertia"],
     rows: &[
         (
@@ -231,7 +231,7 @@ const SUMS: Family = Family {
     ],
 };
 
-const FAMILIES: [&Family; 7] = [&PAIRS, &ENDS, &ALPHAS, &PLACES, &QUANTITIES, &ROUNDS, &SUMS];
+const FAMILIES: [&MistakeFamily; 7] = [&PAIRS, &ENDS, &ALPHAS, &PLACES, &QUANTITIES, &ROUNDS, &SUMS];
 
 /// Rows of one kind of pair alone, by how their ids begin, and why they are alone.
 const ALONE: &[(&str, &str)] = &[
@@ -260,7 +260,7 @@ const ALONE: &[(&str, &str)] = &[
     ("ph-contact-to-point", "only a half-plane has a point"),
 ];
 
-fn cells() -> impl Iterator<Item = (&'static str, usize, &'static Cell)> {
+fn cells() -> impl Iterator<Item = (&'static str, usize, &'static FamilyCell)> {
     let rows = FAMILIES.into_iter().flat_map(|family| family.rows);
     rows.flat_map(|(name, cells)| cells.iter().enumerate().map(move |(side, cell)| (*name, side, cell)))
 }

@@ -2,7 +2,7 @@
 use super::{
     Group, Lists, Setting,
     group::{BEHIND, EDGE_KNOWN, EDGE_ROW, OPEN, TWO_KNOWN, TWO_ROW, of_particles},
-    settle::{EDGE_BYTES, Output, TWO_BYTES, decide_edge, decide_two},
+    settle::{EDGE_BYTES, LoggedRows, TWO_BYTES, decide_edge, decide_two},
 };
 use crate::sim::{
     observer::Impulse,
@@ -41,9 +41,9 @@ impl Work for Pairs<'_> {
             let pairs = TWO_BYTES * (particles - first + bodies.points.len()) + EDGE_BYTES * bodies.edges.len();
             let mut bytes = self.bytes.take();
             let room = bytes.as_mut().map_or(&mut [][..], |bytes| bytes.room(pairs));
-            let mut output = Output::new(room);
+            let mut output = LoggedRows::new(room);
             let ends = self.row(simd, &mut rows, &mut output);
-            let Output { used, polynomials, excluded, largest, found, .. } = output;
+            let LoggedRows { used, polynomials, excluded, largest, found, .. } = output;
             self.counts.calls += excluded;
             self.counts.excluded += excluded;
             if let Some(bytes) = &mut bytes {
@@ -64,7 +64,7 @@ impl Pairs<'_> {
     /// What is left of the pairs of one particle. Whether something was found, which the output holds; at a hit the
     /// place is the next pair's.
     #[inline(always)]
-    fn row<S: Simd>(&mut self, simd: S, rows: &mut Rows, output: &mut Output<'_>) -> bool {
+    fn row<S: Simd>(&mut self, simd: S, rows: &mut Rows, output: &mut LoggedRows<'_>) -> bool {
         let first = self.place.first;
         let [particles, edges, half_planes] = self.setting.bodies.objects().row(*self.place);
         if self.particles(simd, first, (particles, rows), output) {
@@ -81,7 +81,7 @@ impl Pairs<'_> {
 
     /// A particle and these edges, as far as it is no end of them.
     #[inline(always)]
-    fn edges<S: Simd>(&mut self, _: S, first: usize, seconds: Range<usize>, output: &mut Output<'_>) -> bool {
+    fn edges<S: Simd>(&mut self, _: S, first: usize, seconds: Range<usize>, output: &mut LoggedRows<'_>) -> bool {
         let width = Lanes::<S>::COUNT;
         let lane = first - self.group.particles.start;
         let mut own = self.lists.own_edges(first, seconds.start);
@@ -103,7 +103,7 @@ impl Pairs<'_> {
 
     /// A particle and these half-planes.
     #[inline(always)]
-    fn half_planes<S: Simd>(&mut self, _: S, first: usize, seconds: Range<usize>, output: &mut Output<'_>) -> bool {
+    fn half_planes<S: Simd>(&mut self, _: S, first: usize, seconds: Range<usize>, output: &mut LoggedRows<'_>) -> bool {
         let width = Lanes::<S>::COUNT;
         let lane = first - self.group.particles.start;
         let rows = self.group.half_planes.as_chunks::<TWO_ROW>().0;
@@ -123,7 +123,7 @@ impl Pairs<'_> {
         simd: S,
         first: usize,
         (seconds, rows): (Range<usize>, &mut Rows),
-        output: &mut Output<'_>,
+        output: &mut LoggedRows<'_>,
     ) -> bool {
         let width = Lanes::<S>::COUNT;
         let mut largest = Lanes::all(simd, 0.0);
@@ -154,7 +154,7 @@ fn of_edge(
     row: &[f64; EDGE_ROW + BEHIND],
     with: (&Setting<'_>, &mut SearchCounts),
     place: &mut PassCursor,
-    output: &mut Output<'_>,
+    output: &mut LoggedRows<'_>,
 ) -> bool {
     let known = row[EDGE_KNOWN].to_bits();
     let ends = known & OPEN != 0 && output.asks(with.1, |counts| decide_edge(with.0, counts, pair, row), pair, place);
@@ -172,7 +172,7 @@ fn of_two(
     row: &[f64; TWO_ROW],
     with: (&Setting<'_>, &mut SearchCounts),
     place: &mut PassCursor,
-    output: &mut Output<'_>,
+    output: &mut LoggedRows<'_>,
 ) -> bool {
     let known = row[TWO_KNOWN].to_bits();
     let ends = known & OPEN != 0 && output.asks(with.1, |counts| decide_two(with.0, counts, pair, row), pair, place);

@@ -20,7 +20,7 @@ pub(super) const EDGE_BYTES: usize = 4 * 4 + 8 * 17;
 pub(super) const TWO_BYTES: usize = 2 * 4 + 8 * 5;
 
 /// Where polynomials go, and how many have gone there.
-pub(super) struct Output<'a> {
+pub(super) struct LoggedRows<'a> {
     /// Room for all of them; none where nobody wants to know.
     pub room: &'a mut [u8],
     /// Bytes that are written.
@@ -35,14 +35,14 @@ pub(super) struct Output<'a> {
     pub found: Result<Option<Impulse>, StepError>,
 }
 
-impl<'a> Output<'a> {
+impl<'a> LoggedRows<'a> {
     /// Nothing is written yet.
     #[inline(always)]
     pub fn new(room: &'a mut [u8]) -> Self {
         Self { room, used: 0, polynomials: 0, excluded: 0, largest: 0.0, found: Ok(None) }
     }
 
-    /// Has a pair decided about. Whether that yields something, as [`Output::takes`] says.
+    /// Has a pair decided about. Whether that yields something, as [`LoggedRows::takes`] says.
     #[inline(always)]
     pub fn asks(
         &mut self,

@@ -6,7 +6,7 @@ mod polynomials;
 use super::response::{Change, Response, Setting, clamp};
 use crate::sim::bodies::Bodies;
 use fosssim_num::vector::{Vec2, at, length, unit};
-pub use polynomials::{Coefficients, EdgeMotions, coefficients, coefficients_and_right_cubic};
+pub use polynomials::{EdgeMotions, EdgePolynomials, coefficients, coefficients_and_right_cubic};
 
 /// The contact normal at time `t`: from the particle to the point of the edge's line beside it. `None` when it is
 /// zero, which is no hit; a NaN is one.

@@ -36,7 +36,7 @@ impl<N: Number> EdgeMotions<N> {
 
 /// The coefficients of particle-edge pairs before the removal of small leading ones, highest power first.
 #[derive(Debug, Clone, Copy)]
-pub struct Coefficients<N> {
+pub struct EdgePolynomials<N> {
     /// "Closer than the radii to the line".
     pub distance: [N; 5],
     /// "Beyond the first end".
@@ -53,7 +53,7 @@ pub struct Coefficients<N> {
 /// The t^3 coefficient of the last one is mathematically wrong (`g` where `h` belongs); it is the formula that every
 /// student was given.
 #[inline(always)]
-pub fn coefficients<N: Number>(x1: Plane<N>, d1: Plane<N>, edges: &EdgeMotions<N>, radii: N) -> Coefficients<N>
+pub fn coefficients<N: Number>(x1: Plane<N>, d1: Plane<N>, edges: &EdgeMotions<N>, radii: N) -> EdgePolynomials<N>
 where
     f64: Mul<N, Output = N>,
 {
@@ -69,7 +69,7 @@ pub fn coefficients_and_right_cubic<N: Number>(
     d1: Plane<N>,
     edges: &EdgeMotions<N>,
     radii: N,
-) -> (Coefficients<N>, N)
+) -> (EdgePolynomials<N>, N)
 where
     f64: Mul<N, Output = N>,
 {
@@ -94,7 +94,7 @@ where
     let before_second = [d13.dot(d23), d13.dot(x23) + x13.dot(d23), x13.dot(x23)];
     // Products are commutative bit for bit, so `dot(x32, d32)` is `h` from above.
     let (approach, right_cubic) = approach([g, h, i, f, e, a, b, c], d32.dot(x21) + d21.dot(x32), d32.dot(d21));
-    (Coefficients { distance, beyond_first: [c, b, a], before_second, approach }, right_cubic)
+    (EdgePolynomials { distance, beyond_first: [c, b, a], before_second, approach }, right_cubic)
 }
 
 /// The coefficients of the velocity quintic, with its own letters `a..h`, `i`, `j`; and the right one of t^3.

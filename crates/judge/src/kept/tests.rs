@@ -105,7 +105,7 @@ fn of_what_does_not_fit_the_wrong_steps_are_kept() {
 #[test]
 fn nothing_is_kept_of_a_record_that_is_too_large() {
     let scene = scene(BOUNCE);
-    let mut store = Store::new(Layout::of(&scene), 1000);
+    let mut store = KeptBytes::new(Layout::of(&scene), 1000);
     store.keep(&[1; 100], true);
     let place = StepPlace { step: 1, before: 0, begin: 40, last: 60, end: 100, is_own: false };
     store.pass(&place);

@@ -1,5 +1,8 @@
 //! Traces whose numbers no simulation should hold: judging them has to come to an end, with a verdict.
-use crate::samples::{BOUNCE, ZONES, changed, judged, scene};
+use crate::{
+    fair::FairVerdict,
+    samples::{BOUNCE, ZONES, changed, judged, scene},
+};
 use fosssim_model::trace::Frame;
 
 /// Numbers at which arithmetic overflows, underflows, or has left the numbers.
@@ -26,7 +29,7 @@ fn states_of_any_size_are_judged_without_a_panic() {
                     let trace = changed(&scene, |frames| blown_up(frames, from, to, value));
                     let outcome = judged(&scene, &trace);
                     let fair = outcome.fair.expect("the fair rules were asked");
-                    assert_eq!(fair.verdict, super::FairVerdict::Rejected, "{value} in {from}..{to}");
+                    assert_eq!(fair.verdict, FairVerdict::Rejected, "{value} in {from}..{to}");
                 }
             }
         }

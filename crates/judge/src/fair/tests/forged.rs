@@ -1,6 +1,6 @@
 //! Traces that no program wrote in earnest: each shows what the fair rules must not fall for.
-use super::{FairRefusal, FairVerdict, Judgement, context::Context};
 use crate::{
+    fair::{FairRefusal, FairVerdict, Judgement, context::Context},
     finding::{FindingDetail, FindingKind},
     samples::{BOUNCE, ZONES, changed, judged, relog, run, scene, written},
 };
