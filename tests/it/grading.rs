@@ -2,6 +2,7 @@
 //!
 //! The submissions are `fosssim-sample` under links that name their mistakes. Where the sandbox can't be had, the tests
 //! say so and are skipped.
+mod platforms;
 mod programs;
 
 use crate::workspace::{Workspace, finish};
@@ -417,52 +418,6 @@ fn the_demo_ends_well() {
         "{}",
         page.len()
     );
-}
-
-#[test]
-fn the_gradescope_zip_works_in_its_layout() {
-    let Some(workspace) = workspace() else { return };
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    if Command::new("python3").arg("--version").output().is_err() {
-        skip(Need::Python, "there is no python3");
-        return;
-    }
-    let path = std::env::var_os("PATH").unwrap_or_default();
-    let mut build = Command::new(root.join("scripts/gradescope/build"));
-    build.arg(workspace.path("autograder.zip")).args(["--binary", env!("CARGO_BIN_EXE_fosssim-oracle")]);
-    build.args(["--suite".as_ref(), workspace.path("suite.toml").as_os_str()]);
-    let built = finish(build.env_clear().env("PATH", &path));
-    assert_eq!(built.code, Some(0), "{}", built.shown());
-    let layout = workspace.path("autograder");
-    for folder in ["source", "submission", "results"] {
-        std::fs::create_dir_all(layout.join(folder)).expect("a folder");
-    }
-    let mut unzip = Command::new("python3");
-    unzip.args(["-m", "zipfile", "-e"]).arg(workspace.path("autograder.zip")).arg(layout.join("source"));
-    assert!(unzip.status().expect("python3").success());
-    let run_autograder = || {
-        let mut run = Command::new("bash");
-        run.arg(layout.join("source/run_autograder")).env_clear().env("PATH", &path).env("AUTOGRADER_ROOT", &layout);
-        let run = finish(run.current_dir(&layout));
-        let results = std::fs::read(layout.join("results/results.json")).expect("results whatever happens");
-        (run, serde_json::from_slice::<serde_json::Value>(&results).expect("JSON"))
-    };
-    // `unzip` of Python keeps no permission bits; Gradescope does.
-    let program = layout.join("source/fosssim-oracle");
-    std::fs::set_permissions(&program, std::os::unix::fs::PermissionsExt::from_mode(0o755)).expect("a mode");
-
-    let (run, results) = run_autograder();
-    assert_eq!(run.code, Some(0), "{}", run.shown());
-    assert_eq!(results["score"], 0.0, "no program was submitted: {results}");
-    assert_eq!(results.to_string().matches("no program called FOSSSim in the upload").count(), 1, "{results}");
-    std::fs::copy(env!("CARGO_BIN_EXE_fosssim-sample"), layout.join("submission/FOSSSim")).expect("a submission");
-    let (run, results) = run_autograder();
-    assert_eq!(run.code, Some(0), "{}", run.shown());
-    assert_eq!(results["score"], 20.0, "{results}");
-    std::fs::write(layout.join("source/suite/suite.toml"), "nonsense").expect("a broken suite");
-    let (run, results) = run_autograder();
-    assert_eq!(run.code, Some(1), "our own fault is no grading");
-    assert!(results.get("score").is_none(), "{results}");
 }
 
 #[test]
