@@ -6,7 +6,7 @@ use std::{
 
 use fosssim_oracle::{
     num::vector::Vec2,
-    scene::{Collision, Display, Edge, Force, HalfPlane, Integrator, Particle, Scene},
+    scene::{Collision, CollisionDetection, Display, Edge, Force, HalfPlane, Integrator, Particle, Scene},
     sim::{Detection, Observer, RootSearch, Simulation, Zone},
 };
 
@@ -90,7 +90,8 @@ fn a_warm_step_allocates_nothing() {
     for collision in [
         Collision::None,
         Collision::Simple { restitution: 1.0 },
-        Collision::Penalty { stiffness: 10.0, thickness: 0.1 },
+        Collision::Penalty { stiffness: 10.0, thickness: 0.1, detection: CollisionDetection::AllPairs },
+        Collision::Penalty { stiffness: 10.0, thickness: 0.1, detection: CollisionDetection::Contest },
         Collision::ContinuousTime { restitution: 0.0 },
         hybrid(10),
         hybrid(0),

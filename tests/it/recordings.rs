@@ -89,6 +89,26 @@ fn scenes_of_earlier_milestones_are_recorded_byte_for_byte() {
     all_are_byte_identical(name, "manifest-earlier-milestones.json");
 }
 
+/// The contest of Theme 2, Milestone 3 sums its forces in another order than all others.
+#[test]
+fn scenes_of_the_contest_are_recorded_byte_for_byte() {
+    let Some(folder) = corpus::folder() else { return };
+    let mut cases = 0;
+    for group in ["TestingScenes", "TimingScenes"] {
+        let Ok(files) = std::fs::read_dir(folder.join("t2m3").join(group)) else { continue };
+        let names =
+            files.map(|file| file.expect("a file").path()).filter(|path| path.extension() == Some("xml".as_ref()));
+        for path in names {
+            let bytes = std::fs::read(&path).expect("a readable scene");
+            let scene = original::read(&bytes).expect("a scene").scene;
+            let (trace, _) = record(&scene, RootSearch::WhereNeeded);
+            assert!(trace == corpus::unpack(&path.with_extension("bin.zst")), "{} differs", path.display());
+            cases += 1;
+        }
+    }
+    corpus::ran("scenes_of_the_contest_are_recorded_byte_for_byte", cases);
+}
+
 /// No certificate excludes an impact that the root finder finds, and asking it changes no byte.
 #[test]
 fn certificates_agree_with_the_root_finder_on_every_course_scene() {

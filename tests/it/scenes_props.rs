@@ -1,8 +1,8 @@
 //! What must hold for every scene and for every sequence of bytes, by random search.
 use fosssim_oracle::num::vector::Vec2;
 use fosssim_oracle::scene::{
-    self, Collision, Color, Display, Edge, Force, HalfPlane, Integrator, Particle, ParticlePath, Scene, Viewport,
-    original,
+    self, Collision, CollisionDetection, Color, Display, Edge, Force, HalfPlane, Integrator, Particle, ParticlePath,
+    Scene, Viewport, original,
 };
 use proptest::collection::vec;
 use proptest::option;
@@ -30,13 +30,21 @@ fn color() -> impl Strategy<Value = Color> {
     (part(), part(), part()).prop_map(|(red, green, blue)| Color { red, green, blue })
 }
 
+fn detection() -> impl Strategy<Value = CollisionDetection> {
+    prop::sample::select(vec![CollisionDetection::AllPairs, CollisionDetection::Contest])
+}
+
 fn collision() -> impl Strategy<Value = Collision> {
     let positive = || 1e-6..1e6_f64;
     prop_oneof![
         Just(Collision::None),
         number().prop_map(|restitution| Collision::Simple { restitution }),
         number().prop_map(|restitution| Collision::ContinuousTime { restitution }),
-        (positive(), positive()).prop_map(|(stiffness, thickness)| Collision::Penalty { stiffness, thickness }),
+        (positive(), positive(), detection()).prop_map(|(stiffness, thickness, detection)| Collision::Penalty {
+            stiffness,
+            thickness,
+            detection
+        }),
         (number(), any::<i32>(), positive(), positive()).prop_map(
             |(restitution, max_iterations, stiffness, thickness)| Collision::Hybrid {
                 restitution,

@@ -8,7 +8,8 @@
 //!
 //! `... --bench inside -- instructions` counts instructions under callgrind, which no other load on the machine
 //! changes, and shows them beside those of `instructions.txt`; with `store` behind it they are written there. `... --
-//! growth` shows the cost of a pair and the memory from 10 to 3,000 particles.
+//! growth` shows the cost of a pair and the memory from 10 to 3,000 particles, `... -- crowd` the instructions of a ball
+//! and step of a penalty scene from 100 to 100,000 balls.
 #![forbid(unsafe_code)]
 use fosssim_judge::replay::{self, Options};
 use fosssim_model::{
@@ -31,6 +32,7 @@ fn main() {
         ["instructions"] => return instructions(false),
         ["instructions", "store"] => return instructions(true),
         ["growth"] => return growth(),
+        ["crowd"] => return crowd(),
         _ => {}
     }
     let [rounds, what, files @ ..] = &arguments[..] else { return };
@@ -156,17 +158,11 @@ fn instructions(store: bool) {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/t2m2");
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/instructions.txt");
     let stored = std::fs::read_to_string(file).unwrap_or_default();
-    let program = std::env::current_exe().expect("this program");
     let mut text = String::new();
     println!("| work | instructions | stored | ratio |\n|---|---:|---:|---:|");
     for scene in COUNTED {
         for what in ["step", "record", "parity", "fair", "half", "rounded"] {
-            let mut command = Command::new("valgrind");
-            command.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]).arg(&program);
-            let output = command.args(["1", what]).arg(format!("{folder}/{scene}.xml")).output().expect("valgrind");
-            let said = String::from_utf8_lossy(&output.stderr);
-            let (_, count) = said.rsplit_once("Collected :").unwrap_or_else(|| panic!("{said}"));
-            let count: f64 = count.split_whitespace().next().and_then(|word| word.parse().ok()).expect("a number");
+            let count = counted(what, &format!("{folder}/{scene}.xml"));
             let name = format!("{what} {scene}");
             _ = writeln!(text, "{name} {count}");
             let before = stored.lines().find_map(|line| line.strip_prefix(&name)?.trim().parse::<f64>().ok());
@@ -179,6 +175,52 @@ fn instructions(store: bool) {
     if store {
         std::fs::write(file, text).expect("written");
     }
+}
+
+/// The instructions of one round of work on a scene, with the start of this program.
+fn counted(what: &str, scene: &str) -> f64 {
+    let program = std::env::current_exe().expect("this program");
+    let mut command = Command::new("valgrind");
+    command.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]).arg(&program);
+    let output = command.args(["1", what, scene]).output().expect("valgrind");
+    let said = String::from_utf8_lossy(&output.stderr);
+    let (_, count) = said.rsplit_once("Collected :").unwrap_or_else(|| panic!("{said}"));
+    count.split_whitespace().next().and_then(|word| word.parse().ok()).expect("a number")
+}
+
+/// What a step of a penalty scene costs for each of more and more balls at one density.
+fn crowd() {
+    println!("| balls | instructions of a step, a ball |\n|---:|---:|");
+    let file = std::env::temp_dir().join(format!("fosssim-crowd-{}.xml", std::process::id()));
+    let name = file.to_str().expect("a name in UTF-8");
+    for balls in [100_u32, 1_000, 10_000, 100_000] {
+        let of = |steps: u32| {
+            std::fs::write(&file, box_of(balls, steps)).expect("a file");
+            counted("step", name)
+        };
+        println!("| {balls} | {:.0} |", (of(11) - of(1)) / 10.0 / f64::from(balls));
+    }
+    std::fs::remove_file(&file).expect("removed");
+}
+
+/// Balls that fly about and repel each other, in the order of the contest.
+fn box_of(balls: u32, steps: u32) -> String {
+    let half = 0.5 * (f64::from(balls) / 150.0).sqrt();
+    let mut xml = format!(
+        r#"<scene><duration time="{}"/><integrator type="symplectic-euler" dt="0.005"/>
+        <collision type="penalty" k="100" thickness="0"/><collisiondetection type="contest"/>"#,
+        f64::from(steps) * 0.005
+    );
+    let mut state = 1_u32;
+    let mut number = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        f64::from(state) / f64::from(u32::MAX) * 2.0 - 1.0
+    };
+    for _ in 0..balls {
+        let [x, y, vx, vy] = [half, half, 0.5, 0.5].map(|scale| scale * number());
+        _ = write!(xml, r#"<particle m="1" px="{x}" py="{y}" vx="{vx}" vy="{vy}" fixed="0" radius="0.02"/>"#);
+    }
+    xml + "</scene>"
 }
 
 /// What a pair costs, and the most memory that was used so far, in scenes of more and more particles.

@@ -3,7 +3,7 @@ use fosssim_mistakes::{
     diagnose::explain,
     student::{self, Student},
 };
-use fosssim_model::scene::{Collision, Display, Edge, Integrator, Particle, Scene};
+use fosssim_model::scene::{Collision, CollisionDetection, Display, Edge, Integrator, Particle, Scene};
 use fosssim_num::vector::Vec2;
 use std::{
     alloc::{GlobalAlloc, Layout, System},
@@ -77,7 +77,12 @@ fn peak_of(scene: &Scene) -> usize {
 /// No program of the catalogue needs a list of the scene's pairs: memory grows with the scene and not with its pairs.
 #[test]
 fn memory_grows_with_the_scene_and_not_with_its_pairs() {
-    let of = |balls: u32| peak_of(&row(balls, Collision::Penalty { stiffness: 100.0, thickness: 0.01 }));
+    let of = |balls: u32| {
+        peak_of(&row(
+            balls,
+            Collision::Penalty { stiffness: 100.0, thickness: 0.01, detection: CollisionDetection::AllPairs },
+        ))
+    };
     let (small, large) = (of(100), of(400));
     println!("{small} {large}");
     assert!(small < 1 << 20 && large < 4 << 20, "{small} and {large} bytes");

@@ -77,7 +77,9 @@ impl Map {
             ..particle.clone()
         };
         let collision = match scene.collision {
-            Collision::Penalty { stiffness, thickness } => Collision::Penalty { stiffness, thickness: k * thickness },
+            Collision::Penalty { stiffness, thickness, detection } => {
+                Collision::Penalty { stiffness, thickness: k * thickness, detection }
+            }
             Collision::Hybrid { restitution, max_iterations, stiffness, thickness } => {
                 Collision::Hybrid { restitution, max_iterations, stiffness, thickness: k * thickness }
             }

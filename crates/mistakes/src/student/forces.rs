@@ -1,9 +1,9 @@
 //! The forces: the gradient of their potentials (simulation.md 2 and 3).
-use fosssim_model::scene::{Collision, Force};
+use fosssim_model::scene::{Collision, CollisionDetection, Force};
 use fosssim_num::vector::{Vec2, at, length, over};
 
 use super::{
-    penalty,
+    penalty::{self, PenaltyLayer},
     world::{World, add, subtract},
 };
 
@@ -14,8 +14,11 @@ pub fn gradient(world: &World, x: &[f64], v: &[f64]) -> Vec<f64> {
         add_gradient(world, force, x, v, &mut g);
     }
     match world.scene.collision {
-        Collision::Penalty { stiffness, thickness } | Collision::Hybrid { stiffness, thickness, .. } => {
-            penalty::add_gradient(world, stiffness, thickness, x, &mut g);
+        Collision::Penalty { stiffness: k, thickness: h, detection } => {
+            penalty::add_gradient(world, PenaltyLayer { k, h, detection }, x, &mut g);
+        }
+        Collision::Hybrid { stiffness: k, thickness: h, .. } => {
+            penalty::add_gradient(world, PenaltyLayer { k, h, detection: CollisionDetection::AllPairs }, x, &mut g);
         }
         _ => {}
     }

@@ -1,38 +1,57 @@
 //! The penalty force, which `penalty` and `hybrid` scenes add to the others (simulation.md 3).
+use fosssim_model::{
+    scene::CollisionDetection,
+    sim::{PairKind, PenaltyPairs},
+};
 use fosssim_num::vector::{at, length, unit};
 
 use super::world::{World, add, subtract};
 
-/// Adds the gradient of the penalty force with stiffness `k` and thickness `h`.
-pub fn add_gradient(world: &World, k: f64, h: f64, x: &[f64], g: &mut [f64]) {
-    let particles = &world.scene.particles;
-    for i in 0..particles.len() {
-        for j in i + 1..particles.len() {
-            particle_particle(world, k, h, (i, j), x, g);
-        }
-        for (index, edge) in world.scene.edges.iter().enumerate() {
-            if edge.first != i && edge.second != i {
-                particle_edge(world, k, h, (i, index), x, g);
-            }
-        }
-        for plane in 0..world.scene.half_planes.len() {
-            particle_half_plane(world, k, h, (i, plane), x, g);
-        }
+/// The layer around bodies that repels others.
+#[derive(Clone, Copy)]
+pub struct PenaltyLayer {
+    /// Stiffness.
+    pub k: f64,
+    /// Thickness.
+    pub h: f64,
+    /// How pairs are found, which orders the sum. In the contest bodies at the same place leave each other alone.
+    pub detection: CollisionDetection,
+}
+
+impl PenaltyLayer {
+    fn repels(self, distance: f64, reach: f64) -> bool {
+        distance < reach && !(self.detection == CollisionDetection::Contest && distance == 0.0)
     }
 }
 
-fn particle_particle(world: &World, k: f64, h: f64, (i, j): (usize, usize), x: &[f64], g: &mut [f64]) {
+/// Adds the gradient of the penalty force. Pairs out of its reach add nothing, so that a program may leave them out.
+pub fn add_gradient(world: &World, layer: PenaltyLayer, x: &[f64], g: &mut [f64]) {
+    PenaltyPairs::new(&world.scene, layer.h, layer.detection).visit(x, |pair| {
+        let both = (pair.first as usize, pair.second as usize);
+        match pair.kind {
+            PairKind::ParticleParticle => particle_particle(world, layer, both, x, g),
+            PairKind::ParticleEdge => particle_edge(world, layer, both, x, g),
+            PairKind::ParticleHalfPlane => particle_half_plane(world, layer, both, x, g),
+        }
+    });
+}
+
+fn particle_particle(world: &World, layer: PenaltyLayer, (i, j): (usize, usize), x: &[f64], g: &mut [f64]) {
+    let PenaltyLayer { k, h, .. } = layer;
     let (first, second) = (world.scene.particles[i].radius, world.scene.particles[j].radius);
     let n = at(x, j) - at(x, i);
     let distance = length(n);
-    if distance < first + second + h {
-        let push = k * (distance - first - second - h) * unit(n);
+    if layer.repels(distance, first + second + h) {
+        // In the contest the original's direction is normalised twice.
+        let u = if layer.detection == CollisionDetection::Contest { unit(unit(n)) } else { unit(n) };
+        let push = k * (distance - first - second - h) * u;
         subtract(g, i, push);
         add(g, j, push);
     }
 }
 
-fn particle_edge(world: &World, k: f64, h: f64, (i, edge): (usize, usize), x: &[f64], g: &mut [f64]) {
+fn particle_edge(world: &World, layer: PenaltyLayer, (i, edge): (usize, usize), x: &[f64], g: &mut [f64]) {
+    let PenaltyLayer { k, h, .. } = layer;
     let edge = world.scene.edges[edge];
     let radius = world.scene.particles[i].radius;
     let (x1, x2, x3) = (at(x, i), at(x, edge.first), at(x, edge.second));
@@ -41,7 +60,7 @@ fn particle_edge(world: &World, k: f64, h: f64, (i, edge): (usize, usize), x: &[
     let alpha = alpha.clamp(0.0, 1.0);
     let n = x2 + alpha * (x3 - x2) - x1;
     let distance = length(n);
-    if distance < radius + edge.radius + h {
+    if layer.repels(distance, radius + edge.radius + h) {
         let depth = distance - radius - edge.radius - h;
         let u = unit(n);
         subtract(g, i, k * depth * u);
@@ -50,13 +69,14 @@ fn particle_edge(world: &World, k: f64, h: f64, (i, edge): (usize, usize), x: &[
     }
 }
 
-fn particle_half_plane(world: &World, k: f64, h: f64, (i, plane): (usize, usize), x: &[f64], g: &mut [f64]) {
+fn particle_half_plane(world: &World, layer: PenaltyLayer, (i, plane): (usize, usize), x: &[f64], g: &mut [f64]) {
+    let PenaltyLayer { k, h, .. } = layer;
     let plane = world.scene.half_planes[plane];
     let radius = world.scene.particles[i].radius;
     let q = plane.normal;
     let n = (plane.point - at(x, i)).dot(&q) / q.dot(&q) * q;
     let distance = length(n);
-    if distance < radius + h {
+    if layer.repels(distance, radius + h) {
         subtract(g, i, k * (distance - radius - h) * unit(n).dot(&q) / q.dot(&q) * q);
     }
 }

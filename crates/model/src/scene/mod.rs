@@ -27,7 +27,8 @@ mod xml;
 
 pub use checks::LARGEST_IMPLICIT;
 pub use model::{
-    Collision, Color, Display, Edge, Force, HalfPlane, Integrator, Particle, ParticlePath, Scene, Viewport,
+    Collision, CollisionDetection, Color, Display, Edge, Force, HalfPlane, Integrator, Particle, ParticlePath, Scene,
+    Viewport,
 };
 pub use problem::{MOST_PROBLEMS, Problem, Problems, Severity};
 pub use reader::{LARGEST_SCENE, Loaded, read};

@@ -106,8 +106,13 @@ fn names_that_do_not_exist() {
     );
     says(
         "<collisiondetection type='contest'/>",
-        "fine\n4:1: warning: `collisiondetection` has no effect (it belongs to Theme 2 Milestone 3; this program tests \
-         all pairs as Milestone 2 does)",
+        "fine\n4:1: warning: `collisiondetection` has no effect (it says how a `penalty` scene finds its pairs; other \
+         collision handling tests all pairs)",
+    );
+    says("<collision type='penalty'/><collisiondetection type='contest'/>", "fine");
+    says(
+        "<collision type='penalty'/><collisiondetection type='contests'/>",
+        "4:54: `type` of collisiondetection is `contests` (did you mean `contest`?)",
     );
     assert_eq!(
         judged(&format!("<scene x='1'>{START}{TWO}</scene>")),

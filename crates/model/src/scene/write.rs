@@ -2,7 +2,7 @@
 use std::fmt::{self, Write as _};
 
 use super::forces::{self, Sink};
-use super::model::{Collision, Color, Force, Integrator, Scene};
+use super::model::{Collision, CollisionDetection, Color, Force, Integrator, Scene};
 
 /// Writes a scene as XML, one element a line, every attribute spelt out, every number in the shortest form that reads
 /// back to the same bits.
@@ -26,6 +26,9 @@ fn body(out: &mut String, scene: &Scene) -> fmt::Result {
     writeln!(out, "  {}", integrator_element(scene))?;
     if scene.collision != Collision::None {
         writeln!(out, "  {}", collision_element(scene.collision))?;
+    }
+    if let Collision::Penalty { detection: CollisionDetection::Contest, .. } = scene.collision {
+        writeln!(out, r#"  <collisiondetection type="contest"/>"#)?;
     }
     display(out, scene)?;
     for particle in &scene.particles {
@@ -75,7 +78,7 @@ pub fn collision_element(collision: Collision) -> String {
         Collision::Simple { restitution } | Collision::ContinuousTime { restitution } => {
             format!(r#"<collision type="{name}" COR="{}"/>"#, Number(restitution))
         }
-        Collision::Penalty { stiffness, thickness } => {
+        Collision::Penalty { stiffness, thickness, .. } => {
             format!(r#"<collision type="{name}" k="{}" thickness="{}"/>"#, Number(stiffness), Number(thickness))
         }
         Collision::Hybrid { restitution, max_iterations, stiffness, thickness } => {

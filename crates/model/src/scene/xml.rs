@@ -4,7 +4,9 @@
 use super::document::Document;
 use super::fields::{Count, Fields};
 use super::forces::{ForceKind, Source};
-use super::model::{Collision, Display, Edge, Force, HalfPlane, Integrator, Particle, ParticlePath, Scene, Viewport};
+use super::model::{
+    Collision, CollisionDetection, Display, Edge, Force, HalfPlane, Integrator, Particle, ParticlePath, Scene, Viewport,
+};
 use super::problem::{Report, SceneFinding};
 use super::tag::Tag;
 use crate::assignments::CollisionType;
@@ -69,7 +71,7 @@ pub(super) fn read<'d, 't>(document: &'d Document<'t>, report: &mut Report) -> O
         forces: reading.forces(of_particles, of_edges),
         integrator: reading.required("integrator", "type=\"...\" dt=\"...\"", integrator),
         duration: reading.required("duration", "time=\"...\"", duration),
-        collision: reading.single("collision", collision).map_or(Some(Collision::None), |part| part.value),
+        collision: reading.collision(),
         description: reading.optional("description", |fields| fields.text("text", "a text")),
         display: reading.display(of_particles, of_edges, of_half_planes),
         particles,
@@ -185,14 +187,26 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
         forces
     }
 
-    fn display(&mut self, particles: Count, edges: Count, half_planes: Count) -> Option<Display> {
-        if let Some(part) = self.single("collisiondetection", |_| Some(())) {
-            self.report.warning(|| {
-                SceneFinding::new(part.tag.span.clone(), "`collisiondetection` has no effect")
-                    .element("collisiondetection")
-                    .help("it belongs to Theme 2 Milestone 3; this program tests all pairs as Milestone 2 does")
-            });
+    /// The collision handling, with the detection that its penalty force uses.
+    fn collision(&mut self) -> Option<Collision> {
+        let read = self.single("collision", collision).map_or(Some(Collision::None), |part| part.value);
+        let Some(part) = self.single("collisiondetection", detection) else { return read };
+        match read? {
+            Collision::Penalty { stiffness, thickness, .. } => {
+                Some(Collision::Penalty { stiffness, thickness, detection: part.value? })
+            }
+            other => {
+                self.report.warning(|| {
+                    SceneFinding::new(part.tag.span.clone(), "`collisiondetection` has no effect")
+                        .element("collisiondetection")
+                        .help("it says how a `penalty` scene finds its pairs; other collision handling tests all pairs")
+                });
+                Some(other)
+            }
         }
+    }
+
+    fn display(&mut self, particles: Count, edges: Count, half_planes: Count) -> Option<Display> {
         let max_frequency = self.optional("maxsimfreq", |fields| fields.scalar("max"));
         let viewport = self.optional("viewport", |fields| {
             let (center, size) = (fields.vector("cx", "cy"), fields.scalar("size"));
@@ -250,6 +264,10 @@ fn integrator(fields: &mut AnyFields<'_, '_, '_>) -> Option<(Integrator, f64)> {
     Some((integrator?, time_step?))
 }
 
+fn detection(fields: &mut AnyFields<'_, '_, '_>) -> Option<CollisionDetection> {
+    fields.choice("type", &[("all-pairs", CollisionDetection::AllPairs), ("contest", CollisionDetection::Contest)])
+}
+
 fn collision(fields: &mut AnyFields<'_, '_, '_>) -> Option<Collision> {
     let types = CollisionType::ALL.map(|kind| (kind.name(), kind));
     let restitution = fields.scalar_or("COR", 1.0);
@@ -283,7 +301,7 @@ fn collision(fields: &mut AnyFields<'_, '_, '_>) -> Option<Collision> {
         CollisionType::ContinuousTime => Some(Collision::ContinuousTime { restitution: restitution? }),
         CollisionType::Penalty => {
             let (stiffness, thickness) = force()?;
-            restitution.map(|_| Collision::Penalty { stiffness, thickness })
+            restitution.map(|_| Collision::Penalty { stiffness, thickness, detection: CollisionDetection::AllPairs })
         }
         CollisionType::Hybrid => {
             let force = force();

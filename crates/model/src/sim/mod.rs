@@ -10,6 +10,7 @@ mod collision;
 mod forces;
 mod integrators;
 mod matrix;
+mod nearby;
 mod observer;
 mod pair;
 mod pairs;
@@ -22,6 +23,7 @@ mod state;
 mod step_error;
 
 pub use collision::{PairMotion, PointMotion, formulas};
+pub use forces::PenaltyPairs;
 pub use observer::{Decision, Detection, Impulse, Observer, Pass, Resume, Stage, Time, Wanted, Zone};
 pub use pair::{ByKind, Pair, PairKind};
 pub use pairs::{Pairs, pairs};

@@ -88,7 +88,7 @@ impl Simulation {
         }
         self.q_start.clone_from(&self.state.positions);
         self.stepper.limit_work(self.most_work.saturating_sub(self.handler.counts().work()));
-        if let Err(DoesNotConverge) = self.stepper.advance(&self.bodies, &self.forces, &mut self.state) {
+        if let Err(DoesNotConverge) = self.stepper.advance(&self.bodies, &mut self.forces, &mut self.state) {
             let is_beyond = self.stepper.is_beyond_limit();
             return Err(if is_beyond { StepError::Work { step } } else { StepError::Newton { step } });
         }
@@ -127,7 +127,7 @@ impl Simulation {
 mod tests {
     use super::*;
     use crate::{
-        scene::{Collision, Force, Integrator, Particle},
+        scene::{Collision, CollisionDetection, Force, Integrator, Particle},
         sim::{
             Decision, Detection, Impulse, Pair, PairKind, Pass, Resume, Time, Zone,
             samples::{edge, fixed, half_plane, particle, scene},
@@ -306,7 +306,8 @@ mod tests {
 
     #[test]
     fn without_handling_no_pair_is_looked_at() {
-        for collision in [Collision::None, Collision::Penalty { stiffness: 1.0, thickness: 0.1 }] {
+        let penalty = Collision::Penalty { stiffness: 1.0, thickness: 0.1, detection: CollisionDetection::AllPairs };
+        for collision in [Collision::None, penalty] {
             let mut log = Log::default();
             let simulation = stepped(&falling(collision), &mut log);
             assert_eq!(log.lines, ["step 1", "end 1"]);

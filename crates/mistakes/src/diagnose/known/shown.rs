@@ -40,7 +40,7 @@ mod tests {
         assignments::probe_scenes,
         student::{Student, trace},
     };
-    use fosssim_model::assignments::Assignment;
+    use fosssim_model::{assignments::Assignment, scene::CollisionDetection};
 
     /// What is not tried on a scene would leave the right trace of it.
     #[test]
@@ -52,7 +52,7 @@ mod tests {
             .flat_map(|scene| {
                 let collisions = [
                     Collision::None,
-                    Collision::Penalty { stiffness: 100.0, thickness: 0.1 },
+                    Collision::Penalty { stiffness: 100.0, thickness: 0.1, detection: CollisionDetection::AllPairs },
                     Collision::Simple { restitution: 0.5 },
                 ];
                 collisions.map(|collision| Scene { collision, ..scene.clone() })

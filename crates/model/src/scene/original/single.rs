@@ -1,7 +1,7 @@
 //! The elements of which only the first counts, with the original's words about them (scene-format.md 4).
 use super::markup::Element;
 use super::{Refusal, values};
-use crate::scene::model::{Collision, Color, Integrator, Viewport};
+use crate::scene::model::{Collision, CollisionDetection, Color, Integrator, Viewport};
 use fosssim_num::vector::Vec2;
 
 /// The children of the scene, looked up by name.
@@ -102,6 +102,14 @@ impl<'e> Singles<'e> {
         Ok((integrator, time_step))
     }
 
+    /// Whatever is not the contest's detection has no effect.
+    fn detection(&self) -> CollisionDetection {
+        match self.first("collisiondetection").and_then(|element| element.attribute("type")) {
+            Some(b"contest") => CollisionDetection::Contest,
+            _ => CollisionDetection::AllPairs,
+        }
+    }
+
     pub(super) fn collision(&self) -> Result<Collision, Refusal> {
         let Some(element) = self.first("collision") else { return Ok(Collision::None) };
         let number = |name: &str, default: f64| {
@@ -116,9 +124,11 @@ impl<'e> Singles<'e> {
             Some(b"none") => Ok(Collision::None),
             Some(b"simple") => Ok(Collision::Simple { restitution }),
             Some(b"continuous-time") => Ok(Collision::ContinuousTime { restitution }),
-            Some(b"penalty") => {
-                Ok(Collision::Penalty { stiffness: number("k", 100.0)?, thickness: number("thickness", 0.01)? })
-            }
+            Some(b"penalty") => Ok(Collision::Penalty {
+                stiffness: number("k", 100.0)?,
+                thickness: number("thickness", 0.01)?,
+                detection: self.detection(),
+            }),
             Some(b"hybrid") => Ok(Collision::Hybrid {
                 restitution,
                 max_iterations: values::truncated(number("maxiters", 10.0)?),

@@ -1,6 +1,6 @@
 //! The original's words about every kind of problem, and what it lets pass.
 use super::{OriginalScene, Refusal, RefusalKind, read};
-use crate::scene::model::{Collision, Force, Integrator};
+use crate::scene::model::{Collision, CollisionDetection, Force, Integrator};
 use fosssim_num::vector::Vec2;
 
 const BARE: &str = "<duration time='1'/><integrator type='explicit-euler' dt='0.1'/>";
@@ -46,7 +46,10 @@ fn defaults() {
 fn collision_defaults_depend_on_the_type() {
     let of = |attributes: &str| accepted(&format!("<collision {attributes}/>")).scene.collision;
     assert_eq!(of("type='simple'"), Collision::Simple { restitution: 1.0 });
-    assert_eq!(of("type='penalty' COR='7'"), Collision::Penalty { stiffness: 100.0, thickness: 0.01 });
+    assert_eq!(
+        of("type='penalty' COR='7'"),
+        Collision::Penalty { stiffness: 100.0, thickness: 0.01, detection: CollisionDetection::AllPairs }
+    );
     assert_eq!(
         of("type='hybrid' maxiters='3.9e0'"),
         Collision::Hybrid { restitution: 1.0, max_iterations: 3, stiffness: 10.0, thickness: 0.1 }

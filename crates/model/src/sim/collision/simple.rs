@@ -1,11 +1,13 @@
 //! `simple` handling: impulses where bodies overlap at the end of the step and approach (collisions.md 6).
 //!
-//! Velocities change at once, so that later pairs see them; positions never change.
+//! Velocities change at once, so that later pairs see them; positions never change. So where nobody asks about pairs
+//! that are apart, only those are looked at that the broad phase finds.
 use super::{
     super::{
         bodies::Bodies,
-        observer::{Decision, Detection, Impulse, Observer, Pass, Stage, Time},
-        pair::{Pair, PairKind, pair},
+        nearby::{NearPairs, Nearby},
+        observer::{Decision, Detection, Impulse, Observer, Pass, Stage, Time, Wanted},
+        pair::{PairKind, pair},
         pairs::{PassCursor, is_end},
         state::State,
     },
@@ -14,45 +16,130 @@ use super::{
 };
 use fosssim_num::vector::Vec2;
 
-/// Handles the overlaps at the end of a step.
-pub(super) fn handle<O: Observer>(bodies: &Bodies, law: &Law, q_start: &[f64], state: &mut State, observer: &mut O) {
+/// Handles the overlaps at the end of a step; `nearby` finds pairs without a margin.
+pub(super) fn handle<O: Observer>(
+    bodies: &Bodies,
+    law: &Law,
+    nearby: Option<&mut Nearby>,
+    q_start: &[f64],
+    state: &mut State,
+    observer: &mut O,
+) {
     let pass = Pass { stage: Stage::Simple, index: 0 };
     let State { positions: x, velocities: v } = state;
-    let mut hits = 0;
     observer.begin_pass(pass);
-    let mut look = |pair: Pair, normal: Option<Vec2>, v: &mut [f64], respond: &dyn Fn(&[f64], Vec2) -> Response| {
-        let decision = normal.map_or(Decision::Miss { time: Time::None }, |normal| Decision::Hit { time: 0.0, normal });
-        let decision = observer.decide(pair, decision);
-        observer.detection(&Detection { pair, polynomials: &[], decision, q_start, q_end: x });
-        if let Decision::Hit { normal, .. } = decision {
-            hits += 1;
-            respond(v, normal).apply_velocities(v);
-            observer.impulse(&Impulse { pair, normal, time: 0.0 });
-        }
+    let mut found = match observer.wanted() {
+        Wanted::Calls => None,
+        Wanted::Bytes(_) | Wanted::Nothing => nearby.and_then(|nearby| nearby.find(x)).map(NearPairs::sorted),
     };
+    let mut looking = Looking { bodies, factor: law.factor, q_start, x, v, observer, hits: 0 };
     for i in 0..bodies.particles() {
         let [particles, edges, half_planes] = bodies.objects().row(PassCursor::of(i));
-        for j in particles {
-            let normal = particle_particle::overlap(bodies, x, v, i, j);
-            look(pair(PairKind::ParticleParticle, i, j), normal, v, &|v, n| {
-                particle_particle::simple_response(bodies, law.factor, v, i, j, n)
-            });
+        if let Some(found) = &mut found {
+            let [particles, edges] = found.next(i);
+            particles.for_each(|j| looking.at_particles(i, j));
+            edges.for_each(|edge| looking.at_edge(i, edge));
+        } else {
+            particles.for_each(|j| looking.at_particles(i, j));
+            edges.filter(|&edge| !is_end(bodies.edges[edge], i)).for_each(|edge| looking.at_edge(i, edge));
         }
-        for e in edges {
-            let ends = bodies.edges[e];
-            if !is_end(ends, i) {
-                let normal = particle_edge::overlap(bodies, x, v, i, e);
-                look(pair(PairKind::ParticleEdge, i, e), normal, v, &|v, n| {
-                    particle_edge::simple_response(bodies, law.factor, x, v, i, ends, n)
-                });
-            }
-        }
-        for h in half_planes {
-            let normal = particle_half_plane::overlap(bodies, x, v, i, h);
-            look(pair(PairKind::ParticleHalfPlane, i, h), normal, v, &|v, n| {
-                particle_half_plane::simple_response(law.factor, v, i, n)
-            });
+        half_planes.for_each(|half_plane| looking.at_half_plane(i, half_plane));
+    }
+    let hits = looking.hits;
+    observer.end_pass(pass, hits);
+}
+
+/// A pass at work.
+struct Looking<'a, O> {
+    bodies: &'a Bodies,
+    factor: f64,
+    q_start: &'a [f64],
+    x: &'a [f64],
+    v: &'a mut [f64],
+    observer: &'a mut O,
+    hits: usize,
+}
+
+impl<O: Observer> Looking<'_, O> {
+    fn at_particles(&mut self, i: usize, j: usize) {
+        let normal = particle_particle::overlap(self.bodies, self.x, self.v, i, j);
+        self.settle(PairKind::ParticleParticle, i, j, normal, |looking, n| {
+            particle_particle::simple_response(looking.bodies, looking.factor, looking.v, i, j, n)
+        });
+    }
+
+    fn at_edge(&mut self, i: usize, edge: usize) {
+        let normal = particle_edge::overlap(self.bodies, self.x, self.v, i, edge);
+        self.settle(PairKind::ParticleEdge, i, edge, normal, |looking, n| {
+            let (bodies, ends) = (looking.bodies, looking.bodies.edges[edge]);
+            particle_edge::simple_response(bodies, looking.factor, looking.x, looking.v, i, ends, n)
+        });
+    }
+
+    fn at_half_plane(&mut self, i: usize, half_plane: usize) {
+        let normal = particle_half_plane::overlap(self.bodies, self.x, self.v, i, half_plane);
+        self.settle(PairKind::ParticleHalfPlane, i, half_plane, normal, |looking, n| {
+            particle_half_plane::simple_response(looking.factor, looking.v, i, n)
+        });
+    }
+
+    /// Decides about a pair, and answers if it collides.
+    fn settle(
+        &mut self,
+        kind: PairKind,
+        first: usize,
+        second: usize,
+        normal: Option<Vec2>,
+        respond: impl FnOnce(&Self, Vec2) -> Response,
+    ) {
+        let pair = pair(kind, first, second);
+        let decision = normal.map_or(Decision::Miss { time: Time::None }, |normal| Decision::Hit { time: 0.0, normal });
+        let decision = self.observer.decide(pair, decision);
+        let (q_start, q_end) = (self.q_start, self.x);
+        self.observer.detection(&Detection { pair, polynomials: &[], decision, q_start, q_end });
+        if let Decision::Hit { normal, .. } = decision {
+            self.hits += 1;
+            respond(self, normal).apply_velocities(self.v);
+            self.observer.impulse(&Impulse { pair, normal, time: 0.0 });
         }
     }
-    observer.end_pass(pass, hits);
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{
+        scene::Collision,
+        sim::{
+            Observer, RootSearch, Simulation,
+            samples::{Numbers, edge, half_plane, particle, scene},
+        },
+    };
+
+    /// Asks about every pair.
+    struct Everything;
+    impl Observer for Everything {}
+
+    /// Leaving out pairs that are apart changes no bit.
+    #[test]
+    fn who_asks_about_no_pair_gets_the_same_velocities() {
+        let mut numbers = Numbers(3);
+        let mut balls = Vec::new();
+        for _ in 0..80 {
+            let ((x, y), (vx, vy)) = (numbers.pair(), numbers.pair());
+            balls.push(particle((2.0 * x, 2.0 * y), (0.1 * vx, 0.1 * vy), 1.0, 0.1));
+        }
+        let mut scene = scene(balls);
+        scene.collision = Collision::Simple { restitution: 0.7 };
+        scene.edges.extend((0..10).map(|number| edge(7 * number, 7 * number + 1, 0.05)));
+        scene.half_planes.push(half_plane((0.0, -1.5), (0.2, 1.0)));
+        let [mut asked, mut unasked] = [0, 1].map(|_| Simulation::new(&scene, RootSearch::default()));
+        let start = asked.state().velocities.clone();
+        for _ in 0..5 {
+            asked.step(&mut Everything).expect("a step");
+            unasked.step(&mut ()).expect("a step");
+            assert_eq!(asked.state(), unasked.state());
+        }
+        let turned = start.iter().zip(&asked.state().velocities).filter(|(before, after)| before != after).count();
+        assert!(turned > 50, "{turned}");
+    }
 }

@@ -12,9 +12,10 @@ mod spring;
 mod vortex;
 
 use super::{bodies::Bodies, matrix::Matrix};
-use crate::scene::{Collision, Force, Scene};
+use crate::scene::{Collision, CollisionDetection, Force, Scene};
 use fosssim_num::vector::{Vec2, at, put};
 use penalty::Penalty;
+pub use penalty::PenaltyPairs;
 
 /// All forces of a scene in acting order.
 #[derive(Debug, Clone)]
@@ -28,8 +29,11 @@ impl Forces {
     /// thickness is 0).
     pub fn new(scene: &Scene) -> Self {
         let penalty = match scene.collision {
-            Collision::Penalty { stiffness, thickness } | Collision::Hybrid { stiffness, thickness, .. } => {
-                Some(Penalty { stiffness, thickness })
+            Collision::Penalty { stiffness, thickness, detection } => {
+                Some(Penalty::new(scene, stiffness, thickness, detection))
+            }
+            Collision::Hybrid { stiffness, thickness, .. } => {
+                Some(Penalty::new(scene, stiffness, thickness, CollisionDetection::AllPairs))
             }
             Collision::None | Collision::Simple { .. } | Collision::ContinuousTime { .. } => None,
         };
@@ -42,7 +46,7 @@ impl Forces {
     }
 
     /// Fills `gradient` (2N) with dU/dx of all forces at positions `x` and velocities `v`.
-    pub fn gradient(&self, bodies: &Bodies, x: &[f64], v: &[f64], gradient: &mut [f64]) {
+    pub fn gradient(&mut self, bodies: &Bodies, x: &[f64], v: &[f64], gradient: &mut [f64]) {
         gradient.fill(0.0);
         for force in &self.list {
             match *force {
@@ -60,7 +64,7 @@ impl Forces {
                 }
             }
         }
-        if let Some(penalty) = self.penalty {
+        if let Some(penalty) = &mut self.penalty {
             penalty.add_gradient(bodies, x, gradient);
         }
     }

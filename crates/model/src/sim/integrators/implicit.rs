@@ -15,7 +15,7 @@ use fosssim_num::{
 /// each power of two of the count (Brent's method).
 pub(super) fn advance(
     bodies: &Bodies,
-    forces: &Forces,
+    forces: &mut Forces,
     h: f64,
     rhs: &mut [f64],
     scratch: &mut ImplicitScratch,
@@ -87,7 +87,7 @@ fn norm_by_halves(d: &[f64]) -> f64 {
 mod tests {
     use super::*;
     use crate::{
-        scene::{Collision, Force, Integrator},
+        scene::{Collision, CollisionDetection, Force, Integrator},
         sim::{
             RootSearch, Simulation, StepError,
             samples::{edge, particle, scene},
@@ -113,7 +113,7 @@ mod tests {
         simulation.step(&mut ()).expect("Newton's method converges");
         let after = simulation.state();
         let mut gradient = vec![0.0; 4];
-        let (bodies, forces) = (Bodies::new(&scene), Forces::new(&scene));
+        let (bodies, mut forces) = (Bodies::new(&scene), Forces::new(&scene));
         forces.gradient(&bodies, &after.positions, &after.velocities, &mut gradient);
         for (k, gradient) in gradient.iter().enumerate() {
             let velocity = before.velocities[k] - 0.5 * gradient / bodies.masses[k / 2];
@@ -128,7 +128,8 @@ mod tests {
         let mut scene =
             scene(vec![particle((0.0, 0.0), (1.0, 0.0), 1.0, 0.1), particle((1.25, 0.0), (-1.0, 0.0), 1.0, 0.1)]);
         scene.integrator = Integrator::ImplicitEuler;
-        scene.collision = Collision::Penalty { stiffness: 1000.0, thickness: 0.1 };
+        scene.collision =
+            Collision::Penalty { stiffness: 1000.0, thickness: 0.1, detection: CollisionDetection::AllPairs };
         let mut simulation = Simulation::new(&scene, RootSearch::default());
         assert_eq!(simulation.step(&mut ()), Err(StepError::Newton { step: 1 }));
         assert!(simulation.work() > 2, "{}", simulation.work());

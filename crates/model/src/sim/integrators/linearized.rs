@@ -6,7 +6,7 @@ use fosssim_num::linear;
 /// Solves `A d = -h g` at `(x + h v, v)`, then `v += d`, `x += h v`. `minus_one` is an opaque -1.
 pub(super) fn advance(
     bodies: &Bodies,
-    forces: &Forces,
+    forces: &mut Forces,
     h: f64,
     minus_one: f64,
     rhs: &mut [f64],

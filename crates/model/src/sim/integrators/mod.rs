@@ -111,7 +111,7 @@ impl Stepper {
     /// # Errors
     /// [`DoesNotConverge`] from Newton's method of implicit-euler, also where the work that is allowed does not suffice
     /// ([`Stepper::is_beyond_limit`]); the state is unchanged then.
-    pub fn advance(&mut self, bodies: &Bodies, forces: &Forces, state: &mut State) -> Result<(), DoesNotConverge> {
+    pub fn advance(&mut self, bodies: &Bodies, forces: &mut Forces, state: &mut State) -> Result<(), DoesNotConverge> {
         match (self.kind, self.implicit.as_deref_mut()) {
             (Integrator::ImplicitEuler, Some(scratch)) => {
                 let rhs = &mut self.gradient;
@@ -137,7 +137,7 @@ impl Stepper {
     }
 
     /// Replaces the gradient array by the forces `-1 * g` at the current state, zero for fixed particles.
-    fn force(&mut self, bodies: &Bodies, forces: &Forces, state: &State) {
+    fn force(&mut self, bodies: &Bodies, forces: &mut Forces, state: &State) {
         forces.gradient(bodies, &state.positions, &state.velocities, &mut self.gradient);
         for entry in &mut self.gradient {
             *entry *= self.minus_one;

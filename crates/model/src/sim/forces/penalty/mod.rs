@@ -1,0 +1,121 @@
+//! The penalty force: everything closer than the thickness repels (simulation.md 3, penalty force).
+//!
+//! Its Hessians count as zero, as in the original. There is no guard against zero distance: the direction is NaN then,
+//! and reaches the gradient when the distance test holds. Only the contest's detection has a guard.
+//!
+//! Each detection has an order of its own in which pairs are summed ([`PenaltyPairs`]).
+mod pairs;
+#[cfg(test)]
+mod tests;
+
+use super::{add, subtract};
+use crate::{
+    scene::{CollisionDetection, Scene},
+    sim::{bodies::Bodies, nearby::is_beyond, pair::PairKind},
+};
+use fosssim_num::vector::{at, length, unit};
+pub use pairs::PenaltyPairs;
+
+/// The force of a scene, with the memory to find near pairs.
+#[derive(Debug, Clone)]
+pub(super) struct Penalty {
+    law: Law,
+    pairs: PenaltyPairs,
+}
+
+/// Stiffness `k` (force per length) and thickness `h` (length) of the layer around every body.
+#[derive(Debug, Clone, Copy)]
+struct Law {
+    /// `k`
+    stiffness: f64,
+    /// `h`
+    thickness: f64,
+    /// Whether it is that of Theme 2, Milestone 3: bodies at the same place leave each other alone, and the direction
+    /// from particle to particle is normalised twice, which rounds twice.
+    is_contest: bool,
+}
+
+impl Penalty {
+    /// The force between the bodies of a scene.
+    pub fn new(scene: &Scene, stiffness: f64, thickness: f64, detection: CollisionDetection) -> Self {
+        let is_contest = detection == CollisionDetection::Contest;
+        let pairs = PenaltyPairs::new(scene, thickness, detection);
+        Self { law: Law { stiffness, thickness, is_contest }, pairs }
+    }
+
+    /// Adds the gradient, pair by pair.
+    pub fn add_gradient(&mut self, bodies: &Bodies, x: &[f64], gradient: &mut [f64]) {
+        let law = self.law;
+        self.pairs.visit(x, |pair| {
+            let (first, second) = (pair.first as usize, pair.second as usize);
+            match pair.kind {
+                PairKind::ParticleParticle => law.particle_particle(bodies, first, second, x, gradient),
+                PairKind::ParticleEdge => law.particle_edge(bodies, first, second, x, gradient),
+                PairKind::ParticleHalfPlane => law.particle_half_plane(bodies, first, second, x, gradient),
+            }
+        });
+    }
+}
+
+impl Law {
+    /// Whether bodies at this distance repel each other.
+    #[inline]
+    fn repels(self, distance: f64, reach: f64) -> bool {
+        distance < reach && !(self.is_contest && distance == 0.0)
+    }
+
+    fn particle_particle(self, bodies: &Bodies, i: usize, j: usize, x: &[f64], gradient: &mut [f64]) {
+        let n = at(x, j) - at(x, i);
+        let (r1, r2) = (bodies.radii[i], bodies.radii[j]);
+        let reach = (r1 + r2) + self.thickness;
+        let l = length(n);
+        if self.repels(l, reach) {
+            let u = if self.is_contest { unit(unit(n)) } else { unit(n) };
+            let s = self.stiffness * (((l - r1) - r2) - self.thickness);
+            subtract(gradient, i, s * u);
+            add(gradient, j, s * u);
+        }
+    }
+
+    #[inline]
+    fn particle_edge(self, bodies: &Bodies, i: usize, edge: usize, x: &[f64], gradient: &mut [f64]) {
+        let [first, second] = bodies.edges[edge];
+        let (x1, x2, x3) = (at(x, i), at(x, first), at(x, second));
+        let x32 = x3 - x2;
+        // These comparisons keep a NaN, unlike those of the responses.
+        let alpha = ((x1 - x2).dot(&x32) / x32.dot(&x32)).clamp(0.0, 1.0);
+        let n = (x2 + alpha * x32) - x1;
+        let (r1, r2) = (bodies.radii[i], bodies.edge_radii[edge]);
+        let reach = (r1 + r2) + self.thickness;
+        if is_beyond(n, reach) {
+            return;
+        }
+        let l = length(n);
+        if self.repels(l, reach) {
+            let u = unit(n);
+            let depth = ((l - r1) - r2) - self.thickness;
+            let k = self.stiffness;
+            subtract(gradient, i, (k * depth) * u);
+            add(gradient, first, ((k * (1.0 - alpha)) * depth) * u);
+            add(gradient, second, ((k * alpha) * depth) * u);
+        }
+    }
+
+    #[inline]
+    fn particle_half_plane(self, bodies: &Bodies, i: usize, half_plane: usize, x: &[f64], gradient: &mut [f64]) {
+        let (p, q) = (bodies.points[half_plane], bodies.normals[half_plane]);
+        let squared = q.dot(&q);
+        let n = ((p - at(x, i)).dot(&q) / squared) * q;
+        let r = bodies.radii[i];
+        let reach = r + self.thickness;
+        if is_beyond(n, reach) {
+            return;
+        }
+        let l = length(n);
+        if self.repels(l, reach) {
+            let u = unit(n);
+            let s = self.stiffness * ((l - r) - self.thickness) * u.dot(&q) / squared;
+            subtract(gradient, i, s * q);
+        }
+    }
+}

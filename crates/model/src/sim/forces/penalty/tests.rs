@@ -1,0 +1,70 @@
+//! What the penalty force adds, pair by pair and in which order.
+use super::*;
+use crate::sim::samples::{edge, half_plane, particle, scene};
+
+fn by(detection: CollisionDetection, scene: &Scene, x: &[f64]) -> Vec<f64> {
+    let mut gradient = vec![0.0; x.len()];
+    Penalty::new(scene, 10.0, 0.1, detection).add_gradient(&Bodies::new(scene), x, &mut gradient);
+    gradient
+}
+
+fn gradient(scene: &Scene, x: &[f64]) -> Vec<f64> {
+    by(CollisionDetection::AllPairs, scene, x)
+}
+
+#[test]
+fn bodies_within_the_thickness_repel_and_others_do_not() {
+    let x = [0.0, 0.0, 0.25, 0.0, 0.0, 5.0];
+    let mut scene = scene(x.chunks(2).map(|c| particle((c[0], c[1]), (0.0, 0.0), 1.0, 0.1)).collect());
+    scene.half_planes.push(half_plane((0.0, 4.85), (0.0, 2.0)));
+    let g = gradient(&scene, &x);
+    // Gap 0.05 under a thickness of 0.1: a force of 10 * 0.05, away from the other (the gradient towards it).
+    assert!((g[0] - 0.5).abs() < 1e-14 && (g[2] + 0.5).abs() < 1e-14, "{g:?}");
+    assert!((g[5] + 0.5).abs() < 1e-14, "{g:?}");
+    assert_eq!([g[1], g[3], g[4]], [0.0; 3]);
+}
+
+#[test]
+fn an_edge_shares_the_force_among_its_ends() {
+    let x = [0.25, 0.2, 0.0, 0.0, 1.0, 0.0];
+    let mut scene = scene(x.chunks(2).map(|c| particle((c[0], c[1]), (0.0, 0.0), 1.0, 0.1)).collect());
+    scene.edges.push(edge(1, 2, 0.05));
+    let g = gradient(&scene, &x);
+    assert!((g[1] + 0.5).abs() < 1e-14 && (g[3] - 0.375).abs() < 1e-14 && (g[5] - 0.125).abs() < 1e-14, "{g:?}");
+}
+
+#[test]
+fn coincident_particles_give_nan() {
+    let x = [1.0, 1.0, 1.0, 1.0];
+    let scene = scene(x.chunks(2).map(|c| particle((c[0], c[1]), (0.0, 0.0), 1.0, 0.1)).collect());
+    assert!(gradient(&scene, &x).iter().all(|g| g.is_nan()));
+}
+
+#[test]
+fn in_the_contest_coincident_particles_leave_each_other_alone() {
+    let x = [1.0, 1.0, 1.0, 1.0];
+    let scene = scene(x.chunks(2).map(|c| particle((c[0], c[1]), (0.0, 0.0), 1.0, 0.1)).collect());
+    assert_eq!(by(CollisionDetection::Contest, &scene, &x), [0.0; 4]);
+}
+
+/// Three bodies touch a fourth one, with forces whose sum depends on the order.
+#[test]
+fn the_contest_sums_in_the_order_of_a_sweep() {
+    let x = [0.02, 0.15, 0.05, -0.13, -0.11, 0.08, 0.0, 0.0, -0.5, -0.1, 0.5, -0.1];
+    let mut scene = scene(x.chunks(2).map(|c| particle((c[0], c[1]), (0.0, 0.0), 1.0, 0.1)).collect());
+    scene.edges.push(edge(4, 5, 0.01));
+    let sums: Vec<Vec<f64>> = [[0, 1, 2], [2, 0, 1]]
+        .map(|order| {
+            let is_contest = order[0] == 2;
+            let mut sum = vec![0.0; x.len()];
+            let law = Law { stiffness: 10.0, thickness: 0.1, is_contest };
+            let bodies = Bodies::new(&scene);
+            order.into_iter().for_each(|i| law.particle_particle(&bodies, i, 3, &x, &mut sum));
+            law.particle_edge(&bodies, 3, 0, &x, &mut sum);
+            sum
+        })
+        .into();
+    let [all_pairs, contest] = [CollisionDetection::AllPairs, CollisionDetection::Contest].map(|d| by(d, &scene, &x));
+    assert_ne!(sums[0][6..8], sums[1][6..8], "the order shows");
+    assert_eq!((&all_pairs[6..8], &contest[6..8]), (&sums[0][6..8], &sums[1][6..8]));
+}
