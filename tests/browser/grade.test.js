@@ -114,7 +114,7 @@ test("a whole diagnosis by keyboard", { skip }, async () => {
   const article = page.locator("article.case").first();
   assert.match(await article.locator(".say").innerText(), /is wrong by itself/);
   const first = await article.locator(".stepbox").inputValue();
-  await tabs(".viewer canvas:not(.strip)");
+  await tabs(".viewer canvas.picture");
   await page.keyboard.press("ArrowLeft");
   assert.equal(Number(await article.locator(".stepbox").inputValue()), Number(first) - 1);
   await page.keyboard.press("n");
@@ -127,11 +127,13 @@ test("a whole diagnosis by keyboard", { skip }, async () => {
   await page.keyboard.press("Enter");
   await tabs(".pair");
   await page.keyboard.press("Enter");
+  await tabs(".numbers summary");
+  await page.keyboard.press("Enter");
   assert.match(await article.locator(".numbers").innerText(), /0x[0-9a-f]{16}/);
   // Opening and closing a card.
-  await article.locator("details.card > summary").focus();
+  await article.locator("details.scene > summary").focus();
   await page.keyboard.press("Enter");
-  assert.equal(await article.locator("details.card").getAttribute("open"), null);
+  assert.equal(await article.locator("details.scene").getAttribute("open"), null);
   assert.deepEqual(complaints, []);
   await close();
 });

@@ -59,8 +59,8 @@ for (const name of Object.keys(CASES)) {
 test("without script the essentials are there", async () => {
   const { page, close } = await open(report("polynomial"), { script: false });
   const text = await page.locator("main").innerText();
-  for (const words of [/WRONG ANSWER/, /likely mistake/, /Where it goes wrong first/, /differs/, /needs JavaScript/]) assert.match(text, words);
-  assert.ok((await page.locator("figure svg").count()) >= 4);
+  for (const words of [/WRONG ANSWER/, /Likely mistake/, /Where it goes wrong first/, /differs/, /needs JavaScript/]) assert.match(text, words);
+  assert.ok((await page.locator("figure svg").count()) >= 1);
   await close();
 });
 
@@ -71,7 +71,7 @@ test("a wrong failsafe is found by keyboard", async () => {
   const first = await step();
   assert.match(await said(), /is wrong by itself/);
   assert.match(await said(), /with the named mistake is here to the last bit/);
-  await page.locator(".viewer canvas:not(.strip)").focus();
+  await page.locator(".viewer canvas.picture").focus();
   await page.keyboard.press("n");
   assert.ok((await step()) > first || /no later wrong step/.test(await said()));
   await page.keyboard.press("Home");
@@ -93,6 +93,42 @@ test("a wrong failsafe is found by keyboard", async () => {
   await close();
 });
 
+test("the picture stands in the first screen, near the difference, and no width is too small", async () => {
+  const { page, complaints, close } = await open(report("missed"));
+  const top = () => page.locator(".viewer canvas.picture").evaluate((canvas) => canvas.getBoundingClientRect().top + scrollY);
+  for (const [width, height] of [[1440, 900], [1024, 768], [390, 844]]) {
+    await page.setViewportSize({ width, height });
+    assert.ok((await top()) < 0.7 * height, `${width}: ${await top()}`);
+    assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= width, `${width}`);
+  }
+  // The timeline shows a moment before one goes there; what is expected can stand beside what is there.
+  await page.setViewportSize({ width: 1440, height: 900 });
+  const picture = () => page.locator(".viewer canvas.picture").evaluate((canvas) => canvas.toDataURL());
+  await page.locator(".viewer canvas.picture").focus();
+  await page.keyboard.press("z");
+  const near = await picture();
+  const step = await page.locator(".stepbox").inputValue();
+  await page.locator("canvas.strip").hover({ position: { x: 5, y: 5 } });
+  assert.match(await page.locator(".preview").innerText(), /^1: /);
+  assert.equal(await page.locator(".stepbox").inputValue(), step);
+  assert.ok((await picture()) === near);
+  await page.locator(".viewer canvas.picture").focus();
+  await page.keyboard.press("s");
+  assert.equal(await page.getByRole("button", { name: "Side by side" }).getAttribute("aria-pressed"), "true");
+  assert.ok((await picture()) !== near);
+  await page.keyboard.press("s");
+  await page.keyboard.press("0");
+  assert.ok((await picture()) !== near);
+  await page.keyboard.press("z");
+  assert.ok((await picture()) === near);
+  // All keys are listed, and ? folds the list.
+  assert.match(await page.locator(".keys").innerText(), /next wrong step.*side by side/s);
+  await page.keyboard.press("?");
+  assert.equal(await page.locator(".keys").isVisible(), false);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
 test("a step whose impulses are wrong opens after its impulses, where its end would look right", async () => {
   const { page, complaints, close } = await open(report("impulses"));
   const after = page.getByRole("checkbox", { name: "after the impulses" });
@@ -105,15 +141,15 @@ test("a step whose impulses are wrong opens after its impulses, where its end wo
 });
 
 test("the picture, its table and the plots show the same moment", async () => {
-  const { page, close } = await open(report("contact"));
-  const before = await page.locator(".viewer canvas:not(.strip)").evaluate((canvas) => canvas.toDataURL());
+  const { page, close } = await open(report("failsafe"));
+  const before = await page.locator(".viewer canvas.picture").evaluate((canvas) => canvas.toDataURL());
   await page.keyboard.press("Home");
-  const atStart = await page.locator(".viewer canvas:not(.strip)").evaluate((canvas) => canvas.toDataURL());
+  const atStart = await page.locator(".viewer canvas.picture").evaluate((canvas) => canvas.toDataURL());
   assert.notEqual(atStart, before);
   await page.locator("summary", { hasText: "The picture as a table" }).click();
-  await page.locator(".viewer canvas:not(.strip)").focus();
+  await page.locator(".viewer canvas.picture").focus();
   await page.keyboard.press("n");
-  assert.match(await page.locator("details.table table caption").last().innerText(), /Positions after step \d+/);
+  assert.match(await page.getByText(/^Positions after step/).innerText(), /Positions after step \d+/);
   const step = Number(await page.locator(".stepbox").inputValue());
   const place = await page.locator("figure[data-plot] svg .cursor").first().getAttribute("x1");
   const [left, right, steps] = await page.locator("figure[data-plot]").first().evaluate((figure) => [Number(figure.dataset.left), Number(figure.dataset.right), Number(figure.dataset.steps)]);
@@ -125,6 +161,7 @@ test("a pair is chosen, its numbers are exact, and a command line reproduces it"
   const { page, close } = await open(report("polynomial"));
   await page.locator("summary", { hasText: "Pairs" }).click();
   await page.locator("td.differs button").first().click();
+  await page.locator("summary", { hasText: "To the last bit" }).click();
   const numbers = await page.locator(".numbers").innerText();
   assert.match(numbers, /0x[0-9a-f]{16}/);
   const command = await page.locator(".numbers code").first().innerText();
@@ -156,6 +193,7 @@ test("a contact that is missing lights up; findings and calls lead into the moti
   await page.locator(".stepbox").press("Enter");
   await page.getByRole("button", { name: "Show step 1 in the motion" }).first().click();
   assert.equal(await page.locator(".stepbox").inputValue(), "1");
+  await page.locator("summary", { hasText: "To the last bit" }).click();
   assert.match(await page.locator(".numbers").innerText(), /contact's time of impact\s+0\.50\d+.*\s+none/);
   assert.deepEqual(complaints, []);
   await close();
@@ -253,14 +291,14 @@ test("a picture is saved as a drawing, and bodies as a scene that has the same c
   assert.match(svg, /^<svg xmlns="http:\/\/www.w3.org\/2000\/svg" viewBox="0 0 960 540"/);
   assert.ok((svg.match(/<path/g) ?? []).length > 8 && !svg.includes("NaN"), svg);
   // A contact is chosen by a click; its numbers are there, and its bodies are a scene that the program takes.
-  const canvas = page.locator(".viewer canvas:not(.strip)");
+  const canvas = page.locator(".viewer canvas.picture");
   await page.evaluate(() => { window.copied = ""; document.execCommand = () => { window.copied = document.activeElement.value ?? ""; return true; }; Object.defineProperty(navigator, "clipboard", { value: undefined }); });
   const spot = await canvas.evaluate((canvas) => { const box = canvas.getBoundingClientRect(); return [box.width / canvas.width, box.height / canvas.height]; });
   const contact = svg.match(/<path d="M([\d.]+) ([\d.]+)h12v12h-12Z"/);
   assert.ok(contact, svg);
   await canvas.click({ position: { x: (Number(contact[1]) + 6) * spot[0], y: (Number(contact[2]) + 6) * spot[1] } });
   assert.match(await page.locator(".numbers").innerText(), /particle 0 - particle 1/);
-  assert.match(await page.locator(".numbers").innerText(), /contact's time of impact/);
+  assert.match(await page.locator(".numbers").innerText(), /contact's normal x\s+0\.5/);
   await page.getByRole("button", { name: "Copy as scene" }).click();
   const scene = await page.evaluate(() => window.copied);
   const file = join(folder, "case.xml");
@@ -269,7 +307,8 @@ test("a picture is saved as a drawing, and bodies as a scene that has the same c
   assert.equal(run.status, 0, `${run.stderr}\n${scene}`);
   // The contact comes at the same time there.
   const { answer } = JSON.parse(run.stdout);
-  const told = (await page.locator(".numbers").innerText()).match(/contact's time of impact\s+([\d.e-]+)/);
+  await page.locator("summary", { hasText: "To the last bit" }).click();
+  const told = (await page.getByRole("region", { name: "Exact numbers" }).innerText()).match(/contact's time of impact\s+([\d.e-]+)/);
   assert.ok(answer.collides && Math.abs(answer.time - Number(told[1])) < 1e-9, `${run.stdout}\n${told}`);
   assert.deepEqual(complaints, []);
   await close();

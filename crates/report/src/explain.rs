@@ -36,23 +36,46 @@ pub fn sentence(explanations: &[Explanation]) -> Option<String> {
     })
 }
 
+/// What is said of one explanation, in its parts.
+pub(crate) struct Told {
+    /// Whether it is a mistake that is likely, and not an observation.
+    pub(crate) is_likely: bool,
+    /// The sentence.
+    pub(crate) what: String,
+    /// What it rests on.
+    pub(crate) evidence: Option<String>,
+    /// The exact form, and what can't be told apart from it.
+    pub(crate) details: Vec<String>,
+    /// A small instance.
+    pub(crate) example: Vec<String>,
+}
+
+impl From<&Explanation> for Told {
+    fn from(explanation: &Explanation) -> Self {
+        let Explanation { reproduced, samples, about, .. } = explanation;
+        // What reproduces nothing is an observation, not a mistake that is likely.
+        let (is_likely, evidence) = match (about, *reproduced) {
+            _ if *samples == 0 => (false, None),
+            (_, 0) => (false, Some(format!("{samples} looked at"))),
+            (About::Unfinished, _) => (false, None),
+            (About::Mistake, _) => (true, Some(format!("in {reproduced} of {samples} wrong steps tried"))),
+            _ => (true, Some(format!("fits {reproduced} of {samples} polynomials looked at"))),
+        };
+        let mut details = details(explanation);
+        if !explanation.is_unfinished() {
+            details.extend(others(&explanation.same_as));
+        }
+        let example = explanation.example.as_ref().map(of_example).unwrap_or_default();
+        Self { is_likely, what: what(explanation), evidence, details, example }
+    }
+}
+
 fn of_one(explanation: &Explanation) -> Vec<String> {
-    let (what, Explanation { reproduced, samples, .. }) = (what(explanation), explanation);
-    // What reproduces nothing is an observation, not a mistake that is likely.
-    let mut lines = vec![match (&explanation.about, *reproduced) {
-        _ if *samples == 0 => what,
-        (_, 0) => format!("{what} ({samples} looked at)"),
-        (About::Unfinished, _) => what,
-        (About::Mistake, _) => format!("likely mistake: {what} (in {reproduced} of {samples} wrong steps tried)"),
-        _ => format!("likely mistake: {what} (fits {reproduced} of {samples} polynomials looked at)"),
-    }];
-    lines.extend(details(explanation).iter().map(|detail| format!("  {detail}")));
-    if !explanation.is_unfinished() {
-        lines.extend(others(&explanation.same_as));
-    }
-    if let Some(example) = &explanation.example {
-        lines.extend(of_example(example));
-    }
+    let Told { is_likely, what, evidence, details, example } = Told::from(explanation);
+    let likely = if is_likely { "likely mistake: " } else { "" };
+    let evidence = evidence.map_or_else(String::new, |evidence| format!(" ({evidence})"));
+    let mut lines = vec![format!("{likely}{what}{evidence}")];
+    lines.extend(details.iter().chain(&example).map(|line| format!("  {line}")));
     lines
 }
 
@@ -64,21 +87,21 @@ fn others(keys: &[String]) -> Option<String> {
     let more = more.len() + keys.len() - named.len();
     match (shown.is_empty(), more) {
         (true, 0) => None,
-        (true, more) => Some(format!("  can't be told apart here from {}", counted(more as u64, "other formula"))),
-        (false, 0) => Some(format!("  can't be told apart here from: {}", shown.join(" "))),
-        (false, more) => Some(format!("  can't be told apart here from: {} And {more} more.", shown.join(" "))),
+        (true, more) => Some(format!("can't be told apart here from {}", counted(more as u64, "other formula"))),
+        (false, 0) => Some(format!("can't be told apart here from: {}", shown.join(" "))),
+        (false, more) => Some(format!("can't be told apart here from: {} And {more} more.", shown.join(" "))),
     }
 }
 
 fn of_example(example: &Example) -> Vec<String> {
     let given: Vec<String> =
         example.given.iter().map(|input| format!("{} = {}", input.input.letter(), vector(&input.value))).collect();
-    let mut lines = vec![format!("  example: step {}, {}", example.step, place(&example.place))];
+    let mut lines = vec![format!("example: step {}, {}", example.step, place(&example.place))];
     if !given.is_empty() {
-        lines.push(format!("    given     {}", given.join(", ")));
+        lines.push(format!("  given     {}", given.join(", ")));
     }
-    lines.push(format!("    expected  {}", list(&example.expected)));
-    lines.push(format!("    actual    {}", list(&example.actual)));
+    lines.push(format!("  expected  {}", list(&example.expected)));
+    lines.push(format!("  actual    {}", list(&example.actual)));
     lines
 }
 

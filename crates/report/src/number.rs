@@ -42,6 +42,46 @@ pub fn counted(value: u64, noun: &str) -> String {
     format!("{} {noun}{plural}", count(value))
 }
 
+/// Two values to be compared, in one notation and no longer than it takes to see where they part: six digits, and at
+/// least two from the first that differs. With the place in both texts from which they are not the same; nothing where
+/// they are.
+#[must_use]
+pub fn beside(expected: f64, actual: f64) -> (String, String, Option<usize>) {
+    let texts = in_one_notation(expected, actual).unwrap_or_else(|| (general(expected), general(actual)));
+    let (one, other) = (texts.0.as_bytes(), texts.1.as_bytes());
+    let common = one.iter().zip(other).take_while(|(one, other)| one == other).count();
+    let parts = expected.to_bits() != actual.to_bits() && texts.0 != texts.1;
+    // Numbers of different lengths before the point have no digit in common.
+    let whole = |text: &str| text.find('.').unwrap_or(text.len());
+    let place = if whole(&texts.0) == whole(&texts.1) { common } else { 0 };
+    (texts.0, texts.1, parts.then_some(place))
+}
+
+/// Decimals as many as it takes, and one power of ten for both where they are very large or small; nothing for values
+/// that can't be written so.
+fn in_one_notation(expected: f64, actual: f64) -> Option<(String, String)> {
+    let most = expected.abs().max(actual.abs());
+    let power = |value: f64| -> Option<i32> { format!("{value:e}").split_once('e')?.1.parse().ok() };
+    if !(expected.is_finite() && actual.is_finite()) || most == 0.0 {
+        return None;
+    }
+    let (top, gap) = (power(most)?, (expected - actual).abs());
+    let apart = if gap > 0.0 { power(gap)? } else { top };
+    // Values of very different sizes have nothing that could be compared digit by digit.
+    let least = expected.abs().min(actual.abs());
+    if least > 0.0 && top - power(least)? > 4 {
+        return None;
+    }
+    let digits = (top - apart + 2).clamp(6, 17);
+    if (-4..9).contains(&top) {
+        let decimals = usize::try_from(digits - 1 - top).unwrap_or(0);
+        return Some((format!("{expected:.decimals$}"), format!("{actual:.decimals$}")));
+    }
+    let decimals = usize::try_from(digits - 1).unwrap_or(5);
+    let scaled = |value: f64| format!("{:.decimals$}e{top}", value / 10_f64.powi(top));
+    Some((scaled(expected), scaled(actual)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -55,6 +95,25 @@ mod tests {
         assert_eq!(exact(1e-12), "1e-12");
         assert_eq!(exact(-0.1875), "-0.1875");
         assert_eq!(exact(f64::NAN.copysign(-1.0)), "-nan");
+    }
+
+    #[test]
+    fn compared_values_have_one_notation_and_end_soon_after_they_part() {
+        let of = |one: f64, other: f64| {
+            let (one, other, place) = beside(one, other);
+            (format!("{one} {other}"), place)
+        };
+        assert_eq!(of(-0.189_912_345_678, -0.004_412_345_678), ("-0.189912 -0.004412".to_owned(), Some(3)));
+        assert_eq!(
+            of(-1.188_915_324_228_893_8e-9, -3.962_980_248_972_745e-8),
+            ("-0.11889e-8 -3.96298e-8".to_owned(), Some(1))
+        );
+        assert_eq!(of(1.0, 1.000_000_000_000_2), ("1.00000000000000 1.00000000000020".to_owned(), Some(14)));
+        assert_eq!(of(0.5, 0.5), ("0.500000 0.500000".to_owned(), None));
+        assert_eq!(of(0.0, 0.25), ("0.000000 0.250000".to_owned(), Some(2)));
+        assert_eq!(of(1.0, f64::NAN).0, "1 nan");
+        assert_eq!(of(12.5, 1e-9), ("12.5 1e-09".to_owned(), Some(0)));
+        assert_eq!(of(9.5, 10.5).1, Some(0));
     }
 
     #[test]

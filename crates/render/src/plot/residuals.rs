@@ -35,7 +35,7 @@ const TOP: f64 = 48.0;
 const BOTTOM: f64 = 220.0;
 /// Zeros are drawn below the scale, and values that are no numbers above it.
 const LANE: f64 = 14.0;
-const HEIGHT: f64 = 262.0;
+const HEIGHT: f64 = 284.0;
 
 impl ResidualPlot<'_> {
     /// The plot.

@@ -6,7 +6,7 @@ use fosssim_judge::{Finding, FindingDetail};
 
 /// Places to look at; nothing where the explanations say it themselves: a known mistake says where to look, a
 /// polynomial has its name.
-pub(super) fn lines(check: &Check<'_>) -> Vec<&'static str> {
+pub(crate) fn lines(check: &Check<'_>) -> Vec<&'static str> {
     let Some(first) = first::first(check) else { return Vec::new() };
     match check.explanations.iter().find(|one| explanation::is_known(one)) {
         Some(known) if known.is_of_stage() => explanation::where_to_look(known).into_iter().collect(),

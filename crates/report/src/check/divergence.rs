@@ -8,52 +8,116 @@ use fosssim_judge::{Finding, FindingDetail, PassWords, Power, Rescaled, differin
 
 /// The block about one finding, with a heading and without advice.
 pub(super) fn render(finding: &Finding, steps: u32, style: Style) -> String {
+    format!(
+        "{}\n{}",
+        style.paint(Look::Strong, &format!("First divergence: {}", place(finding, steps))),
+        block(finding, style)
+    )
+}
+
+/// Where a finding is, for a heading.
+pub(crate) fn place(finding: &Finding, steps: u32) -> String {
     let record = if finding.frame == 2 * u64::from(finding.step) { " (end record)" } else { "" };
-    let heading = match finding.step {
-        0 => "First divergence: the first record".to_owned(),
-        step => format!("First divergence: step {step} of {steps}, frame {}{record}", finding.frame),
-    };
-    format!("{}\n{}", style.paint(Look::Strong, &heading), block(finding, style))
+    match finding.step {
+        0 => "the first record".to_owned(),
+        step => format!("step {step} of {steps}, frame {}{record}", finding.frame),
+    }
 }
 
 /// One finding in words, and its values side by side.
 pub(super) fn block(finding: &Finding, style: Style) -> String {
-    format!("  {}\n{}", finding.what(), side_by_side(&finding.detail, style))
+    format!("  {}\n{}", finding.what(), side_by_side(&finding.detail).text(style))
 }
 
-fn side_by_side(detail: &FindingDetail, style: Style) -> String {
+/// A value that a finding compares.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Value {
+    /// There is none.
+    Nothing,
+    /// How often.
+    Count(usize),
+    /// A number.
+    Number(f64),
+}
+
+impl Value {
+    /// The value to its last bit.
+    pub(crate) fn exact(self) -> String {
+        match self {
+            Self::Nothing => "none".to_owned(),
+            Self::Count(count) => count.to_string(),
+            Self::Number(number) => exact(number),
+        }
+    }
+}
+
+/// Two values that a finding compares.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Row {
+    /// What they are.
+    pub(crate) name: &'static str,
+    /// The reference's.
+    pub(crate) expected: Value,
+    /// The trace's.
+    pub(crate) actual: Value,
+    /// Whether they are not the same.
+    pub(crate) differs: bool,
+}
+
+/// The values of a finding side by side, with remarks in front of them and behind.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct SideBySide {
+    pub(crate) before: Vec<String>,
+    pub(crate) rows: Vec<Row>,
+    pub(crate) after: Vec<String>,
+}
+
+impl SideBySide {
+    fn text(&self, style: Style) -> String {
+        let lines = |lines: &[String]| lines.iter().map(|line| format!("  {line}\n")).collect::<String>();
+        let mut table = Table::new([Align::Left, Align::Right, Align::Right, Align::Left]);
+        if !self.rows.is_empty() {
+            table.heading(["", "expected", "actual", ""]);
+        }
+        for Row { name, expected, actual, differs } in &self.rows {
+            let mark = |text: String| if *differs { Cell::looking(Look::Bad, text) } else { text.into() };
+            let word = if *differs { "<- differs" } else { "" };
+            table.row([(*name).into(), expected.exact().into(), mark(actual.exact()), mark(word.to_owned())]);
+        }
+        lines(&self.before) + &table.render(style) + &lines(&self.after)
+    }
+}
+
+/// The values of a finding.
+pub(crate) fn side_by_side(detail: &FindingDetail) -> SideBySide {
+    let rows = |rows: Vec<Row>| SideBySide { rows, ..SideBySide::default() };
     match detail {
         FindingDetail::MissedCollision { expected } => {
-            collision(style, Some((expected.normal.x, expected.normal.y, expected.time)), None)
+            rows(collision(Some((expected.normal.x, expected.normal.y, expected.time)), None))
         }
         FindingDetail::SuperfluousCollision { actual } | FindingDetail::RepeatedCollision { actual } => {
-            collision(style, None, Some((actual.normal.x, actual.normal.y, actual.time)))
+            rows(collision(None, Some((actual.normal.x, actual.normal.y, actual.time))))
         }
         FindingDetail::WrongNormal { expected, actual, .. } | FindingDetail::ContactTime { expected, actual } => {
-            collision(
-                style,
+            rows(collision(
                 Some((expected.normal.x, expected.normal.y, expected.time)),
                 Some((actual.normal.x, actual.normal.y, actual.time)),
-            )
+            ))
         }
-        FindingDetail::PolynomialCount { expected, actual, per_pass } => {
-            let mut table = Table::new([Align::Left, Align::Right]);
-            table.row(["expected".into(), expected.to_string().into()]);
-            table.row(["actual".into(), Cell::looking(Look::Bad, actual.to_string())]);
-            table.row(["one pass over all pairs".into(), per_pass.to_string().into()]);
-            table.render(style)
-        }
+        FindingDetail::PolynomialCount { expected, actual, per_pass } => SideBySide {
+            after: vec![format!("one pass over all pairs asks about {per_pass}")],
+            ..rows(vec![counts("polynomials", *expected, *actual)])
+        },
         FindingDetail::PolynomialDegree { place, expected, actual_size, actual } => {
             let more = actual_size.saturating_sub(actual.coefficients().len());
-            let mut text = logged_by(place);
-            text += &polynomials(expected.coefficients(), actual.coefficients(), style);
+            let mut sides = polynomials(place, expected.coefficients(), actual.coefficients());
             if more > 0 {
-                text += &format!("  {more} more of the trace are not shown\n");
+                sides.after.push(format!("{more} more of the trace are not shown"));
             }
-            text
+            sides
         }
         FindingDetail::VanishingPolynomial { place, expected, actual } => {
-            logged_by(place) + &polynomials(expected.coefficients(), actual.coefficients(), style)
+            polynomials(place, expected.coefficients(), actual.coefficients())
         }
         FindingDetail::Coefficient {
             place, power, expected, rescaled, expected_polynomial, actual_polynomial, ..
@@ -62,99 +126,92 @@ fn side_by_side(detail: &FindingDetail, style: Style) -> String {
             let own = reference.iter().rev().nth(*power).copied().unwrap_or(0.0);
             // The factor that the finding was made with.
             let factor = if own == 0.0 { factor(reference, trace) } else { expected / own };
-            let mut text = logged_by(place);
-            text += &polynomials_with(reference, trace, factor, Some(*power), style);
+            let mut sides = polynomials_with(place, reference, trace, factor, Some(*power));
             if let Some(Rescaled { power, expected, actual, .. }) = rescaled {
-                text += &format!(
-                    "  (the original rescales by sums of moduli before it compares: {} {}, {})\n",
+                sides.after.push(format!(
+                    "(the original rescales by sums of moduli before it compares: {} {}, {})",
                     Power(*power),
                     exact(*actual),
                     exact(*expected)
-                );
+                ));
             }
-            text
+            sides
         }
         FindingDetail::Position { expected, actual, .. } | FindingDetail::Velocity { expected, actual, .. } => {
-            vectors(*expected, *actual, style)
+            rows(vec![numbers("x", expected[0], actual[0]), numbers("y", expected[1], actual[1])])
         }
-        FindingDetail::PassCount { expected, actual, .. } => {
-            let mut table = Table::new([Align::Left, Align::Right]);
-            table.row(["expected passes".into(), expected.to_string().into()]);
-            table.row(["actual".into(), Cell::looking(Look::Bad, actual.to_string())]);
-            table.render(style)
-        }
+        FindingDetail::PassCount { expected, actual, .. } => rows(vec![counts("passes", *expected, *actual)]),
         FindingDetail::PassPositions { place }
         | FindingDetail::TrimmedDecision { place, .. }
         | FindingDetail::TrimmedTime { place, .. }
-        | FindingDetail::MixedForms { place } => logged_by(place),
-        _ => String::new(),
+        | FindingDetail::MixedForms { place } => SideBySide { before: vec![logged_by(place)], ..SideBySide::default() },
+        _ => SideBySide::default(),
     }
 }
 
+fn counts(name: &'static str, expected: usize, actual: usize) -> Row {
+    Row { name, expected: Value::Count(expected), actual: Value::Count(actual), differs: expected != actual }
+}
+
+fn numbers(name: &'static str, expected: f64, actual: f64) -> Row {
+    let differs = expected.to_bits() != actual.to_bits();
+    Row { name, expected: Value::Number(expected), actual: Value::Number(actual), differs }
+}
+
 fn logged_by(place: &fosssim_judge::PolynomialPlace) -> String {
-    format!("  number {} in the record's list; {}\n", place.index, PassWords(place.pass))
+    format!("number {} in the record's list; {}", place.index, PassWords(place.pass))
 }
 
 /// Two polynomials by power, marked where they part once the factor on which most coefficients agree is taken out.
-fn polynomials(expected: &[f64], actual: &[f64], style: Style) -> String {
-    polynomials_with(expected, actual, factor(expected, actual), None, style)
+fn polynomials(place: &fosssim_judge::PolynomialPlace, expected: &[f64], actual: &[f64]) -> SideBySide {
+    polynomials_with(place, expected, actual, factor(expected, actual), None)
 }
 
 /// The same with this factor, which the expected values carry; one power is known to differ.
-fn polynomials_with(expected: &[f64], actual: &[f64], factor: f64, wrong: Option<usize>, style: Style) -> String {
+fn polynomials_with(
+    place: &fosssim_judge::PolynomialPlace,
+    expected: &[f64],
+    actual: &[f64],
+    factor: f64,
+    wrong: Option<usize>,
+) -> SideBySide {
     let of = |coefficients: &[f64], power: usize| coefficients.iter().rev().nth(power).copied();
     let powers = expected.len().max(actual.len());
     let is_one = (factor - 1.0).abs() <= 1e-12 || !factor.is_finite();
     let factor = if is_one { 1.0 } else { factor };
     let differing = differing(expected, actual, factor);
-    let mut table = Table::new([Align::Left, Align::Right, Align::Right, Align::Left]);
-    table.heading(["", "expected", "actual", ""]);
-    for power in (0..powers).rev() {
-        let is_missing = of(expected, power).is_some() != of(actual, power).is_some();
-        let agrees = !is_missing && !differing.contains(&power) && wrong != Some(power);
-        let text = |value: Option<f64>| value.map_or_else(|| "none".to_owned(), exact);
-        let name = match power {
-            0 => "1".to_owned(),
-            1 => "t".to_owned(),
-            power => format!("t^{power}"),
-        };
-        let found = text(of(actual, power));
-        let found = if agrees { found.into() } else { Cell::looking(Look::Bad, found) };
-        let mark = if agrees { "".into() } else { Cell::looking(Look::Bad, "<- differs") };
-        table.row([name.into(), text(of(expected, power).map(|value| factor * value)).into(), found, mark]);
+    let row = |power: usize| {
+        let (expected, actual) = (of(expected, power).map(|value| factor * value), of(actual, power));
+        let value = |value: Option<f64>| value.map_or(Value::Nothing, Value::Number);
+        let is_missing = expected.is_some() != actual.is_some();
+        Row {
+            name: POWERS.get(power).copied().unwrap_or("higher"),
+            expected: value(expected),
+            actual: value(actual),
+            differs: is_missing || differing.contains(&power) || wrong == Some(power),
+        }
+    };
+    let carried = format!("expected values carry the trace's factor {}; any positive one is right", exact(factor));
+    SideBySide {
+        before: vec![logged_by(place)],
+        rows: (0..powers).rev().map(row).collect(),
+        after: if is_one { Vec::new() } else { vec![carried] },
     }
-    let mut text = table.render(style);
-    if !is_one {
-        text += &format!("  expected values carry the trace's factor {}; any positive one is right\n", exact(factor));
-    }
-    text
 }
+
+/// The powers of a polynomial's coefficients; none has more.
+const POWERS: [&str; 7] = ["1", "t", "t^2", "t^3", "t^4", "t^5", "t^6"];
 
 /// Contact normal (x, y) and time.
 type Contact = (f64, f64, f64);
 
-fn collision(style: Style, expected: Option<Contact>, actual: Option<Contact>) -> String {
-    let text = |value: Option<f64>| value.map_or_else(|| "none".to_owned(), exact);
-    let mut table = Table::new([Align::Left, Align::Right, Align::Right]);
-    table.heading(["", "expected", "actual"]);
-    let mut row = |name: &str, part: fn(Contact) -> f64| {
-        table.row([name.into(), text(expected.map(part)).into(), text(actual.map(part)).into()]);
+fn collision(expected: Option<Contact>, actual: Option<Contact>) -> Vec<Row> {
+    let row = |name, part: fn(Contact) -> f64| match (expected.map(part), actual.map(part)) {
+        (Some(expected), Some(actual)) => numbers(name, expected, actual),
+        (expected, actual) => {
+            let value = |value: Option<f64>| value.map_or(Value::Nothing, Value::Number);
+            Row { name, expected: value(expected), actual: value(actual), differs: false }
+        }
     };
-    row("normal x", |contact| contact.0);
-    row("normal y", |contact| contact.1);
-    row("time", |contact| contact.2);
-    table.render(style)
-}
-
-fn vectors(expected: [f64; 2], actual: [f64; 2], style: Style) -> String {
-    let mut table = Table::new([Align::Left, Align::Right, Align::Right]);
-    table.heading(["", "expected", "actual"]);
-    for (name, (expected, actual)) in ["x", "y"].into_iter().zip(expected.into_iter().zip(actual)) {
-        let actual = match expected.to_bits() == actual.to_bits() {
-            true => exact(actual).into(),
-            false => Cell::looking(Look::Bad, exact(actual)),
-        };
-        table.row([name.into(), exact(expected).into(), actual]);
-    }
-    table.render(style)
+    vec![row("normal x", |contact| contact.0), row("normal y", |contact| contact.1), row("time", |contact| contact.2)]
 }

@@ -9,7 +9,7 @@ pub(super) fn is_other_scene(check: &Check<'_>) -> bool {
 }
 
 /// The first finding that is worth a look: of the official book, or of the other one where the official has nothing.
-pub(super) fn first<'a>(check: &Check<'a>) -> Option<&'a Finding> {
+pub(crate) fn first<'a>(check: &Check<'a>) -> Option<&'a Finding> {
     let other = check.outcome.fair.as_ref().and_then(|fair| fair.findings.first_divergence.as_ref());
     let first = check.outcome.findings_by(check.book()).first_divergence.as_ref().or(other);
     first.filter(|_| !is_other_scene(check))

@@ -12,6 +12,11 @@ const OF_FORMULAS: [FindingKind; 6] = [
     FindingKind::MixedForms,
 ];
 
+/// Whether a finding of this kind may be a fault of a formula.
+pub(crate) fn is_of_formula(kind: FindingKind) -> bool {
+    OF_FORMULAS.contains(&kind)
+}
+
 /// How many polynomials of a trace the original's rules find wrong that only follow from wrong positions: all of them,
 /// where the fair rules, which follow the trace's own positions, charge no formula, but the positions of later passes.
 pub(crate) fn count(outcome: &Outcome) -> u64 {

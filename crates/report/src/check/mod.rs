@@ -3,14 +3,14 @@
 //! [`text`](Check::text) is for people, [`json`](Check::json) for programs (`schemas/check.schema.json`). Both say the
 //! same and depend on nothing but the outcome.
 
-mod advice;
+pub(crate) mod advice;
 mod asked;
 mod books;
 mod closer;
-mod divergence;
+pub(crate) mod divergence;
 mod fair;
 mod fair_view;
-mod first;
+pub(crate) mod first;
 pub(crate) mod follows;
 mod looks_like;
 mod plots;
@@ -62,11 +62,6 @@ pub struct Check<'a> {
     pub tables: bool,
     /// The kind of file that the trace seems to be, where it begins like something else.
     pub looks_like: Option<&'a str>,
-}
-
-/// The block about one finding, without colours.
-pub(crate) fn divergence_text(finding: &fosssim_findings::Finding, steps: u32) -> String {
-    divergence::render(finding, steps, Style::Plain)
 }
 
 impl Check<'_> {

@@ -1,7 +1,7 @@
 //! A detection call on a page: curves, intervals, coefficients.
 use super::{
     data::key,
-    markup::{number, text},
+    markup::{compared, number, text},
 };
 use crate::detect::Detect;
 use fosssim_evidence::{InspectedCall, Logged};
@@ -16,10 +16,12 @@ use fosssim_render::{
 };
 use std::fmt::Write;
 
-pub(super) fn html(step: u32, call: &InspectedCall, depth: usize) -> String {
+/// A call under its name, folded unless it is to be open.
+pub(super) fn html(step: u32, call: &InspectedCall, depth: usize, open: bool) -> String {
+    let opened = if open { " open" } else { "" };
     let mut out = format!(
-        "<section data-step=\"{step}\" data-pair=\"{2}\">\n<h{depth}>Step {step}: {0} <span class=\"hint\">({1}, {2})</span>\
-         </h{depth}>\n",
+        "<details class=\"call\"{opened}><summary><h{depth}>Step {step}: {0} <span class=\"hint\">({1}, {2})</span></h{depth}></summary>\n\
+         <section data-step=\"{step}\" data-pair=\"{2}\">",
         text(&PairWords(call.pair).to_string()),
         text(&PassWords(call.pass).to_string()),
         key(call.pair)
@@ -27,13 +29,18 @@ pub(super) fn html(step: u32, call: &InspectedCall, depth: usize) -> String {
     let study = match &call.study {
         Ok(study) => study,
         Err(error) => {
-            let _ = writeln!(out, "<p>{}</p></section>", text(&error.to_string()));
+            let _ = writeln!(out, "<p>{}</p></section></details>", text(&error.to_string()));
             return out;
         }
     };
     let _ = writeln!(out, "<p>{}</p>", text(&Detect { study, place: None }.decision()));
-    let title = format!("Expected in step {step}: {}", PairWords(call.pair));
-    let _ = writeln!(out, "<figure>{}</figure>", detection::picture(study, &title, Embedding::Inline));
+    // Curves without a zero are flat lines: words say it better.
+    if study.curves.iter().any(|curve| curve.real_zeros().iter().any(|zero| (0.0..=1.0).contains(zero))) {
+        let title = format!("Expected in step {step}: {}", PairWords(call.pair));
+        let _ = writeln!(out, "<figure>{}</figure>", detection::picture(study, &title, Embedding::Inline));
+    } else {
+        let _ = writeln!(out, "<p>{}</p>", text(&signs(study)));
+    }
     let logged: &[Vec<f64>] = match &call.logged {
         Logged::These(logged) => logged,
         Logged::Nothing => {
@@ -45,7 +52,7 @@ pub(super) fn html(step: u32, call: &InspectedCall, depth: usize) -> String {
     out += &coefficients(study, logged, call.logged == Logged::Nothing);
     let differs: Vec<bool> = study.curves.iter().zip(logged).map(|(curve, own)| is_wrong(curve, own)).collect();
     if !differs.contains(&true) {
-        return out + "</section>\n";
+        return out + "</section></details>\n";
     }
     out += &own_decision(logged);
     let mut wrong =
@@ -56,7 +63,25 @@ pub(super) fn html(step: u32, call: &InspectedCall, depth: usize) -> String {
         }
         _ => out += &yours(step, call, study, logged),
     }
-    out + "</section>\n"
+    out + "</section></details>\n"
+}
+
+/// Polynomials that keep their signs over the whole step, in words.
+fn signs(study: &Study) -> String {
+    let of = |is_wanted: bool| {
+        let is_positive = |curve: &study::Curve| curve.positive.iter().any(|set| set.lo < 0.5 && set.hi > 0.5);
+        let names = study.curves.iter().filter(|curve| is_positive(curve) == is_wanted);
+        names.map(|curve| curve.role.to_string()).collect::<Vec<_>>().join(", ")
+    };
+    let parts = [("positive", of(true)), ("not positive", of(false))];
+    let parts = parts.iter().filter(|(_, names)| !names.is_empty());
+    let parts: Vec<String> = parts.map(|(sign, names)| format!("{sign}: {names}")).collect();
+    format!("No expected polynomial changes its sign in the step. {}.", parts.join("; "))
+}
+
+/// Whether a set begins or ends within the step.
+fn is_flat(set: &[Interval]) -> bool {
+    !ends(set).iter().any(|end| (0.0..=1.0).contains(end))
 }
 
 /// The curves of the trace, as the expected ones are drawn.
@@ -68,6 +93,9 @@ fn yours(step: u32, call: &InspectedCall, study: &Study, logged: &[Vec<f64>]) ->
     let curves: Vec<PlottedPolynomial<'_>> = parts
         .map(|((name, coefficients), (zeros, positive))| PlottedPolynomial { name, coefficients, zeros, positive })
         .collect();
+    if sets.iter().all(|set| is_flat(set)) {
+        return String::new();
+    }
     let common = common(logged);
     let impact = common.iter().map(|set| set.lo).reduce(f64::min);
     let title = format!("Yours in step {step}: {}", PairWords(call.pair));
@@ -118,6 +146,9 @@ fn own_decision(logged: &[Vec<f64>]) -> String {
 /// Expected and actual curve of one polynomial.
 fn both(step: u32, role: &str, expected: &[f64], set: &[Interval], logged: &[f64]) -> String {
     let own = positive(logged);
+    if is_flat(set) && is_flat(&own) {
+        return String::new();
+    }
     let (yours, right) = (format!("{role}, yours"), format!("{role}, expected"));
     let (zeros_of_right, zeros_of_own) = (ends(set), ends(&own));
     let curves = [
@@ -134,8 +165,8 @@ fn coefficients(study: &Study, logged: &[Vec<f64>], nothing: bool) -> String {
     let mut out = String::from(
         "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Coefficients\"><table>\
          <caption>Coefficients; what differs by more than a common factor is marked</caption><thead><tr>\
-         <th scope=\"col\">polynomial</th><th scope=\"col\">power</th><th scope=\"col\">expected</th>\
-         <th scope=\"col\">yours</th><th scope=\"col\"></th></tr></thead><tbody>\n",
+         <th scope=\"col\">polynomial</th><th scope=\"col\">power</th><th scope=\"col\" class=\"num\">expected</th>\
+         <th scope=\"col\" class=\"num\">yours</th><th scope=\"col\">result</th></tr></thead><tbody>\n",
     );
     for (place, curve) in study.curves.iter().enumerate() {
         let expected = curve.logged.coefficients();
@@ -152,13 +183,16 @@ fn coefficients(study: &Study, logged: &[Vec<f64>], nothing: bool) -> String {
                 true => (" class=\"off\"", "differs"),
                 false => ("", ""),
             };
+            let (right, yours) = match (at(expected), at(own)) {
+                (Some(expected), Some(own)) => compared(expected, own, differs),
+                (expected, _) if logged.is_empty() && !nothing => (cell(expected), "not known".to_owned()),
+                (expected, own) => (cell(expected), cell(own)),
+            };
             let _ = writeln!(
                 out,
-                "<tr{class}><th scope=\"row\">{}</th><td>t^{power}</td><td class=\"num\">{}</td><td class=\"num\">{}</td>\
-                 <td>{word}</td></tr>",
+                "<tr{class}><th scope=\"row\">{}</th><td>t^{power}</td><td class=\"num exact\">{right}</td>\
+                 <td class=\"num exact\">{yours}</td><td>{word}</td></tr>",
                 text(&curve.role.to_string()),
-                cell(at(expected)),
-                if logged.is_empty() && !nothing { "not known".to_owned() } else { cell(at(own)) },
             );
         }
     }

@@ -7,6 +7,9 @@ use serde::{Deserialize, Serialize};
 /// The placeholder for the key of a card until its page is known. No text holds it: text has no control characters.
 const KEY: &str = "\u{1}";
 
+/// The placeholder for what all scenes together say about its mistake, which is known later, too.
+const CAUSE: &str = "\u{2}";
+
 /// Columns of a small terminal.
 const TERMINAL: usize = 78;
 
@@ -39,7 +42,7 @@ impl Card {
         let data = blocks(Precision::AsRoomAllows);
         let rounded = if data.len() > SMALL { blocks(Precision::Rounded) } else { String::new() };
         let rounded = if rounded.len() < data.len() { rounded } else { String::new() };
-        Some(Self { html: case.trace_part(KEY, depth), data, rounded, plot: plot(case) })
+        Some(Self { html: case.trace_part(KEY, depth, CAUSE), data, rounded, plot: plot(case) })
     }
 
     /// A card that only says something.
@@ -77,9 +80,15 @@ impl Card {
         (self.html.len(), self.data.len())
     }
 
-    /// The part that needs no script, under a key that no other card of the page has.
-    pub(super) fn html(&self, key: &str) -> String {
-        self.html.replace(KEY, key)
+    /// Whether it shows the first divergence with its values.
+    pub(super) fn has_values(&self) -> bool {
+        self.html.contains(super::case::FIRST)
+    }
+
+    /// The part that needs no script, under a key that no other card of the page has, with its mistakes.
+    pub(super) fn html(&self, key: &str, mistakes: &str) -> String {
+        let html = self.html.replace(KEY, key);
+        if html.contains(CAUSE) { html.replace(CAUSE, mistakes) } else { mistakes.to_owned() + &html }
     }
 
     /// The motions.

@@ -1,13 +1,23 @@
 //! One judged trace on a page.
-use super::{Case, call, data, markup::text, packed::Precision, strip};
+use super::{
+    Case, call, data,
+    markup::{compared, text},
+    packed::Precision,
+    strip,
+};
 use crate::{
-    check::{divergence_text, follows, headline},
-    explain,
+    check::{
+        advice,
+        divergence::{self, SideBySide, Value},
+        first::first,
+        follows, headline,
+    },
+    explain::Told,
     number::count,
 };
 use fosssim_evidence::{Evidence, Focus, InspectedCall};
-use fosssim_findings::Hints;
-use fosssim_judge::{Book, BookFindings, Outcome, Ruling};
+use fosssim_findings::{Finding, FindingDetail, Hints};
+use fosssim_judge::{Book, BookFindings, Outcome, PairWords, Ruling};
 use fosssim_mistakes::diagnose::Explanation;
 use fosssim_num::tolerances::PARITY_MAXIMUM;
 use fosssim_render::plot::{Embedding, PASSES_AXIS, PassPlot, RESIDUALS_AXIS, ResidualPlot, Series};
@@ -16,6 +26,9 @@ use std::fmt::Write;
 /// The greatest number of calls that are shown.
 const CALLS: usize = 6;
 
+/// The heading of the first divergence.
+pub(super) const FIRST: &str = "Where it goes wrong first";
+
 impl Case<'_> {
     /// The case as a page's own content.
     pub(super) fn html(&self, key: &str) -> String {
@@ -23,19 +36,16 @@ impl Case<'_> {
         let look = if check.accepted() { "good" } else { "bad" };
         let mut out = format!(
             "<article class=\"case\" data-case=\"{key}\" data-scene=\"{}\" aria-labelledby=\"title-{key}\">\n\
-             <h1 id=\"title-{key}\"><span class=\"{look}\">{}</span>: {}</h1>\n\
-             <p class=\"names\">scene {}<br>trace {}</p>\n",
+             <h1 id=\"title-{key}\"><span class=\"chip {look}\">{}</span> {}</h1>\n\
+             <p class=\"names\">scene {} &middot; trace {}</p>\n",
             text(check.scene),
             text(&check.verdict().to_uppercase()),
             text(&headline(check)),
             text(check.scene),
             text(check.trace),
         );
-        if !self.is_other_scene() && !check.explanations.is_empty() {
-            out += "<h2>What explains it</h2>\n";
-            out += &mistakes(check.explanations);
-        }
-        out += &self.trace_part(key, 1);
+        let explanations = if self.is_other_scene() { &[][..] } else { check.explanations };
+        out += &self.trace_part(key, 1, &mistakes(explanations, self.first().is_some()));
         if let Some(evidence) = self.evidence {
             out += &data::blocks(self, evidence, key, Precision::AsRoomAllows);
         }
@@ -47,125 +57,217 @@ impl Case<'_> {
         self.check.explanations.iter().any(|one| one.is_other_scene())
     }
 
-    /// What is shown of the trace, below a heading of the given depth.
-    pub(super) fn trace_part(&self, key: &str, depth: usize) -> String {
+    /// The finding that is shown first: of the book that counts, or of the other one where that has none.
+    fn first(&self) -> Option<&Finding> {
+        first(&self.check).filter(|_| self.hints == Hints::Full)
+    }
+
+    /// What is shown of the trace, below a heading of the given depth: the motion beside its cause and the first values
+    /// that are wrong, and all that needs more room below.
+    pub(super) fn trace_part(&self, key: &str, depth: usize, mistakes: &str) -> String {
+        let evidence = self.evidence.filter(|evidence| !evidence.steps.is_empty());
+        let mut out = format!("<div class=\"split{}\">\n", if evidence.is_some() { " has-motion" } else { "" });
+        let cause = mistakes.to_owned() + &self.proof();
+        if !cause.is_empty() {
+            let _ = writeln!(out, "<div class=\"mistakes\">\n{cause}</div>");
+        }
+        out += &evidence.map(stage).unwrap_or_default();
+        out += &self.side(depth);
+        out += "</div>\n";
+        if let (Some(evidence), Hints::Full) = (evidence, self.hints) {
+            out += &plots(evidence, key, self.first().map(|first| first.step));
+            out += &self.calls(evidence, depth);
+        }
+        let account = self.check.outcome.findings_by(self.check.rules.official());
+        if self.hints == Hints::Full && !account.examples.is_empty() {
+            out += &findings(account, follows::count(self.check.outcome));
+        }
+        out
+    }
+
+    /// That the likely mistake writes the same trace.
+    fn proof(&self) -> String {
+        let Some(what) = self.what_if.filter(|_| self.hints == Hints::Full) else { return String::new() };
+        let words = if what.equal {
+            "Proof: the reference with exactly the likely mistake writes the same trace, to the last bit."
+        } else {
+            "The reference with exactly the likely mistake writes another trace: look at its motion beside yours."
+        };
+        format!("<p class=\"hint\">{words}</p>\n")
+    }
+
+    /// Where it goes wrong first, where to look, and what the rule books say.
+    fn side(&self, depth: usize) -> String {
         let outcome = self.check.outcome;
-        let is_full = self.hints == Hints::Full;
         let heading = |words: &str| format!("<h{0}>{words}</h{0}>\n", depth + 1);
-        let mut out = books(outcome);
-        let account = outcome.findings_by(self.check.rules.official());
-        let other = outcome.fair.as_ref().and_then(|fair| fair.findings.first_divergence.as_ref());
-        let first = account.first_divergence.as_ref().or(other);
-        if let (Some(first), true) = (first, is_full && !self.is_other_scene()) {
+        let mut out = String::from("<div class=\"side\">\n");
+        if let Some(first) = self.first() {
             let _ = writeln!(
                 out,
-                "{}<pre tabindex=\"0\" role=\"region\" aria-label=\"First divergence\">{}</pre>",
-                heading("Where it goes wrong first"),
-                text(&divergence_text(first, outcome.steps))
+                "<section class=\"card\">{}<p class=\"hint\">{}</p><p>{}</p>{}</section>",
+                heading(FIRST),
+                text(&divergence::place(first, outcome.steps)),
+                text(&subject(first)),
+                values(&divergence::side_by_side(&first.detail))
             );
-        }
-        if let Some(evidence) = self.evidence.filter(|evidence| !evidence.steps.is_empty()) {
-            out += &heading("The motion");
-            if let (Some(what), true) = (self.what_if, is_full) {
-                let words = if what.equal {
-                    "Proof: the reference with exactly the likely mistake writes the same trace, to the last bit."
-                } else {
-                    "The reference with exactly the likely mistake writes another trace: look at its motion beside yours."
-                };
-                let _ = writeln!(out, "<p>{words}</p>");
+            let advice = advice::lines(&self.check);
+            if !advice.is_empty() {
+                let lines: String = advice.iter().map(|line| format!("<li>{}</li>", text(line))).collect();
+                let _ =
+                    writeln!(out, "<section class=\"card\">{}<ul>{lines}</ul></section>", heading("What to look at"));
             }
-            let _ = writeln!(
+        }
+        out + &books(outcome) + "</div>\n"
+    }
+
+    /// The detection calls that are wrong, and those that only follow from wrong positions.
+    fn calls(&self, evidence: &Evidence, depth: usize) -> String {
+        let first = self.first().map(|first| first.step);
+        let calls = evidence.inspected.iter().flat_map(|up| up.calls.iter().map(move |one| (up.step, one)));
+        let mut calls: Vec<_> = calls.collect();
+        calls.sort_by_key(|(step, _)| Some(*step) != first);
+        // What only follows from where the passes before it led is no mistake of detection.
+        let follows = follows::count(self.check.outcome) > 0;
+        let (follow, wrong): (Vec<_>, Vec<_>) = calls.into_iter().partition(|(_, call)| follows && call.pass.index > 0);
+        let mut out = String::new();
+        if !wrong.is_empty() {
+            let _ = writeln!(out, "<h{0}>The detection calls that are wrong</h{0}>", depth + 1);
+            out += &some(&wrong, depth, true);
+        }
+        if !follow.is_empty() {
+            let _ = write!(
                 out,
-                "<details class=\"motion\" hidden><summary>Look at {}</summary><div class=\"stage\"></div></details>\n\
-                 <noscript><p>The motion viewer needs JavaScript; all else on this page does not.</p></noscript>",
-                if is_full { "both motions" } else { "the motion" }
+                "<details class=\"table\"><summary>Polynomials that follow from wrong positions</summary>\n\
+                 <p>Their formulas are right: they look at where the responses or the failsafe before them led.</p>\n{}</details>\n",
+                some(&follow, depth, false)
             );
-            if !evidence.window.is_whole(evidence.layout.steps) {
-                let _ = writeln!(
-                    out,
-                    "<p class=\"hint\">The motion is long: steps {} to {} of {} are here.</p>",
-                    evidence.window.first,
-                    evidence.window.last,
-                    count(u64::from(evidence.layout.steps))
-                );
-            }
-            out += &heading("All steps");
-            out += &strip::html(&evidence.steps);
-            if is_full {
-                out += &plots(evidence, key, first.map(|first| first.step));
-                let calls = evidence.inspected.iter().flat_map(|up| up.calls.iter().map(move |one| (up.step, one)));
-                let mut calls: Vec<_> = calls.collect();
-                calls.sort_by_key(|(step, _)| Some(*step) != first.map(|first| first.step));
-                // What only follows from where the passes before it led is no mistake of detection.
-                let follows = follows::count(outcome) > 0;
-                let (follow, wrong): (Vec<_>, Vec<_>) =
-                    calls.into_iter().partition(|(_, call)| follows && call.pass.index > 0);
-                if !wrong.is_empty() {
-                    out += &heading("The detection calls that are wrong");
-                    out += &some(&wrong, depth);
-                }
-                if !follow.is_empty() {
-                    let _ = write!(
-                        out,
-                        "<details class=\"table\"><summary>Polynomials that follow from wrong positions</summary>\n\
-                         <p>Their formulas are right: they look at where the responses or the failsafe before them led.</p>\n{}</details>\n",
-                        some(&follow, depth)
-                    );
-                }
-            }
-        }
-        if is_full && !account.examples.is_empty() {
-            out += &heading("Findings");
-            out += &findings(account);
         }
         out
     }
 }
 
-/// The first ones of some calls, each with its step.
-fn some(calls: &[(u32, &InspectedCall)], depth: usize) -> String {
-    let mut out: String = calls.iter().take(CALLS).map(|(step, one)| call::html(*step, one, depth + 2)).collect();
-    if calls.len() > CALLS {
-        let _ = writeln!(out, "<p>{} more are not shown.</p>", calls.len() - CALLS);
+/// The motion: a strip of all steps, whose place the viewer takes where there are scripts.
+fn stage(evidence: &Evidence) -> String {
+    let mut out = String::from("<div class=\"card motion\"><div class=\"stage\">\n");
+    out += &strip::html(&evidence.steps);
+    out += "<noscript><p>The motion viewer needs JavaScript; all else on this page does not.</p></noscript></div>\n";
+    if !evidence.window.is_whole(evidence.layout.steps) {
+        let _ = writeln!(
+            out,
+            "<div class=\"bar hint\">The motion is long: steps {} to {} of {} are here.</div>",
+            evidence.window.first,
+            evidence.window.last,
+            count(u64::from(evidence.layout.steps))
+        );
     }
-    out
+    out + "</div>\n"
 }
 
-/// Explanations, each in a box.
-pub(super) fn mistakes(explanations: &[Explanation]) -> String {
-    let mut out = String::new();
-    for one in explanations {
-        let lines = explain::lines(std::slice::from_ref(one));
-        let (first, rest) = lines.split_first().map_or(("", &[][..]), |(first, rest)| (first.as_str(), rest));
-        let _ = write!(out, "<div class=\"mistake\"><p>{}</p>", text(first));
-        if !rest.is_empty() {
-            let _ = write!(
+/// What a finding is about, where a table beside it has its values.
+fn subject(finding: &Finding) -> String {
+    match &finding.detail {
+        FindingDetail::Coefficient { place, .. } | FindingDetail::PolynomialDegree { place, .. } => place.to_string(),
+        FindingDetail::WrongNormal { expected, .. } | FindingDetail::ContactTime { expected, .. } => {
+            format!("the contact of {}", PairWords(expected.pair))
+        }
+        FindingDetail::MissedCollision { expected } => {
+            format!("{} collide, and the trace misses it", PairWords(expected.pair))
+        }
+        FindingDetail::Position { particle, .. } if finding.step > 0 => format!("where particle {particle} ends"),
+        FindingDetail::Velocity { particle, .. } if finding.step > 0 => {
+            format!("the velocity with which particle {particle} ends")
+        }
+        _ => finding.what().to_string(),
+    }
+}
+
+/// Values side by side: in one notation, and marked from the first digit that differs.
+fn values(sides: &SideBySide) -> String {
+    let lines = |lines: &[String]| {
+        lines.iter().map(|line| format!("<p class=\"hint\">{}</p>\n", text(line))).collect::<String>()
+    };
+    let mut out = lines(&sides.before);
+    if !sides.rows.is_empty() {
+        out += "<table class=\"values\"><thead><tr><th scope=\"col\">value</th><th scope=\"col\" class=\"num\">expected</th>\
+                <th scope=\"col\" class=\"num\">yours</th></tr></thead><tbody>\n";
+        for row in &sides.rows {
+            let (expected, actual) = match (row.expected, row.actual) {
+                (Value::Number(expected), Value::Number(actual)) => compared(expected, actual, row.differs),
+                (expected, actual) => (expected.exact(), actual.exact()),
+            };
+            let _ = writeln!(
                 out,
-                "<pre tabindex=\"0\" role=\"region\" aria-label=\"Details\">{}</pre>",
-                text(&rest.join("\n"))
+                "<tr><th scope=\"row\">{}</th><td title=\"{}\">{expected}</td><td title=\"{}\">{actual}</td></tr>",
+                row.name,
+                row.expected.exact(),
+                row.actual.exact()
             );
         }
-        out += "</div>\n";
+        out += "</tbody></table>\n";
+    }
+    out + &lines(&sides.after)
+}
+
+/// The first ones of some calls, each with its step; the first one is open.
+fn some(calls: &[(u32, &InspectedCall)], depth: usize, open: bool) -> String {
+    let call =
+        |(number, (step, one)): (usize, &(u32, &InspectedCall))| call::html(*step, one, depth + 2, open && number == 0);
+    let mut out: String = calls.iter().take(CALLS).enumerate().map(call).collect();
+    if calls.len() > CALLS {
+        let _ = writeln!(out, "<p class=\"hint\">{} more are not shown.</p>", calls.len() - CALLS);
     }
     out
 }
 
-/// The verdicts of both rule books.
+/// Explanations, each in a box. An example is left out where the first values that are wrong stand beside them.
+pub(super) fn mistakes(explanations: &[Explanation], is_shown_beside: bool) -> String {
+    let mut out = String::new();
+    for one in explanations {
+        let Told { is_likely, what, evidence, details, example } = Told::from(one);
+        out += "<section class=\"card mistake\">";
+        if is_likely {
+            out += "<p class=\"label\">Likely mistake</p>";
+        }
+        let _ = write!(out, "<p class=\"lead\">{}</p>", text(&what));
+        out.extend(details.iter().map(|line| format!("<p>{}</p>", text(line))));
+        out.extend(evidence.map(|evidence| format!("<p class=\"hint\">{}</p>", text(&evidence))));
+        if !example.is_empty() && !is_shown_beside {
+            let _ = write!(
+                out,
+                "<pre tabindex=\"0\" role=\"region\" aria-label=\"Example\">{}</pre>",
+                text(&example.join("\n"))
+            );
+        }
+        out += "</section>\n";
+    }
+    out
+}
+
+/// The verdicts of both rule books: in a line where they say the same, which is most often so.
 fn books(outcome: &Outcome) -> String {
+    let right = |book: Book| {
+        format!("{} of {} steps right", count(u64::from(outcome.right_steps(book))), count(u64::from(outcome.steps)))
+    };
+    let same = |one: Book, other: Book| {
+        outcome.ruling(one) == outcome.ruling(other) && outcome.right_steps(one) == outcome.right_steps(other)
+    };
+    if outcome.fair.is_none() {
+        return format!("<p class=\"hint\">By the original's rules: {}.</p>\n", right(Book::Parity));
+    }
+    if same(Book::Parity, Book::Fair) {
+        let right = right(Book::Parity);
+        return format!("<p class=\"hint\">The original's rules and the fair rules agree: {right}.</p>\n");
+    }
     let row = |name: &str, book: Book| {
         let ruling = outcome.ruling(book);
         let look = if ruling == Ruling::Accepted { "good" } else { "bad" };
-        format!(
-            "<tr><th scope=\"row\">{name}</th><td class=\"{look}\">{}</td><td>{} of {} steps right</td></tr>\n",
-            ruling.words(),
-            count(u64::from(outcome.right_steps(book))),
-            count(u64::from(outcome.steps))
-        )
+        let (ruling, right) = (ruling.words(), right(book));
+        format!("<tr><th scope=\"row\">{name}</th><td class=\"{look}\">{ruling}</td><td>{right}</td></tr>\n")
     };
-    let fair = if outcome.fair.is_some() { row("the fair rules", Book::Fair) } else { String::new() };
     format!(
-        "<table><caption>Both rule books</caption><tbody>\n{}{fair}</tbody></table>\n",
-        row("the original's rules", Book::Parity)
+        "<table><caption>The rule books differ</caption><tbody>\n{}{}</tbody></table>\n",
+        row("the original's rules", Book::Parity),
+        row("the fair rules", Book::Fair)
     )
 }
 
@@ -188,23 +290,34 @@ fn plots(evidence: &Evidence, key: &str, first: Option<u32>) -> String {
             "<figure data-plot=\"{key}\" data-left=\"{left}\" data-right=\"{right}\" data-steps=\"{steps}\">{svg}</figure>\n"
         )
     };
-    let mut out = figure(&residuals.svg(Embedding::Inline), RESIDUALS_AXIS);
-    if evidence.layout.polynomials {
+    let mut out = String::new();
+    // What is flat shows nothing.
+    if evidence.steps.iter().any(|step| !(step.position.max(step.velocity) <= PARITY_MAXIMUM)) {
+        out += &figure(&residuals.svg(Embedding::Inline), RESIDUALS_AXIS);
+    }
+    let differ = evidence.steps.iter().any(|step| step.actual_passes != Some(step.expected_passes));
+    if evidence.layout.polynomials && differ {
         out += &figure(&passes.svg(Embedding::Inline), PASSES_AXIS);
     }
-    out
+    if out.is_empty() { out } else { format!("<div class=\"charts\">\n{out}</div>\n") }
 }
 
-fn findings(account: &BookFindings) -> String {
-    let mut out = String::from(
-        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Findings\"><table><thead><tr>\
-         <th scope=\"col\">kind</th><th scope=\"col\">count</th><th scope=\"col\">first example</th></tr></thead><tbody>\n",
+/// All kinds of findings, folded; those that only follow from wrong positions under that name.
+fn findings(account: &BookFindings, follow: u64) -> String {
+    let of_formula = |finding: &&Finding| follow > 0 && follows::is_of_formula(finding.kind());
+    let mut out = format!(
+        "<details class=\"table\"><summary>All findings: {}</summary>\n\
+         <div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Findings\"><table><thead><tr>\
+         <th scope=\"col\">kind</th><th scope=\"col\" class=\"num\">count</th><th scope=\"col\">first example</th></tr></thead>\
+         <tbody>\n",
+        count(account.counts.total())
     );
-    for example in &account.examples {
+    for example in account.examples.iter().filter(|example| !of_formula(example)) {
         let kind = example.kind();
         let _ = writeln!(
             out,
-            "<tr data-step=\"{}\" data-pair=\"{}\"><th scope=\"row\">{}</th><td class=\"num\">{}</td><td>{}</td></tr>",
+            "<tr data-step=\"{}\" data-pair=\"{}\"><th scope=\"row\">{}</th><td class=\"num\">{}</td>\
+             <td class=\"words\">{}</td></tr>",
             example.step,
             Focus::from(example).pair.map(data::key).unwrap_or_default(),
             text(&kind.to_string()),
@@ -212,5 +325,13 @@ fn findings(account: &BookFindings) -> String {
             text(&example.to_string())
         );
     }
-    out + "</tbody></table></div>\n"
+    if follow > 0 {
+        let _ = writeln!(
+            out,
+            "<tr><th scope=\"row\">polynomials that follow from wrong positions</th><td class=\"num\">{}</td>\
+             <td class=\"words\">their formulas are right</td></tr>",
+            count(follow)
+        );
+    }
+    out + "</tbody></table></div></details>\n"
 }

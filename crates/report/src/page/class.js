@@ -28,10 +28,35 @@
       });
     });
   }
-  const filter = document.querySelector(".filter");
+  for (const hidden of document.querySelectorAll(".filter")) hidden.hidden = false;
+  for (const button of document.querySelectorAll("[data-copy]")) {
+    button.addEventListener("click", () => {
+      const area = document.createElement("textarea");
+      area.value = button.dataset.copy;
+      button.after(area);
+      area.select();
+      document.execCommand("copy");
+      area.remove();
+      button.textContent = "Copied";
+    });
+  }
+  // Rows of scenes: what lies under the pointer has a name, and a click leads to it.
+  const block = document.getElementById("scenes");
+  const scenes = block ? JSON.parse(block.textContent) : [];
+  const pointed = document.querySelector(".pointed");
+  for (const svg of document.querySelectorAll("td.heat svg")) {
+    const under = (event) => {
+      const box = svg.getBoundingClientRect();
+      return scenes[Math.max(0, Math.min(scenes.length - 1, Math.floor(((event.clientX - box.left) / box.width) * scenes.length)))];
+    };
+    const link = svg.closest("tr").querySelector("a");
+    svg.addEventListener("pointermove", (event) => { pointed.textContent = `${link.textContent}: ${under(event)}`; });
+    svg.addEventListener("pointerleave", () => { pointed.textContent = ""; });
+    svg.addEventListener("click", (event) => { location.href = `${link.href}#${new URLSearchParams({ scene: under(event) })}`; });
+  }
+  const filter = document.querySelector("p.filter > label");
   if (filter) {
-    filter.hidden = false;
-    const rows = [...document.querySelectorAll("table.sortable")[0].tBodies[0].rows];
+    const rows = [...document.querySelector("table.sortable").tBodies[0].rows];
     filter.querySelector("input").addEventListener("input", (event) => {
       const wanted = event.target.value.trim().toLowerCase();
       let shown = 0;
@@ -39,7 +64,7 @@
         row.hidden = !row.textContent.toLowerCase().includes(wanted);
         shown += row.hidden ? 0 : 1;
       }
-      filter.querySelector("output").textContent = `${shown} of ${rows.length}`;
+      filter.parentElement.querySelector("output").textContent = `${shown} of ${rows.length}`;
     });
   }
   document.documentElement.dataset.ready = "yes";

@@ -1,11 +1,16 @@
 //! The page of a class: who got what, which scenes few have right, and who makes the same mistake.
-use super::{document, markup::text};
+use super::{
+    document,
+    graded::key,
+    markup::{data, text},
+};
 use crate::{
     grade::{class_head, hardest, likely_mistakes, one_line, points, reached},
     number::counted,
     words,
 };
 use fosssim_findings::{Grade, PassedOver, SceneGrade, Verdict};
+use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 use std::{collections::BTreeMap, fmt::Write};
 
 const SCRIPT: &str = include_str!("class.js");
@@ -15,6 +20,9 @@ const BARS: usize = 10;
 
 /// The greatest number of characters of a likely mistake or a summary in a table.
 const SHORT: usize = 160;
+
+/// A cluster of no more members is not folded.
+const FEW: usize = 6;
 
 /// The greatest number of names listed of a cluster.
 const NAMES: usize = 400;
@@ -35,12 +43,18 @@ impl ClassPage<'_> {
     #[must_use]
     pub fn html(&self) -> String {
         let suite = self.grades.first().map_or("", |grade| grade.suite.as_str());
-        let mut body =
-            format!("<h1>Class: {}</h1>\n<p>{}</p>\n", text(&one_line(suite)), text(&class_head(self.grades)));
+        let mut body = format!(
+            "<h1>Class: {}</h1>\n<p class=\"names\">{}</p>\n",
+            text(&one_line(suite)),
+            text(&class_head(self.grades))
+        );
+        body += &figures(self.grades);
+        body += "<div class=\"split halves\">\n";
         body += &histogram(self.grades);
+        body += &self.clusters();
+        body += "</div>\n";
         body += &self.table();
         body += &self.not_graded();
-        body += &self.clusters();
         body += &scenes(self.grades);
         body += &self.differing();
         document(&format!("Class: {suite}"), &body, SCRIPT)
@@ -61,8 +75,8 @@ impl ClassPage<'_> {
         };
         let rows: String = self.passed_over.iter().map(row).collect();
         format!(
-            "<h2>Not graded</h2>\n<table><thead><tr><th scope=\"col\">entry</th><th scope=\"col\">why</th></tr></thead>\
-             <tbody>\n{rows}</tbody></table>\n"
+            "<h2>Not graded</h2>\n<div class=\"card scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Not graded\"><table><thead><tr><th scope=\"col\">entry</th><th scope=\"col\">why</th></tr></thead>\
+             <tbody>\n{rows}</tbody></table></div>\n"
         )
     }
 
@@ -73,44 +87,54 @@ impl ClassPage<'_> {
     }
 
     fn table(&self) -> String {
-        let groups: Vec<&str> =
-            self.grades.first().iter().flat_map(|grade| &grade.groups).map(|group| group.name.as_str()).collect();
-        let mut out = String::from(
+        let names: Vec<&str> =
+            self.grades.first().iter().flat_map(|grade| grade.scenes()).map(|one| one.scene.as_str()).collect();
+        let mut out = format!(
             "<h2>Submissions</h2>\n<p class=\"filter\" hidden><label>Only those that hold <input type=\"search\"></label> \
-             <output></output></p>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Submissions\">\
+             <output></output></p>\n\
+             <p class=\"hint keys\">Scenes in the order of the suite: <span><span class=\"h h-r\"></span> accepted</span> \
+             <span><span class=\"h h-w\"></span> wrong</span> <span><span class=\"h h-e\"></span> crashed, too slow or \
+             unreadable</span> <span><span class=\"h h-n\"></span> not run</span> <output class=\"pointed\"></output></p>\n\
+             <script type=\"application/json\" id=\"scenes\">{}</script>\n\
+             <div class=\"card scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Submissions\">\
              <table class=\"sortable\"><thead><tr>",
+            data(&serde_json::json!(names))
         );
-        let fixed = ["submission", "verdict", "points", "accepted", "likely mistakes, or the reason"];
-        for name in fixed.into_iter().chain(groups.iter().copied()) {
-            let _ = write!(out, "<th scope=\"col\">{}</th>", text(&one_line(name)));
+        for name in [
+            "submission",
+            "verdict",
+            "points",
+            "accepted",
+            "scenes",
+            "likely mistakes, or the reason",
+            "rule books differ",
+        ] {
+            let look = if matches!(name, "points" | "accepted" | "rule books differ") { " class=\"num\"" } else { "" };
+            let _ = write!(out, "<th scope=\"col\"{look}>{name}</th>");
         }
-        out += "<th scope=\"col\">rule books differ</th></tr></thead><tbody>\n";
-        let number = |value: Option<f64>, words: &str| {
-            let sort = value.map_or_else(String::new, |value| format!("{value}"));
-            format!("<td class=\"num\" data-sort=\"{sort}\">{words}</td>")
-        };
+        out += "</tr></thead><tbody>\n";
         for grade in self.grades {
             let look = if grade.verdict.is_accepted() { "good" } else { "bad" };
             let _ = write!(
                 out,
-                "<tr><th scope=\"row\">{}</th><td class=\"{look}\">{}</td>",
+                "<tr><th scope=\"row\">{}</th><td><span class=\"chip {look}\">{}</span></td>",
                 self.link(grade),
                 grade.verdict.words()
             );
-            out += &number(grade.points, &format!("{} of {}", reached(grade.points), points(grade.max_points)));
+            let sort = grade.points.map_or_else(String::new, |points| format!("{points}"));
+            let _ = write!(
+                out,
+                "<td class=\"num\" data-sort=\"{sort}\">{} of {}</td>",
+                reached(grade.points),
+                points(grade.max_points)
+            );
             let (accepted, all) = (grade.count(Verdict::Accepted), grade.scenes().count());
             let _ = write!(out, "<td class=\"num\" data-sort=\"{accepted}\">{accepted} of {all}</td>");
+            let _ = write!(out, "<td class=\"heat\" data-sort=\"{accepted}\">{}</td>", heat(grade));
             let mistakes = likely_mistakes(grade).into_iter().map(|(mistake, _)| words::explanation::what(&mistake));
             let likely: Vec<String> = grade.located.iter().map(words::located).chain(mistakes).collect();
             let words = if likely.is_empty() { words::reason(grade).unwrap_or_default() } else { likely.join(" ") };
             let _ = write!(out, "<td class=\"words\">{}</td>", text(&short(&words)));
-            for name in &groups {
-                let group = grade.groups.iter().find(|group| group.name == *name);
-                out += &number(
-                    group.and_then(|group| group.points),
-                    &group.map_or("-".to_owned(), |group| reached(group.points)),
-                );
-            }
             let differing = grade.differing();
             let _ = writeln!(out, "<td class=\"num\" data-sort=\"{differing}\">{differing}</td></tr>");
         }
@@ -118,19 +142,24 @@ impl ClassPage<'_> {
     }
 
     fn clusters(&self) -> String {
-        let mut out = String::from("<h2>The same mistake</h2>\n");
+        let mut out = String::from("<section class=\"card\"><h2>The same mistake</h2>\n");
         let (named, rest) = by_mistake(self.grades);
         let signed = by_signature(self.grades, &rest);
         if named.is_empty() && signed.is_empty() {
-            return out + "<p>No two submissions make the same mistake.</p>\n";
+            return out + "<p>No two submissions make the same mistake.</p></section>\n";
         }
-        for (what, members) in &named {
+        for Shared { mistake, members } in &named {
+            let first = &self.grades[members[0]];
+            let scene = first.scenes().find(|scene| is_named_in(mistake, &scene.explanations));
+            let look = scene.map_or_else(String::new, |scene| {
+                let (page, key, name) = (text(&(self.page)(first)), key(&scene.scene), text(&one_line(&scene.scene)));
+                format!("<p class=\"hint\">To show it: <a href=\"{page}#scene-{key}\">{name}</a></p>")
+            });
             let _ = writeln!(
                 out,
-                "<section class=\"cluster\"><h3>{}</h3>\n<p>{}: {}</p></section>",
-                text(&one_line(what)),
-                counted(members.len() as u64, "submission"),
-                self.links(members)
+                "<section class=\"cluster\"><h3>{}</h3>\n{}{look}</section>",
+                text(&one_line(&words::explanation::what(mistake))),
+                self.members(members)
             );
         }
         for members in &signed {
@@ -140,18 +169,30 @@ impl ClassPage<'_> {
                 wrong.first().map_or(String::new(), |scene| format!("{}: {}", scene.scene, words::summary(scene)));
             let _ = writeln!(
                 out,
-                "<section class=\"cluster\"><h3>No mistake is named, but {} in the same words</h3>\n<p>The first: {}</p>\n\
-                 <p>{}: {}</p></section>",
+                "<section class=\"cluster\"><h3>No mistake is named, but {} in the same words</h3>\n{}\
+                 <p class=\"hint\">The first: {}</p></section>",
                 match wrong.len() {
                     1 => "the same scene fails".to_owned(),
                     count => format!("the same {count} scenes fail"),
                 },
-                text(&short(&one_line(&first))),
-                counted(members.len() as u64, "submission"),
-                self.links(members)
+                self.members(members),
+                text(&short(&one_line(&first)))
             );
         }
-        out
+        out + "</section>\n"
+    }
+
+    /// Who is in a cluster: folded where they are many, and to be copied into a letter.
+    fn members(&self, members: &[usize]) -> String {
+        let names: Vec<String> = members.iter().map(|&number| one_line(&self.grades[number].submission)).collect();
+        format!(
+            "<details{}><summary>{}</summary><p>{}</p>\
+             <p class=\"filter\" hidden><button type=\"button\" data-copy=\"{}\">Copy the names</button></p></details>\n",
+            if members.len() <= FEW { " open" } else { "" },
+            counted(members.len() as u64, "submission"),
+            self.links(members),
+            text(&names.join(", "))
+        )
     }
 
     fn differing(&self) -> String {
@@ -160,7 +201,7 @@ impl ClassPage<'_> {
         if differing.is_empty() {
             return out + "<p>Both rule books, as far as they were asked, agree on everything.</p>\n";
         }
-        out += "<table class=\"sortable\"><thead><tr><th scope=\"col\">submission</th><th scope=\"col\">scenes</th>\
+        out += "<div class=\"card scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Where the rule books differ\"><table class=\"sortable\"><thead><tr><th scope=\"col\">submission</th><th scope=\"col\">scenes</th>\
                 <th scope=\"col\">why, with the number of scenes</th></tr></thead><tbody>\n";
         for grade in differing {
             let mut causes: BTreeMap<String, (usize, bool)> = BTreeMap::new();
@@ -182,7 +223,7 @@ impl ClassPage<'_> {
                 text(&words.join("; "))
             );
         }
-        out + "</tbody></table>\n"
+        out + "</tbody></table></div>\n"
     }
 }
 
@@ -197,10 +238,86 @@ fn is_failed(scene: &SceneGrade) -> bool {
     !matches!(scene.verdict, Verdict::Accepted | Verdict::NotRun | Verdict::JudgeError)
 }
 
+/// A likely mistake, and the numbers of the submissions that make it.
+struct Shared {
+    mistake: Explanation,
+    members: Vec<usize>,
+}
+
+/// The scenes of a submission in a row: those that are not accepted are drawn, each kind in a colour of its own.
+fn heat(grade: &Grade) -> String {
+    let (all, accepted) = (grade.scenes().count(), grade.count(Verdict::Accepted));
+    let mut out = format!(
+        "<svg viewBox=\"0 0 {} 1\" preserveAspectRatio=\"none\" role=\"img\" aria-label=\"{accepted} of {all} scenes accepted\">",
+        all.max(1)
+    );
+    for kind in ["w", "e", "n"] {
+        let mut path = String::new();
+        let mut place = 0;
+        let is_this: Vec<bool> = grade.scenes().map(|scene| kind_of(scene) == Some(kind)).collect();
+        for row in is_this.chunk_by(|one, other| one == other) {
+            if row[0] {
+                let _ = write!(path, "M{place} .5h{}", row.len());
+            }
+            place += row.len();
+        }
+        if !path.is_empty() {
+            let _ = write!(out, "<path class=\"h-{kind}\" d=\"{path}\"/>");
+        }
+    }
+    let mut borders = String::new();
+    let mut place = 0;
+    for group in grade.groups.iter().take(grade.groups.len().saturating_sub(1)) {
+        place += group.scenes.len();
+        let _ = write!(borders, "M{place} 0v1");
+    }
+    if !borders.is_empty() {
+        let _ = write!(out, "<path class=\"h-g\" d=\"{borders}\"/>");
+    }
+    out + "</svg>"
+}
+
+/// How a scene that is not accepted is drawn: wrong, without a trace that can be judged, or not run.
+fn kind_of(scene: &SceneGrade) -> Option<&'static str> {
+    match scene.verdict {
+        Verdict::Accepted => None,
+        Verdict::NotRun => Some("n"),
+        verdict if verdict.is_wrong_trace() => Some("w"),
+        _ => Some("e"),
+    }
+}
+
+/// The class in a few numbers.
+fn figures(grades: &[Grade]) -> String {
+    let mut shares: Vec<f64> = grades
+        .iter()
+        .filter_map(|grade| Some(100.0 * grade.points? / grade.max_points))
+        .filter(|it| it.is_finite())
+        .collect();
+    shares.sort_by(f64::total_cmp);
+    #[expect(clippy::cast_precision_loss, reason = "a class")]
+    let mean = shares.iter().sum::<f64>() / shares.len().max(1) as f64;
+    let at = |place: usize| shares.get(place).copied().unwrap_or_default();
+    let median = (at(shares.len() / 2) + at(shares.len().saturating_sub(1) / 2)) / 2.0;
+    let unfit = grades.iter().filter(|grade| grade.unfit().is_some()).count();
+    let unsolved = hardest(grades).0.iter().filter(|(_, share)| share.accepted == 0).count();
+    let accepted = grades.iter().filter(|grade| grade.verdict.is_accepted()).count();
+    let rows = [
+        (format!("{mean:.0} %"), "mean of the points"),
+        (format!("{median:.0} %"), "median"),
+        (accepted.to_string(), "accepted"),
+        (unfit.to_string(), "could not be run"),
+        (unsolved.to_string(), "scenes that nobody has right"),
+    ];
+    let rows: String =
+        rows.iter().map(|(number, words)| format!("<li class=\"card\"><b>{number}</b>{words}</li>")).collect();
+    format!("<ul class=\"kpi\">{rows}</ul>\n")
+}
+
 /// Likely mistakes that several submissions make, the most frequent first, and the numbers of the submissions that fail
 /// without any that is named.
-fn by_mistake(grades: &[Grade]) -> (Vec<(String, Vec<usize>)>, Vec<usize>) {
-    let mut found: BTreeMap<String, (String, Vec<usize>)> = BTreeMap::new();
+fn by_mistake(grades: &[Grade]) -> (Vec<Shared>, Vec<usize>) {
+    let mut found: BTreeMap<String, Shared> = BTreeMap::new();
     let mut rest = Vec::new();
     for (number, grade) in grades.iter().enumerate() {
         let likely = likely_mistakes(grade);
@@ -208,12 +325,11 @@ fn by_mistake(grades: &[Grade]) -> (Vec<(String, Vec<usize>)>, Vec<usize>) {
             rest.push(number);
         }
         for (mistake, _) in likely {
-            let told = || (words::explanation::what(&mistake), Vec::new());
-            found.entry(mistake.said()).or_insert_with(told).1.push(number);
+            found.entry(mistake.said()).or_insert_with(|| Shared { mistake, members: Vec::new() }).members.push(number);
         }
     }
-    let mut several: Vec<_> = found.into_values().filter(|(_, members)| members.len() > 1).collect();
-    several.sort_by_key(|(_, members)| std::cmp::Reverse(members.len()));
+    let mut several: Vec<_> = found.into_values().filter(|one| one.members.len() > 1).collect();
+    several.sort_by_key(|one| std::cmp::Reverse(one.members.len()));
     (several, rest)
 }
 
@@ -235,7 +351,10 @@ fn scenes(grades: &[Grade]) -> String {
     let (scenes, whole) = hardest(grades);
     let mut out = String::from("<h2>Scenes by failure rate</h2>\n");
     if !scenes.is_empty() {
-        out += "<table class=\"sortable\"><thead><tr><th scope=\"col\">scene</th><th scope=\"col\">failed</th>\
+        let wrong = counted(scenes.len() as u64, "scene");
+        let _ = write!(out, "<details class=\"table\"><summary>{wrong} that not everybody has right</summary>");
+        out += "<div class=\"card scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Scenes by failure rate\">\
+                <table class=\"sortable\"><thead><tr><th scope=\"col\">scene</th><th scope=\"col\">failed</th>\
                 <th scope=\"col\">of</th><th scope=\"col\">rate</th></tr></thead><tbody>\n";
         for (scene, share) in scenes {
             let failed = share.run - share.accepted;
@@ -249,7 +368,7 @@ fn scenes(grades: &[Grade]) -> String {
                 share.run
             );
         }
-        out += "</tbody></table>\n";
+        out += "</tbody></table></div></details>\n";
     }
     match whole {
         0 => out,
@@ -283,7 +402,7 @@ fn histogram(grades: &[Grade]) -> String {
     let words: Vec<String> = counts.iter().zip(&names).map(|(count, name)| format!("{name}: {count}")).collect();
     let title = "Points of the class";
     let mut out = format!(
-        "<figure><svg class=\"fp\" viewBox=\"0 0 640 190\" width=\"640\" height=\"190\" role=\"img\" \
+        "<figure class=\"card\"><svg class=\"fp\" viewBox=\"0 0 640 190\" width=\"640\" height=\"190\" role=\"img\" \
          aria-label=\"{title}: {}\"><title>{title}</title>\n<text x=\"20\" y=\"16\">{title}, in percent of what can be reached</text>\n",
         words.join(", ")
     );

@@ -52,12 +52,15 @@ impl Explained<'_> {
         let mut body = format!("<h1><span class=\"{look}\">{}</span></h1>\n", text(&title));
         if let Some(found) = located {
             let words = text(&one_line(&words::located(found)));
-            let _ = writeln!(body, "<h2>Where it fails</h2>\n<div class=\"mistake\"><p>{words}</p></div>");
+            let _ = writeln!(
+                body,
+                "<h2>Where it fails</h2>\n<div class=\"card mistake\"><p class=\"lead\">{words}</p></div>"
+            );
         }
         for one in common {
             let explained = cases.iter().filter(|case| is_named_in(one, &case.explanations)).count();
             let _ = writeln!(body, "<h2>What explains {explained} of {wrong} wrong traces</h2>");
-            body += &mistakes(std::slice::from_ref(one));
+            body += &mistakes(std::slice::from_ref(one), false);
         }
         let all: Vec<ExplainedCase<'_>> =
             cases.iter().zip(self.cards).map(|(case, card)| ExplainedCase { case, card: card.as_ref() }).collect();
@@ -76,7 +79,7 @@ fn article(one: &ExplainedCase<'_>, number: usize, open: bool) -> String {
     let (look, word) = if *accepted { ("good", "right") } else { ("bad", "wrong") };
     let mut out = format!(
         "<article class=\"case\" data-case=\"{key}\" data-scene=\"{0}\" aria-labelledby=\"title-{key}\">\n\
-         <details class=\"card\"{1}><summary><h2 id=\"title-{key}\"><span class=\"{look}\">{word}</span> {0}</h2></summary>\n\
+         <details class=\"scene\"{1}><summary><h2 id=\"title-{key}\"><span class=\"chip {look}\">{word}</span> {0}</h2></summary>\n\
          <p class=\"names\">{2}</p>\n",
         text(scene),
         if open { " open" } else { "" },
@@ -88,8 +91,8 @@ fn article(one: &ExplainedCase<'_>, number: usize, open: bool) -> String {
     if !*accepted && explanations.is_empty() {
         out += "<p>No known mistake explains it.</p>\n";
     }
-    out += &mistakes(explanations);
-    out += &one.card.map(|card| card.html(&key)).unwrap_or_default();
+    let mistakes = mistakes(explanations, one.card.is_some_and(Card::has_values));
+    out += &one.card.map_or_else(|| mistakes.clone(), |card| card.html(&key, &mistakes));
     out += "</details>\n";
     out += &one.card.map(|card| card.data(&key)).unwrap_or_default();
     out + "</article>\n"

@@ -85,7 +85,7 @@ impl GradePage<'_> {
         }
         let _ = writeln!(
             out,
-            "<h1>{}: <span class=\"{look}\">{}</span>, {}</h1>\n<p class=\"names\">suite {}, {}</p>",
+            "<h1>{}: <span class=\"chip {look}\">{}</span> {}</h1>\n<p class=\"names\">suite {}, {}</p>",
             text(&one_line(&grade.submission)),
             text(&grade.verdict.words().to_uppercase()),
             text(&reached),
@@ -107,15 +107,19 @@ impl GradePage<'_> {
         }
         if let Some(located) = &grade.located {
             let words = text(&one_line(&words::located(located)));
-            let _ = writeln!(out, "<h2>Where it fails</h2>\n<div class=\"mistake\"><p>{words}</p></div>");
+            let _ = writeln!(
+                out,
+                "<h2>Where it fails</h2>\n<div class=\"card mistake\"><p class=\"lead\">{words}</p></div>"
+            );
         }
+        out += "<div class=\"split halves\">\n";
         // What is wrong with the submission itself says it all.
         let likely = if grade.unfit().is_some() { Vec::new() } else { likely_mistakes(grade) };
         if !likely.is_empty() {
             let wrong = |scene: &&SceneGrade| scene.verdict.is_wrong_trace();
             let wrong = counted(grade.scenes().filter(wrong).count() as u64, "wrong scene");
             let plural = if likely.len() == 1 { "" } else { "s" };
-            let _ = writeln!(out, "<h2>Likely mistake{plural}</h2>");
+            let _ = writeln!(out, "<section>\n<h2>Likely mistake{plural}</h2>\n<div class=\"mistakes\">");
             for (mistake, explained) in likely {
                 let named: Vec<_> =
                     told.iter().filter(|(scene, _)| is_named_in(&mistake, &scene.explanations)).collect();
@@ -124,13 +128,14 @@ impl GradePage<'_> {
                     .min_by_key(|(scene, card)| telling(scene, card.as_ref(), std::slice::from_ref(&mistake)));
                 let _ = writeln!(
                     out,
-                    "<div class=\"mistake\"><p>{} <span class=\"hint\">(explains {explained} of {wrong})</span>{}</p></div>",
+                    "<section class=\"card mistake\"><p class=\"lead\">{}</p><p>Explains {explained} of {wrong}.{}</p></section>",
                     text(&words::explanation::what(&mistake)),
                     shows.map_or_else(String::new, |(scene, _)| format!(" Look at it in {}.", link(scene)))
                 );
             }
+            out += "</div></section>\n";
         }
-        out + &groups(&grade.groups, told, self.reader)
+        out + &groups(&grade.groups, told, self.reader) + "</div>\n"
     }
 }
 
@@ -178,7 +183,7 @@ fn scenes(grade: &Grade, told: &[(&SceneGrade, Option<Card>)]) -> String {
     let _ = write!(
         out,
         "<h2>The other scenes</h2>\n<details class=\"table\"><summary>{words}</summary>\n\
-         <table><thead><tr><th scope=\"col\">scene</th><th scope=\"col\">verdict</th><th scope=\"col\">points</th>\
+         <div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Other scenes\"><table><thead><tr><th scope=\"col\">scene</th><th scope=\"col\">verdict</th><th scope=\"col\">points</th>\
          </tr></thead><tbody>\n"
     );
     for scene in rest {
@@ -191,7 +196,7 @@ fn scenes(grade: &Grade, told: &[(&SceneGrade, Option<Card>)]) -> String {
             points(scene.max_points)
         );
     }
-    out + "</tbody></table></details>\n"
+    out + "</tbody></table></div></details>\n"
 }
 
 /// The book that counts.
@@ -214,8 +219,8 @@ fn is_told(scene: &SceneGrade) -> bool {
 fn groups(groups: &[GroupGrade], told: &[(&SceneGrade, Option<Card>)], reader: Audience) -> String {
     let who = if reader == Audience::Staff { "<th scope=\"col\">who sees it</th>" } else { "" };
     let mut out = format!(
-        "<h2>Groups</h2>\n<table><thead><tr><th scope=\"col\">group</th><th scope=\"col\">verdict</th>\
-         <th scope=\"col\">points</th><th scope=\"col\">scenes accepted</th><th scope=\"col\">to look at</th>{who}</tr></thead>\
+        "<section>\n<h2>Groups</h2>\n<div class=\"card scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Groups\"><table><thead><tr><th scope=\"col\">group</th><th scope=\"col\">verdict</th>\
+         <th scope=\"col\" class=\"num\">points</th><th scope=\"col\" class=\"num\">scenes accepted</th><th scope=\"col\">to look at</th>{who}</tr></thead>\
          <tbody>\n",
     );
     for group in groups {
@@ -231,8 +236,8 @@ fn groups(groups: &[GroupGrade], told: &[(&SceneGrade, Option<Card>)], reader: A
         let accepted = group.scenes.iter().filter(|scene| scene.verdict.is_accepted()).count();
         let _ = writeln!(
             out,
-            "<tr><th scope=\"row\">{}</th><td class=\"{}\">{}</td><td class=\"num\">{} of {}</td><td class=\"num\">{accepted} \
-             of {}</td><td>{first}</td>{who}</tr>",
+            "<tr><th scope=\"row\">{}</th><td><span class=\"chip {}\">{}</span></td><td class=\"num\">{} of {}</td>\
+             <td class=\"num\">{accepted} of {}</td><td>{first}</td>{who}</tr>",
             text(&one_line(&group.name)),
             if group.verdict.is_accepted() { "good" } else { "bad" },
             group.verdict.words(),
@@ -241,7 +246,7 @@ fn groups(groups: &[GroupGrade], told: &[(&SceneGrade, Option<Card>)], reader: A
             group.scenes.len(),
         );
     }
-    out + "</tbody></table>\n"
+    out + "</tbody></table></div></section>\n"
 }
 
 fn article(scene: &SceneGrade, (card, room): (Option<&Card>, Room), open: bool, outputs: &mut usize) -> String {
@@ -249,7 +254,7 @@ fn article(scene: &SceneGrade, (card, room): (Option<&Card>, Room), open: bool, 
     let look = if scene.verdict.is_accepted() { "good" } else { "bad" };
     let mut out = format!(
         "<article class=\"case\" id=\"scene-{key}\" data-case=\"{key}\" data-scene=\"{}\" aria-labelledby=\"title-{key}\">\n\
-         <details class=\"card\"{}><summary><h3 id=\"title-{key}\"><span class=\"{look}\">{}</span> {}</h3> \
+         <details class=\"scene\"{}><summary><h3 id=\"title-{key}\"><span class=\"chip {look}\">{}</span> {}</h3> \
          <span class=\"hint\">{} of {} points. {}</span></summary>\n",
         text(&scene.scene),
         if open { " open" } else { "" },
@@ -259,7 +264,10 @@ fn article(scene: &SceneGrade, (card, room): (Option<&Card>, Room), open: bool, 
         points(scene.max_points),
         text(&one_line(&words::summary(scene))),
     );
-    let lines: Vec<String> = difference(scene).into_iter().chain(words::details(scene)).collect();
+    // What a card shows with its values need not be said again.
+    let is_shown = matches!(room, Room::Pictures(_)) && card.is_some_and(Card::has_values);
+    let details = words::details(scene).into_iter().skip(usize::from(is_shown));
+    let lines: Vec<String> = difference(scene).into_iter().chain(details).collect();
     if !lines.is_empty() {
         let _ = writeln!(
             out,
@@ -267,17 +275,18 @@ fn article(scene: &SceneGrade, (card, room): (Option<&Card>, Room), open: bool, 
             lines.iter().map(|line| format!("<li>{}</li>", text(line))).collect::<String>()
         );
     }
-    out += &mistakes(&scene.settled);
+    let mistakes = mistakes(&scene.settled, is_shown);
     match (card, room) {
-        (None, _) => {}
+        (None, _) => out += &mistakes,
         (Some(card), Room::Words) if card.sizes().0 > 0 => {
+            out += &mistakes;
             out += "<p class=\"hint\">The pictures and the motion have no room on this page.</p>\n";
         }
         (Some(card), _) => {
             if room == Room::Pictures(KeptMotion::None) && card.sizes().1 > 0 {
                 out += "<p class=\"hint\">The motion has no room on this page.</p>\n";
             }
-            out += &card.html(&key);
+            out += &card.html(&key, &mistakes);
         }
     }
     out += &printed("Standard output", &scene.stdout, outputs);

@@ -1,5 +1,5 @@
 //! Hostile text in HTML: it stays text.
-use crate::number::general;
+use crate::number::{beside, general};
 use std::fmt::Write;
 
 /// Text in which what can't be seen, or turns the direction of writing, is written out as its code point.
@@ -46,6 +46,16 @@ pub(super) fn data(value: &serde_json::Value) -> String {
 /// A number in a table.
 pub(super) fn number(value: f64) -> String {
     text(&general(value))
+}
+
+/// Two numbers as markup; the digits of the second that are not those of the first are marked.
+pub(super) fn compared(expected: f64, actual: f64, differs: bool) -> (String, String) {
+    let (expected, actual, place) = beside(expected, actual);
+    let marked = match place.filter(|_| differs) {
+        Some(place) => format!("{}<mark>{}</mark>", text(&actual[..place]), text(&actual[place..])),
+        None => text(&actual),
+    };
+    (text(&expected), marked)
 }
 
 #[cfg(test)]

@@ -42,22 +42,56 @@ class Drawing extends Motion {
     const least = this.isExact() ? 0 : 2 * this.data.rounded.unit;
     return { list, most: most > least ? most : 0, base };
   }
+  // Letters can be read on a phone, too.
+  letters() {
+    return Math.round(14 * Math.max(1, Math.min(2.2, 960 / (this.canvas.clientWidth || 960))));
+  }
+  // On top of each other, or what is expected beside what is there.
   draw(context = this.canvas.getContext("2d")) {
     const { width, height } = this.canvas;
-    context.fillStyle = colour("--paper");
+    const panels = this.beside && this.baseline() ? ["expected", "yours"] : ["both"];
+    context.fillStyle = colour("--card");
     context.fillRect(0, 0, width, height);
+    panels.forEach((panel, place) => {
+      this.view = [(place * width) / panels.length, width / panels.length];
+      context.save();
+      context.beginPath();
+      context.rect(this.view[0], 0, this.view[1], height);
+      context.clip();
+      this.panel(context, panel);
+      context.restore();
+    });
+    context.fillStyle = colour("--line");
+    if (panels.length > 1) context.fillRect(width / 2 - 1, 0, 2, height);
+    this.view = [0, width];
+  }
+  panel(context, panel) {
     this.planes(context);
-    this.zones(context);
-    if (this.show.reference) this.bodies(context, this.positions("reference"), { stroke: colour("--ref"), dash: [7, 5] });
     const expected = this.show.expected && this.expected();
-    if (expected) this.bodies(context, expected, { stroke: colour("--exp"), dash: [2, 3] });
-    if (this.show.what && this.data.whatIf) this.bodies(context, this.positions("what"), { stroke: colour("--what"), dash: [12, 4, 2, 4] });
-    this.bodies(context, this.positions("submission"), { stroke: colour("--own"), fill: colour("--ownfill"), dash: [], label: true });
-    this.arrows(context);
-    this.contacts(context);
+    if (panel === "both") {
+      this.zones(context);
+      if (this.show.reference) this.bodies(context, this.positions("reference"), { stroke: colour("--ref"), dash: [7, 5] });
+      if (expected) this.bodies(context, expected, { stroke: colour("--exp"), dash: [2, 3] });
+      if (this.show.what && this.data.whatIf) this.bodies(context, this.positions("what"), { stroke: colour("--what"), dash: [12, 4, 2, 4] });
+    }
+    if (panel === "expected") this.bodies(context, this.baseline(), { stroke: colour(expected ? "--exp" : "--ref"), dash: [], label: true });
+    else this.bodies(context, this.positions("submission"), { stroke: colour("--own"), fill: colour("--ownfill"), dash: [], label: true });
+    if (panel === "both" && !this.peeking) this.arrows(context);
+    if (panel !== "expected" && !this.peeking) this.contacts(context);
     context.fillStyle = colour("--ink");
-    context.font = "14px system-ui, sans-serif";
-    context.fillText(`step ${this.step}${this.t < 1 ? `, t = ${this.t.toFixed(3)}` : ""}`, 10, 20);
+    context.font = `${this.letters()}px system-ui, sans-serif`;
+    const at = `step ${this.step}${this.t < 1 ? `, t = ${this.t.toFixed(3)}` : ""}`;
+    context.fillText(panel === "both" ? at : `${panel === "yours" ? "yours" : expected ? "expected" : "reference"}, ${at}`, this.view[0] + 10, 6 + this.letters());
+  }
+  // The motion at another step, small.
+  peek(step) {
+    const { step: now, t, pass, mid } = this;
+    const context = this.preview.querySelector("canvas").getContext("2d");
+    Object.assign(this, { step, t: 1, pass: -1, mid: false, peeking: true });
+    context.setTransform(0.4, 0, 0, 0.4, 0, 0);
+    this.draw(context);
+    this.preview.lastChild.textContent = `${step}: ${this.classWords()}`;
+    Object.assign(this, { step: now, t, pass, mid, peeking: false });
   }
   bodies(context, positions, { stroke, fill, dash, label }) {
     if (!positions) return;
@@ -104,7 +138,7 @@ class Drawing extends Motion {
       context.stroke();
       if (label && n <= 60) {
         context.fillStyle = colour("--ink");
-        context.font = "12px system-ui, sans-serif";
+        context.font = `${this.letters() - 2}px system-ui, sans-serif`;
         context.textAlign = "center";
         context.fillText(this.data.fixed[k] ? `${k} fixed` : `${k}`, x, y + 4);
         context.textAlign = "start";
@@ -157,7 +191,8 @@ class Drawing extends Motion {
   arrows(context) {
     const apart = this.difference();
     if (!apart || !(apart.most > 0)) { this.factorText.textContent = apart ? "(no difference)" : "(nothing to compare)"; return; }
-    const auto = Math.max(1, 10 ** Math.floor(Math.log10((0.12 * this.extent) / this.zoom / apart.most)));
+    const wish = (0.12 * this.extent) / this.zoom / apart.most, ten = 10 ** Math.floor(Math.log10(wish));
+    const auto = Math.max(1, ten * (wish >= 5 * ten ? 5 : wish >= 2 * ten ? 2 : 1));
     const factor = this.magnify === null ? auto : this.magnify;
     this.factor.value = Math.log10(factor);
     this.factorText.textContent = `${factor >= 1e4 ? factor.toExponential(1) : short(factor)} times (largest difference ${short(apart.most)})`;
@@ -214,7 +249,7 @@ class Drawing extends Motion {
     const { strip, steps, first, last } = this.data;
     const { width, height } = this.strip;
     const wide = width / Math.max(1, steps);
-    context.fillStyle = colour("--paper");
+    context.fillStyle = colour("--card");
     context.fillRect(0, 0, width, height);
     const order = { u: 0, r: 1, i: 2, w: 3 };
     const columns = Math.min(steps, width);
@@ -226,7 +261,7 @@ class Drawing extends Motion {
       }
       const x = (column * width) / columns;
       const w = Math.max(1, width / columns);
-      context.fillStyle = colour({ r: "--good", w: "--bad", i: "--inherit", u: "--faint" }[worst]);
+      context.fillStyle = colour({ r: "--good", w: "--bad", i: "--warn", u: "--faint" }[worst]);
       // Height tells them apart without colour.
       const tall = { r: 8, i: 14, w: 22, u: 3 }[worst];
       context.fillRect(x, height - 4 - tall, w > 3 ? w - 1 : w, tall);

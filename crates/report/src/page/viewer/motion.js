@@ -91,7 +91,8 @@ class Motion {
     const typing = event.target.tagName === "SELECT" || event.target.type === "number";
     const ranging = event.target.type === "range";
     const act = {
-      n: () => this.finding(1), p: () => this.finding(-1), 0: () => { this.zoom = 1; this.pan = [0, 0]; this.look(); },
+      n: () => this.finding(1), p: () => this.finding(-1), 0: () => this.whole(), z: () => { this.approach(); this.look(); },
+      s: () => this.besides(), "?": () => { this.keys.open = !this.keys.open; },
       " ": () => this.toggle(),
       ArrowRight: () => this.go(this.step + (event.shiftKey ? 10 : 1)),
       ArrowLeft: () => this.go(this.step - (event.shiftKey ? 10 : 1)),
@@ -123,14 +124,43 @@ class Motion {
     this.box = [x0 - margin, y0 - margin, x1 + margin, y1 + margin];
     this.extent = Math.max(x1 - x0, y1 - y0);
   }
+  whole() {
+    this.zoom = 1;
+    this.pan = [0, 0];
+    this.look();
+  }
+  // Goes near to what differs, and to the chosen pair.
+  approach() {
+    this.zoom = 1;
+    this.pan = [0, 0];
+    const apart = this.difference(), own = this.positions("submission"), near = new Set();
+    if (apart && apart.most > 0) apart.list.forEach((d, k) => { if (Math.hypot(...d) > apart.most * 1e-3) near.add(k); });
+    if (this.selected && this.selected.pair) {
+      const { kind, first, second } = parse(this.selected.pair);
+      for (const k of [first, ...(kind === "pp" ? [second] : kind === "pe" ? this.data.edges[second].slice(0, 2) : [])]) near.add(k);
+    }
+    let [x0, y0, x1, y1] = [Infinity, Infinity, -Infinity, -Infinity];
+    for (const k of own ? near : []) {
+      for (const at of apart ? [own, apart.base] : [own]) {
+        const [x, y, r] = [at[2 * k], at[2 * k + 1], 2.5 * this.data.radii[k] + 0.02 * this.extent];
+        if (finite(x, y)) [x0, y0, x1, y1] = [Math.min(x0, x - r), Math.min(y0, y - r), Math.max(x1, x + r), Math.max(y1, y + r)];
+      }
+    }
+    if (!(x1 > x0)) return;
+    const zoom = Math.min(8, Math.min(this.view[1] / (x1 - x0), this.canvas.height / (y1 - y0)) / this.scale());
+    if (zoom < 1.2) return;
+    const [bx0, by0, bx1, by1] = this.box;
+    this.zoom = zoom;
+    this.pan = [((bx0 + bx1 - x0 - x1) / 2) * this.scale(), ((y0 + y1 - by0 - by1) / 2) * this.scale()];
+  }
   scale() {
     const [x0, y0, x1, y1] = this.box;
-    return this.zoom * Math.min(this.canvas.width / (x1 - x0), this.canvas.height / (y1 - y0));
+    return this.zoom * Math.min(this.view[1] / (x1 - x0), this.canvas.height / (y1 - y0));
   }
   to(x, y) {
     const [x0, y0, x1, y1] = this.box;
     const scale = this.scale();
-    return [this.canvas.width / 2 + (x - (x0 + x1) / 2) * scale + this.pan[0], this.canvas.height / 2 - (y - (y0 + y1) / 2) * scale + this.pan[1]];
+    return [this.view[0] + this.view[1] / 2 + (x - (x0 + x1) / 2) * scale + this.pan[0], this.canvas.height / 2 - (y - (y0 + y1) / 2) * scale + this.pan[1]];
   }
 
 }

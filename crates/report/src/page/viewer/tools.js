@@ -13,6 +13,18 @@ const el = (tag, attributes = {}, ...children) => {
 const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const finite = (...values) => values.every(Number.isFinite);
 const short = (value) => (value === null || Number.isNaN(value) ? "nan" : Number(value.toPrecision(6)).toString());
+// Two numbers in one notation, and no longer than it takes to see where they part: from there on the second is marked.
+function beside(one, other) {
+  const most = Math.max(Math.abs(one), Math.abs(other));
+  if (!finite(one, other) || most === 0) return [short(one), short(other)];
+  const power = (value) => Math.floor(Math.log10(value));
+  const top = power(most), gap = Math.abs(one - other), digits = Math.max(6, Math.min(17, gap > 0 ? top - power(gap) + 2 : 6));
+  const far = top < -4 || top > 8;
+  const [right, own] = [one, other].map((value) => (far ? value / 10 ** top : value).toFixed(Math.max(0, Math.min(20, far ? digits - 1 : digits - 1 - top))) + (far ? `e${top}` : ""));
+  let place = 0;
+  if (right.length === own.length) while (place < own.length && own[place] === right[place]) place += 1;
+  return [right, right === own ? own : el("span", {}, own.slice(0, place), el("mark", {}, own.slice(place)))];
+}
 const hex = (value) => {
   const view = new DataView(new ArrayBuffer(8));
   view.setFloat64(0, value);
@@ -75,6 +87,10 @@ class Sketch {
   rect(x, y, w, h) { this.path += `M${this.at(x, y)}h${this.at(w)}v${this.at(h)}h${this.at(-w)}Z`; }
   arc(x, y, r) { this.path += `M${this.at(x + r, y)}A${this.at(r, r)} 0 1 1 ${this.at(x - r, y)}A${this.at(r, r)} 0 1 1 ${this.at(x + r, y)}Z`; }
   setLineDash(dash) { this.dash = dash; }
+  // Clips are nested groups.
+  save() { this.clips = (this.clips || 0) + 1; }
+  clip() { this.out.push(`<clipPath id="c${this.clips}"><path d="${this.path}"/></clipPath><g clip-path="url(#c${this.clips})">`); }
+  restore() { this.out.push("</g>"); }
   stroke() {
     this.out.push(`<path d="${this.path}" fill="none" stroke="${this.strokeStyle}" stroke-width="${this.at(this.lineWidth)}" stroke-dasharray="${this.dash.join(" ") || "none"}" stroke-linecap="${this.lineCap}" stroke-linejoin="${this.lineJoin}"/>`);
   }
@@ -92,7 +108,7 @@ const quoted = (text) => (/^[\w@%+=:,./-]+$/.test(text) ? text : `'${text.replac
 const same = (one, other) => one.length === other.length && one.every((value, k) => Object.is(value, other[k]));
 function table(head, rows, caption) {
   return el("table", {}, el("caption", {}, caption), el("thead", {}, el("tr", {}, ...head.map((text) => el("th", { scope: "col" }, text)))),
-    el("tbody", {}, ...rows.map(([name, ...cells]) => el("tr", {}, el("th", { scope: "row" }, name), ...cells.map((cell) => el("td", {}, String(cell)))))));
+    el("tbody", {}, ...rows.map(([name, ...cells]) => el("tr", {}, el("th", { scope: "row" }, name), ...cells.map((cell) => el("td", {}, cell instanceof Node ? cell : String(cell)))))));
 }
 function copy(text, button) {
   const done = () => { if (button) { const old = button.textContent; button.textContent = "Copied"; setTimeout(() => { button.textContent = old; }, 1200); } };

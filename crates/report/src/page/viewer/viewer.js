@@ -16,8 +16,11 @@ class Viewer extends Words {
     this.speed = 1;
     this.selected = null;
     this.show = { reference: data.full, expected: data.full, what: !!data.whatIf, arrows: data.full };
+    this.beside = false;
     this.build();
     this.fit();
+    this.look();
+    this.approach();
     this.look();
   }
 
@@ -32,9 +35,10 @@ class Viewer extends Words {
       return el("label", { class: "check" }, box, el("span", { class: `key ${mark}` }, ""), text);
     };
     this.canvas = el("canvas", {
-      width: 960, height: 540, tabindex: 0, role: "img", "aria-label": "Both motions, drawn on top of each other",
+      width: 960, height: 540, class: "picture", tabindex: 0, role: "img", "aria-label": "Both motions, drawn on top of each other",
       "aria-describedby": `say-${this.key}`,
     });
+    this.view = [0, this.canvas.width];
     this.play = button("Play", "Play or pause", () => this.toggle(), "space");
     this.stepBox = el("input", { type: "number", min: data.first, max: data.last, class: "stepbox", "aria-label": "Step",
       onchange: (event) => this.go(Number(event.target.value)) });
@@ -55,11 +59,26 @@ class Viewer extends Words {
     this.ticks.setAttribute("preserveAspectRatio", "none");
     this.ticks.setAttribute("aria-hidden", "true");
     this.ticks.classList.add("ticks");
-    this.strip = el("canvas", { width: 960, height: 26, class: "strip", role: "img",
-      "aria-label": this.stripWords(), onclick: (event) => {
-        const box = this.strip.getBoundingClientRect();
-        this.go(1 + Math.floor(((event.clientX - box.left) / box.width) * data.steps));
+    const under = (event) => {
+      const box = this.strip.getBoundingClientRect();
+      return [1 + Math.floor(((event.clientX - box.left) / box.width) * data.steps), event.clientX - box.left, box.width];
+    };
+    this.strip = el("canvas", { width: 960, height: 26, class: "strip", role: "img", "aria-label": this.stripWords(),
+      onclick: (event) => this.go(under(event)[0]),
+      onpointerleave: () => { this.preview.hidden = true; },
+      onpointermove: (event) => {
+        const [step, x, width] = under(event);
+        this.preview.hidden = step < data.first || step > data.last || event.pointerType === "touch";
+        if (this.preview.hidden) return;
+        this.preview.style.left = `${Math.max(0, Math.min(width - 192, x - 96))}px`;
+        this.peek(step);
       } });
+    this.preview = el("div", { class: "preview", hidden: true, "aria-hidden": "true" }, el("canvas", { width: 384, height: 216 }), el("div"));
+    this.besideButton = button("Side by side", "What is expected beside what is there", () => this.besides(), "s");
+    this.keys = el("details", { class: "table help" }, el("summary", {}, "Keys ", el("kbd", {}, "?")), el("div", { class: "keys" },
+      ...[["n", "next wrong step"], ["p", "previous wrong step"], ["space", "play, pause"], ["\u2190 \u2192", "a step"], ["shift \u2190 \u2192", "ten steps"], ["home end", "first, last step"],
+        ["z", "near the difference"], ["0", "everything"], ["+ -", "zoom"], ["s", "side by side"], ["?", "this list"]].map(([key, text]) => el("span", {}, ...key.split(" ").flatMap((one) => [el("kbd", {}, one), " "]), text))));
+    this.keys.open = matchMedia("(min-width: 62rem)").matches;
     this.say = el("p", { class: "say", id: `say-${this.key}`, "aria-live": "polite" });
     this.facts = el("div", { class: "facts" });
     this.numbers = el("div", { class: "numbers" });
@@ -73,28 +92,26 @@ class Viewer extends Words {
     const remark = rounded ? el("p", { class: "hint" }, `This motion is too large to be here to the last bit: positions are rounded to ${short(rounded.unit)}, and velocities are left out. `,
       kept.length ? `Exact are the records around these steps: ${kept.join(", ")}.` : "") : "";
     this.root = el("div", { class: "viewer", onkeydown: (event) => this.key_down(event) },
+      this.canvas,
+      el("div", { class: "timeline" }, this.preview, this.strip, this.slider),
       el("div", { class: "bar" },
-        button("|<", "Previous wrong step", () => this.finding(-1), "p"), button("<", "One step back", () => this.go(this.step - 1), "left"),
-        this.play, button(">", "One step on", () => this.go(this.step + 1), "right"),
-        button(">|", "Next wrong step", () => this.finding(1), "n"),
+        el("span", { class: "group" }, button("\u00ab wrong", "Previous wrong step", () => this.finding(-1), "p"), button("\u2039", "One step back", () => this.go(this.step - 1), "left"),
+          this.play, button("\u203a", "One step on", () => this.go(this.step + 1), "right"), button("wrong \u00bb", "Next wrong step", () => this.finding(1), "n")),
         el("label", {}, "step ", this.stepBox, ` of ${data.steps}`),
         el("label", {}, "speed ", this.speeds()),
-        button("Fit", "Show everything", () => { this.zoom = 1; this.pan = [0, 0]; this.look(); }, "0"),
-        button("PNG", "Save this picture", () => this.picture()),
-        button("SVG", "Save this picture as a drawing", () => this.drawing()),
-        button("Clip", "Record a film of the steps", () => this.clip()),
-        button("Link", "Copy a link to this moment", () => this.link())),
-      remark, this.strip, this.slider,
-      this.canvas,
+        el("span", { class: "group" }, data.full ? button("Near", "Near the difference", () => { this.approach(); this.look(); }, "z") : "", button("All", "Show everything", () => this.whole(), "0"), data.full ? this.besideButton : ""),
+        el("span", { class: "group" }, button("PNG", "Save this picture", () => this.picture()), button("SVG", "Save this picture as a drawing", () => this.drawing()),
+          button("Clip", "Record a film of the steps", () => this.clip()), button("Link", "Copy a link to this moment", () => this.link()))),
       el("div", { class: "bar" }, el("label", { class: "grow" }, "inside the step, t = ", this.insideText, this.inside, this.ticks),
         el("label", {}, "moving ", this.passes), hybrid ? el("label", { class: "check" }, this.midBox, "after the impulses") : ""),
-      el("div", { class: "bar" },
-        ...(data.full ? [check("reference", "reference from the start", "k-ref"), check("expected", "expected from your own state", "k-exp"),
-          data.whatIf ? check("what", "the reference with the mistake", "k-what") : "",
-          check("arrows", "differences", "k-arrow"),
-          el("label", { class: "grow" }, "magnified ", this.factorText, this.factor)] : [])),
-      this.say, this.facts, this.matrix, this.numbers, this.table);
-    this.article.querySelector(".stage").append(this.root);
+      data.full ? el("div", { class: "bar" }, check("reference", "reference from the start", "k-ref"), check("expected", "expected from your own state", "k-exp"),
+        data.whatIf ? check("what", "the reference with the mistake", "k-what") : "",
+        check("arrows", "differences", "k-arrow"),
+        el("label", { class: "grow" }, "magnified ", this.factorText, this.factor)) : "",
+      remark, this.say, this.keys);
+    // Numbers stand beside the picture where there is room.
+    (this.article.querySelector(".side") || this.root).append(el("section", { class: "card step", "aria-label": "The step in numbers" }, this.facts, this.matrix, this.numbers, this.table));
+    this.article.querySelector(".stage").replaceChildren(this.root);
     this.canvas.addEventListener("wheel", (event) => {
       if (!event.ctrlKey && !event.shiftKey && document.activeElement !== this.canvas) return;
       event.preventDefault();
@@ -120,6 +137,12 @@ class Viewer extends Words {
       select.append(option);
     }
     return select;
+  }
+  besides() {
+    this.beside = this.data.full && !this.beside;
+    this.besideButton.setAttribute("aria-pressed", this.beside);
+    this.approach();
+    this.look();
   }
   stripWords() {
     const of = (letter) => [...this.data.strip].filter((one) => one === letter).length;
@@ -212,11 +235,9 @@ document.addEventListener("moment", ({ detail: { key, step } }) => {
 });
 // Opens a card with its viewer.
 function unfold(article) {
-  const card = article.querySelector("details.card"), motion = article.querySelector("details.motion");
+  const card = article.querySelector("details.scene");
   if (card) card.open = true;
-  if (!motion) return null;
-  motion.open = true;
-  return open(article);
+  return article.querySelector(".stage") ? open(article) : null;
 }
 // What findings and calls are about is shown at a click.
 function show(article, row) {
@@ -236,7 +257,7 @@ async function visit(articles) {
   const wish = new URLSearchParams(location.hash.slice(1));
   const moment = articles.find((article) => article.dataset.scene === wish.get("scene"));
   const named = moment || articles.find((article) => article.id && `#${article.id}` === location.hash);
-  const first = named || articles.find((article) => article.querySelector("details.card[open]")) || articles.find((article) => article.querySelector("details.motion"));
+  const first = named || articles.find((article) => article.querySelector("details.scene[open]")) || articles.find((article) => article.querySelector(".stage"));
   const viewer = first && await unfold(first);
   if (viewer && moment) {
     if (wish.has("step")) viewer.go(Number(wish.get("step")));
@@ -249,12 +270,9 @@ async function visit(articles) {
 async function start() {
   const articles = [...document.querySelectorAll("article.case")];
   for (const article of articles) {
-    const details = article.querySelector("details.motion");
-    if (!details) continue;
-    details.hidden = false;
-    details.addEventListener("toggle", () => { if (details.open) open(article); });
-    const card = article.querySelector("details.card");
-    if (card) card.addEventListener("toggle", () => { if (card.open) details.open = true; }, { once: true });
+    if (!article.querySelector(".stage")) continue;
+    const card = article.querySelector("details.scene");
+    if (card) card.addEventListener("toggle", () => { if (card.open) open(article); });
     for (const row of article.querySelectorAll("[data-step]")) show(article, row);
   }
   await visit(articles);

@@ -37,10 +37,10 @@ class Words extends Drawing {
     const phases = [["before the step", "", before]];
     if (data.collision === "hybrid") phases.push(["after the impulses", close && sums(close.mid), sums(this.state("submission", this.step, true))]);
     phases.push([data.collision === "hybrid" ? "after the failsafe" : "after the step", right, after]);
-    this.facts.replaceChildren(table(data.full ? ["", "expected", "yours"] : ["", "yours"], this.cut([
+    this.facts.replaceChildren(el("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "This step in numbers" }, table(data.full ? ["", "expected", "yours"] : ["", "yours"], this.cut([
       ...rows,
       ...phases.map(([name, expected, own]) => [`momentum ${name}`, expected === "" ? "" : momentum(expected), momentum(own)]),
-    ]), "This step in numbers"));
+    ]), "This step in numbers")));
     if (close && close.zones.length) {
       this.facts.append(el("p", {}, "Impact zones of the reference: " + close.zones[close.zones.length - 1].zones
         .map((zone) => `{${zone.particles.join(", ")}${zone.halfPlane ? ", a half-plane" : ""}}`).join(" ") || "none"));
@@ -168,26 +168,38 @@ class Words extends Drawing {
     const rows = [];
     const list = selected.pair ? [parse(selected.pair).first, ...(selected.pair.startsWith("pp") ? [parse(selected.pair).second] : selected.pair.startsWith("pe") ? data.edges[parse(selected.pair).second].slice(0, 2) : [])]
       : selected.kind === "particle" ? [selected.index] : selected.kind === "edge" ? data.edges[selected.index].slice(0, 2) : [];
-    const exact = (value) => `${value} (${hex(value)})`;
     const plane = selected.kind === "half-plane" ? selected.index : selected.pair && selected.pair.startsWith("ph") ? parse(selected.pair).second : null;
     if (plane !== null && data.planes[plane]) {
-      ["point x", "point y", "normal x", "normal y"].forEach((name, k) => rows.push([`half-plane ${plane} ${name}`, ...Array(3).fill(exact(data.planes[plane][k]))]));
+      ["point x", "point y", "normal x", "normal y"].forEach((name, k) => rows.push([`half-plane ${plane} ${name}`, ...Array(3).fill(data.planes[plane][k])]));
     }
     const close = this.close();
     if (selected.pair && close) {
       const [right, own] = [close.expected, close.actual].map((all) => all.find(([pair]) => pair === selected.pair));
       ["time of impact", "normal x", "normal y"].forEach((name, k) => {
-        if (right || own) rows.push([`contact's ${name}`, ...[right, own].map((one) => (one ? exact(one[k + 1]) : "none")), "-"]);
+        if (right || own) rows.push([`contact's ${name}`, ...[right, own].map((one) => (one ? one[k + 1] : "none")), "-"]);
       });
     }
     const expected = this.expected();
     for (const k of list) {
       for (const [name, at] of [["x", 2 * k], ["y", 2 * k + 1], ["vx", 2 * data.n + 2 * k], ["vy", 2 * data.n + 2 * k + 1]]) {
         const own = this.state("submission", this.step, this.mid), ref = this.state("reference", this.step, this.mid);
-        const cell = (state) => (state ? exact(state[at]) : "-");
-        rows.push([`particle ${k} ${name}`, cell(expected), cell(own), cell(ref)]);
+        rows.push([`particle ${k} ${name}`, ...[expected, own, ref].map((state) => (state ? state[at] : "-"))]);
       }
     }
+    const number = (value) => typeof value === "number";
+    const compared = ([name, right, own, ref]) => {
+      const [base, marked] = number(own) && number(right) ? beside(right, own) : number(own) && number(ref) ? beside(ref, own) : [];
+      const plain = (value) => (number(value) ? short(value) : value);
+      return marked === undefined ? [name, plain(right), plain(own), plain(ref)] : number(right) ? [name, base, marked, plain(ref)] : [name, plain(right), marked, base];
+    };
+    const exact = (value) => (number(value) ? `${value} (${hex(value)})` : value);
+    const bits = el("details", {}, el("summary", {}, "To the last bit"),
+      el("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Exact numbers" }, table(this.columns(), this.cut(rows.map(([name, ...values]) => [name, ...values.map(exact)])), "Decimal and hexadecimal")));
+    bits.open = this.bitsOpen;
+    bits.addEventListener("toggle", () => { this.bitsOpen = bits.open; });
+    const alike = (row) => { const values = this.cut([row])[0].slice(1).filter(number); return data.full && values.every((value) => Object.is(value, values[0])); };
+    const other = rows.filter((row) => !alike(row));
+    const rest = rows.length - other.length;
     const title = selected.pair ? words(selected.pair) : `${selected.kind} ${selected.index}`;
     const scene = quoted(data.scene), trace = quoted(data.traceName || "TRACE.bin");
     const command = selected.pair ? `fosssim-oracle detect --scene ${scene} --trace ${trace} --step ${this.step} --pair ${selected.pair}${this.pass > 0 ? ` --pass ${this.pass + 1}` : ""}`
@@ -195,7 +207,8 @@ class Words extends Drawing {
     const button = (text, act) => el("button", { type: "button", onclick: (event) => copy(act(), event.target) }, text);
     this.numbers.replaceChildren(
       el("h4", {}, title, " after step ", String(this.step)),
-      el("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Numbers" }, table(this.columns(), this.cut(rows), "Exact numbers: decimal and hexadecimal")),
+      other.length ? el("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Numbers" }, table(this.columns(), this.cut(other.map(compared)), "Digits that differ are marked")) : "",
+      data.full && rest ? el("p", { class: "hint" }, `${rest} ${other.length ? "more " : ""}numbers of it are the same to the last bit.`) : "", bits,
       el("p", {}, data.traceName ? "On the command line: " : "On the command line, with a trace that grade --keep-traces keeps: ", el("code", {}, command), " ", button("Copy", () => command)),
       el("p", {}, "The same bodies alone, moving as here: ", button("Copy as scene", () => this.asScene(list, false)),
         data.forces.length ? " or from the same state under the same forces: " : "", data.forces.length ? button("Copy with forces", () => this.asScene(list, true)) : "",
