@@ -2,7 +2,7 @@
 // the last bit. FOSSSIM_PAGE names the page (scripts/browser-page); without it, and without the target, nothing is tried.
 import { strict as assert } from "node:assert";
 import { execFileSync, spawnSync } from "node:child_process";
-import { copyFileSync, existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync, truncateSync, writeFileSync } from "node:fs";
+import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync, truncateSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { after, before, test as node } from "node:test";
@@ -123,7 +123,7 @@ test("a scene of one's own is dropped with its trace; a broken one gets the stri
   await close();
 });
 
-test("a trace of 1 GiB is streamed, and told to be too long", async (t) => {
+test("a trace of 1 GiB is read piece by piece", async (t) => {
   const { page, complaints, close } = await opened(browser, html);
   const file = trace("ContinuousTimeTests/head-on-equal-masses", null, "huge.bin");
   truncateSync(file, 2 ** 30);
@@ -152,6 +152,9 @@ test("everybody can use it: light, dark, a phone's width, without a mouse", asyn
     // Arrows go from tab to tab.
     await page.locator("#tab-check").focus();
     await page.keyboard.press("ArrowRight");
+    assert.equal(await page.evaluate(() => document.activeElement.id), "tab-submission");
+    await looks();
+    await page.keyboard.press("ArrowRight");
     await page.waitForSelector("html[data-tried]");
     await looks();
     await page.keyboard.press("End");
@@ -166,6 +169,56 @@ test("everybody can use it: light, dark, a phone's width, without a mouse", asyn
     assert.deepEqual(complaints.filter((one) => !one.includes("postMessage")), []);
     await close();
   }
+});
+
+test("a folder of traces gets the points of the suite, as grade --traces gives them, and says what became right", async (t) => {
+  const { page, complaints, close } = await opened(browser, html);
+  const traces = join(folder, "traces");
+  for (const group of ["GeometricTests", "ImpulsesTests"]) {
+    mkdirSync(join(traces, group), { recursive: true });
+    for (const file of readdirSync(join(root, "assets/t2m2", group))) trace(`${group}/${file.replace(".xml", "")}`, WRONG[1], `traces/${group}/${file.replace(".xml", ".bin")}`);
+  }
+  await page.locator("#tab-submission").click();
+  const marked = async (times) => {
+    await page.locator("#pick-folder").setInputFiles(traces);
+    await page.waitForFunction((times) => document.documentElement.dataset.marked === times, String(times), { timeout: 60_000 });
+    const { bytes } = await saved(page, "Save JSON", page.locator("#save-marks"));
+    assert.equal(bytes.toString(), oracle("grade", "--traces", "traces", "--format", "json").stdout);
+  };
+  await marked(1);
+  t.diagnostic(await page.locator("#marks-said").innerText());
+  assert.match(await page.locator("#marks-list").innerText(), /angular momentum is overwritten.*\(\d+ scenes\)/s);
+  trace(WRONG[0], null, `traces/${WRONG[0]}.bin`);
+  await marked(2);
+  assert.match(await page.locator("#marks-list").innerText(), /Since the last drop became right: GeometricTests\/pair-becomes-rigid/);
+  await judgeAccessibility(page);
+  // A scene leads to its report.
+  await page.getByRole("button", { name: "pair-becomes-rigid" }).click();
+  await page.waitForFunction(() => document.documentElement.dataset.checked === "1");
+  assert.match(await said(page), /^pair-becomes-rigid\.bin: accepted/);
+  assert.deepEqual(complaints.filter((one) => !one.includes("postMessage")), []);
+  await close();
+});
+
+test("a suite of one's own brings its scenes along; what is wrong with it is told with its place", async () => {
+  const { page, complaints, close } = await opened(browser, html);
+  const course = join(folder, "course");
+  mkdirSync(course);
+  copyFileSync(scene(WRONG[0]), join(course, "own.xml"));
+  const suite = (scenes) => `schema = 1\nname = "Mine"\n[[group]]\nname = "a"\npoints = 7\nscenes = [${scenes}]\n`;
+  writeFileSync(join(course, "suite.toml"), suite('"own.xml", "asset:ImpulsesTests/off-centre-on-turning-edge"'));
+  trace(...WRONG, "course/own.bin");
+  await page.locator("#tab-submission").click();
+  await page.locator("#pick-folder").setInputFiles(course);
+  await page.waitForFunction(() => document.documentElement.dataset.marked === "1");
+  const { bytes } = await saved(page, "Save JSON", page.locator("#save-marks"));
+  assert.equal(bytes.toString(), oracle("grade", "--traces", "course", "--suite", "course/suite.toml", "--format", "json").stdout);
+  writeFileSync(join(course, "suite.toml"), suite('"none*.xml"'));
+  await page.locator("#pick-folder").setInputFiles(course);
+  await page.waitForFunction(() => document.documentElement.dataset.marked === "2");
+  assert.match(await page.locator("#marks-said").innerText(), /suite\.toml:6:\d+: no scene file matches none\*\.xml/);
+  assert.deepEqual(complaints, []);
+  await close();
 });
 
 test("a scene is written: messages in place, its motion, and files that are the program's", async () => {

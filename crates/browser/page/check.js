@@ -93,6 +93,16 @@ addEventListener("drop", async (event) => {
   const handles = items.map((item) => item.getAsFileSystemHandle?.().catch(() => null));
   const entries = items.map((item, number) => ({ entry: item.webkitGetAsEntry?.(), file: item.getAsFile(), handle: handles[number] }));
   if (current() === "try") return tryFile(entries[0]?.file);
+  const folder = entries.find(({ entry }) => entry?.isDirectory);
+  if (folder || entries.some(({ file }) => /\.toml$/i.test(file?.name ?? ""))) {
+    open("submission");
+    const found = [];
+    for (const { entry, handle } of entries) {
+      const own = await handle;
+      await walk(entry, own, entry?.isDirectory ? "" : entry?.name ?? "", found);
+    }
+    return takeFolder(folder?.entry.name ?? marks.name ?? "traces", found);
+  }
   open("check");
   const files = [];
   for (const { file, handle } of entries) if (file) files.push({ file, handle: await handle });

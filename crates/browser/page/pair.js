@@ -106,5 +106,5 @@ $("save-curves").addEventListener("click", () => save("pair.svg", pair.svg, "ima
 $("save-pair").addEventListener("click", () => save("pair.json", pair.json, "application/json"));
 shown.set("pair", () => { if (!$("numbers").children.length) { controls(); look(); } });
 
-open({ "#try": "try", "#pair": "pair" }[location.hash] ?? "check");
+open({ "#all": "submission", "#try": "try", "#pair": "pair" }[location.hash] ?? "check");
 unpacked.then(() => { document.documentElement.dataset.ready = ""; }, (error) => say(`This browser can't run the checker: ${error.message}. Take Chrome 103, Firefox 113, Safari 16.4 or newer.`, "bad"));

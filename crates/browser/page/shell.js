@@ -98,7 +98,8 @@ const current = () => tabs.find((tab) => tab.getAttribute("aria-selected") === "
 // The scenes that are inside, as the choices of a list.
 const inside = (async () => {
   const { value } = await new Oracle().ask({ do: "scenes" });
-  return value;
+  $("suite").append(...value.suites.map((name) => el("option", { value: name }, name)));
+  return value.assignments;
 })();
 const choices = async (select) => {
   for (const { title, groups } of await inside) {

@@ -1,8 +1,8 @@
 //! `check`: the same reports as the command's.
 use crate::{
-    dropped::{Dropped, Host},
+    dropped::{Dropped, PIECE, PageHost},
+    parts::PageAnswer,
     scenes,
-    session::Answer,
 };
 use fosssim_evidence::{self as evidence, Keep, examine};
 use fosssim_judge::{
@@ -23,7 +23,7 @@ use std::{
 
 /// A trace to be judged.
 #[derive(Debug, Deserialize)]
-pub(crate) struct Request {
+pub(crate) struct CheckRequest {
     /// The scene's name: `asset:Group/name` for one of those inside, else that of its file.
     scene: String,
     /// The name of the trace's file.
@@ -38,11 +38,8 @@ pub(crate) struct Request {
     html: bool,
 }
 
-/// How many bytes the browser is asked for at once: each call takes some 0.1 ms.
-const PIECE: usize = 1 << 20;
-
 /// Judges a trace: the second part of the answer is `check --format json`, the third `check --format html`.
-pub(crate) fn answer(request: &Request, xml: Option<&[u8]>, host: &dyn Host) -> Answer {
+pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn PageHost) -> PageAnswer {
     let scene = read_scene(&request.scene, xml)?;
     let failed = AtomicBool::new(false);
     let opened = || BufReader::with_capacity(PIECE, Dropped::new(host, request.file, &failed));
@@ -51,7 +48,7 @@ pub(crate) fn answer(request: &Request, xml: Option<&[u8]>, host: &dyn Host) -> 
     let _ = trace.by_ref().take(LOOKED_AT).read_to_end(&mut start);
     let looks_like = looks_like(&start);
     let options = Options { threads: 1, fair: request.rules.ask_fair(), ..Options::default() };
-    let mut heard = Heard { host, all: scene.steps(), wrong: WrongSteps::new(StepChoice::None) };
+    let mut heard = WrongStepsHeard { host, all: scene.steps(), wrong: WrongSteps::new(StepChoice::None) };
     let examined = examine(&scene, Cursor::new(start).chain(trace), Keep::All, &options, &mut heard);
     let outcome = &examined.outcome;
     if let Some(why) = no_verdict(outcome, &request.scene) {
@@ -103,13 +100,13 @@ fn unreadable(trace: &str, outcome: &Outcome) -> String {
 }
 
 /// Tells how far judging is, and gathers the wrong steps.
-struct Heard<'a> {
-    host: &'a dyn Host,
+struct WrongStepsHeard<'a> {
+    host: &'a dyn PageHost,
     all: u32,
     wrong: WrongSteps,
 }
 
-impl Progress for Heard<'_> {
+impl Progress for WrongStepsHeard<'_> {
     fn step_judged(&mut self, step: u32, _: &[Remark]) {
         self.host.progress(step, self.all);
     }

@@ -1,5 +1,5 @@
 //! `detect`: one pair, looked at closely.
-use crate::session::Answer;
+use crate::parts::PageAnswer;
 use fosssim_judge::study::Study;
 use fosssim_model::sim::{PairMotion, PointMotion};
 use fosssim_num::vector::Vec2;
@@ -11,7 +11,7 @@ use serde_json::json;
 /// A pair with its motion. A moving point is `[x, y, dx, dy]`.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "kind")]
-pub(crate) enum Request {
+pub(crate) enum PairRequest {
     /// Two particles.
     #[serde(rename = "pp")]
     Particles { centres: [[f64; 4]; 2], radii: [f64; 2] },
@@ -23,7 +23,7 @@ pub(crate) enum Request {
     HalfPlane { centre: [f64; 4], radius: f64, point: [f64; 2], normal: [f64; 2] },
 }
 
-impl Request {
+impl PairRequest {
     fn motion(&self) -> Result<PairMotion, String> {
         let moving = |&[x, y, dx, dy]: &[f64; 4]| PointMotion { start: Vec2::new(x, y), shift: Vec2::new(dx, dy) };
         let vector = |&[x, y]: &[f64; 2]| Vec2::new(x, y);
@@ -54,7 +54,7 @@ impl Request {
 
 /// Looks at a pair. The parts behind the first are those of `detect --format text`, `json` and `svg`, and the picture
 /// once more for a page that has the style of plots.
-pub(crate) fn answer(request: &Request) -> Answer {
+pub(crate) fn answer(request: &PairRequest) -> PageAnswer {
     let study = Study::of(&request.motion()?)
         .map_err(|_| "there is no answer: the numbers are too large or too small, and the original hangs here")?;
     let report = Detect { study: &study, place: None };

@@ -7,9 +7,10 @@ use fosssim_report::page::{digest, framed, style};
 use miniz_oxide::deflate::compress_to_vec;
 
 /// The page's script, in the order in which its parts need each other.
-const SCRIPT: [&str; 4] = [
+const SCRIPT: [&str; 5] = [
     include_str!("../page/shell.js"),
     include_str!("../page/check.js"),
+    include_str!("../page/submission.js"),
     include_str!("../page/try.js"),
     include_str!("../page/pair.js"),
 ];

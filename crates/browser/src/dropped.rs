@@ -4,8 +4,11 @@ use std::{
     sync::atomic::{AtomicBool, Ordering},
 };
 
+/// How many bytes the browser is asked for at once: each call takes some 0.1 ms.
+pub(crate) const PIECE: usize = 1 << 20;
+
 /// The page, as far as requests need it.
-pub trait Host: Sync {
+pub trait PageHost: Sync {
     /// Reads bytes of the dropped file of this number from an offset on. Returns how many; 0 at the file's end, `None`
     /// when it can't be read.
     fn read(&self, file: u32, offset: u64, into: &mut [u8]) -> Option<usize>;
@@ -16,7 +19,7 @@ pub trait Host: Sync {
 
 /// A dropped file from its beginning.
 pub(crate) struct Dropped<'a> {
-    host: &'a dyn Host,
+    host: &'a dyn PageHost,
     file: u32,
     offset: u64,
     failed: &'a AtomicBool,
@@ -24,7 +27,7 @@ pub(crate) struct Dropped<'a> {
 
 impl<'a> Dropped<'a> {
     /// The file of this number; `failed` becomes true when it can't be read.
-    pub(crate) fn new(host: &'a dyn Host, file: u32, failed: &'a AtomicBool) -> Self {
+    pub(crate) fn new(host: &'a dyn PageHost, file: u32, failed: &'a AtomicBool) -> Self {
         Self { host, file, offset: 0, failed }
     }
 }

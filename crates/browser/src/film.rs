@@ -1,5 +1,5 @@
 //! A scene that is being written: what its strict reader says, and the reference's motion.
-use crate::{dropped::Host, session::Answer};
+use crate::{dropped::PageHost, parts::PageAnswer};
 use fosssim_model::{
     scene::{self, Loaded, Problem, Scene, Severity},
     sim::{RootSearch, Simulation},
@@ -32,24 +32,24 @@ const NEWS: u32 = 64;
 
 /// A scene to be simulated.
 #[derive(Debug, Deserialize)]
-pub(crate) struct Request {
+pub(crate) struct SimulateRequest {
     /// The scene's name, for messages.
     scene: String,
 }
 
 /// A picture of the motion.
 #[derive(Debug, Deserialize)]
-pub(crate) struct Picture {
+pub(crate) struct PictureRequest {
     step: usize,
     width: u32,
     height: u32,
-    form: Form,
+    form: PictureForm,
 }
 
 /// How a picture is given.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-enum Form {
+enum PictureForm {
     /// Four bytes a pixel, for a canvas.
     Pixels,
     Png,
@@ -58,7 +58,7 @@ enum Form {
 
 /// The kind of a film.
 #[derive(Debug, Deserialize)]
-pub(crate) struct Kind {
+pub(crate) struct FilmKind {
     width: u32,
     height: u32,
     /// An animated PNG, and not a GIF.
@@ -79,7 +79,7 @@ pub(crate) struct Film {
 }
 
 /// Reads a scene and, if it is right, simulates it.
-pub(crate) fn simulate(request: &Request, xml: &[u8], host: &dyn Host) -> (Value, Option<Film>) {
+pub(crate) fn simulate(request: &SimulateRequest, xml: &[u8], host: &dyn PageHost) -> (Value, Option<Film>) {
     let (scene, problems, more) = match scene::read(&request.scene, xml) {
         Ok(Loaded { scene, warnings, .. }) => (Some(scene), warnings, 0),
         Err(refused) => (None, refused.list, refused.omitted),
@@ -112,7 +112,7 @@ fn view(problem: &Problem) -> Value {
 
 impl Film {
     /// The motion, and why it ends before the scene does.
-    fn of(scene: Scene, host: &dyn Host) -> (Self, Option<String>) {
+    fn of(scene: Scene, host: &dyn PageHost) -> (Self, Option<String>) {
         let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
         let mut positions = simulation.state().positions.clone();
         let start = Extent::of(&scene, &positions);
@@ -148,7 +148,7 @@ impl Film {
     }
 
     /// One picture, as the only part behind the first.
-    pub(crate) fn picture(&mut self, asked: &Picture) -> Answer {
+    pub(crate) fn picture(&mut self, asked: &PictureRequest) -> PageAnswer {
         let size = Size::new(asked.width, asked.height).map_err(|error| error.to_string())?;
         let step = asked.step.min(self.steps);
         let follows = |(painter, next): &(Painter, usize)| *next <= step && painter.size() == size;
@@ -161,14 +161,14 @@ impl Film {
             shapes = painter.picture(u32::try_from(step).unwrap_or(u32::MAX), self.at(step), None);
         }
         let background = painter.background();
-        let bytes = if asked.form == Form::Svg {
+        let bytes = if asked.form == PictureForm::Svg {
             svg::document(size, background, &format!("step {step}"), &shapes).into_bytes()
         } else {
             let mut raster = Raster::new(size);
             raster.draw(background, &shapes);
             let mut packed = Vec::new();
             match asked.form {
-                Form::Png => {
+                PictureForm::Png => {
                     png(&raster, &mut packed).map_err(|error| format!("the picture can't be encoded: {error}"))?;
                     packed
                 }
@@ -180,7 +180,7 @@ impl Film {
     }
 
     /// All pictures as a film, as `render` makes it.
-    pub(crate) fn film(&self, kind: &Kind, host: &dyn Host) -> Answer {
+    pub(crate) fn film(&self, kind: &FilmKind, host: &dyn PageHost) -> PageAnswer {
         let size = Size::new(kind.width, kind.height).map_err(|error| error.to_string())?;
         let rate = Rate::new(RATE).ok_or("no such rate")?;
         let every = self.steps.div_ceil(LONG_FILM).max(1);
@@ -212,9 +212,9 @@ impl Film {
     }
 
     /// The reference's trace, byte for byte that of `simulate`.
-    pub(crate) fn trace(&self, host: &dyn Host) -> Result<Vec<u8>, String> {
+    pub(crate) fn trace(&self, host: &dyn PageHost) -> Result<Vec<u8>, String> {
         let mut simulation = Simulation::new(&self.scene, RootSearch::WhereNeeded);
-        let kept = Limited(Vec::new());
+        let kept = TraceRoom(Vec::new());
         let mut recorder = Recorder::start(kept, Layout::of(&self.scene), simulation.state());
         for step in 1..=self.scene.steps() {
             if let Err(error) = simulation.step(&mut recorder) {
@@ -236,9 +236,9 @@ impl Film {
 }
 
 /// Memory for one trace.
-struct Limited(Vec<u8>);
+struct TraceRoom(Vec<u8>);
 
-impl Write for Limited {
+impl Write for TraceRoom {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         if self.0.len() + bytes.len() > LONGEST_TRACE {
             return Err(io::Error::other("too long"));

@@ -1,9 +1,10 @@
-//! The program for browsers: the same rooms as the command line's `check`, `simulate` and `detect`, asked by messages
+//! The program for browsers: the same rooms as the command line's `check`, `simulate`, `detect` and
+//! `grade --traces`, asked by messages
 //! instead of arguments.
 //!
-//! A [`Session`] answers one request after the other. A request is a list of byte strings, of which the first is JSON;
-//! so is an answer ([`parts`]). What the page dropped is not in the request: it is read piece by piece from the
-//! [`Host`], so that a trace of any size can be judged. Compiled to WebAssembly it is the module of the page
+//! A [`PageSession`] answers one request after the other. A request is a list of byte strings, of which the first is
+//! JSON; so is an answer ([`parts`]). What the page dropped is not in the request: it is read piece by piece from the
+//! [`PageHost`], so that a trace of any size can be judged. Compiled to WebAssembly it is the module of the page
 //! (`document`); compiled natively, tests compare its answers with the program's.
 #![deny(unsafe_code)]
 
@@ -15,9 +16,10 @@ mod film;
 pub mod parts;
 mod scenes;
 mod session;
+mod submission;
 #[cfg(target_arch = "wasm32")]
 mod wasm;
 
 pub use document::page;
-pub use dropped::Host;
-pub use session::Session;
+pub use dropped::PageHost;
+pub use session::PageSession;

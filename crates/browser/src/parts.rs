@@ -1,4 +1,8 @@
 //! Lists of byte strings as one byte string: each behind its length, four bytes with the lowest first.
+use serde_json::Value;
+
+/// An answer: a value, and the byte strings that belong to it.
+pub(crate) type PageAnswer = Result<(Value, Vec<Vec<u8>>), String>;
 
 /// A list as one byte string.
 ///

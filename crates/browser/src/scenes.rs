@@ -1,61 +1,48 @@
 //! The scenes that are inside.
-use crate::dropped::Host;
-use fosssim_model::assignments::Assignment;
+use crate::dropped::PageHost;
+use fosssim_grading::library;
 use fosssim_model::{
+    assignments::Assignment,
     scene,
     sim::{RootSearch, Simulation},
     trace::{Layout, Recorder},
 };
-use include_dir::{Dir, File, include_dir};
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
 
-static ASSETS: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/../../assets");
+/// No first record is longer, but of scenes that nobody drops.
+const LONGEST_RECORD: usize = 1 << 16;
 
 /// Their names by assignment and group, in alphabetical order.
 pub(crate) fn list() -> Value {
-    let groups = |assignment: &Assignment| -> Vec<Value> {
-        let folder = ASSETS.get_dir(assignment.key());
-        let mut groups: Vec<_> = folder.into_iter().flat_map(Dir::dirs).collect();
-        groups.sort_by_key(|group| group.path());
-        groups
-            .into_iter()
-            .map(|group| {
-                let mut names: Vec<_> =
-                    group.files().filter_map(|file| file.path().file_name()?.to_str()?.strip_suffix(".xml")).collect();
-                names.sort_unstable();
-                json!({ "group": group.path().file_name().and_then(|name| name.to_str()), "names": names })
-            })
-            .collect()
+    let of = |assignment: Assignment| {
+        let mut groups = BTreeMap::<&str, Vec<&str>>::new();
+        for name in library::names().filter(|name| library::assignment(name) == Some(assignment)) {
+            let (group, rest) = name.split_once('/').unwrap_or(("", name));
+            groups.entry(group).or_default().push(rest);
+        }
+        let groups = groups.into_iter().map(|(group, names)| json!({ "group": group, "names": names }));
+        json!({ "title": assignment.definition().title, "groups": groups.collect::<Vec<_>>() })
     };
-    let all = Assignment::ALL.iter();
-    all.map(|one| json!({ "title": one.definition().title, "groups": groups(one) })).collect()
+    Assignment::ALL.into_iter().map(of).collect()
 }
 
 /// The XML of a scene, `Group/name`.
 pub(crate) fn xml(name: &str) -> Result<&'static [u8], String> {
-    let file = |assignment: Assignment| ASSETS.get_file(format!("{}/{name}.xml", assignment.key()));
-    let found = Assignment::ALL.into_iter().find_map(file);
-    found.map(File::contents).ok_or_else(|| format!("there is no scene asset:{name}"))
+    library::scene(name).ok_or_else(|| format!("there is no scene asset:{name}"))
 }
 
 /// The names of the scenes with whose first record a dropped trace begins.
-pub(crate) fn beginning(file: u32, host: &dyn Host) -> Vec<String> {
-    let mut start = vec![0; 1 << 16];
+pub(crate) fn beginning(file: u32, host: &dyn PageHost) -> Vec<&'static str> {
+    let mut start = vec![0; LONGEST_RECORD];
     let Some(count) = host.read(file, 0, &mut start) else { return Vec::new() };
     start.truncate(count);
-    let groups = ASSETS.dirs().flat_map(Dir::dirs);
-    let files = groups.flat_map(Dir::files).filter(|file| is_beginning(file, &start));
-    let name = |file: &File<'_>| {
-        let path = file.path();
-        let group = path.parent()?.file_name()?.to_str()?;
-        Some(format!("{group}/{}", path.file_stem()?.to_str()?))
-    };
-    files.filter_map(name).collect()
+    library::names().filter(|name| library::scene(name).is_some_and(|xml| is_beginning(xml, &start))).collect()
 }
 
 /// Whether a trace with this beginning may be one of the scene.
-fn is_beginning(file: &File<'_>, start: &[u8]) -> bool {
-    let Ok(loaded) = scene::read("", file.contents()) else { return false };
+fn is_beginning(xml: &[u8], start: &[u8]) -> bool {
+    let Ok(loaded) = scene::read("", xml) else { return false };
     let simulation = Simulation::new(&loaded.scene, RootSearch::WhereNeeded);
     let recorder = Recorder::start(Vec::new(), Layout::of(&loaded.scene), simulation.state());
     recorder.finish().is_ok_and(|(record, _)| start.starts_with(&record))

@@ -1,18 +1,21 @@
 //! One request after the other.
 use crate::{
     check, detect,
-    dropped::Host,
+    dropped::PageHost,
     film::{self, Film},
-    parts, scenes,
+    parts::{self, PageAnswer},
+    scenes,
+    submission::{DroppedSubmission, SceneRequest, SuiteRequest},
 };
+use fosssim_grading::plan;
 use serde::Deserialize;
-use serde_json::{Value, json};
+use serde_json::json;
 
 /// What the page may ask. The parts behind the first are named with each request.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "do", rename_all = "kebab-case")]
-enum Request {
-    /// The scenes that are inside.
+enum PageRequest {
+    /// The scenes and suites that are inside.
     Scenes,
     /// The XML of one of them.
     Scene { name: String },
@@ -22,58 +25,72 @@ enum Request {
         file: u32,
     },
     /// Judges a dropped trace. The second part is the scene's XML, unless it is one of those inside.
-    Check(check::Request),
+    Check(check::CheckRequest),
     /// Reads the scene of the second part, and simulates it if it is right.
-    Simulate(film::Request),
+    Simulate(film::SimulateRequest),
     /// The trace of the scene that was simulated last.
     Trace,
     /// A picture of its motion.
-    Picture(film::Picture),
+    Picture(film::PictureRequest),
     /// Its motion as a film.
-    Film(film::Kind),
+    Film(film::FilmKind),
     /// Looks at one pair.
-    Detect(detect::Request),
+    Detect(detect::PairRequest),
+    /// Begins to grade a submission's traces. Without a name the second part is the suite, dropped scenes follow.
+    Suite(SuiteRequest),
+    /// Judges one of its scenes.
+    Judge(SceneRequest),
+    /// Puts the results together under this name.
+    Grade { name: String },
 }
 
-/// An answer: a value, and the byte strings that belong to it.
-pub(crate) type Answer = Result<(Value, Vec<Vec<u8>>), String>;
-
-/// What is kept between requests: the motion of the scene that was simulated last.
+/// What is kept between requests: the motion of the scene that was simulated last, the submission that is being graded.
 #[derive(Debug, Default)]
-pub struct Session {
+pub struct PageSession {
     film: Option<Film>,
+    submission: Option<DroppedSubmission>,
 }
 
-impl Session {
+impl PageSession {
     /// Answers a request. The first part of an answer is JSON: what was asked for, or `{"error": "words"}`.
     #[must_use]
-    pub fn answer(&mut self, request: &[u8], host: &dyn Host) -> Vec<u8> {
+    pub fn answer(&mut self, request: &[u8], host: &dyn PageHost) -> Vec<u8> {
         let (value, bytes) = self.parsed(request, host).unwrap_or_else(|error| (json!({ "error": error }), Vec::new()));
         let value = value.to_string();
         let all: Vec<&[u8]> = std::iter::once(value.as_bytes()).chain(bytes.iter().map(Vec::as_slice)).collect();
         parts::joined(&all)
     }
 
-    fn parsed(&mut self, request: &[u8], host: &dyn Host) -> Answer {
+    fn parsed(&mut self, request: &[u8], host: &dyn PageHost) -> PageAnswer {
         let parts = parts::split(request).ok_or("the request is cut")?;
         let (first, rest) = parts.split_first().ok_or("the request is empty")?;
         let request = serde_json::from_slice(first).map_err(|error| format!("the request can't be read: {error}"))?;
         let xml = rest.first().copied();
         let last = || "no scene has been simulated".to_owned();
         match request {
-            Request::Scenes => Ok((scenes::list(), Vec::new())),
-            Request::Scene { name } => Ok((json!({}), vec![scenes::xml(&name)?.to_vec()])),
-            Request::Recognise { file } => Ok((json!({ "scenes": scenes::beginning(file, host) }), Vec::new())),
-            Request::Check(request) => check::answer(&request, xml, host),
-            Request::Simulate(request) => {
+            PageRequest::Scenes => {
+                let suites: Vec<String> = plan::built_in_names().collect();
+                Ok((json!({ "assignments": scenes::list(), "suites": suites }), Vec::new()))
+            }
+            PageRequest::Scene { name } => Ok((json!({}), vec![scenes::xml(&name)?.to_vec()])),
+            PageRequest::Recognise { file } => Ok((json!({ "scenes": scenes::beginning(file, host) }), Vec::new())),
+            PageRequest::Check(request) => check::answer(&request, xml, host),
+            PageRequest::Simulate(request) => {
                 let (value, film) = film::simulate(&request, xml.ok_or("the scene is missing")?, host);
                 self.film = film;
                 Ok((value, Vec::new()))
             }
-            Request::Trace => Ok((json!({}), vec![self.film.as_ref().ok_or_else(last)?.trace(host)?])),
-            Request::Picture(picture) => self.film.as_mut().ok_or_else(last)?.picture(&picture),
-            Request::Film(kind) => self.film.as_ref().ok_or_else(last)?.film(&kind, host),
-            Request::Detect(request) => detect::answer(&request),
+            PageRequest::Trace => Ok((json!({}), vec![self.film.as_ref().ok_or_else(last)?.trace(host)?])),
+            PageRequest::Picture(picture) => self.film.as_mut().ok_or_else(last)?.picture(&picture),
+            PageRequest::Film(kind) => self.film.as_ref().ok_or_else(last)?.film(&kind, host),
+            PageRequest::Detect(request) => detect::answer(&request),
+            PageRequest::Suite(request) => {
+                let (value, submission) = DroppedSubmission::begin(&request, rest)?;
+                self.submission = Some(submission);
+                Ok((value, Vec::new()))
+            }
+            PageRequest::Judge(request) => self.submission.as_mut().ok_or("no suite is chosen")?.scene(&request, host),
+            PageRequest::Grade { name } => self.submission.as_ref().ok_or("no suite is chosen")?.end(&name),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The module's surface: three functions that the page calls, three that it gives. What goes from one side to the other
 //! lies in the module's memory.
 #![expect(unsafe_code, reason = "names of exported and imported functions")]
-use crate::{Host, Session};
+use crate::{PageHost, PageSession};
 use std::{cell::RefCell, panic, sync::Once};
 
 #[link(wasm_import_module = "page")]
@@ -13,9 +13,9 @@ unsafe extern "C" {
     safe fn panicked(words: *const u8, length: usize);
 }
 
-struct Page;
+struct ThisPage;
 
-impl Host for Page {
+impl PageHost for ThisPage {
     #[expect(clippy::cast_precision_loss, reason = "files have fewer bytes than 2^53")]
     fn read(&self, file: u32, offset: u64, into: &mut [u8]) -> Option<usize> {
         usize::try_from(read(file, offset as f64, into.as_mut_ptr(), into.len())).ok()
@@ -27,7 +27,7 @@ impl Host for Page {
 }
 
 thread_local! {
-    static SESSION: RefCell<Session> = RefCell::default();
+    static SESSION: RefCell<PageSession> = RefCell::default();
     static MESSAGE: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
 }
 
@@ -52,7 +52,7 @@ extern "C" fn answer() -> *const u8 {
         }));
     });
     let request = MESSAGE.take();
-    let answer = SESSION.with_borrow_mut(|session| session.answer(&request, &Page));
+    let answer = SESSION.with_borrow_mut(|session| session.answer(&request, &ThisPage));
     MESSAGE.with_borrow_mut(|message| {
         *message = answer;
         message.as_ptr()

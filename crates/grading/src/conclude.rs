@@ -5,7 +5,7 @@
 use super::{
     config::{Hints, RunLimits},
     hints::cut,
-    result::{BadTrace, Limit, Measurements, Reached, Reason, SceneResult, Wrong},
+    result::{BadTrace, Ended, Limit, Measurements, Reached, Reason, SceneResult, Stream, Wrong},
     verdict::Verdict,
 };
 use fosssim_judge::{
@@ -14,10 +14,42 @@ use fosssim_judge::{
 };
 use fosssim_mistakes::diagnose::Explanation;
 use fosssim_model::{scene::Scene, trace::Layout};
-use fosssim_sandbox::{self as sandbox, Ended, Stream};
 
 /// The bytes that a report keeps of each of the program's streams.
+#[cfg(target_os = "linux")]
 const KEPT_OUTPUT: usize = 4096;
+
+/// How a program ended, what it took, and what it printed.
+#[derive(Debug, Clone)]
+pub struct Ran {
+    ended: Ended,
+    measured: Measurements,
+    stdout: String,
+    stderr: String,
+}
+
+impl Ran {
+    /// A program that did not run, as if it had ended well after it wrote its trace.
+    #[must_use]
+    pub fn well() -> Self {
+        let measured = Measurements { memory: Some(0), ..Measurements::default() };
+        Self { ended: Ended::Exited(0), measured, stdout: String::new(), stderr: String::new() }
+    }
+}
+
+#[cfg(target_os = "linux")]
+impl From<&fosssim_sandbox::RunOutcome> for Ran {
+    fn from(program: &fosssim_sandbox::RunOutcome) -> Self {
+        let measured = Measurements {
+            cpu: program.cpu,
+            wall: program.wall,
+            memory: Some(program.peak_memory),
+            ..Measurements::default()
+        };
+        let (stdout, stderr) = (kept(&program.stdout), kept(&program.stderr));
+        Self { ended: program.ended.clone(), measured, stdout, stderr }
+    }
+}
 
 /// The facts about one run.
 #[derive(Debug, Clone, Copy)]
@@ -25,7 +57,7 @@ pub struct Run<'a> {
     /// The scene's name.
     pub scene: &'a str,
     /// How the program ended.
-    pub program: &'a sandbox::RunOutcome,
+    pub program: &'a Ran,
     /// The judged trace.
     pub judged: &'a Outcome,
     /// Bytes of the trace that arrived.
@@ -80,14 +112,9 @@ pub fn conclude(run: &Run<'_>, explain: impl FnOnce(Look) -> Vec<Explanation>) -
         explanations: if is_explained { cut(hints, explain(look)) } else { Vec::new() },
         right_steps: judged.right_steps(rules.official()),
         steps: judged.steps,
-        measured: Measurements {
-            cpu: program.cpu,
-            wall: program.wall,
-            memory: Some(program.peak_memory),
-            ..Measurements::default()
-        },
-        stdout: kept(&program.stdout),
-        stderr: kept(&program.stderr),
+        measured: program.measured,
+        stdout: program.stdout.clone(),
+        stderr: program.stderr.clone(),
         card: None,
     }
 }
@@ -175,7 +202,8 @@ fn refusal(judged: &Outcome) -> BadTrace {
 }
 
 /// The first bytes of a stream as text; what is not UTF-8 is replaced.
-fn kept(captured: &sandbox::Captured) -> String {
+#[cfg(target_os = "linux")]
+fn kept(captured: &fosssim_sandbox::Captured) -> String {
     let bytes = &captured.bytes[..captured.bytes.len().min(KEPT_OUTPUT)];
     let mut text = String::from_utf8_lossy(bytes).into_owned();
     if captured.truncated || captured.bytes.len() > KEPT_OUTPUT {
@@ -199,7 +227,7 @@ mod tests {
         let trace = student::trace(&scene, Student::new(Some(Mistake::ParticleEdgeEmpty))).expect("a trace");
         let options = replay::Options { fair: true, ..replay::Options::default() };
         let judged = replay::judge(&scene, &trace[..], &options, &mut ());
-        let program = sandbox::RunOutcome::without_run(trace.len() as u64);
+        let program = Ran::well();
         let limits = &RunLimits::default();
         for (hints, expected) in [
             (Hints::None, None),

@@ -2,7 +2,7 @@
 use super::{
     cancellation::Cancellation,
     cards::{Cards, Judged},
-    conclude::{Look, Run, bytes_of_nothing, conclude},
+    conclude::{Look, Ran, Run, bytes_of_nothing, conclude},
     config::{Hints, RunLimits},
     fault,
     guard::{Fault, guarded},
@@ -125,7 +125,7 @@ impl Runner<'_> {
         };
         let run = Run {
             scene: &task.name,
-            program: &outcome,
+            program: &Ran::from(&outcome),
             judged: &judged,
             trace_bytes: bytes.load(Ordering::Relaxed),
             nothing: bytes_of_nothing(&task.scene),

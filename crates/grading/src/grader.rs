@@ -1,8 +1,8 @@
 //! Grades one submission: the unit of which everything that grades consists.
 //!
-//! A single submission, a class and an autograder all go through a `SubmissionGrading`, scene by scene: a caller with several
-//! jobs shares the scenes out among them ([`batch`](super::batch)). A result is kept before it is told; what is found
-//! is not run again. A panic in the work on one scene is a judge error of that scene.
+//! A single submission, a class and an autograder all go through a `SubmissionGrading`, scene by scene: a caller with
+//! several jobs shares the scenes out among them ([`batch`](super::batch)). A result is kept before it is told; what
+//! is found is not run again. A panic in the work on one scene is a judge error of that scene.
 use super::{
     cancellation::Cancellation,
     cards::Cards,

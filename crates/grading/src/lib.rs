@@ -1,7 +1,8 @@
 //! What to grade, and grading it: suites, verdicts, grades, recordings.
 //!
 //! The only place that knows both traces and programs. Yields a [`Grade`]; it writes no markup, speaks no HTTP and
-//! parses no arguments.
+//! parses no arguments. Programs are run on Linux alone; suites, and grades by traces that are there already
+//! ([`traces`]), are for every machine.
 //!
 //! ```
 //! use fosssim_grading::plan;
@@ -13,50 +14,76 @@
 #![forbid(unsafe_code)]
 
 mod assignments;
+#[cfg(target_os = "linux")]
 pub mod batch;
+#[cfg(target_os = "linux")]
 mod cancellation;
+#[cfg(target_os = "linux")]
 pub mod cards;
-#[cfg(test)]
+#[cfg(all(test, target_os = "linux"))]
 mod cast;
 mod conclude;
 pub mod config;
+#[cfg(target_os = "linux")]
 pub mod coverage;
+#[cfg(target_os = "linux")]
 mod execute;
+#[cfg(target_os = "linux")]
 mod fault;
+#[cfg(target_os = "linux")]
 mod form;
+#[cfg(target_os = "linux")]
 pub mod grader;
 mod guard;
+#[cfg(target_os = "linux")]
 pub mod headroom;
 mod hints;
+#[cfg(target_os = "linux")]
 mod key;
 pub mod library;
+#[cfg(target_os = "linux")]
 pub mod located;
+#[cfg(target_os = "linux")]
 pub mod names;
 pub mod near;
+#[cfg(target_os = "linux")]
 mod one_file;
 pub mod patience;
 pub mod plan;
+#[cfg(target_os = "linux")]
 pub mod recording;
+#[cfg(target_os = "linux")]
 pub mod results;
+#[cfg(target_os = "linux")]
 pub mod scene_files;
 pub mod score;
 mod shape;
+#[cfg(target_os = "linux")]
 mod staging;
 mod task;
+#[cfg(target_os = "linux")]
 mod temporary;
+pub mod traces;
+#[cfg(target_os = "linux")]
 pub mod upload;
 
+#[cfg(target_os = "linux")]
 pub use cancellation::Cancellation;
-pub use conclude::{Look, Run, bytes_of_nothing, conclude};
+pub use conclude::{Look, Ran, Run, bytes_of_nothing, conclude};
+#[cfg(target_os = "linux")]
 pub use execute::Runner;
 pub use fosssim_findings::{
     Build, Grade, GroupGrade, PassedOver, Reason, SceneGrade, SceneResult, Unfit, Verdict, disclosure, result,
 };
 use fosssim_findings::{grade, verdict};
+#[cfg(target_os = "linux")]
 pub use grader::{Grader, Submission};
 pub use guard::{Fault, guarded};
 pub use hints::cut;
+#[cfg(target_os = "linux")]
 pub use key::{Key, this_build};
+#[cfg(target_os = "linux")]
 pub use one_file::OneFile;
 pub use task::SceneTask;
+#[cfg(target_os = "linux")]
 pub use temporary::Folders;

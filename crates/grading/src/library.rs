@@ -10,6 +10,8 @@ use include_dir::{Dir, File, include_dir};
 use std::path::Path;
 
 static ASSETS: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/../../assets");
+/// Nobody but what runs programs compares with recordings.
+#[cfg(target_os = "linux")]
 static REFERENCES: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/../../references");
 
 /// The names of all embedded scenes, in alphabetical order.
@@ -25,16 +27,26 @@ pub fn scene(name: &str) -> Option<&'static [u8]> {
 
 /// The recording of a scene, compressed with zstd.
 #[must_use]
+#[cfg(target_os = "linux")]
 pub fn recording(name: &str) -> Option<&'static [u8]> {
     contents(&REFERENCES, &format!("{name}.bin.zst"))
 }
 
+/// There are none where no programs are run.
+#[must_use]
+#[cfg(not(target_os = "linux"))]
+pub const fn recording(_: &str) -> Option<&'static [u8]> {
+    None
+}
+
 /// The names of all embedded recordings, in alphabetical order.
+#[cfg(target_os = "linux")]
 pub fn recordings() -> impl Iterator<Item = &'static str> {
     stems(&REFERENCES, ".bin.zst")
 }
 
 /// A file of the folder of recordings: `manifest.txt`, `Group/name.steps` or `Group/name.bin.zst`.
+#[cfg(target_os = "linux")]
 #[must_use]
 pub fn reference(path: &str) -> Option<&'static [u8]> {
     contents(&REFERENCES, path)

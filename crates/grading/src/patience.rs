@@ -2,6 +2,7 @@
 //!
 //! Pure functions of what is known so far, in the suite's order. More knowledge can only move the end forward, so what
 //! is decided while scenes still run holds, and at the end the same scenes are left out whatever the number of jobs.
+#[cfg(target_os = "linux")]
 use super::{
     result::{NotRunReason, Reason, SceneResult},
     task::SceneTask,
@@ -26,6 +27,7 @@ impl Default for Patience {
 
 /// The result of a scene that is left out. All but the last reason are the submission's own doing, so that such a scene
 /// counts as those that were the end.
+#[cfg(target_os = "linux")]
 pub(super) fn left_out(task: &SceneTask, why: NotRunReason) -> SceneResult {
     let verdict = match why {
         NotRunReason::Limits { verdict, .. } => verdict,
@@ -36,6 +38,7 @@ pub(super) fn left_out(task: &SceneTask, why: NotRunReason) -> SceneResult {
 }
 
 /// The first scene that is not run, and why. `known` has the verdict of every scene that is done, and how long it took.
+#[cfg(target_os = "linux")]
 pub(super) fn end(
     patience: &Patience,
     fail_fast: bool,
@@ -68,6 +71,7 @@ pub(super) fn end(
 
 /// Whether a program with this verdict was stopped at a limit. An endless loop runs into whichever comes first: of
 /// time, of memory, of what it may write.
+#[cfg(target_os = "linux")]
 const fn is_limit(verdict: Verdict) -> bool {
     matches!(verdict, Verdict::TimeLimit | Verdict::MemoryLimit | Verdict::OutputLimit)
 }

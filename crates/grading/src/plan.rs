@@ -5,18 +5,14 @@ use super::{
     library,
     task::SceneTask,
 };
-use fosssim_files::{open_file, read_limited, read_text};
 use fosssim_judge::Rules;
 use fosssim_model::scene;
-use std::{collections::BTreeMap, io, path::Path};
+use std::collections::BTreeMap;
 
-/// A suite of more bytes is none.
-pub const LARGEST_SUITE: u64 = 1 << 20;
-
-/// The greatest number of scenes of a suite, and of bytes in all of them.
-pub const MOST_SCENES: usize = 10_000;
-/// See [`MOST_SCENES`].
-pub const MOST_SCENE_BYTES: u64 = 256 << 20;
+#[cfg(target_os = "linux")]
+mod on_disk;
+#[cfg(target_os = "linux")]
+pub use on_disk::{FindError, LARGEST_SUITE, MOST_SCENE_BYTES, MOST_SCENES, find, load, resolve};
 
 /// A suite ready to run.
 #[derive(Debug, Clone)]
@@ -103,81 +99,23 @@ pub fn default_name() -> String {
     assignments::default_name()
 }
 
-/// Why there is no plan.
-#[derive(Debug, thiserror::Error)]
-pub enum FindError {
-    /// No such suite.
-    #[error("no suite {name}: it is neither a file nor one of {}", built_in_names().collect::<Vec<_>>().join(", "))]
-    Unknown {
-        /// The name that was asked for.
-        name: String,
-        /// Why it is no file.
-        #[source]
-        why: io::Error,
-    },
-    /// There is one, but it can't be read.
-    #[error("cannot read the suite {name}")]
-    Unreadable {
-        /// The file.
-        name: String,
-        /// Why.
-        #[source]
-        why: io::Error,
-    },
-    /// There is one, but it is not sound; each problem is a line.
-    #[error("the suite has {}{}", counted(.error.problems.len()), lines(name, .error))]
-    Unsound {
-        /// The file.
-        name: String,
-        /// The fault of it.
-        error: SuiteError,
-    },
-}
+/// The scenes that a pattern takes: names and XML.
+pub type Found = Vec<(String, Vec<u8>)>;
 
-fn counted(problems: usize) -> String {
-    if problems == 1 { "1 problem:".to_owned() } else { format!("{problems} problems:") }
-}
-
-fn lines(name: &str, error: &SuiteError) -> String {
-    error.problems.iter().map(|(at, text)| format!("\n{name}:{at}: {text}")).collect()
-}
-
-/// Finds a suite: one that comes with the program, by its name, or a file. Its own files are looked up beside it.
-///
-/// # Errors
-/// When there is no such suite; otherwise everything that is wrong with it.
-pub fn find(name: &str) -> Result<Plan, FindError> {
-    let path = Path::new(name);
-    let beside = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let loaded = match built_in(name) {
-        Some(text) => load(text, Path::new(".")),
-        None => {
-            let name = name.to_owned();
-            let text = read_text(path, LARGEST_SUITE).map_err(|why| match why.kind() {
-                io::ErrorKind::NotFound => FindError::Unknown { name, why },
-                _ => FindError::Unreadable { name, why },
-            })?;
-            load(&text, beside)
-        }
-    };
-    loaded.map_err(|error| FindError::Unsound { name: name.to_owned(), error })
-}
-
-/// Looks up the scenes of a suite; files are relative to `folder`.
+/// Looks up the scenes of a suite; `files` those whose patterns are not of scenes that come with the program.
 ///
 /// # Errors
 /// Patterns that match nothing, scenes that can't be read or are not sound, each at the pattern's position.
-pub fn resolve(suite: &Suite, folder: &Path) -> Result<Plan, SuiteError> {
+pub fn resolve_by(suite: &Suite, files: &mut dyn FnMut(&str) -> Result<Found, String>) -> Result<Plan, SuiteError> {
     let mut problems = Vec::new();
     let mut seen = BTreeMap::new();
     let mut groups = Vec::new();
-    let mut room = Room { scenes: MOST_SCENES, bytes: MOST_SCENE_BYTES };
     for group in &suite.groups {
         let mut scenes = Vec::new();
         for (pattern, &position) in group.scenes.iter().zip(&group.positions) {
             let found = match pattern.strip_prefix("asset:") {
                 Some(pattern) => embedded(pattern),
-                None => files(pattern, folder, &mut room),
+                None => files(pattern),
             };
             match found {
                 Ok(found) => {
@@ -223,11 +161,11 @@ pub fn resolve(suite: &Suite, folder: &Path) -> Result<Plan, SuiteError> {
 /// Reads, validates and looks up a suite in one go.
 ///
 /// # Errors
-/// As [`config::read`] and [`resolve`].
-pub fn load(text: &str, folder: &Path) -> Result<Plan, SuiteError> {
+/// As [`config::read`] and [`resolve_by`].
+pub fn load_by(text: &str, files: &mut dyn FnMut(&str) -> Result<Found, String>) -> Result<Plan, SuiteError> {
     let (suite, mut problems) = config::read_all(text);
     // Patterns are looked up although something else is wrong: everything is told at once.
-    let resolved = resolve(&suite, folder);
+    let resolved = resolve_by(&suite, files);
     if problems.is_empty() {
         return resolved;
     }
@@ -235,8 +173,6 @@ pub fn load(text: &str, folder: &Path) -> Result<Plan, SuiteError> {
     problems.sort_by_key(|(at, _)| (at.line, at.column));
     Err(SuiteError { problems })
 }
-
-type Found = Vec<(String, Vec<u8>)>;
 
 fn embedded(pattern: &str) -> Result<Found, String> {
     let glob = glob::Pattern::new(pattern).map_err(|error| format!("pattern asset:{pattern}: {error}"))?;
@@ -250,51 +186,10 @@ fn embedded(pattern: &str) -> Result<Found, String> {
     Ok(found)
 }
 
-/// The room that is left for a suite's files.
-struct Room {
-    scenes: usize,
-    bytes: u64,
-}
-
-fn files(pattern: &str, folder: &Path, room: &mut Room) -> Result<Found, String> {
-    let path = folder.join(pattern);
-    let text = path.to_str().ok_or_else(|| format!("{}: the folder's name is not UTF-8", folder.display()))?;
-    let paths = glob::glob(text).map_err(|error| format!("pattern {pattern}: {error}"))?;
-    let mut found = Found::new();
-    for path in paths {
-        let path = path.map_err(|error| format!("{}: {}", error.path().display(), error.error()))?;
-        let relative = path.strip_prefix(folder).unwrap_or(&path);
-        let name = relative.with_extension("").to_string_lossy().into_owned();
-        let xml = scene_file(&path)?;
-        room.scenes = room.scenes.checked_sub(1).ok_or_else(|| {
-            format!("pattern {pattern} takes the suite beyond {MOST_SCENES} scenes, which is the limit")
-        })?;
-        room.bytes = room.bytes.checked_sub(xml.len() as u64).ok_or_else(|| {
-            format!("pattern {pattern} takes the suite's scenes beyond {MOST_SCENE_BYTES} bytes, which is the limit")
-        })?;
-        found.push((name, xml));
-    }
-    if found.is_empty() {
-        return Err(format!("no scene file matches {pattern} (files are looked up beside the suite)"));
-    }
-    Ok(found)
-}
-
-/// The bytes of a scene: of a regular file, which nobody has to wait for.
-fn scene_file(path: &Path) -> Result<Vec<u8>, String> {
-    const LARGEST: u64 = scene::LARGEST_SCENE as u64;
-    let (file, size) = open_file(path, true).map_err(|error| error.to_string())?;
-    if size > LARGEST {
-        return Err(format!("{} is too large for a scene ({size} bytes, the limit is {LARGEST})", path.display()));
-    }
-    let read = file.metadata().and_then(|metadata| read_limited(file, &metadata, LARGEST));
-    read.map_err(|error| format!("{}: {error}", path.display()))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::collections::BTreeSet;
+    use std::{collections::BTreeSet, path::Path};
 
     #[test]
     fn every_built_in_suite_finds_its_scenes() {
@@ -328,25 +223,6 @@ mod tests {
         assert!((part.max_points() - worth).abs() < 1e-12);
         assert_eq!(part.name, format!("{} (1 of {all} scenes)", whole.name));
         assert_eq!(plan().part(|_| true).name, whole.name);
-    }
-
-    #[test]
-    fn files_of_a_suite_are_regular_and_limited() {
-        let folder = tempfile::tempdir().expect("a folder");
-        for name in ["a.xml", "b.xml", "c.xml"] {
-            std::fs::write(folder.path().join(name), "<scene/>").expect("written");
-        }
-        let found = |pattern: &str, scenes, bytes| {
-            let found = files(pattern, folder.path(), &mut Room { scenes, bytes });
-            found.map(|found| found.len())
-        };
-        assert_eq!(found("*.xml", 3, 24), Ok(3));
-        assert!(found("*.xml", 2, 24).expect_err("one too many").contains("beyond 10000 scenes"));
-        assert!(found("*.xml", 3, 23).expect_err("too large").contains("beyond 268435456 bytes"));
-        std::fs::File::create(folder.path().join("hole")).expect("a file").set_len(1 << 40).expect("a hole");
-        std::os::unix::fs::symlink("/dev/zero", folder.path().join("zero")).expect("a link");
-        assert!(found("hole", 3, 24).expect_err("a hole").contains("too large for a scene"));
-        assert!(found("zero", 3, 24).expect_err("a device").contains("a device"));
     }
 
     #[test]

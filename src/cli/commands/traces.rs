@@ -8,33 +8,24 @@ use super::{
 };
 use crate::{
     cli::{console, grading::Grade as Arguments, selection::Selection},
-    diagnose,
-    evidence::{Keep, examine},
     files::{FileError, Folder},
-    judge::replay::Options,
     report::grade::{Format, Text, rehearse},
-    sandbox::RunOutcome,
     suite::{
-        Grade, Look, Reason, Run, SceneResult, SceneTask, Verdict, bytes_of_nothing,
+        Grade, Reason, SceneResult, SceneTask, Verdict,
         cards::{Cards, Judged},
-        conclude, guarded,
+        guarded,
         plan::Plan,
-        result::{Failure, Measurements},
-        score,
+        result::Failure,
+        traces,
     },
 };
 use anyhow::{Context, Result, bail};
-use fosssim_mistakes::together::settle;
 use rayon::prelude::*;
 use std::{
     ffi::OsStr,
     io::{self, Read},
     path::{Path, PathBuf},
-    time::Duration,
 };
-
-/// The number of accepted scenes that are checked for evidence against a likely mistake.
-const WITNESSES: usize = 12;
 
 pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report]) -> Result<u8> {
     let names: Vec<&str> = plan.scenes().map(|task| task.name.as_str()).collect();
@@ -81,44 +72,7 @@ fn grade(plan: &Plan, folder: &Path, submission: String, pages: Option<&Pages>) 
     let opened = Folder::open(folder);
     let judged: Vec<JudgedScene> = tasks.par_iter().map(|task| scene(plan, task, &opened, pages)).collect();
     let (results, passed_over): (Vec<_>, Vec<_>) = judged.into_iter().unzip();
-    let mut results = results.into_iter();
-    let groups: Vec<_> = plan
-        .groups
-        .iter()
-        .map(|group| {
-            let own = results.by_ref().take(group.scenes.len()).map(|result| (result, false)).collect();
-            score::group(&group.name, group.marking, own)
-        })
-        .collect();
-    let scenes = || groups.iter().flat_map(|group| &group.scenes).zip(&tasks);
-    let wrong: Vec<_> =
-        scenes().map(|(graded, _)| graded.explanations.as_slice()).filter(|found| !found.is_empty()).collect();
-    let mut right: Vec<_> = scenes()
-        .filter(|(graded, _)| graded.verdict == Verdict::Accepted && graded.differs.is_none())
-        .map(|(_, task)| &task.scene)
-        .collect();
-    right.sort_by_key(|scene| u64::from(scene.steps()) * (scene.particles.len() * scene.particles.len()) as u64);
-    right.truncate(WITNESSES);
-    let refuted = if wrong.len() < 2 { Vec::new() } else { diagnose::refuted(&wrong, &right) };
-    let mut grade = Grade {
-        submission,
-        suite: plan.name.clone(),
-        rules: plan.rules,
-        verdict: groups.iter().map(|group| group.verdict).max().unwrap_or(Verdict::NotRun),
-        points: groups.iter().map(|group| group.points).sum(),
-        max_points: plan.max_points(),
-        // No program was run that could tell of a hidden scene.
-        shows_output: true,
-        groups,
-        build: None,
-        warnings: passed_over.into_iter().flatten().collect(),
-        layers: Vec::new(),
-        wall: Duration::ZERO,
-        refuted,
-        located: None,
-    };
-    settle(&mut grade);
-    grade
+    traces::grade(plan, submission, results, passed_over.into_iter().flatten().collect())
 }
 
 /// The result of one scene, and what of it was passed over.
@@ -142,34 +96,14 @@ fn scene(plan: &Plan, task: &SceneTask, folder: &io::Result<Folder>, pages: Opti
 
 fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) -> io::Result<JudgedScene> {
     let (trace, passed_over) = read(folder, &task.name, plan.limits.trace)?;
-    let options =
-        Options { stop_by: plan.rules.official(), threads: 1, fair: plan.rules.ask_fair(), ..Options::default() };
-    let examined = examine(&task.scene, &trace[..], Keep::All, &options, &mut ());
-    let outcome = &examined.outcome;
-    // As if a program had ended well after it wrote this.
-    let program = RunOutcome::without_run(trace.len() as u64);
-    let run = Run {
-        scene: &task.name,
-        program: &program,
-        judged: outcome,
-        trace_bytes: trace.len() as u64,
-        nothing: bytes_of_nothing(&task.scene),
-        rules: plan.rules,
-        hints: plan.hints,
-        limits: &plan.limits,
-    };
-    let explained = conclude(&run, |look| match look {
-        Look::NotFinite => diagnose::not_finite(&examined.trace),
-        Look::Mistakes => examined.explain(),
-    });
-    let mut result = SceneResult { ended: None, measured: Measurements::default(), ..explained };
+    let (mut result, examined) = traces::judged(plan, task, (&trace[..], trace.len() as u64), &mut ());
     if let Some(pages) = pages
         && !(result.verdict.is_accepted() && result.differs.is_none())
     {
         let judged = Judged {
             task,
             result: &result,
-            outcome,
+            outcome: &examined.outcome,
             rulings: &examined.rulings,
             trace: &trace,
             is_cut: false,

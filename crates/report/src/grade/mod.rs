@@ -97,6 +97,12 @@ formats! {
     Html, "html", one page;
 }
 
+/// The document for programs ([`Format::Json`]), alone: without what the other formats need.
+#[must_use]
+pub fn json(grades: &[Grade]) -> String {
+    json::render(grades, &[])
+}
+
 impl Format {
     /// The format with this name.
     #[must_use]

@@ -104,6 +104,8 @@ pub struct Options {
     pub suites: Suites,
     /// The grader, where there is one: it looks at suites before anybody is graded by them.
     pub grader: Option<PathBuf>,
+    /// The page that checks traces in a browser, where the grader has it.
+    pub checker: Option<String>,
     /// Where uploads wait until they are stored.
     pub incoming: PathBuf,
     /// Uploads are refused when fewer bytes are free on that disk.

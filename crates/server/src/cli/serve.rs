@@ -35,7 +35,7 @@ const MIB: u64 = 1 << 20;
 /// How long an upload that nobody finished may lie around.
 const FORGOTTEN: Duration = Duration::from_secs(DAY);
 
-/// How long the grader may take to list its suites.
+/// How long the grader may take to answer.
 const ANSWER: Duration = Duration::from_secs(20);
 
 /// How often the server looks for what is not kept any longer.
@@ -62,6 +62,7 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
     let options = Options {
         suites: suites(arguments.work.grader.as_deref()).await,
         grader: grader(arguments.work.grader.as_deref()).ok(),
+        checker: checker(arguments.work.grader.as_deref()).await,
         incoming: folders.incoming.clone(),
         low_water: arguments.low_water * MIB,
         public: public.clone(),
@@ -166,19 +167,31 @@ async fn give_up(database: Database, store: Store, keep: Option<Duration>) {
 
 /// Asks the grader for the suites that come with it. A server whose workers are elsewhere may have none to ask.
 async fn suites(named: Option<&Path>) -> Suites {
-    let asked = async {
-        let mut command = tokio::process::Command::new(grader(named)?);
-        command.args(["suite", "list", "--format", "json"]).stdin(std::process::Stdio::null()).kill_on_drop(true);
-        let said = tokio::time::timeout(ANSWER, command.output()).await.context("it does not answer")??;
-        if !said.status.success() {
-            bail!("{}", String::from_utf8_lossy(&said.stderr).trim());
-        }
-        Ok(Suites::read(&said.stdout)?)
-    };
+    let asked = async { Ok(Suites::read(&answer(named, &["suite", "list", "--format", "json"]).await?)?) };
     asked.await.unwrap_or_else(|error: anyhow::Error| {
         tracing::warn!(error = format!("{error:#}"), "the grader can't be asked for its suites: any name is taken");
         Suites::default()
     })
+}
+
+/// Asks the grader for the page that checks traces in a browser. One that was built without it has none.
+async fn checker(named: Option<&Path>) -> Option<String> {
+    let asked = async { Ok(String::from_utf8(answer(named, &["page", "--output", "-"]).await?)?) };
+    let asked = asked.await.inspect_err(|error: &anyhow::Error| {
+        tracing::info!(error = format!("{error:#}"), "there is no page at /check that checks traces in a browser");
+    });
+    asked.ok().filter(|page| !page.is_empty())
+}
+
+/// What the grader says to these words.
+async fn answer(named: Option<&Path>, words: &[&str]) -> Result<Vec<u8>> {
+    let mut command = tokio::process::Command::new(grader(named)?);
+    command.args(words).stdin(std::process::Stdio::null()).kill_on_drop(true);
+    let said = tokio::time::timeout(ANSWER, command.output()).await.context("it does not answer")??;
+    if !said.status.success() {
+        bail!("{}", String::from_utf8_lossy(&said.stderr).trim());
+    }
+    Ok(said.stdout)
 }
 
 /// Has the grader write a program with a mistake.

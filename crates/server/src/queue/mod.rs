@@ -4,11 +4,11 @@
 //! A worker **claims** a job and holds it under a lease, which it **renews**; it **finishes** it, gives it back
 //! (**releases**) or says that it **failed**. Every claim has a number of its own, the attempt, and a key that only the
 //! worker knows: whatever a worker says is looked at together with them, so that one who is late changes nothing. A job
-//! that failed waits again, later each time, and after [`QueuePolicy::max_failures`] failures it is **buried**: somebody is
-//! to look at it. A worker that died, or went silent, is no failure of its job. But a job that was there several times
-//! is **suspected**: it is run alone, and after the others that wait; only one that takes its worker down over and over
-//! while nothing else runs there is buried. What a job is about, and what is written when it ends, is the concern of
-//! the rooms above.
+//! that failed waits again, later each time, and after [`QueuePolicy::max_failures`] failures it is **buried**:
+//! somebody is to look at it. A worker that died, or went silent, is no failure of its job. But a job that was there
+//! several times is **suspected**: it is run alone, and after the others that wait; only one that takes its worker
+//! down over and over while nothing else runs there is buried. What a job is about, and what is written when it ends,
+//! is the concern of the rooms above.
 
 mod claim;
 mod enqueue;

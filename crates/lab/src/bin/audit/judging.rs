@@ -1,5 +1,5 @@
-//! Compares judging by the shortcuts (bytes first, right at once) with the full way, on the traces of all samples on all
-//! scenes that come with the program, and on those of a corpus: outcomes have to be the same to the last field.
+//! Compares judging by the shortcuts (bytes first, right at once) with the full way, on the traces of all samples on
+//! all scenes that come with the program, and on those of a corpus: outcomes have to be the same to the last field.
 use std::{
     path::Path,
     process::ExitCode,

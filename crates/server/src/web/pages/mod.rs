@@ -14,6 +14,7 @@ macro_rules! deeds {
 
 mod account;
 mod administration;
+mod checker;
 mod course;
 mod grades;
 mod platform;
@@ -50,6 +51,7 @@ macro_rules! pages {
 
 pages! {
     get "/" => account::home,
+    get "/check" => checker::page,
     get "/sign-in" => sign_in::page,
     post "/sign-in" => sign_in::by_token,
     post "/sign-in/password" => sign_in::by_password,

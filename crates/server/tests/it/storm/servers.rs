@@ -117,8 +117,8 @@ fn grades(server: &Server, students: &[Client], expected: &[(i64, bool)]) -> Gra
     found
 }
 
-/// Uploads a program that earns its number, or one on which the grader fails. A client that hears nothing asks again, one
-/// of the servers, until it is told.
+/// Uploads a program that earns its number, or one on which the grader fails. A client that hears nothing asks again,
+/// one of the servers, until it is told.
 fn upload(servers: &[Server; 2], dice: &mut Dice, student: &Client, number: usize) -> (i64, bool) {
     let poison = number % 24 == 5;
     let text = if poison { program("POISON", 0) } else { program("WA", u32::try_from(number).expect("few")) };

@@ -182,6 +182,7 @@ pub(super) const ROUTES: &[(&str, &str, For)] = &[
     ("get", "/c/{course}/s/{id}", Owner),
     ("get", "/c/{course}/s/{id}/report/{name}", Owner),
     ("get", "/c/{course}/s/{id}/upload", Owner),
+    ("get", "/check", All),
     ("get", "/static/style.css", All),
     ("get", "/static/page.js", All),
 ];

@@ -1,0 +1,144 @@
+// A submission's traces: a folder with Group/name.bin, points by a suite, a row per scene, and what became right since the
+// last drop.
+const marks = { oracle: new Oracle(), files: new Map(), suite: null, last: null, json: null };
+
+// All files below what was dropped, by their paths in it.
+async function walk(entry, handle, path, found) {
+  if (handle?.kind === "directory") {
+    for await (const [name, inner] of handle.entries()) await walk(null, inner, `${path}${name}${inner.kind === "directory" ? "/" : ""}`, found);
+  } else if (handle) {
+    found.push({ path, file: await handle.getFile() });
+  } else if (entry?.isDirectory) {
+    const reader = entry.createReader();
+    for (;;) {
+      const some = await new Promise((resolve, reject) => reader.readEntries(resolve, reject));
+      if (!some.length) break;
+      for (const inner of some) await walk(inner, null, `${path}${inner.name}${inner.isDirectory ? "/" : ""}`, found);
+    }
+  } else if (entry) {
+    found.push({ path, file: await new Promise((resolve, reject) => entry.file(resolve, reject)) });
+  }
+  return found;
+}
+
+// A dropped suite brings its scenes along: XML beside it or below. Everything else is the submission.
+async function takeFolder(name, found) {
+  const suite = found.find(({ path }) => /(^|\/)[^/]*\.toml$/i.test(path));
+  if (suite) {
+    const beside = suite.path.replace(/[^/]*$/, "");
+    const scenes = found.filter(({ path }) => path.startsWith(beside) && /\.xml$/i.test(path));
+    marks.suite = { name: suite.file.name, text: bytesOf(await suite.file.text()), scenes: scenes.map(({ path }) => path.slice(beside.length)), xml: await Promise.all(scenes.map(async ({ file }) => new Uint8Array(await file.arrayBuffer()))) };
+    $("suite-name").textContent = `${suite.file.name} with ${counted(scenes.length, "scene")} of its own`;
+  }
+  const traces = found.filter(({ path }) => /\.bin$/i.test(path));
+  if (traces.length) {
+    marks.name = name;
+    marks.files = new Map(traces.map(({ path, file }) => [path, file]));
+    $("folder-name").textContent = `${name}, ${counted(traces.length, "trace")}`;
+  }
+  if (marks.files.size) return mark_all();
+  $("marks-said").textContent = suite ? "Now drop the folder of traces." : "There is no trace in that folder: they are called Group/name.bin.";
+}
+
+// The trace of a scene, under its whole name or the name behind its group; below a folder of the folder if that is where
+// the first group lies.
+function traceOf(scene, below) {
+  const last = scene.split("/").pop();
+  return marks.files.get(`${below}${scene}.bin`) ?? marks.files.get(`${below}${last}.bin`) ?? null;
+}
+function beginning(names) {
+  const paths = [...marks.files.keys()];
+  if (names.some(({ scene }) => marks.files.has(`${scene}.bin`))) return "";
+  for (const { scene } of names) {
+    const path = paths.find((path) => path.endsWith(`/${scene}.bin`));
+    if (path) return path.slice(0, -`${scene}.bin`.length);
+  }
+  return "";
+}
+
+const rounded = (points) => (points === null ? "none" : Number(points.toFixed(2)).toString());
+
+async function mark_all() {
+  marks.oracle.stop();
+  $("marks-stop").hidden = $("marks-bar").hidden = false;
+  const started = performance.now(), rows = [];
+  try {
+    const { suite } = marks;
+    const begun = await marks.oracle.ask(suite ? { do: "suite", scenes: suite.scenes } : { do: "suite", suite: $("suite").value }, { blobs: suite ? [suite.text, ...suite.xml] : [] });
+    if (!begun) return;
+    const names = begun.value.groups.flatMap(({ name, scenes }) => scenes.map((scene) => ({ group: name, scene })));
+    const below = beginning(names);
+    $("marks-bar").max = names.length;
+    for (const [number, { group, scene }] of names.entries()) {
+      $("marks-bar").value = number;
+      $("marks-said").textContent = `${number + 1} of ${names.length}: ${scene}`;
+      const file = traceOf(scene, below);
+      const answer = await marks.oracle.ask({ do: "judge", number, bytes: file?.size ?? null }, { files: file ? [file] : [] });
+      if (!answer) { $("marks-said").textContent = "Stopped."; return; }
+      rows.push({ group, scene, file, ...answer.value });
+    }
+    const answer = await marks.oracle.ask({ do: "grade", name: marks.name });
+    if (!answer) return;
+    answer.value.scenes.forEach((scene, number) => Object.assign(rows[number], scene));
+    marks.json = answer.parts[0];
+    showMarks(begun.value, answer.value, rows);
+    $("marks-said").textContent = `${marks.name}: ${rounded(answer.value.points)} of ${rounded(answer.value.of)} points by ${begun.value.suite}, in ${((performance.now() - started) / 1000).toFixed(1)} s.`;
+  } catch (error) {
+    $("marks-said").textContent = error.message;
+  } finally {
+    $("marks-stop").hidden = $("marks-bar").hidden = true;
+    document.documentElement.dataset.marked = String(Number(document.documentElement.dataset.marked ?? 0) + 1);
+  }
+}
+
+function showMarks(suite, grade, rows) {
+  const right = new Set(rows.filter((row) => row.accepted).map((row) => row.scene));
+  const known = marks.last?.suite === suite.suite ? marks.last : null;
+  const news = known ? [["became right", [...right].filter((scene) => !known.right.has(scene))], ["no longer right", [...known.right].filter((scene) => !right.has(scene))]] : [];
+  marks.last = { suite: suite.suite, right };
+  const since = news.filter(([, scenes]) => scenes.length).map(([words, scenes]) => el("p", { class: words === "became right" ? "good" : "bad" }, `Since the last drop ${words}: ${scenes.join(", ")}`));
+  if (known && !since.length) since.push(el("p", { class: "hint" }, "Since the last drop nothing became right, and nothing wrong."));
+  const mistakes = new Map();
+  for (const { likely, accepted } of rows) if (likely && !accepted) mistakes.set(likely, (mistakes.get(likely) ?? 0) + 1);
+  const likely = [...mistakes].sort((a, b) => b[1] - a[1]).slice(0, 5).map(([words, count]) => el("div", { class: "mistake" }, el("p", {}, words, el("span", { class: "hint" }, ` (${counted(count, "scene")})`))));
+  const groups = suite.groups.map(({ name, scenes }, number) => {
+    const own = rows.filter((row) => row.group === name), good = own.filter((row) => row.accepted).length;
+    const line = ({ scene, verdict, accepted, right, steps, likely, points, of, file, isMissing }) => el("tr", {},
+      el("th", { scope: "row" }, file ? el("button", { type: "button", class: "plain", onclick: () => lookAt(scene, file) }, scene.split("/").pop()) : scene.split("/").pop()),
+      el("td", { class: accepted ? "good" : isMissing ? "" : "bad" }, isMissing ? "no trace" : verdict),
+      el("td", { class: "num" }, isMissing ? "" : `${right} of ${steps}`),
+      el("td", { class: "num" }, `${rounded(points)} of ${rounded(of)}`),
+      el("td", { class: "words" }, likely && !accepted ? likely : ""));
+    return el("details", { class: "card", open: good < own.length && own.some((row) => !row.isMissing) },
+      el("summary", {}, el("h2", {}, `${name}: ${good} of ${scenes.length} right, ${rounded(grade.groups[number].points)} of ${rounded(grade.groups[number].of)} points`)),
+      el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": `Scenes of ${name}` }, el("table", {},
+        el("thead", {}, el("tr", {}, ...["scene", "verdict", "steps right", "points", "likely mistake"].map((head) => el("th", { scope: "col", class: /steps|points/.test(head) ? "num" : "" }, head)))),
+        el("tbody", {}, ...own.map(line)))));
+  });
+  $("marks-list").replaceChildren(el("h2", {}, `${rounded(grade.points)} of ${rounded(grade.of)} points`), ...(grade.unfit ? [el("p", { class: "bad" }, grade.unfit)] : []), ...since, ...likely, ...groups);
+  $("save-marks").hidden = $("marks-again").hidden = false;
+}
+
+// The whole report on one scene.
+function lookAt(scene, file) {
+  open("check");
+  if ([...$("scene").options].some((option) => option.value === scene)) $("scene").value = scene;
+  else if (marks.suite) {
+    const number = marks.suite.scenes.findIndex((name) => name.replace(/\.xml$/i, "") === scene);
+    return takeFiles([{ file: new File([marks.suite.xml[number]], marks.suite.scenes[number].split("/").pop()) }, { file }]);
+  }
+  check.trace = null;
+  takeFiles([{ file }]);
+}
+
+$("pick-folder").addEventListener("change", ({ target }) => {
+  const files = [...target.files].map((file) => ({ path: file.webkitRelativePath.replace(/^[^/]*\//, ""), file }));
+  const name = target.files[0]?.webkitRelativePath.split("/")[0] ?? "traces";
+  target.value = "";
+  if (files.length) takeFolder(name, files);
+});
+$("pick-suite").addEventListener("change", ({ target }) => { const files = [...target.files].map((file) => ({ path: file.name, file })); target.value = ""; takeFolder(marks.name ?? "traces", files); });
+$("suite").addEventListener("change", () => { marks.suite = null; $("suite-name").textContent = ""; if (marks.files.size) mark_all(); });
+$("marks-stop").addEventListener("click", () => marks.oracle.stop());
+$("marks-again").addEventListener("click", mark_all);
+$("save-marks").addEventListener("click", () => save(`${marks.name}.json`, marks.json, "application/json"));

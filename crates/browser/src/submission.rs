@@ -1,0 +1,153 @@
+//! A submission's traces: points by a suite, as `grade --traces` gives them.
+use crate::{
+    dropped::{Dropped, PIECE, PageHost},
+    parts::PageAnswer,
+};
+use fosssim_grading::{
+    SceneResult, Verdict,
+    config::Hints,
+    plan::{self, Found, Plan, PlannedGroup},
+    result::Reason,
+    traces,
+};
+use fosssim_judge::replay::{Progress, Remark};
+use fosssim_report::{
+    grade,
+    words::{self, explanation},
+};
+use serde::Deserialize;
+use serde_json::{Value, json};
+use std::{
+    io::{BufReader, Read, empty},
+    sync::atomic::{AtomicBool, Ordering},
+};
+
+/// A suite with which a submission is going to be graded. Scenes that the suite names by files were dropped with it:
+/// their names, as the suite may write them, in the order of the parts behind the suite's text.
+#[derive(Debug, Deserialize)]
+pub(crate) struct SuiteRequest {
+    /// The name of a suite that is inside; none where its text was dropped.
+    suite: Option<String>,
+    /// The names of dropped scenes.
+    #[serde(default)]
+    scenes: Vec<String>,
+}
+
+/// One scene to be judged.
+#[derive(Debug, Deserialize)]
+pub(crate) struct SceneRequest {
+    /// Its place among the suite's scenes.
+    number: usize,
+    /// The bytes of its trace, which is the dropped file 0; none where there is no such file.
+    bytes: Option<u64>,
+}
+
+/// A submission that is being graded.
+#[derive(Debug)]
+pub(crate) struct DroppedSubmission {
+    plan: Plan,
+    results: Vec<Option<SceneResult>>,
+}
+
+impl DroppedSubmission {
+    /// Reads the suite: its groups with the names of their scenes, in order.
+    pub(crate) fn begin(asked: &SuiteRequest, parts: &[&[u8]]) -> Result<(Value, Self), String> {
+        let name = asked.suite.clone().unwrap_or_else(plan::default_name);
+        let (text, dropped) = match (&asked.suite, parts.split_first()) {
+            (None, Some((text, dropped))) => {
+                (std::str::from_utf8(text).map_err(|_| "the suite is not UTF-8")?, dropped)
+            }
+            _ => (plan::built_in(&name).ok_or_else(|| format!("there is no suite {name}"))?, &[][..]),
+        };
+        let mut files = |pattern: &str| matching(pattern, &asked.scenes, dropped);
+        let plan = plan::load_by(text, &mut files).map_err(|error| {
+            error.problems.iter().map(|(at, words)| format!("suite.toml:{at}: {words}\n")).collect::<String>()
+        })?;
+        let group = |group: &PlannedGroup| -> Value {
+            let scenes: Vec<&str> = group.scenes.iter().map(|task| task.name.as_str()).collect();
+            json!({ "name": group.name, "points": group.marking.points, "scenes": scenes })
+        };
+        let groups: Vec<Value> = plan.groups.iter().map(group).collect();
+        let results = vec![None; plan.scenes().count()];
+        Ok((json!({ "suite": plan.name, "groups": groups }), Self { plan, results }))
+    }
+
+    /// Judges the trace of one scene.
+    pub(crate) fn scene(&mut self, asked: &SceneRequest, host: &dyn PageHost) -> PageAnswer {
+        let task = self.plan.scenes().nth(asked.number).ok_or("there is no such scene")?;
+        let failed = AtomicBool::new(false);
+        let most = self.plan.limits.trace;
+        let bytes = asked.bytes.unwrap_or(0).min(most);
+        let trace: Box<dyn Read + Send> = match asked.bytes {
+            Some(_) => Box::new(BufReader::with_capacity(PIECE, Dropped::new(host, 0, &failed)).take(most)),
+            None => Box::new(empty()),
+        };
+        let mut heard = ToldProgress { host, all: task.scene.steps() };
+        let (result, _) = traces::judged(&self.plan, task, (trace, bytes), &mut heard);
+        if failed.load(Ordering::Relaxed) {
+            return Err(format!(
+                "cannot read the trace of {}: it has changed or is gone; drop the folder again",
+                task.name
+            ));
+        }
+        let tells = self.plan.hints > Hints::None;
+        let likely = result.explanations.first().filter(|_| tells).map(explanation::what);
+        let value = json!({
+            "verdict": result.verdict.words(),
+            "accepted": result.verdict == Verdict::Accepted,
+            "isMissing": matches!(result.reason, Reason::NoTrace),
+            "right": result.right_steps,
+            "steps": result.steps,
+            "likely": likely,
+        });
+        self.results[asked.number] = Some(result);
+        Ok((value, Vec::new()))
+    }
+
+    /// The grade of all scenes: the second part of the answer is `grade --traces --format json`.
+    pub(crate) fn end(&self, name: &str) -> PageAnswer {
+        let results: Option<Vec<SceneResult>> = self.results.iter().cloned().collect();
+        let results = results.ok_or("not all scenes have been judged")?;
+        let graded = traces::grade(&self.plan, name.to_owned(), results, Vec::new());
+        let scenes: Vec<Value> =
+            graded.scenes().map(|scene| json!({ "points": scene.points, "of": scene.max_points })).collect();
+        let groups: Vec<Value> =
+            graded.groups.iter().map(|group| json!({ "points": group.points, "of": group.max_points })).collect();
+        let value = json!({
+            "points": graded.points,
+            "of": graded.max_points,
+            "verdict": graded.verdict.words(),
+            "unfit": words::unfit(&graded),
+            "scenes": scenes,
+            "groups": groups,
+        });
+        Ok((value, vec![grade::json(&[graded]).into_bytes()]))
+    }
+}
+
+/// The dropped scenes that a pattern takes, by their paths beside the suite.
+fn matching(pattern: &str, names: &[String], files: &[&[u8]]) -> Result<Found, String> {
+    let glob = glob::Pattern::new(pattern).map_err(|error| format!("pattern {pattern}: {error}"))?;
+    let found: Found = names
+        .iter()
+        .zip(files)
+        .filter(|(name, _)| glob.matches(name))
+        .map(|(name, xml)| (name.strip_suffix(".xml").unwrap_or(name).to_owned(), xml.to_vec()))
+        .collect();
+    if found.is_empty() {
+        return Err(format!("no scene file matches {pattern}: drop the folder of the suite with its scenes"));
+    }
+    Ok(found)
+}
+
+/// Tells how far judging is.
+struct ToldProgress<'a> {
+    host: &'a dyn PageHost,
+    all: u32,
+}
+
+impl Progress for ToldProgress<'_> {
+    fn step_judged(&mut self, step: u32, _: &[Remark]) {
+        self.host.progress(step, self.all);
+    }
+}

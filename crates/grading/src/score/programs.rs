@@ -1,0 +1,94 @@
+//! The grade of a program that was run.
+use super::group;
+use crate::{
+    config::Visibility,
+    grade::Grade,
+    grader::{SubmissionGrading, lock},
+    located::{Contents, Failing, Located, Tried, locate},
+    one_file, patience,
+    result::{Ended, Reason, SceneResult},
+    score::refuted,
+    verdict::Verdict,
+};
+use fosssim_mistakes::together::settle;
+
+impl SubmissionGrading<'_> {
+    /// The grade, of the results of all scenes in the plan's order, each with the word whether it was found. The
+    /// submission's copy goes away now.
+    pub(crate) fn grade(&self, mut results: Vec<(SceneResult, bool)>) -> Grade {
+        let (plan, options) = (self.grader.plan, self.grader.options);
+        let build = match lock(&self.staged).take().as_deref() {
+            Some(Ok(staged)) => staged.build.clone(),
+            _ => None,
+        };
+        // What ran beside the scene that was the end does not count, or the number of jobs would.
+        let known: Vec<_> = results
+            .iter()
+            .map(|(result, _)| Some((result.verdict, result.measured.wall + result.measured.judging)))
+            .collect();
+        if let Some((end, why)) = patience::end(&plan.patience, options.fail_fast, &known) {
+            for (result, scene) in results.iter_mut().zip(plan.scenes()).skip(end) {
+                *result = (patience::left_out(scene, why), false);
+            }
+        }
+        let wall = results.iter().map(|(result, _)| result.measured.wall).sum();
+        let mut results = results.into_iter();
+        let groups: Vec<_> = plan
+            .groups
+            .iter()
+            .map(|planned| group(&planned.name, planned.marking, results.by_ref().take(planned.scenes.len()).collect()))
+            .collect();
+        let refuted = refuted(plan, &groups);
+        let mut warnings = self.grader.backend.weaknesses();
+        if self.submission.file.as_ref().is_some_and(|file| file.is_shared && !file.is_anothers) {
+            warnings.push(one_file::SHARED.to_owned());
+        }
+        let active = self.grader.backend.layers().iter().filter(|report| report.active);
+        let mut grade = Grade {
+            submission: self.submission.name.clone(),
+            suite: plan.name.clone(),
+            rules: self.grader.effective_rules(),
+            verdict: groups.iter().map(|group| group.verdict).max().unwrap_or(Verdict::NotRun),
+            points: groups.iter().map(|group| group.points).sum(),
+            max_points: plan.max_points(),
+            shows_output: plan.show_output || groups.iter().all(|group| group.visibility == Visibility::Visible),
+            groups,
+            build,
+            warnings,
+            layers: active.map(|report| report.layer.name().to_owned()).collect(),
+            wall,
+            refuted,
+            located: None,
+        };
+        if plan.hints.explains() {
+            grade.located = common(&grade, || self.shared.contents(plan));
+        }
+        settle(&mut grade);
+        grade
+    }
+}
+
+/// The contents that the failing scenes have in common. `contents` are those of all scenes in their order, computed
+/// only where some fail and some do not.
+fn common<'a>(grade: &Grade, contents: impl FnOnce() -> &'a [Contents]) -> Option<Located> {
+    let failing = |ended: &Option<Ended>| ended.as_ref().and_then(Failing::of);
+    let was_run = |reason: &Reason| !matches!(reason, Reason::LeftOut(_) | Reason::Stopped | Reason::Failed(_));
+    let run = || grade.scenes().filter(|scene| was_run(&scene.reason) && scene.ended.is_some());
+    let failed = run().filter(|scene| failing(&scene.ended).is_some()).count();
+    if failed == 0 || failed == run().count() {
+        return None;
+    }
+    let tried: Vec<Tried<'_>> = grade
+        .scenes()
+        .zip(contents())
+        .filter(|(scene, _)| was_run(&scene.reason) && scene.ended.is_some() && scene.verdict != Verdict::NotRun)
+        .map(|(scene, contents)| {
+            let steps = match scene.reason {
+                Reason::Program(reached) => reached.steps,
+                _ => 0,
+            };
+            Tried { scene: &scene.scene, failing: failing(&scene.ended), steps, contents }
+        })
+        .collect();
+    locate(&tried)
+}

@@ -1,0 +1,77 @@
+//! Grades by traces that are there already. Nothing is run: how long a program took, and that it ended well, nobody
+//! knows.
+use super::{
+    conclude::{Look, Ran, Run, bytes_of_nothing, conclude},
+    grade::Grade,
+    plan::Plan,
+    result::{Measurements, SceneResult},
+    score,
+    task::SceneTask,
+    verdict::Verdict,
+};
+use fosssim_evidence::{Examined, Keep, examine};
+use fosssim_judge::replay::{Options, Progress};
+use fosssim_mistakes::{diagnose, together::settle};
+use std::{io::Read, time::Duration};
+
+/// The result of one scene by a trace of this number of bytes, as if a program had ended well after it wrote it, and
+/// what judging has seen.
+pub fn judged<'a, R: Read + Send>(
+    plan: &Plan,
+    task: &'a SceneTask,
+    (trace, bytes): (R, u64),
+    progress: &mut dyn Progress,
+) -> (SceneResult, Examined<'a>) {
+    let options =
+        Options { stop_by: plan.rules.official(), threads: 1, fair: plan.rules.ask_fair(), ..Options::default() };
+    let examined = examine(&task.scene, trace, Keep::All, &options, progress);
+    let run = Run {
+        scene: &task.name,
+        program: &Ran::well(),
+        judged: &examined.outcome,
+        trace_bytes: bytes,
+        nothing: bytes_of_nothing(&task.scene),
+        rules: plan.rules,
+        hints: plan.hints,
+        limits: &plan.limits,
+    };
+    let explained = conclude(&run, |look| match look {
+        Look::NotFinite => diagnose::not_finite(&examined.trace),
+        Look::Mistakes => examined.explain(),
+    });
+    (SceneResult { ended: None, measured: Measurements::default(), ..explained }, examined)
+}
+
+/// The grade of the results of all scenes, in the plan's order.
+#[must_use]
+pub fn grade(plan: &Plan, submission: String, results: Vec<SceneResult>, warnings: Vec<String>) -> Grade {
+    let mut results = results.into_iter();
+    let groups: Vec<_> = plan
+        .groups
+        .iter()
+        .map(|group| {
+            let own = results.by_ref().take(group.scenes.len()).map(|result| (result, false)).collect();
+            score::group(&group.name, group.marking, own)
+        })
+        .collect();
+    let refuted = score::refuted(plan, &groups);
+    let mut grade = Grade {
+        submission,
+        suite: plan.name.clone(),
+        rules: plan.rules,
+        verdict: groups.iter().map(|group| group.verdict).max().unwrap_or(Verdict::NotRun),
+        points: groups.iter().map(|group| group.points).sum(),
+        max_points: plan.max_points(),
+        // No program was run that could tell of a hidden scene.
+        shows_output: true,
+        groups,
+        build: None,
+        warnings,
+        layers: Vec::new(),
+        wall: Duration::ZERO,
+        refuted,
+        located: None,
+    };
+    settle(&mut grade);
+    grade
+}
