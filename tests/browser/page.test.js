@@ -6,6 +6,7 @@ import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync, readdir
 import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { after, before, test as node } from "node:test";
+import { inflateRawSync } from "node:zlib";
 import { judgeAccessibility, launch, opened, programs, root } from "./browser.js";
 
 const html = resolve(process.env.FOSSSIM_PAGE ?? join(root, "target/page/oracle.html"));
@@ -45,7 +46,8 @@ async function saved(page, name, selector = page.getByRole("button", { name, exa
   return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
 }
 
-test("the page is one file of a bounded size, whose policy names no address", () => {
+test("the page is one file of a bounded size, whose policy names no address", (t) => {
+  t.diagnostic(`${statSync(html).size} bytes`);
   const page = readFileSync(html, "utf8");
   assert.ok(statSync(html).size < MOST_BYTES, `${statSync(html).size} bytes`);
   const [, policy] = page.match(/http-equiv="Content-Security-Policy" content="([^"]*)"/);
@@ -289,4 +291,31 @@ test("all scenes have the same recordings as natively", async (t) => {
   }
   t.diagnostic(`${names.length} scenes recorded`);
   await close();
+});
+
+const corpus = process.env.FOSSSIM_CORPUS ?? join(root, "../shared/corpus");
+const without = skip || (existsSync(join(corpus, "submissions")) ? false : `there is no corpus at ${corpus}`) || (spawnSync("zstd", ["--version"]).status === 0 ? false : "there is no zstd");
+node("all traces of the corpus have the same reports as natively", { skip: without }, async (t) => {
+  // The page's module, with its own glue, in this process: for the time that it takes.
+  const engine = new Function(`${readFileSync(join(root, "crates/browser/page/engine.js"), "utf8")}; return engine;`)();
+  const packed = readFileSync(html, "utf8").match(/id="module">([^<]*)</)[1];
+  const module = new WebAssembly.Module(inflateRawSync(Buffer.from(packed, "base64")));
+  let bytes, count = 0, took = 0;
+  const ask = engine(module, { progress() {}, read: (_, offset, into) => { const piece = bytes.subarray(offset, offset + into.length); into.set(piece); return piece.length; } });
+  for (const submission of readdirSync(join(corpus, "submissions"))) {
+    for (const file of readdirSync(join(corpus, "submissions", submission))) {
+      const [, group, name] = file.match(/^(.*)_([^_]*)\.bin\.zst$/) ?? [];
+      const xml = group && join(corpus, "scenes/t2m2", group, `${name}.xml`);
+      if (!xml || !existsSync(xml)) continue;
+      bytes = execFileSync("zstd", ["-dcqf", join(corpus, "submissions", submission, file)], { maxBuffer: 1 << 30 });
+      writeFileSync(join(folder, "trace.bin"), bytes);
+      const begin = performance.now();
+      const { parts } = ask({ do: "check", scene: xml, trace: "trace.bin" }, readFileSync(xml));
+      took += performance.now() - begin;
+      assert.equal(Buffer.from(parts[0]).toString(), oracle("check", xml, "trace.bin", "--format", "json").stdout, `${submission}/${file}`);
+      count += 1;
+    }
+  }
+  assert.ok(count > 100, `${count}`);
+  t.diagnostic(`${count} traces in ${(took / 1000).toFixed(1)} s`);
 });
