@@ -23,6 +23,7 @@ mod kills;
 mod known;
 mod layers;
 mod metamorphic;
+mod milestones;
 mod ordinary_user;
 mod pages;
 mod parity;

@@ -164,6 +164,7 @@ fn simulate<W: Write>(
         if stopped.is_some() || recorder.failed() {
             break;
         }
+        transcript.step_ends(step);
         if let Some(pictures) = &mut pictures
             && let Err(error) = pictures.step(step, &simulation.state().positions)
         {

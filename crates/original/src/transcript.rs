@@ -9,7 +9,10 @@ use fosssim_judge::{
 };
 use fosssim_model::scene::{Integrator, Scene};
 use fosssim_num::printed::general;
-use std::io::{self, Write};
+use std::{
+    io::{self, Write},
+    time::Instant,
+};
 
 /// The lines that the original shows above a run.
 #[derive(Debug, Clone, Copy)]
@@ -38,7 +41,7 @@ pub(crate) enum Task<'a> {
 /// Writes the original's standard output to a stream, event by event.
 ///
 /// Grading: hand it to `judge` as its [`Progress`], then call [`Transcript::graded`]. Recording and plain runs: call
-/// `begins`, `step_begins` per step, then [`Transcript::completes`] and [`Transcript::closes`]. The first error of the
+/// `begins`, `step_begins` and [`Transcript::step_ends`] per step, then [`Transcript::completes`] and [`Transcript::closes`]. The first error of the
 /// stream is kept until [`Transcript::finish`]; later text is dropped.
 #[derive(Debug)]
 pub(crate) struct Transcript<'a, W: Write> {
@@ -46,7 +49,16 @@ pub(crate) struct Transcript<'a, W: Write> {
     heading: Heading<'a>,
     steps: u32,
     threshold: f64,
+    /// The time that steps take, where the original tells it.
+    clock: Option<Clock>,
     error: Option<io::Error>,
+}
+
+/// When the run and the last step of it began.
+#[derive(Debug, Clone, Copy)]
+struct Clock {
+    start: Instant,
+    frame: Instant,
 }
 
 /// A dot appears each time another fiftieth of the steps is done.
@@ -65,7 +77,7 @@ const BANNER: [&str; 7] = [
 impl<'a, W: Write> Transcript<'a, W> {
     /// A transcript that has said nothing yet.
     pub(crate) fn new(stream: W, heading: Heading<'a>) -> Self {
-        Self { stream, heading, steps: heading.scene.steps(), threshold: DOT, error: None }
+        Self { stream, heading, steps: heading.scene.steps(), threshold: DOT, clock: None, error: None }
     }
 
     /// All steps are done.
@@ -104,7 +116,8 @@ impl<'a, W: Write> Transcript<'a, W> {
         if let Task::Grade(file) = self.heading.task {
             self.message_about("Colsing benchmarked simulation file '", file, "'.");
         }
-        self.write(verdict::lines(outcome).as_bytes());
+        let collisions = self.heading.scene.assignment().definition().verdict;
+        self.write(verdict::lines(outcome, collisions).as_bytes());
     }
 
     /// The exit handler's lines when the trace could not even be opened; no banner comes before them.
@@ -139,7 +152,23 @@ impl<'a, W: Write> Transcript<'a, W> {
             Task::Record(file) => self.message_about("Saving simulation to: ", file, ""),
             Task::Grade(file) => self.message_about("Benchmarking simulation in: ", file, ""),
         }
+        if scene.assignment().definition().tells_times {
+            let now = Instant::now();
+            self.clock = Some(Clock { start: now, frame: now });
+            self.write(b"T: 0\nFrame run time: 0s. Total run time: 0s. \n");
+        }
         self.write(format!("{PINK}Progress: {PLAIN}{}\n{}", "-".repeat(50), " ".repeat(10)).as_bytes());
+    }
+
+    /// A step is done: the time that it took, where the original tells it. The parts of a step are not measured here.
+    pub(crate) fn step_ends(&mut self, step: u32) {
+        let Some(clock) = &mut self.clock else { return };
+        let now = Instant::now();
+        let [frame, total] = [now - clock.frame, now - clock.start].map(|time| general(time.as_secs_f64()));
+        clock.frame = now;
+        let time = general(f64::from(step) * self.heading.scene.time_step);
+        self.write(b"Preparation: 0s\nCollision detection: 0s\nCollision handling: 0s\n");
+        self.write(format!("T: {time}\nFrame run time: {frame}s. Total run time: {total}s. \n").as_bytes());
     }
 
     /// A dot when the next threshold is reached; never more than one. Without steps the quotient is NaN: no dot.
@@ -183,7 +212,8 @@ impl<W: Write> Progress for Transcript<'_, W> {
         self.dot(step.saturating_sub(1));
     }
 
-    fn step_judged(&mut self, _step: u32, remarks: &[Remark]) {
+    fn step_judged(&mut self, step: u32, remarks: &[Remark]) {
+        self.step_ends(step);
         let mut header_due = true;
         for remark in remarks {
             if let Some(line) = collisions::line(remark) {

@@ -12,7 +12,8 @@ const NAMES: [&str; 4] = [
 ];
 
 /// The lines after the file has been closed: with verdict, or without one when grading did not come to its end.
-pub(crate) fn lines(outcome: &Outcome) -> String {
+/// `collisions` is the assignment's name for the verdict on collisions.
+pub(crate) fn lines(outcome: &Outcome, collisions: &str) -> String {
     if outcome.parity.overall == Overall::None {
         return incomplete(&outcome.parity.residuals);
     }
@@ -20,8 +21,8 @@ pub(crate) fn lines(outcome: &Outcome) -> String {
     for (name, (value, bound)) in NAMES.into_iter().zip(outcome.parity.residuals.with_bounds()) {
         text += &format!("{name}: {}   {}\n", general(value), passed(value < bound));
     }
-    let collisions = if outcome.parity.collisions_passed == Some(true) { "Yes." } else { "No." };
-    text += &format!("Collisions Passed: {collisions}\n");
+    let passed_collisions = if outcome.parity.collisions_passed == Some(true) { "Yes." } else { "No." };
+    text += &format!("{collisions}: {passed_collisions}\n");
     text += &format!("Overall success: {}\n", passed(outcome.parity.overall == Overall::Passed));
     text += &format!("{PINK}FOSSSim message: {PLAIN}Saved residual to residual.txt.\n");
     text

@@ -24,21 +24,31 @@ impl Version {
     }
 }
 
+/// The milestones before t2m2 in one suite, under the name by which servers and courses may know it.
+const EARLIER: Version = Version { suite: include_str!("earlier/suite.toml"), scenes: None };
+
 /// The versions of an assignment's suite: 1 comes first, the newest last.
 #[must_use]
 pub const fn versions(assignment: Assignment) -> &'static [Version] {
     match assignment {
-        Assignment::Earlier => &[Version { suite: include_str!("earlier/suite.toml"), scenes: None }],
+        Assignment::T1M1 => &[Version { suite: include_str!("t1m1/suite.toml"), scenes: None }],
+        Assignment::T1M2 => &[Version { suite: include_str!("t1m2/suite.toml"), scenes: None }],
+        Assignment::T1M3 => &[Version { suite: include_str!("t1m3/suite.toml"), scenes: None }],
+        Assignment::T2M1 => &[Version { suite: include_str!("t2m1/suite.toml"), scenes: None }],
         Assignment::T2M2 => &[
             Version { suite: include_str!("t2m2/suite-1.toml"), scenes: Some(include_str!("t2m2/version-1.txt")) },
             Version { suite: include_str!("t2m2/suite.toml"), scenes: None },
         ],
+        Assignment::T2M3 => &[Version { suite: include_str!("t2m3/suite.toml"), scenes: None }],
     }
 }
 
 /// The assignment and the version that a name such as `t2m2@1` means; `t2m2` is the newest one.
 #[must_use]
 pub fn version(name: &str) -> Option<(Assignment, Version)> {
+    if matches!(name, "earlier" | "earlier@1") {
+        return Some((Assignment::T2M1, EARLIER));
+    }
     let (key, number) = name.split_once('@').map_or((name, None), |(key, number)| (key, Some(number)));
     let assignment = Assignment::named(key)?;
     let all = versions(assignment);
@@ -70,7 +80,8 @@ mod tests {
     #[test]
     fn versions_are_named_and_the_newest_is_meant_without_a_number() {
         let all: Vec<String> = names().collect();
-        assert_eq!(all, ["t2m2@2", "t2m2@1", "earlier@1"]);
+        assert_eq!(all, ["t2m2@2", "t2m2@1", "t1m1@1", "t1m2@1", "t1m3@1", "t2m1@1", "t2m3@1"]);
+        assert!(version("earlier@1").is_some() && version("earlier").is_some(), "the name is in use");
         assert_eq!(default_name(), all[0]);
         let suite = |name: &str| version(name).map(|(_, version)| version.suite);
         assert_eq!(suite("t2m2"), suite("t2m2@2"));

@@ -10,16 +10,21 @@ use t2m2::{Row, probes};
 #[must_use]
 pub const fn catalogue(assignment: Assignment) -> &'static [Row] {
     match assignment {
-        Assignment::Earlier | Assignment::T2M2 => t2m2::CATALOGUE,
+        Assignment::T1M1
+        | Assignment::T1M2
+        | Assignment::T1M3
+        | Assignment::T2M1
+        | Assignment::T2M2
+        | Assignment::T2M3 => t2m2::CATALOGUE,
     }
 }
 
 /// The probe scenes of an assignment, each with a name that can be a file's. They make every part of a program's work
-/// visible; the earlier milestones have none, since they log nothing of what goes on within a step.
+/// visible; the other milestones have none, since they log nothing of what goes on within a step.
 #[must_use]
 pub fn probe_scenes(assignment: Assignment) -> Vec<(String, Scene)> {
     match assignment {
-        Assignment::Earlier => Vec::new(),
+        Assignment::T1M1 | Assignment::T1M2 | Assignment::T1M3 | Assignment::T2M1 | Assignment::T2M3 => Vec::new(),
         Assignment::T2M2 => probes::scenes(),
     }
 }

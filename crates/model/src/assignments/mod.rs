@@ -6,9 +6,11 @@
 //! ([`Assignment::of`]). It knows nothing of scenes, states and files.
 
 mod collision_type;
-mod earlier;
 mod pair_kind;
+mod t2m1;
 mod t2m2;
+mod t2m3;
+mod theme1;
 
 pub use collision_type::CollisionType;
 pub use pair_kind::PairKind;
@@ -16,16 +18,23 @@ pub use pair_kind::PairKind;
 /// An assignment of the course.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Assignment {
-    /// Theme 1 and Theme 2, Milestone 1: forces, integrators, simple and penalty collisions. Their scenes and traces
-    /// are read alike, so that they are one (scene-format.md 8).
-    Earlier,
+    /// Theme 1, Milestone 1: explicit Euler and simple gravity.
+    T1M1,
+    /// Theme 1, Milestone 2: symplectic Euler and all other forces.
+    T1M2,
+    /// Theme 1, Milestone 3: the implicit integrators.
+    T1M3,
+    /// Theme 2, Milestone 1: collisions at the end of a step, and the penalty force.
+    T2M1,
     /// Theme 2, Milestone 2: continuous-time detection, impulses, impact zones and the rigid failsafe.
     T2M2,
+    /// Theme 2, Milestone 3: the contest, a penalty force between many bodies.
+    T2M3,
 }
 
 impl Assignment {
-    /// All of them, the latest first.
-    pub const ALL: [Self; 2] = [Self::T2M2, Self::Earlier];
+    /// All of them: the default one, then the others in the order of the course.
+    pub const ALL: [Self; 6] = [Self::T2M2, Self::T1M1, Self::T1M2, Self::T1M3, Self::T2M1, Self::T2M3];
 
     /// The one that is meant where none is named.
     pub const DEFAULT: Self = Self::T2M2;
@@ -34,8 +43,12 @@ impl Assignment {
     #[must_use]
     pub const fn definition(self) -> &'static Definition {
         match self {
-            Self::Earlier => &earlier::DEFINITION,
+            Self::T1M1 => &theme1::MILESTONE_1,
+            Self::T1M2 => &theme1::MILESTONE_2,
+            Self::T1M3 => &theme1::MILESTONE_3,
+            Self::T2M1 => &t2m1::DEFINITION,
             Self::T2M2 => &t2m2::DEFINITION,
+            Self::T2M3 => &t2m3::DEFINITION,
         }
     }
 
@@ -43,7 +56,8 @@ impl Assignment {
     #[must_use]
     pub const fn of(collision: CollisionType) -> Self {
         match collision {
-            CollisionType::None | CollisionType::Simple | CollisionType::Penalty => Self::Earlier,
+            CollisionType::None => Self::T1M1,
+            CollisionType::Simple | CollisionType::Penalty => Self::T2M1,
             CollisionType::ContinuousTime | CollisionType::Hybrid => Self::T2M2,
         }
     }
@@ -77,6 +91,10 @@ pub struct Definition {
     pub dropping: Dropping,
     /// The version that the original program shows above a run.
     pub version: &'static str,
+    /// How the original calls its verdict on collisions (oracle-behaviour.md 6).
+    pub verdict: &'static str,
+    /// Whether the original says after each step how long it took.
+    pub tells_times: bool,
 }
 
 impl Definition {

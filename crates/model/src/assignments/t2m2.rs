@@ -19,4 +19,6 @@ pub(super) const DEFINITION: Definition = Definition {
     pairs: &PairKind::ALL,
     dropping: Dropping::Leading,
     version: "Fall 2010 v.A",
+    verdict: "Collisions Passed",
+    tells_times: false,
 };

@@ -44,10 +44,17 @@ impl Scene {
         }
     }
 
-    /// The assignment that it belongs to, which its collision type tells.
+    /// The first assignment of the course whose programs can run it, by its collision handling, integrator and forces.
     #[must_use]
-    pub const fn assignment(&self) -> Assignment {
-        Assignment::of(self.collision.kind())
+    pub fn assignment(&self) -> Assignment {
+        let is_first = |force: &Force| matches!(force, Force::SimpleGravity { .. });
+        match (self.collision, self.integrator) {
+            (Collision::Penalty { detection: CollisionDetection::Contest, .. }, _) => Assignment::T2M3,
+            (Collision::None, Integrator::ImplicitEuler | Integrator::LinearizedImplicitEuler) => Assignment::T1M3,
+            (Collision::None, Integrator::ExplicitEuler) if self.forces.iter().all(is_first) => Assignment::T1M1,
+            (Collision::None, _) => Assignment::T1M2,
+            (collision, _) => Assignment::of(collision.kind()),
+        }
     }
 }
 

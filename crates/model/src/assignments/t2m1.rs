@@ -1,16 +1,11 @@
-//! Theme 1 and Theme 2, Milestone 1.
+//! Theme 2, Milestone 1: collisions at the end of a step, and the penalty force (collisions.md 6, simulation.md 3).
 use super::{CollisionType, Definition, Dropping, Handling, ImpulseList, RecordLists};
 
 /// No detection logs polynomials; the course's root finder comes with the next milestone.
 pub(super) const DEFINITION: Definition = Definition {
-    key: "earlier",
-    title: "Theme 1 and Theme 2, Milestone 1",
+    key: "t2m1",
+    title: "Theme 2, Milestone 1",
     handlings: &[
-        Handling {
-            collision: CollisionType::None,
-            records: RecordLists { impulses: ImpulseList::Absent, polynomials: false },
-            heading: "Collisions disabled",
-        },
         Handling {
             collision: CollisionType::Simple,
             records: RecordLists { impulses: ImpulseList::Responses, polynomials: false },
@@ -25,4 +20,6 @@ pub(super) const DEFINITION: Definition = Definition {
     pairs: &[],
     dropping: Dropping::Leading,
     version: "Fall 2010 v.A",
+    verdict: "Collisions Passed",
+    tells_times: false,
 };

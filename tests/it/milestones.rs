@@ -1,0 +1,100 @@
+//! The course's milestones: each has a suite of scenes that its programs can run, fair to right ones.
+use super::workspace::{Workspace, simulate};
+use fosssim_oracle::{
+    assignments::Assignment::{self, T1M1, T1M2, T1M3, T2M1, T2M2, T2M3},
+    judge::{
+        Overall,
+        fair::FairVerdict,
+        replay::{Options, judge},
+    },
+    num::vector::Vec2,
+    scene::{Collision, CollisionDetection, Force, Scene},
+    student::{self, Student},
+    suite::plan,
+};
+
+/// Whether both books accept the trace.
+fn accepts(scene: &Scene, trace: &[u8]) -> bool {
+    let outcome = judge(scene, trace, &Options { threads: 1, fair: true, ..Options::default() }, &mut ());
+    let fair = outcome.fair.expect("the fair rules were asked").verdict == FairVerdict::Accepted;
+    assert_eq!(fair, outcome.parity.overall == Overall::Passed);
+    fair
+}
+
+fn scenes(assignment: Assignment) -> Vec<(String, Scene)> {
+    let plan = plan::find(assignment.key()).unwrap_or_else(|error| panic!("{assignment:?}: {error}"));
+    plan.scenes().map(|task| (task.name.clone(), task.scene.clone())).collect()
+}
+
+#[test]
+fn every_scene_of_a_suite_can_be_run_by_programs_of_its_milestone() {
+    for (assignment, first) in
+        [(T1M1, &[T1M1][..]), (T1M2, &[T1M1, T1M2]), (T1M3, &[T1M3]), (T2M1, &[T2M1]), (T2M2, &[T2M2]), (T2M3, &[T2M3])]
+    {
+        let scenes = scenes(assignment);
+        assert!(scenes.len() > 4, "{assignment:?}");
+        for (name, scene) in scenes {
+            assert!(first.contains(&scene.assignment()), "{assignment:?}: {name} is of {:?}", scene.assignment());
+        }
+    }
+}
+
+#[test]
+fn a_right_program_is_accepted_on_every_scene_of_its_milestone() {
+    for assignment in [T1M1, T1M2, T1M3, T2M1, T2M3] {
+        for (name, scene) in scenes(assignment) {
+            let trace = student::trace(&scene, Student::default()).expect("a trace");
+            assert!(trace == simulate(&scene), "{name}: bit for bit");
+            assert!(accepts(&scene, &trace), "{name}");
+        }
+    }
+}
+
+/// A pull on every particle that the scene does not have is seen wherever a particle is free.
+#[test]
+fn a_force_too_much_is_never_accepted() {
+    for assignment in [T1M1, T1M2, T1M3, T2M1, T2M3] {
+        for (name, scene) in scenes(assignment) {
+            let mut wrong = scene.clone();
+            wrong.forces.push(Force::Constant { force: Vec2::new(0.0, -1e-3) });
+            assert!(!accepts(&scene, &simulate(&wrong)), "{name}");
+        }
+    }
+}
+
+/// The contest's programs may sum their forces in any order; one that leaves a pair out is refused.
+#[test]
+fn forces_of_the_contest_may_be_summed_in_any_order() {
+    for (name, scene) in scenes(T2M3) {
+        let Collision::Penalty { stiffness, thickness, .. } = scene.collision else { panic!("{name}") };
+        let other = Collision::Penalty { stiffness, thickness, detection: CollisionDetection::AllPairs };
+        let trace = simulate(&Scene { collision: other, ..scene.clone() });
+        assert!(accepts(&scene, &trace), "{name}");
+        let mut fewer = scene.clone();
+        fewer.edges.clear();
+        fewer.half_planes.clear();
+        if fewer.edges.len() + fewer.half_planes.len() < scene.edges.len() + scene.half_planes.len()
+            && !scene.forces.iter().any(|force| matches!(force, Force::Spring { .. }))
+        {
+            assert!(!accepts(&scene, &simulate(&fewer)), "{name}");
+        }
+    }
+}
+
+/// The words of that milestone's own original, with times of its own.
+#[test]
+fn the_drop_in_speaks_as_the_contests_original() {
+    let workspace = Workspace::new();
+    let (_, scene) = &scenes(T2M3)[0];
+    workspace.write("scene.xml", fosssim_oracle::scene::write(scene));
+    workspace.write("trace.bin", simulate(scene));
+    let run = workspace.original(["-s", "scene.xml", "-d", "0", "-i", "trace.bin"]);
+    let text = run.out();
+    assert!(text.contains("\nHybrid Collisions Passed: Yes.\nOverall success: Passed.\n"), "{text}");
+    let steps = "Preparation: 0s\nCollision detection: 0s\nCollision handling: 0s\nT: ";
+    assert_eq!(text.matches(steps).count(), scene.steps() as usize);
+    assert!(text.contains("T: 0\nFrame run time: 0s. Total run time: 0s. \n"), "{text}");
+    assert_eq!(text.matches("s. Total run time: ").count(), scene.steps() as usize + 1);
+    let recorded = workspace.original(["-s", "scene.xml", "-d", "0", "-o", "new.bin"]);
+    assert_eq!(recorded.out().matches(steps).count(), scene.steps() as usize);
+}
