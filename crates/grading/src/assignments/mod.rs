@@ -11,8 +11,7 @@ pub const TEMPLATE: &str = include_str!("t2m2/template.toml");
 pub struct Version {
     /// The suite, as a text.
     pub suite: &'static str,
-    /// The names of its scenes, a line each; none for the newest version, which has all that lie in the assignment's
-    /// folder.
+    /// The names of its scenes, a line each; none for a version that has all that lie in the assignment's folder.
     scenes: Option<&'static str>,
 }
 
@@ -37,7 +36,7 @@ pub const fn versions(assignment: Assignment) -> &'static [Version] {
         Assignment::T2M1 => &[Version { suite: include_str!("t2m1/suite.toml"), scenes: None }],
         Assignment::T2M2 => &[
             Version { suite: include_str!("t2m2/suite-1.toml"), scenes: Some(include_str!("t2m2/version-1.txt")) },
-            Version { suite: include_str!("t2m2/suite.toml"), scenes: None },
+            Version { suite: include_str!("t2m2/suite.toml"), scenes: Some(include_str!("t2m2/version-2.txt")) },
         ],
         Assignment::T2M3 => &[Version { suite: include_str!("t2m3/suite.toml"), scenes: None }],
     }
