@@ -7,9 +7,10 @@
 //! judged by both books).
 //!
 //! `... --bench inside -- instructions` counts instructions under callgrind, which no other load on the machine
-//! changes, and shows them beside those of `instructions.txt`; with `store` behind it they are written there. `... --
-//! growth` shows the cost of a pair and the memory from 10 to 3,000 particles, `... -- crowd` the instructions of a ball
-//! and step of a penalty scene from 100 to 100,000 balls.
+//! changes, and shows them beside those of `instructions.txt`; with `store` behind it they are written there.
+//!
+//! `... -- growth` shows the cost of a pair and the memory from 10 to 3,000 particles, `... -- crowd` the instructions
+//! of a ball and step of a penalty scene from 100 to 100,000 balls.
 #![forbid(unsafe_code)]
 use fosssim_judge::replay::{self, Options};
 use fosssim_model::{

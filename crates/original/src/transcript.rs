@@ -41,8 +41,8 @@ pub(crate) enum Task<'a> {
 /// Writes the original's standard output to a stream, event by event.
 ///
 /// Grading: hand it to `judge` as its [`Progress`], then call [`Transcript::graded`]. Recording and plain runs: call
-/// `begins`, `step_begins` and [`Transcript::step_ends`] per step, then [`Transcript::completes`] and [`Transcript::closes`]. The first error of the
-/// stream is kept until [`Transcript::finish`]; later text is dropped.
+/// `begins`, `step_begins` and [`Transcript::step_ends`] per step, then [`Transcript::completes`] and
+/// [`Transcript::closes`]. The first error of the stream is kept until [`Transcript::finish`]; later text is dropped.
 #[derive(Debug)]
 pub(crate) struct Transcript<'a, W: Write> {
     stream: W,
