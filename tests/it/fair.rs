@@ -8,7 +8,7 @@ use fosssim_oracle::{
     },
     num::polynomial::Polynomial,
     scene::{self, Scene, original},
-    sim::{Observer, Pair, PairKind, RootSearch, Simulation},
+    sim::{Pair, PairKind, RootSearch, Simulation, Steer, Steering},
     student::{self, CATALOGUE, KNOWN_REFUSED, Row, Student},
     suite::library,
     trace::{Frame, Layout, Reader, Recorder, Writer},
@@ -156,7 +156,7 @@ fn the_right_form_of_one_polynomial_among_the_courses_is_charged() {
 #[test]
 fn a_small_factor_of_edges_is_no_mistake_on_the_courses_scenes() {
     struct Edges(f64);
-    impl Observer for Edges {
+    impl Steer for Edges {
         fn solve(&mut self, pair: Pair, _: &[f64], _: &[f64], polynomials: &mut [Polynomial]) {
             for polynomial in polynomials.iter_mut().filter(|_| pair.kind == PairKind::ParticleEdge) {
                 let scaled: Vec<f64> = polynomial.coefficients().iter().map(|c| self.0 * c).collect();
@@ -175,7 +175,7 @@ fn a_small_factor_of_edges_is_no_mistake_on_the_courses_scenes() {
             let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
             let mut recorder = Recorder::start(Vec::new(), Layout::of(&scene), simulation.state());
             for _ in 0..scene.steps() {
-                simulation.step(&mut (&mut Edges(factor), &mut recorder)).unwrap();
+                simulation.step(&mut (Steering(Edges(factor)), &mut recorder)).unwrap();
             }
             let fair = judged(&scene, &recorder.finish().unwrap().0, 1).1;
             let lost = fair.findings.counts.get(FindingKind::TrimmedDecision);

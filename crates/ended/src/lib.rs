@@ -1,4 +1,12 @@
 //! How the run of a program ended, as a value: what the sandbox says, grades keep and reports put into words.
+//!
+//! ```
+//! use fosssim_ended::{Ended, Stream};
+//!
+//! let ended = Ended::OutputLimit(Stream::Stdout);
+//! assert_eq!(ended.to_string(), "wrote more than allowed to standard output");
+//! assert_eq!(ended.kind(), "output");
+//! ```
 #![forbid(unsafe_code)]
 
 use serde::{Deserialize, Serialize};

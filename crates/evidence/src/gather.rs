@@ -7,7 +7,7 @@ use crate::{
 use fosssim_judge::{Finding, Outcome, budget::Budget};
 use fosssim_model::{
     scene::{Collision, Scene},
-    sim::{Detection, Observer, Pair, Pass, Resume, RootSearch, Simulation, State},
+    sim::{Detection, Observer, Pair, Pass, Resume, RootSearch, Simulation, State, Steer},
     trace::{Layout, Lenient, LenientFrame, record_memory},
 };
 use std::io::Read;
@@ -301,9 +301,8 @@ struct MidState {
 }
 
 impl Observer for MidState {
-    fn synchronise(&mut self, state: &mut State) -> Resume {
+    fn synchronised(&mut self, state: &State) {
         self.state = Some(state.clone());
-        Resume::Own
     }
 }
 
@@ -341,6 +340,12 @@ impl Observer for PassCount<'_> {
         self.polynomials += detection.polynomials.len();
     }
 
+    fn steers(&mut self) -> Option<&mut dyn Steer> {
+        Some(self)
+    }
+}
+
+impl Steer for PassCount<'_> {
     fn synchronise(&mut self, state: &mut State) -> Resume {
         match self.mid {
             Some(mid) if mid.positions.len() == state.positions.len() => {

@@ -3,7 +3,7 @@ use crate::matching::{differ, matching};
 use fosssim_judge::study::{NoAnswer, Study};
 use fosssim_model::{
     scene::Scene,
-    sim::{Decision, Detection, Impulse, Observer, Pair, PairMotion, Pass, Resume, State, Zone},
+    sim::{Decision, Detection, Impulse, Observer, Pair, PairMotion, Pass, Resume, State, Steer, Zone},
     trace::{LoggedImpulse, PolynomialLog},
 };
 
@@ -309,6 +309,18 @@ fn keep(pairs: &mut Vec<Pair>, pair: Pair) {
     }
 }
 
+impl Steer for Inspector<'_> {
+    fn synchronise(&mut self, state: &mut State) -> Resume {
+        match self.mid {
+            Some(mid) if mid.positions.len() == state.positions.len() => {
+                state.clone_from(mid);
+                Resume::Synchronised
+            }
+            _ => Resume::Own,
+        }
+    }
+}
+
 impl Observer for Inspector<'_> {
     fn begin_pass(&mut self, pass: Pass) {
         self.pass = Some(pass);
@@ -380,15 +392,12 @@ impl Observer for Inspector<'_> {
         self.step.expected_contacts.push(*impulse);
     }
 
-    fn synchronise(&mut self, state: &mut State) -> Resume {
+    fn steers(&mut self) -> Option<&mut dyn Steer> {
+        Some(self)
+    }
+
+    fn synchronised(&mut self, state: &State) {
         self.step.expected_mid = Some(state.clone());
-        match self.mid {
-            Some(mid) if mid.positions.len() == state.positions.len() => {
-                state.clone_from(mid);
-                Resume::Synchronised
-            }
-            _ => Resume::Own,
-        }
     }
 
     fn zones(&mut self, round: u32, zones: &[Zone<'_>]) {

@@ -5,6 +5,30 @@
 //! holds no more than [`BUDGET`] says, so that it can be made of a trace of any length. A step starts from the trace's
 //! own state (oracle-behaviour.md 4.2), takes over the trace's mid record, and ends where the reference ends from
 //! there.
+//!
+//! ```
+//! use fosssim_evidence::{Keep, examine};
+//! use fosssim_judge::replay::Options;
+//! # use fosssim_model::{scene, sim::{RootSearch, Simulation}, trace::{Layout, Recorder}};
+//! # let text = br#"<scene>
+//! #   <duration time="1"/> <integrator type="symplectic-euler" dt="0.25"/> <collision type="none"/>
+//! #   <particle m="1" px="0" py="0" vx="2" vy="0" fixed="0"/>
+//! # </scene>"#;
+//! # let scene = scene::read("a ball", text)?.scene;
+//! # let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
+//! # let mut recorder = Recorder::start(Vec::new(), Layout::of(&scene), simulation.state());
+//! # for _ in 0..scene.steps() {
+//! #     simulation.step(&mut recorder)?;
+//! # }
+//! # let (trace, _) = recorder.finish()?;
+//!
+//! let options = Options { fair: true, ..Options::default() };
+//! let examined = examine(&scene, &trace[..], Keep::All, &options, &mut ());
+//! assert_eq!(examined.outcome.parity.findings.wrong_steps, 0);
+//! assert!(examined.explain().is_empty());
+//! assert_eq!(examined.bytes(), trace);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 #![forbid(unsafe_code)]
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 

@@ -4,6 +4,17 @@
 //! A fact has one type here, from where it arises to where somebody reads it: `judge` and `mistakes` fill these values,
 //! `grading` keeps them, `report` and `server` read them. They serialise themselves, and read back bit for bit. What
 //! stands in the data of an assignment (known mistakes, formulas, letters) is named by its key.
+//!
+//! A finding in words:
+//!
+//! ```
+//! use fosssim_findings::{Finding, FindingDetail, FindingKind};
+//!
+//! let detail = FindingDetail::Position { particle: 2, expected: [0.5, 1.0], actual: [0.5, 1.25], residual: 0.25 };
+//! let finding = Finding { step: 7, frame: 14, detail };
+//! assert_eq!(finding.kind(), FindingKind::Position);
+//! assert_eq!(finding.to_string(), "step 7: particle 2 ends at (0.5, 1.25), expected (0.5, 1), distance 0.25");
+//! ```
 #![forbid(unsafe_code)]
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 

@@ -16,7 +16,7 @@ use super::{
 };
 use fosssim_model::{
     scene::Scene,
-    sim::{Impulse, Observer, Pairs, Pass, PolynomialBytes, Resume, Stage, State, Wanted, pairs},
+    sim::{Impulse, Observer, Pairs, Pass, PolynomialBytes, Resume, Stage, State, Steer, Wanted, pairs},
     trace::{LenientFrame, LoggedImpulse},
 };
 use fosssim_num::{
@@ -334,6 +334,12 @@ impl Observer for Tally<'_> {
     }
 
     /// Takes over the mid record's state without comparing it (oracle-behaviour.md 4.2).
+    fn steers(&mut self) -> Option<&mut dyn Steer> {
+        Some(self)
+    }
+}
+
+impl Steer for Tally<'_> {
     fn synchronise(&mut self, state: &mut State) -> Resume {
         if let Some(mid) = self.mid {
             self.identical &= same_bits(state, mid);

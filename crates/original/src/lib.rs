@@ -11,6 +11,33 @@
 //! A grader starts this once for every trace, and most scenes are small: then the time goes into the pages of the
 //! program that a run touches. So this is a crate of its own, compiled at the full level, and uses nothing that few
 //! runs need: its caller supplies the drawing of pictures and the words of messages ([`Outside`]).
+//!
+//! A program becomes the drop-in, where its name or its first word says so:
+//!
+//! ```no_run
+//! use fosssim_original::{Outside, Pictures};
+//! use std::{path::Path, process::ExitCode};
+//! # use fosssim_model::{scene::Scene, sim::StepError};
+//!
+//! /// A program that draws no pictures.
+//! struct Plain;
+//!
+//! impl Outside for Plain {
+//!     fn prepare(&self) {}
+//!
+//!     fn pictures(&self, _png: bool, _svg: Option<&Path>, _scene: &Scene) -> Result<Box<dyn Pictures>, String> {
+//!         Err("this program draws no pictures".to_owned())
+//!     }
+//!
+//!     fn step_error(&self, error: &StepError) -> (u32, String) {
+//!         (0, error.to_string())
+//!     }
+//! }
+//!
+//! fn main() -> ExitCode {
+//!     fosssim_original::run_if_meant(&Plain).unwrap_or_else(|_words| ExitCode::from(2))
+//! }
+//! ```
 #![forbid(unsafe_code)]
 
 mod arguments;

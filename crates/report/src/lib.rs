@@ -2,6 +2,15 @@
 //!
 //! Every renderer is a pure function from results to text; nothing here opens a file, reads a clock or computes a
 //! verdict. Values serialise themselves; `view` has the versions of their schemas.
+//!
+//! ```
+//! use fosssim_report::{number::counted, style::Style, table::{Align, Table}};
+//!
+//! let mut table = Table::new([Align::Left, Align::Right]);
+//! table.row(["judged".into(), counted(12_345, "step").into()]);
+//! table.row(["wrong".into(), counted(1, "step").into()]);
+//! assert_eq!(table.render(Style::Plain), "  judged   12 345 steps\n  wrong           1 step\n");
+//! ```
 #![forbid(unsafe_code)]
 
 pub mod check;

@@ -251,7 +251,7 @@ pub(crate) fn first_divergence(first: &DisclosedFinding) -> String {
     }
 }
 
-/// `12 wrong coefficients, 3 missed collisions`, when there is more than the first finding tells.
+/// `counts: wrong coefficient (12), missed collision (3)`, when there is more than the first finding tells.
 fn counts(account: &DisclosedBook) -> Option<String> {
     let counts = &account.counts;
     // What is found in damaged records alone has no example, and says nothing about the program.
@@ -259,7 +259,7 @@ fn counts(account: &DisclosedBook) -> Option<String> {
     let list: Vec<String> = FindingKind::ALL
         .into_iter()
         .filter(|&kind| counts.get(kind) > 0 && has_example(kind))
-        .map(|kind| format!("{kind}: {}", counts.get(kind)))
+        .map(|kind| format!("{kind} ({})", counts.get(kind)))
         .collect();
     (counts.total() > 1 && !list.is_empty()).then(|| format!("counts: {}", list.join(", ")))
 }

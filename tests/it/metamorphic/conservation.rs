@@ -6,7 +6,7 @@ use super::{
 use fosssim_oracle::{
     num::vector::{Vec2, at, length, over},
     scene::{Collision, Edge, HalfPlane, Particle, Scene},
-    sim::{Detection, Impulse, Observer, Pass, Resume, RootSearch, Simulation, Stage, State, Zone},
+    sim::{Detection, Impulse, Observer, Pass, RootSearch, Simulation, Stage, State, Zone},
 };
 use proptest::prelude::*;
 use std::cell::Cell;
@@ -32,9 +32,8 @@ impl Observer for AfterImpulses {
     fn impulse(&mut self, _impulse: &Impulse) {
         self.impulses += 1;
     }
-    fn synchronise(&mut self, state: &mut State) -> Resume {
+    fn synchronised(&mut self, state: &State) {
         self.state = state.clone();
-        Resume::Own
     }
 }
 

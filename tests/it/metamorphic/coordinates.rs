@@ -18,7 +18,7 @@ use fosssim_oracle::{
         vector::{Vec2, length},
     },
     scene::{Collision, Integrator, Scene},
-    sim::{Decision, Detection, Observer, Pair, PairKind, Resume, RootSearch, Simulation, State},
+    sim::{Decision, Detection, Observer, Pair, PairKind, RootSearch, Simulation, State},
 };
 use proptest::prelude::*;
 use rayon::prelude::*;
@@ -45,9 +45,8 @@ impl Observer for Story {
         };
         self.detections.push((detection.pair, detection.polynomials.to_vec(), hit));
     }
-    fn synchronise(&mut self, state: &mut State) -> Resume {
+    fn synchronised(&mut self, state: &State) {
         self.middle = Some(state.clone());
-        Resume::Own
     }
 }
 

@@ -7,7 +7,7 @@ use fosssim_oracle::{
         vector::{Vec2, at},
     },
     scene::Scene,
-    sim::{Detection, Observer, Pair, PairKind},
+    sim::{Detection, Observer, Pair, PairKind, Steer},
 };
 
 /// The motion of a particle and an edge within the step, as three quadratics (numerics.md 1.2), lowest power first: the
@@ -76,6 +76,15 @@ pub struct Mended<'s, O> {
 }
 
 impl<O: Observer> Observer for Mended<'_, O> {
+    fn detection(&mut self, detection: &Detection<'_>) {
+        self.inner.detection(detection);
+    }
+    fn steers(&mut self) -> Option<&mut dyn Steer> {
+        Some(self)
+    }
+}
+
+impl<O: Observer> Steer for Mended<'_, O> {
     fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
         if pair.kind == PairKind::ParticleEdge {
             let edge = self.scene.edges[pair.second as usize];
@@ -83,9 +92,5 @@ impl<O: Observer> Observer for Mended<'_, O> {
             let right = Quadratics::of(q_start, q_end, pair.first as usize, ends).approach();
             polynomials[3] = Polynomial::trimmed(&right);
         }
-        self.inner.solve(pair, q_start, q_end, polynomials);
-    }
-    fn detection(&mut self, detection: &Detection<'_>) {
-        self.inner.detection(detection);
     }
 }

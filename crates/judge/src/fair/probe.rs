@@ -8,7 +8,7 @@ use super::{
     formulas::BoundedPairMotion,
     sensitivity::{Deviation, Sensitivity},
 };
-use fosssim_model::sim::{Decision, Detection, Observer, Pair, Pass, Resume, Simulation, Stage, State, Time};
+use fosssim_model::sim::{Decision, Detection, Observer, Pair, Pass, Resume, Simulation, Stage, State, Steer, Time};
 use fosssim_num::{
     bounded::UNIT_ROUNDOFF,
     polynomial::Polynomial,
@@ -149,6 +149,22 @@ impl Observer for PerturbedRun<'_> {
         self.stale = true;
     }
 
+    fn detection(&mut self, detection: &Detection<'_>) {
+        if self.stale {
+            self.run.passes.resize(self.pass + 1, Vec::new());
+            self.run.passes[self.pass].clear();
+            self.run.passes[self.pass].extend_from_slice(detection.q_end);
+            self.stale = false;
+        }
+        self.stale |= matches!(detection.decision, Decision::Hit { .. });
+    }
+
+    fn steers(&mut self) -> Option<&mut dyn Steer> {
+        Some(self)
+    }
+}
+
+impl Steer for PerturbedRun<'_> {
     fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], _polynomials: &mut [Polynomial]) {
         self.motion = Some(BoundedPairMotion::of(self.context.scene, pair, q_start, q_end));
     }
@@ -168,16 +184,6 @@ impl Observer for PerturbedRun<'_> {
             (Decision::Miss { .. }, Decision::Hit { time, .. }) => Decision::Miss { time: Time::Found(time) },
             (Decision::Miss { .. }, Decision::Miss { .. }) => decision,
         }
-    }
-
-    fn detection(&mut self, detection: &Detection<'_>) {
-        if self.stale {
-            self.run.passes.resize(self.pass + 1, Vec::new());
-            self.run.passes[self.pass].clear();
-            self.run.passes[self.pass].extend_from_slice(detection.q_end);
-            self.stale = false;
-        }
-        self.stale |= matches!(detection.decision, Decision::Hit { .. });
     }
 
     fn synchronise(&mut self, state: &mut State) -> Resume {

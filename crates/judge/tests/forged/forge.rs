@@ -12,7 +12,7 @@ use fosssim_judge::{
 };
 use fosssim_model::{
     scene::Scene,
-    sim::{Detection, Observer, Pair, PairKind, RootSearch, Simulation},
+    sim::{Detection, Observer, Pair, PairKind, RootSearch, Simulation, Steer, Steering},
     trace::{Frame, Layout, Reader, Recorder, Writer},
 };
 use fosssim_num::{bounded::Bounded, polynomial::Polynomial};
@@ -81,7 +81,7 @@ impl Observer for Note<'_> {
 /// Multiplies polynomials; the course's library drops what becomes small, and the step goes on with the rest.
 struct Multiply<'a, F>(&'a Scene, F);
 
-impl<F: FnMut(Pair, usize, &[f64]) -> f64> Observer for Multiply<'_, F> {
+impl<F: FnMut(Pair, usize, &[f64]) -> f64> Steer for Multiply<'_, F> {
     fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
         let whole = BoundedPairMotion::of(self.0, pair, q_start, q_end).polynomials();
         for (number, polynomial) in polynomials.iter_mut().enumerate() {
@@ -418,7 +418,7 @@ pub fn multiply(stage: &Stage, random: &mut Random) -> Option<String> {
         _ => Factors::Leading,
     };
     let mut each = Random::new(random.bits());
-    let mut steer = Multiply(&stage.scene, |pair: Pair, number: usize, own: &[f64]| match (factors, pair.kind) {
+    let steer = Multiply(&stage.scene, |pair: Pair, number: usize, own: &[f64]| match (factors, pair.kind) {
         (Factors::All(factor), _) => factor,
         (Factors::Kind(of, factor), kind) if of == kind => factor,
         (Factors::Number(of, by, factor), kind) if (of, by) == (kind, number) => factor,
@@ -430,7 +430,7 @@ pub fn multiply(stage: &Stage, random: &mut Random) -> Option<String> {
         (Factors::Leading, _) => own.first().map_or(1.0, |c| c.abs().recip()),
         (Factors::Kind(..) | Factors::Number(..), _) => 1.0,
     });
-    let frames = run(&stage.scene, &mut steer)?;
+    let frames = run(&stage.scene, &mut Steering(steer))?;
     let is_whole = |frame: &Frame| frame.polynomials.iter().flatten().all(|c| c.is_finite());
     if !frames.iter().all(is_whole) {
         return None;

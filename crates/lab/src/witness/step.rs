@@ -2,7 +2,7 @@
 //! that explains: reads records by itself, and compares plainly.
 use fosssim_model::{
     scene::Scene,
-    sim::{Decision, Detection, Observer, Pair, Pass, Resume, RootSearch, Simulation, Stage, State, Time, Zone},
+    sim::{Decision, Detection, Observer, Pair, Pass, RootSearch, Simulation, Stage, State, Steer, Time, Zone},
     trace::{Layout, Lenient, LenientFrame},
 };
 use fosssim_num::vector::{Vec2, at, length};
@@ -34,8 +34,8 @@ impl Observer for Heard {
         self.passes.push(pass.stage);
     }
 
-    fn decide(&mut self, _pair: Pair, decision: Decision) -> Decision {
-        if self.is_blind { Decision::Miss { time: Time::Found(f64::INFINITY) } } else { decision }
+    fn steers(&mut self) -> Option<&mut dyn Steer> {
+        Some(self)
     }
 
     fn detection(&mut self, detection: &Detection<'_>) {
@@ -47,14 +47,19 @@ impl Observer for Heard {
         self.polynomials.extend(detection.polynomials.iter().map(|one| one.coefficients().to_vec()));
     }
 
-    fn synchronise(&mut self, state: &mut State) -> Resume {
+    fn synchronised(&mut self, state: &State) {
         self.middle = state.clone();
         self.by_middle = self.polynomials.len();
-        Resume::Own
     }
 
     fn failsafe(&mut self, round: u32, zone: &Zone<'_>) {
         self.zones.push((round, zone.particles.iter().map(|&one| one as usize).collect(), zone.half_plane));
+    }
+}
+
+impl Steer for Heard {
+    fn decide(&mut self, _pair: Pair, decision: Decision) -> Decision {
+        if self.is_blind { Decision::Miss { time: Time::Found(f64::INFINITY) } } else { decision }
     }
 }
 

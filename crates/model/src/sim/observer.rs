@@ -1,4 +1,4 @@
-//! What the simulator tells while it computes: every detection call, pass, impulse and zone.
+//! What the simulator tells while it computes: every detection call, pass, impulse and zone. And how a step is steered.
 use super::{pair::Pair, polynomial_bytes::PolynomialBytes, state::State};
 use fosssim_num::{polynomial::Polynomial, vector::Vec2};
 use serde::{Deserialize, Serialize};
@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 ///
 /// Order within one step: `begin_step`; then, for collision types with a handler, per detection pass `begin_pass`, a
 /// `detection` per pair (and, for `simple` and `continuous-time`, an `impulse` right after the detection that caused
-/// it), `end_pass`; for `hybrid` the pass's `impulse`s follow its `end_pass`. Then `synchronise` (continuous-time: at
+/// it), `end_pass`; for `hybrid` the pass's `impulse`s follow its `end_pass`. Then `synchronised` (continuous-time: at
 /// the end of the handler; hybrid: after the impulses, before the geometric part). In the geometric part: `begin_pass`
 /// .. `end_pass`, then per round a `failsafe` per zone and the next pass; `zones` after each merge. Last `end_step`.
 ///
-/// Three methods may steer what they hear: `solve`, `decide` and `synchronise`. By default they change nothing.
+/// An observer changes nothing. One that has the step go on with other values hands out a [`Steer`].
 pub trait Observer {
     /// A step begins; steps count from 1.
     fn begin_step(&mut self, _step: u32) {}
@@ -20,17 +20,15 @@ pub trait Observer {
     /// Where particles start and end (2N each) as the pass begins to see them, right after `begin_pass`.
     fn pass_positions(&mut self, _q_start: &[f64], _q_end: &[f64]) {}
     /// What this observer wants to know of the pass's pairs; asked once or more in each pass. Unless it wants
-    /// [`Wanted::Calls`], `solve`, `decide` and `detection` are not called, and pairs are computed many at a time.
+    /// [`Wanted::Calls`], `detection` is not called, nobody steers calls, and pairs are computed many at a time.
     #[inline]
     fn wanted(&mut self) -> Wanted<'_> {
         Wanted::Calls
     }
-    /// The polynomials of a pair, trimmed, are about to be searched for a time of impact. An observer may put others in
-    /// their place; search, decision and `detection` then go by those. Not called by `simple`, which has none.
-    fn solve(&mut self, _pair: Pair, _q_start: &[f64], _q_end: &[f64], _polynomials: &mut [Polynomial]) {}
-    /// The decision about a pair. The step goes on with the one that is returned.
-    fn decide(&mut self, _pair: Pair, decision: Decision) -> Decision {
-        decision
+    /// The one who steers the step, if anybody does.
+    #[inline]
+    fn steers(&mut self) -> Option<&mut dyn Steer> {
+        None
     }
     /// A pair was looked at.
     fn detection(&mut self, _detection: &Detection<'_>) {}
@@ -38,11 +36,8 @@ pub trait Observer {
     fn end_pass(&mut self, _pass: Pass, _hits: usize) {}
     /// A response was applied.
     fn impulse(&mut self, _impulse: &Impulse) {}
-    /// The synchronisation point: the state that the mid record holds. What is written here is what the step goes on
-    /// with; the geometric part of `hybrid` starts from the values that the answer names.
-    fn synchronise(&mut self, _state: &mut State) -> Resume {
-        Resume::Own
-    }
+    /// The synchronisation point: the state that the mid record holds, before anybody puts another in its place.
+    fn synchronised(&mut self, _state: &State) {}
     /// Impact zones after the merge of geometric round `round` (0: before the first failsafe).
     fn zones(&mut self, _round: u32, _zones: &[Zone<'_>]) {}
     /// The rigid failsafe is about to move this zone.
@@ -51,10 +46,42 @@ pub trait Observer {
     fn end_step(&mut self, _step: u32, _state: &State) {}
 }
 
+/// Steers a step: what it puts in place the step goes on with. Every method changes nothing by default.
+pub trait Steer {
+    /// The polynomials of a pair, trimmed, are about to be searched for a time of impact. Others may be put in their
+    /// place; search, decision and [`Observer::detection`] then go by those. Not called by `simple`, which has none.
+    fn solve(&mut self, _pair: Pair, _q_start: &[f64], _q_end: &[f64], _polynomials: &mut [Polynomial]) {}
+    /// The decision about a pair. The step goes on with the one that is returned.
+    fn decide(&mut self, _pair: Pair, decision: Decision) -> Decision {
+        decision
+    }
+    /// The synchronisation point, after [`Observer::synchronised`]. What is written here is what the step goes on with;
+    /// the geometric part of `hybrid` starts from the values that the answer names.
+    fn synchronise(&mut self, _state: &mut State) -> Resume {
+        Resume::Own
+    }
+}
+
+/// The observer that only steers.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Steering<S>(pub S);
+
+impl<S: Steer> Observer for Steering<S> {
+    fn steers(&mut self) -> Option<&mut dyn Steer> {
+        Some(&mut self.0)
+    }
+}
+
+/// Tells an observer the state of the synchronisation point, and has it steered.
+pub(super) fn synchronise<O: Observer>(observer: &mut O, state: &mut State) -> Resume {
+    observer.synchronised(state);
+    observer.steers().map_or(Resume::Own, |steer| steer.synchronise(state))
+}
+
 /// What an observer wants to know of the pairs of a detection pass.
 #[derive(Debug)]
 pub enum Wanted<'a> {
-    /// Every call, one by one; it may steer them.
+    /// Every call, one by one.
     Calls,
     /// The polynomials as a trace holds them, to be appended here.
     Bytes(&'a mut PolynomialBytes),
@@ -86,11 +113,8 @@ impl<O: Observer + ?Sized> Observer for &mut O {
         (**self).wanted()
     }
     #[inline]
-    fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
-        (**self).solve(pair, q_start, q_end, polynomials);
-    }
-    fn decide(&mut self, pair: Pair, decision: Decision) -> Decision {
-        (**self).decide(pair, decision)
+    fn steers(&mut self) -> Option<&mut dyn Steer> {
+        (**self).steers()
     }
     fn detection(&mut self, detection: &Detection<'_>) {
         (**self).detection(detection);
@@ -101,8 +125,8 @@ impl<O: Observer + ?Sized> Observer for &mut O {
     fn impulse(&mut self, impulse: &Impulse) {
         (**self).impulse(impulse);
     }
-    fn synchronise(&mut self, state: &mut State) -> Resume {
-        (**self).synchronise(state)
+    fn synchronised(&mut self, state: &State) {
+        (**self).synchronised(state);
     }
     fn zones(&mut self, round: u32, zones: &[Zone<'_>]) {
         (**self).zones(round, zones);
@@ -115,8 +139,7 @@ impl<O: Observer + ?Sized> Observer for &mut O {
     }
 }
 
-/// Two observers hear the same, the first one first; what it puts in place the second one sees. The geometric part
-/// starts from the synchronised state if one of them says so.
+/// Two observers hear the same, the first one first.
 impl<A: Observer, B: Observer> Observer for (A, B) {
     fn begin_step(&mut self, step: u32) {
         self.0.begin_step(step);
@@ -130,13 +153,8 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
         self.0.pass_positions(q_start, q_end);
         self.1.pass_positions(q_start, q_end);
     }
-    fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
-        self.0.solve(pair, q_start, q_end, polynomials);
-        self.1.solve(pair, q_start, q_end, polynomials);
-    }
-    fn decide(&mut self, pair: Pair, decision: Decision) -> Decision {
-        let decision = self.0.decide(pair, decision);
-        self.1.decide(pair, decision)
+    fn steers(&mut self) -> Option<&mut dyn Steer> {
+        Some(self)
     }
     fn detection(&mut self, detection: &Detection<'_>) {
         self.0.detection(detection);
@@ -150,12 +168,9 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
         self.0.impulse(impulse);
         self.1.impulse(impulse);
     }
-    fn synchronise(&mut self, state: &mut State) -> Resume {
-        let first = self.0.synchronise(state);
-        match self.1.synchronise(state) {
-            Resume::Own => first,
-            Resume::Synchronised => Resume::Synchronised,
-        }
+    fn synchronised(&mut self, state: &State) {
+        self.0.synchronised(state);
+        self.1.synchronised(state);
     }
     fn zones(&mut self, round: u32, zones: &[Zone<'_>]) {
         self.0.zones(round, zones);
@@ -171,12 +186,32 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
     }
 }
 
+/// What the first one puts in place the second one sees. The geometric part starts from the synchronised state if one of
+/// them says so.
+impl<A: Observer, B: Observer> Steer for (A, B) {
+    fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
+        let both = [self.0.steers(), self.1.steers()].into_iter().flatten();
+        both.for_each(|steer| steer.solve(pair, q_start, q_end, polynomials));
+    }
+    fn decide(&mut self, pair: Pair, decision: Decision) -> Decision {
+        let both = [self.0.steers(), self.1.steers()].into_iter().flatten();
+        both.fold(decision, |decision, steer| steer.decide(pair, decision))
+    }
+    fn synchronise(&mut self, state: &mut State) -> Resume {
+        let both = [self.0.steers(), self.1.steers()].into_iter().flatten();
+        both.fold(Resume::Own, |resume, steer| match steer.synchronise(state) {
+            Resume::Own => resume,
+            Resume::Synchronised => Resume::Synchronised,
+        })
+    }
+}
+
 /// What the geometric part of `hybrid` starts from, after the synchronisation point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Resume {
     /// The simulator's own values, as the original grades (collisions.md 5.4).
     Own,
-    /// The state that the observer left.
+    /// The state that was put in place.
     Synchronised,
 }
 

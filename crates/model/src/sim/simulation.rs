@@ -129,7 +129,7 @@ mod tests {
     use crate::{
         scene::{Collision, CollisionDetection, Force, Integrator, Particle},
         sim::{
-            Decision, Detection, Impulse, Pair, PairKind, Pass, Resume, Time, Zone,
+            Decision, Detection, Impulse, Pair, PairKind, Pass, Resume, Steer, Time, Zone,
             samples::{edge, fixed, half_plane, particle, scene},
         },
     };
@@ -164,12 +164,11 @@ mod tests {
         fn impulse(&mut self, impulse: &Impulse) {
             self.lines.push(format!("impulse {} {}", impulse.normal.x, impulse.normal.y));
         }
-        fn synchronise(&mut self, state: &mut State) -> Resume {
+        fn steers(&mut self) -> Option<&mut dyn Steer> {
+            Some(self)
+        }
+        fn synchronised(&mut self, _state: &State) {
             self.lines.push("synchronise".to_owned());
-            if let Some(replacement) = &self.replacement {
-                state.clone_from(replacement);
-            }
-            Resume::Own
         }
         fn zones(&mut self, round: u32, zones: &[Zone<'_>]) {
             self.lines.push(format!("zones {round} {:?}", zones.iter().map(|z| z.particles).collect::<Vec<_>>()));
@@ -179,6 +178,15 @@ mod tests {
         }
         fn end_step(&mut self, step: u32, _state: &State) {
             self.lines.push(format!("end {step}"));
+        }
+    }
+
+    impl Steer for Log {
+        fn synchronise(&mut self, state: &mut State) -> Resume {
+            if let Some(replacement) = &self.replacement {
+                state.clone_from(replacement);
+            }
+            Resume::Own
         }
     }
 

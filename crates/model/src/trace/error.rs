@@ -68,7 +68,8 @@ pub enum Malformation {
     Empty,
     /// The bytes end between two records.
     #[error(
-        "the trace ends after {records} records, but this scene's trace has {expected}; did the program end early?"
+        "the trace ends after {records} records, but this scene's trace has {expected}; did the program crash, or was it \
+         stopped?"
     )]
     TooFewRecords {
         /// Complete records.

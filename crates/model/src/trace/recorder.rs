@@ -7,7 +7,7 @@ use super::{
     log::Log,
     writer::{Writer, WrittenTrace},
 };
-use crate::sim::{Detection, Impulse, Observer, Pass, Resume, State, Wanted};
+use crate::sim::{Detection, Impulse, Observer, Pass, State, Wanted};
 use std::io::{self, Write};
 
 /// Writes a trace: hand it to [`Simulation::step`](crate::sim::Simulation::step) as the observer of every step, then
@@ -78,11 +78,10 @@ impl<W: Write> Observer for Recorder<W> {
         self.log.impulse(impulse);
     }
 
-    fn synchronise(&mut self, state: &mut State) -> Resume {
+    fn synchronised(&mut self, state: &State) {
         if self.layout.records_per_step() == 2 {
             self.writer.record(state, &self.log);
         }
-        Resume::Own
     }
 
     fn end_step(&mut self, _step: u32, state: &State) {
@@ -123,7 +122,7 @@ mod tests {
         let mut recorder = Recorder::start(Vec::new(), layout(), &state(0.0));
         recorder.begin_step(1);
         pass(&mut recorder, Stage::ContinuousTime);
-        recorder.synchronise(&mut state(1.0));
+        recorder.synchronised(&state(1.0));
         recorder.end_step(1, &state(1.0));
         let (bytes, written) = recorder.finish().unwrap();
         assert_eq!(bytes.len(), 40 + 2 * (40 + 36 + 28 + 4));
@@ -139,7 +138,7 @@ mod tests {
         let mut recorder = Recorder::start(Vec::new(), layout(), &state(0.0));
         recorder.begin_step(1);
         pass(&mut recorder, Stage::Impulses { round: 0 });
-        recorder.synchronise(&mut state(1.0));
+        recorder.synchronised(&state(1.0));
         pass(&mut recorder, Stage::Geometric { round: 0 });
         recorder.end_step(1, &state(2.0));
         let (bytes, _) = recorder.finish().unwrap();
@@ -189,7 +188,7 @@ mod tests {
             if step == 1 {
                 pass(&mut recorder, Stage::ContinuousTime);
             }
-            recorder.synchronise(&mut state(1.0));
+            recorder.synchronised(&state(1.0));
             recorder.end_step(step, &state(1.0));
         }
         let (bytes, _) = recorder.finish().unwrap();

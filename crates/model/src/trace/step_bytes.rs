@@ -1,6 +1,6 @@
 //! The records of one step as bytes, to be compared with those of a trace before anything is decoded.
 use super::{decode, encode, layout::Layout, log::Log};
-use crate::sim::{Detection, Impulse, Observer, Pass, Resume, State, Wanted};
+use crate::sim::{Detection, Impulse, Observer, Pass, State, Wanted};
 
 /// What [`Recorder`](super::Recorder) would write of a step, in pieces that are not copied: the observer of that step.
 #[derive(Debug, Clone)]
@@ -132,13 +132,12 @@ impl Observer for StepBytes {
         self.log.impulse(impulse);
     }
 
-    fn synchronise(&mut self, state: &mut State) -> Resume {
+    fn synchronised(&mut self, state: &State) {
         if self.layout.polynomials {
             self.record(0, state);
             self.mid.positions.clone_from(&state.positions);
             self.mid.velocities.clone_from(&state.velocities);
         }
-        Resume::Own
     }
 
     fn end_step(&mut self, _step: u32, state: &State) {

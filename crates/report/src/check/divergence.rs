@@ -4,7 +4,7 @@ use super::super::{
     style::{Look, Style},
     table::{Align, Cell, Table},
 };
-use fosssim_judge::{Finding, FindingDetail, PassWords, Power, Rescaled, differing, factor};
+use fosssim_judge::{Finding, FindingDetail, Power, Rescaled, differing, factor};
 
 /// The block about one finding, with a heading and without advice.
 pub(super) fn render(finding: &Finding, steps: u32, style: Style) -> String {
@@ -159,7 +159,7 @@ fn numbers(name: &'static str, expected: f64, actual: f64) -> Row {
 }
 
 fn logged_by(place: &fosssim_judge::PolynomialPlace) -> String {
-    format!("number {} in the record's list; {}", place.index, PassWords(place.pass))
+    format!("number {} in the record's list", place.index)
 }
 
 /// Two polynomials by power, marked where they part once the factor on which most coefficients agree is taken out.

@@ -158,7 +158,9 @@ pub fn stopped(stop: &Stop, outcome: &Outcome) -> String {
 
 fn problem(stop: &Stop, outcome: &Outcome, style: Style) -> String {
     let (place, message, advice) = parts(stop, outcome);
-    format!("{} {place}\n  {message}\n  {advice}\n", style.paint(Look::Strong, "Stopped at"))
+    // Some messages ask already.
+    let advice = if message.ends_with('?') { String::new() } else { format!("  {advice}\n") };
+    format!("{} {place}\n  {message}\n{advice}", style.paint(Look::Strong, "Stopped at"))
 }
 
 /// Where it is, what is the matter, and what to look at.

@@ -97,7 +97,7 @@ fn details_are_what_is_told_and_nothing_else() {
         lines[1..],
         [
             "first divergence: step 4, particle 2: wrong position",
-            "counts: superfluous collision: 2, wrong position: 7",
+            "counts: superfluous collision (2), wrong position (7)",
             "damaged at byte 77 (frame 1): polynomial 3 has the negative size -1",
             "bytes follow the last record",
         ]

@@ -186,7 +186,7 @@ mod tests {
             code: code.to_owned(),
             summary: "at step 3".to_owned(),
             right_steps,
-            details: vec!["counts: wrong coefficient: 11".to_owned()],
+            details: vec!["counts: wrong coefficient (11)".to_owned()],
             explanations: Vec::new(),
         };
         let (right, one, same, other, slow) =
@@ -196,7 +196,7 @@ mod tests {
         assert_eq!(answer(&[&right, &one]), answer(&[&right, &same]));
         assert_ne!(answer(&[&right, &one]), answer(&[&right, &other]));
         // As far right, and wrong in another way.
-        let other_way = Scene { details: vec!["counts: wrong coefficient: 12".to_owned()], ..scene("WA", 2) };
+        let other_way = Scene { details: vec!["counts: wrong coefficient (12)".to_owned()], ..scene("WA", 2) };
         let explanation = Explanation { key: "a-mistake".to_owned(), reproduced: 6, samples: 6 };
         let explained = Scene { explanations: vec![explanation], ..scene("WA", 2) };
         assert_ne!(answer(&[&right, &one]), answer(&[&right, &other_way]));

@@ -20,7 +20,9 @@ use crate::{
 };
 use at_once::Floors;
 use decisions::Own;
-use fosssim_model::sim::{ByKind, Decision, Detection, Observer, Pair, PairKind, Pass, Resume, Stage, State, Zone};
+use fosssim_model::sim::{
+    ByKind, Decision, Detection, Observer, Pair, PairKind, Pass, Resume, Stage, State, Steer, Zone,
+};
 use fosssim_num::{certificate::exclusion_of, polynomial::Polynomial};
 
 /// The greatest number of decisions for which room is made at first.
@@ -189,6 +191,34 @@ impl Observer for Follower<'_> {
         });
     }
 
+    fn detection(&mut self, detection: &Detection<'_>) {
+        if !matches!(detection.decision, Decision::Hit { .. }) {
+            return;
+        }
+        let particles = self.context.particles(detection.pair).into_iter().flatten();
+        match self.pass.stage {
+            Stage::ContinuousTime => {
+                particles.for_each(|particle| self.moved[particle] = true);
+                self.floors = None;
+            }
+            // A round's responses come behind its last detection.
+            Stage::Impulses { .. } => self.moving.extend(particles),
+            Stage::Simple | Stage::Geometric { .. } => {}
+        }
+    }
+
+    fn failsafe(&mut self, _round: u32, zone: &Zone<'_>) {
+        for &particle in zone.particles {
+            self.moved[particle as usize] = true;
+        }
+    }
+
+    fn steers(&mut self) -> Option<&mut dyn Steer> {
+        Some(self)
+    }
+}
+
+impl Steer for Follower<'_> {
     fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
         self.call = CurrentCall::default();
         let Some(index) = self.next else { return };
@@ -251,28 +281,6 @@ impl Observer for Follower<'_> {
         let decision = self.settle(pair, decision);
         self.decisions.push(Followed { pair, pass: self.pass, decision });
         decision
-    }
-
-    fn detection(&mut self, detection: &Detection<'_>) {
-        if !matches!(detection.decision, Decision::Hit { .. }) {
-            return;
-        }
-        let particles = self.context.particles(detection.pair).into_iter().flatten();
-        match self.pass.stage {
-            Stage::ContinuousTime => {
-                particles.for_each(|particle| self.moved[particle] = true);
-                self.floors = None;
-            }
-            // A round's responses come behind its last detection.
-            Stage::Impulses { .. } => self.moving.extend(particles),
-            Stage::Simple | Stage::Geometric { .. } => {}
-        }
-    }
-
-    fn failsafe(&mut self, _round: u32, zone: &Zone<'_>) {
-        for &particle in zone.particles {
-            self.moved[particle as usize] = true;
-        }
     }
 
     fn synchronise(&mut self, state: &mut State) -> Resume {

@@ -3,7 +3,7 @@ use super::compare::{Logged, StepRecords};
 use fosssim_model::{
     assignments::ImpulseList,
     scene::Collision,
-    sim::{Decision, Detection, Impulse, Observer, Pair, Pass, Resume, Stage, State, Zone},
+    sim::{Decision, Detection, Impulse, Observer, Pair, Pass, Stage, State, Zone},
     trace::PolynomialLog,
 };
 
@@ -97,13 +97,12 @@ impl Observer for Capture {
         }
     }
 
-    fn synchronise(&mut self, state: &mut State) -> Resume {
-        let StepRecords { mid: Some(mid), end } = &mut self.records else { return Resume::Own };
+    fn synchronised(&mut self, state: &State) {
+        let StepRecords { mid: Some(mid), end } = &mut self.records else { return };
         copy_state(&mut mid.state, state);
         mid.impulses.clone_from(&end.impulses);
         mid.polynomials.coefficients.clone_from(&end.polynomials.coefficients);
         mid.polynomials.ends.clone_from(&end.polynomials.ends);
-        Resume::Own
     }
 
     fn failsafe(&mut self, _round: u32, zone: &Zone<'_>) {

@@ -8,7 +8,7 @@ use super::{reference::Reference, source::StepFrames};
 use fosssim_judge::fair::{compare::compare, formulas};
 use fosssim_model::{
     scene::{Collision, Scene},
-    sim::{ByKind, Decision, Observer, Pair, PairKind, PairMotion, Pass, Resume, Stage, State, pairs},
+    sim::{ByKind, Decision, Observer, Pair, PairKind, PairMotion, Pass, Resume, Stage, State, Steer, pairs},
     trace::{Layout, LenientFrame, LoggedImpulse, PolynomialLog},
 };
 use fosssim_num::polynomial::Polynomial;
@@ -140,6 +140,12 @@ impl Observer for Gatherer<'_> {
         };
     }
 
+    fn steers(&mut self) -> Option<&mut dyn Steer> {
+        Some(self)
+    }
+}
+
+impl Steer for Gatherer<'_> {
     fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], _polynomials: &mut [Polynomial]) {
         let (Some((pass, index)), Some(Sizes(sizes))) = (self.next, self.sizes) else { return };
         let size = sizes[pair.kind];

@@ -6,10 +6,10 @@ use crate::diagnose::sampling::{
 use fosssim_judge::fair::formulas::BoundedPairMotion;
 use fosssim_model::{
     scene::Scene,
-    sim::{Decision, Detection, Observer, Pair, PairKind, Pass, Stage, State, Time, Zone},
+    sim::{Decision, Detection, Observer, Pair, PairKind, Pass, Stage, State, Steer, Steering, Time, Zone},
     trace::PolynomialLog,
 };
-use fosssim_num::{bounded::Bounded, polynomial::Polynomial, vector::Vec2};
+use fosssim_num::{bounded::Bounded, vector::Vec2};
 
 /// A contact that the reference finds.
 #[derive(Debug, Clone, Copy)]
@@ -59,6 +59,23 @@ struct StepEvents<'a> {
     heard: Events,
 }
 
+impl StepEvents<'_> {
+    /// Keeps the right form of an edge's approach, where it is another polynomial than the course's.
+    fn keep_other_form(&mut self, detection: &Detection<'_>) {
+        let &Detection { pair, q_start, q_end, .. } = detection;
+        if pair.kind != PairKind::ParticleEdge {
+            return;
+        }
+        let expected = BoundedPairMotion::of(self.scene, pair, q_start, q_end).polynomials();
+        let values = |form: &[Bounded]| form.iter().map(|one| one.value).collect::<Vec<f64>>();
+        if let Some(other) = expected.other_form(APPROACH).map(values)
+            && other != values(expected.polynomial(APPROACH))
+        {
+            self.heard.other_forms.push((self.heard.polynomials + APPROACH, other));
+        }
+    }
+}
+
 impl Observer for StepEvents<'_> {
     fn begin_step(&mut self, _step: u32) {
         self.heard = Events::default();
@@ -75,20 +92,8 @@ impl Observer for StepEvents<'_> {
         }
     }
 
-    fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], _polynomials: &mut [Polynomial]) {
-        if pair.kind != PairKind::ParticleEdge {
-            return;
-        }
-        let expected = BoundedPairMotion::of(self.scene, pair, q_start, q_end).polynomials();
-        let values = |form: &[Bounded]| form.iter().map(|one| one.value).collect::<Vec<f64>>();
-        if let Some(other) = expected.other_form(APPROACH).map(values)
-            && other != values(expected.polynomial(APPROACH))
-        {
-            self.heard.other_forms.push((self.heard.polynomials + APPROACH, other));
-        }
-    }
-
     fn detection(&mut self, detection: &Detection<'_>) {
+        self.keep_other_form(detection);
         let heard = &mut self.heard;
         if let Decision::Hit { time, normal } = detection.decision {
             let (pass, place) = (heard.passes.len().saturating_sub(1), heard.detections.len());
@@ -107,10 +112,10 @@ impl Observer for StepEvents<'_> {
 /// The number of an edge's approach among its polynomials.
 const APPROACH: usize = 3;
 
-/// The observer of a step in which nothing collides.
+/// Steers a step so that nothing collides.
 struct NoCollisions;
 
-impl Observer for NoCollisions {
+impl Steer for NoCollisions {
     fn decide(&mut self, _pair: Pair, _decision: Decision) -> Decision {
         Decision::Miss { time: Time::Found(f64::INFINITY) }
     }
@@ -187,7 +192,7 @@ impl StepFacts {
 impl StepFacts {
     /// The facts of a step; none where the reference has no result.
     pub(super) fn of(reference: &mut Reference<'_>, scene: &Scene, kept: &KeptStep) -> Option<Self> {
-        let prediction = reference.step(kept.step, &kept.before, &mut NoCollisions)?.clone();
+        let prediction = reference.step(kept.step, &kept.before, &mut Steering(NoCollisions))?.clone();
         let mut observers = (Capture::new(&scene.collision), StepEvents { scene, heard: Events::default() });
         reference.step(kept.step, &kept.before, &mut observers)?;
         let (capture, StepEvents { heard: events, .. }) = observers;

@@ -4,7 +4,7 @@
 use super::{
     super::{
         bodies::Bodies,
-        observer::{Impulse, Observer, Pass, Stage},
+        observer::{Impulse, Observer, Pass, Stage, synchronise},
         pair::PairKind,
         state::State,
         step_error::StepError,
@@ -34,7 +34,7 @@ pub(super) fn handle<O: Observer>(
         observer.impulse(impulse);
         Reaction::Moved
     })?;
-    observer.synchronise(state);
+    synchronise(observer, state);
     Ok(())
 }
 

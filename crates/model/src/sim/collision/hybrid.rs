@@ -3,7 +3,7 @@
 use super::{
     super::{
         bodies::Bodies,
-        observer::{Impulse, Observer, Pass, Resume, Stage, Zone},
+        observer::{Impulse, Observer, Pass, Resume, Stage, Zone, synchronise},
         state::State,
         step_error::StepError,
     },
@@ -60,13 +60,13 @@ pub(super) fn handle<O: Observer>(
         }
     }
     if done {
-        observer.synchronise(state);
+        synchronise(observer, state);
         return Ok(());
     }
-    // The geometric part goes on with these values, unless the observer wants the state that it leaves.
+    // The geometric part goes on with these values, unless somebody steers otherwise.
     scratch.positions.clone_from(&state.positions);
     scratch.velocities.clone_from(&state.velocities);
-    if observer.synchronise(state) == Resume::Synchronised {
+    if synchronise(observer, state) == Resume::Synchronised {
         scratch.positions.clone_from(&state.positions);
         scratch.velocities.clone_from(&state.velocities);
     }

@@ -182,7 +182,9 @@ impl Detector {
         let mut polynomials = motion.list();
         let polynomials = &mut polynomials[..pair.kind.polynomials()];
         polynomials.iter_mut().for_each(Polynomial::trim);
-        context.observer.solve(pair, context.q_start, context.q_end, polynomials);
+        if let Some(steer) = context.observer.steers() {
+            steer.solve(pair, context.q_start, context.q_end, polynomials);
+        }
         let time = time_of_impact(self.search, &mut self.counts, self.step, pair, polynomials)?;
         let decision = match time {
             Time::Found(time) if time <= 1.0 => match motion.normal(time) {
@@ -194,7 +196,7 @@ impl Detector {
         let PassContext { bodies, q_start, ref q_end, ref mut observer, .. } = *context;
         let decision = match observer.wanted() {
             Wanted::Calls => {
-                let decision = observer.decide(pair, decision);
+                let decision = observer.steers().map_or(decision, |steer| steer.decide(pair, decision));
                 observer.detection(&Detection { pair, polynomials, decision, q_start, q_end });
                 decision
             }

@@ -94,7 +94,7 @@ impl<O: Observer> Looking<'_, O> {
     ) {
         let pair = pair(kind, first, second);
         let decision = normal.map_or(Decision::Miss { time: Time::None }, |normal| Decision::Hit { time: 0.0, normal });
-        let decision = self.observer.decide(pair, decision);
+        let decision = self.observer.steers().map_or(decision, |steer| steer.decide(pair, decision));
         let (q_start, q_end) = (self.q_start, self.x);
         self.observer.detection(&Detection { pair, polynomials: &[], decision, q_start, q_end });
         if let Decision::Hit { normal, .. } = decision {

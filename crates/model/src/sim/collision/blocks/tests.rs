@@ -2,7 +2,7 @@
 use crate::{
     scene::{Collision, Scene},
     sim::{
-        Impulse, Observer, PolynomialBytes, Resume, RootSearch, Simulation, State, Wanted,
+        Impulse, Observer, PolynomialBytes, RootSearch, Simulation, State, Wanted,
         samples::{Numbers, edge, fixed, half_plane, particle, scene},
     },
 };
@@ -27,9 +27,8 @@ impl Observer for Log {
     fn impulse(&mut self, impulse: &Impulse) {
         self.impulses.push(*impulse);
     }
-    fn synchronise(&mut self, state: &mut State) -> Resume {
+    fn synchronised(&mut self, state: &State) {
         self.end_step(0, state);
-        Resume::Own
     }
     fn end_step(&mut self, _step: u32, state: &State) {
         self.states.extend(state.positions.iter().chain(&state.velocities).map(|number| number.to_bits()));
