@@ -9,7 +9,7 @@
 //! let mut table = Table::new([Align::Left, Align::Right]);
 //! table.row(["judged".into(), counted(12_345, "step").into()]);
 //! table.row(["wrong".into(), counted(1, "step").into()]);
-//! assert_eq!(table.render(Style::Plain), "  judged   12 345 steps\n  wrong           1 step\n");
+//! assert_eq!(table.render(Style::Plain), "  judged   12 345 steps\n  wrong          1 step\n");
 //! ```
 #![forbid(unsafe_code)]
 

@@ -68,7 +68,7 @@ enum Target<'a> {
 /// Looks an archive through to its end and returns the paths of its files.
 ///
 /// # Errors
-/// What is wrong with it.
+/// Its fault.
 pub fn look_through(archive: &Path, limits: ArchiveLimits) -> Result<Vec<PathBuf>, ArchiveError> {
     walk(archive, limits, &Target::Nowhere)
 }

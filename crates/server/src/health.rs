@@ -24,7 +24,7 @@ pub fn recent(policy: &QueuePolicy) -> i64 {
 /// A worker is alive, and can or can't grade.
 ///
 /// # Errors
-/// What the database says.
+/// An error of the database.
 pub async fn seen(
     transaction: &mut Transaction,
     worker: &str,
@@ -43,9 +43,8 @@ pub async fn seen(
             faults = faults + CASE WHEN aside_since IS NULL THEN 1 ELSE 0 END WHERE name = ?";
         transaction.execute(statement, values![fault, worker]).await?;
     } else if slots > 0 {
-        transaction
-            .execute("UPDATE worker SET aside_since = NULL WHERE name = ? AND aside_since IS NOT NULL", values![worker])
-            .await?;
+        let statement = "UPDATE worker SET aside_since = NULL WHERE name = ? AND aside_since IS NOT NULL";
+        transaction.execute(statement, values![worker]).await?;
     }
     Ok(())
 }
@@ -54,7 +53,7 @@ pub async fn seen(
 /// not.
 ///
 /// # Errors
-/// What the database says.
+/// An error of the database.
 pub async fn may_claim(
     transaction: &mut Transaction,
     policy: &QueuePolicy,
@@ -127,9 +126,8 @@ pub(crate) async fn pause_broken(
     if failed.int("jobs")? < BROKEN {
         return Ok(false);
     }
-    let alive = transaction
-        .one("SELECT count(*) AS n FROM worker WHERE slots > 0 AND seen_at > {now} - ?", values![recent(policy)])
-        .await?;
+    let statement = "SELECT count(*) AS n FROM worker WHERE slots > 0 AND seen_at > {now} - ?";
+    let alive = transaction.one(statement, values![recent(policy)]).await?;
     if failed.int("workers")? < 2 && alive.int("n")? > 1 {
         return Ok(false);
     }

@@ -12,7 +12,7 @@ use crate::{
 /// Writes the result of a job, if its lease still holds; a late one is noted and changes nothing.
 ///
 /// # Errors
-/// What the database says; nothing is written then unless the caller commits all the same.
+/// An error of the database; nothing is written then unless the caller commits all the same.
 pub async fn finish(transaction: &mut Transaction, lease: &Lease, outcome: &Outcome) -> Result<Completion, DbError> {
     let completion = queue::complete(transaction, lease).await?;
     match completion {
@@ -29,7 +29,7 @@ pub async fn finish(transaction: &mut Transaction, lease: &Lease, outcome: &Outc
 /// Says that a try came to nothing; after the last one the judge error is written.
 ///
 /// # Errors
-/// What the database says.
+/// An error of the database.
 pub async fn fail(
     transaction: &mut Transaction,
     policy: &QueuePolicy,
@@ -64,7 +64,7 @@ pub async fn fail(
 /// own: it locks jobs of others, and with these it must not wait for anything that their workers hold.
 ///
 /// # Errors
-/// What the database says.
+/// An error of the database.
 pub async fn tick(database: &Database, policy: &QueuePolicy) -> Result<(), DbError> {
     let mut transaction = database.begin().await?;
     let tick = queue::tick(&mut transaction, policy).await?;
@@ -85,14 +85,14 @@ pub async fn tick(database: &Database, policy: &QueuePolicy) -> Result<(), DbErr
 /// Gives up on a worker that is known to be dead.
 ///
 /// # Errors
-/// What the database says.
+/// An error of the database.
 pub async fn abandon(transaction: &mut Transaction, policy: &QueuePolicy, worker: &str) -> Result<Tick, DbError> {
     let tick = queue::abandon(transaction, policy, worker).await?;
     bury_all(transaction, &tick.buried).await?;
     Ok(tick)
 }
 
-/// What a job is about.
+/// The subject of a job.
 struct About {
     job: i64,
     submission: Option<i64>,
@@ -243,11 +243,11 @@ async fn write_result(
 /// Why another result is to count.
 #[derive(Debug, Clone, Copy)]
 pub struct GradeChange<'a> {
-    /// Whose grade.
+    /// The submission with the grade.
     pub submission: i64,
     /// The result that counts from now on.
     pub result: i64,
-    /// Who wants it; nobody when it is the first.
+    /// The one who wants it; nobody when it is the first.
     pub by: Option<i64>,
     /// The regrade that it comes from.
     pub campaign: Option<i64>,
@@ -258,11 +258,10 @@ pub struct GradeChange<'a> {
 /// Makes a result count, and keeps what counted before.
 ///
 /// # Errors
-/// What the database says.
+/// An error of the database.
 pub async fn set_grade(transaction: &mut Transaction, change: &GradeChange<'_>) -> Result<(), DbError> {
-    let old = transaction
-        .row("SELECT result FROM grade WHERE submission = ? {for update}", values![change.submission])
-        .await?;
+    let statement = "SELECT result FROM grade WHERE submission = ? {for update}";
+    let old = transaction.row(statement, values![change.submission]).await?;
     let old = old.map(|row| row.int("result")).transpose()?;
     let statement = "INSERT INTO grade (submission, result, set_at) VALUES (?, ?, {now})
         ON CONFLICT (submission) DO UPDATE SET result = excluded.result, set_at = excluded.set_at";

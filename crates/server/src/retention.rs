@@ -86,9 +86,8 @@ async fn give_up_submissions(database: &Database, keep: i64) -> Result<u64, DbEr
     if submissions > 0 {
         let mut transaction = database.begin().await?;
         let text = format!("uploads and reports of {submissions} submissions are not kept any longer");
-        transaction
-            .execute("INSERT INTO event (happened_at, kind, text) VALUES ({now}, 'retention', ?)", values![text])
-            .await?;
+        let statement = "INSERT INTO event (happened_at, kind, text) VALUES ({now}, 'retention', ?)";
+        transaction.execute(statement, values![text]).await?;
         transaction.commit().await?;
     }
     Ok(submissions)

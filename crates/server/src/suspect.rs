@@ -15,7 +15,7 @@ const SHARE: i64 = 3;
 /// was not suspected before. Each student counts once, with the latest submission that has a grade.
 ///
 /// # Errors
-/// What the database says.
+/// An error of the database.
 pub async fn look(transaction: &mut Transaction, course: i64, assignment: i64, result: i64) -> Result<(), DbError> {
     // The whole assignment is gone through only where enough results, whosever they are, have an answer of this one.
     let statement = "SELECT own.scene FROM wrong_scene AS own

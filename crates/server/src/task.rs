@@ -9,7 +9,7 @@ use utoipa::ToSchema;
 /// One grading, complete: anybody who has this and the artefacts that it names can do it again.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Task {
-    /// What was handed in.
+    /// The upload.
     pub submission: Input,
     /// What it is graded by.
     pub suite: Suite,
@@ -25,10 +25,10 @@ pub struct Task {
     pub seconds: u64,
 }
 
-/// What was handed in.
+/// The upload.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Input {
-    /// What kind of thing it is.
+    /// Its kind.
     pub form: Form,
     /// What it was called, made harmless.
     pub name: String,
@@ -180,7 +180,7 @@ pub struct OutputFile {
     /// What it is called, `grade.json` for example.
     #[schema(value_type = ReportName)]
     pub name: String,
-    /// What it holds.
+    /// Its content.
     pub media_type: String,
     /// Its bytes.
     #[serde(flatten)]

@@ -9,11 +9,11 @@ use utoipa::ToSchema;
 /// A job for a worker.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Claimed {
-    /// What to show from now on.
+    /// The lease to show from now on.
     pub lease: Lease,
     /// How often to renew it, in milliseconds.
     pub renew_every: u64,
-    /// What to do.
+    /// The task.
     pub task: Task,
     /// Whether nothing else may run beside it.
     pub alone: bool,
@@ -43,6 +43,12 @@ pub(crate) struct Manners {
 pub(crate) struct Held {
     /// If not, somebody else has the job and nothing was changed.
     pub(crate) held: bool,
+}
+
+impl From<bool> for Held {
+    fn from(held: bool) -> Self {
+        Self { held }
+    }
 }
 
 /// A lease that is to go on.

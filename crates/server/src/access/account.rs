@@ -11,7 +11,7 @@ pub struct Account {
     pub(crate) id: i64,
     /// What it is called in addresses and tables.
     pub login: String,
-    /// What its owner is called.
+    /// The name of its owner.
     pub name: String,
     /// Whether it may do everything.
     pub is_admin: bool,

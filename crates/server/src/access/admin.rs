@@ -69,9 +69,8 @@ impl Admin {
             return Err(Problem::conflict("this is your own account", "ask another administrator"));
         }
         let mut transaction = self.app.0.database.begin().await?;
-        let was = transaction
-            .row("SELECT id, login, name, is_admin FROM account WHERE login = ? {for update}", values![login])
-            .await?;
+        let statement = "SELECT id, login, name, is_admin FROM account WHERE login = ? {for update}";
+        let was = transaction.row(statement, values![login]).await?;
         let was = was.as_ref().map(Account::from_row).transpose()?;
         let statement = "INSERT INTO account (login, name, is_admin, created_at) VALUES (?, ?, ?, {now})
             ON CONFLICT (login) DO UPDATE SET name = excluded.name, is_admin = excluded.is_admin,
@@ -202,9 +201,8 @@ impl App {
     /// When there is no such administrator.
     pub async fn admin_link(&self, login: &str) -> Result<NewSecret, Problem> {
         let mut transaction = self.0.database.begin().await?;
-        let row = transaction
-            .row("SELECT id FROM account WHERE login = ? AND is_admin = 1 AND disabled_at IS NULL", values![login])
-            .await?;
+        let statement = "SELECT id FROM account WHERE login = ? AND is_admin = 1 AND disabled_at IS NULL";
+        let row = transaction.row(statement, values![login]).await?;
         let Some(row) = row else { return Err(Problem::not_found("administrator")) };
         let link = identity::new_link(&mut transaction, row.int("id")?, None, Way::Own).await?;
         transaction.commit().await?;

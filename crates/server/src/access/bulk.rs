@@ -67,9 +67,8 @@ pub(super) async fn enqueue_replaced(
 
 /// Goes on with the jobs of an assignment that wait for staff, by its settings as they are; how many these are.
 pub(super) async fn resume(transaction: &mut Transaction, assignment: &Assignment) -> Result<i64, Problem> {
-    let paused = transaction
-        .row("SELECT id FROM assignment WHERE id = ? AND paused_at IS NOT NULL", values![assignment.id])
-        .await?;
+    let statement = "SELECT id FROM assignment WHERE id = ? AND paused_at IS NOT NULL";
+    let paused = transaction.row(statement, values![assignment.id]).await?;
     if paused.is_none() {
         return Ok(0);
     }
@@ -94,8 +93,7 @@ pub(super) async fn resume(transaction: &mut Transaction, assignment: &Assignmen
 }
 
 async fn forget(transaction: &mut Transaction, assignment: i64) -> Result<(), DbError> {
-    transaction
-        .execute("UPDATE assignment SET paused_at = NULL, paused_fault = NULL WHERE id = ?", values![assignment])
-        .await?;
+    let statement = "UPDATE assignment SET paused_at = NULL, paused_fault = NULL WHERE id = ?";
+    transaction.execute(statement, values![assignment]).await?;
     Ok(())
 }

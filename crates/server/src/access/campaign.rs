@@ -115,9 +115,8 @@ fn batch(row: &Row) -> Result<Option<(i64, i64)>, DbError> {
 }
 
 async fn advance(transaction: &mut Transaction, campaign: i64, last: i64, count: i64) -> Result<(), DbError> {
-    transaction
-        .execute("UPDATE campaign SET cursor = ?, done = done + ? WHERE id = ?", values![last, count, campaign])
-        .await?;
+    let statement = "UPDATE campaign SET cursor = ?, done = done + ? WHERE id = ?";
+    transaction.execute(statement, values![last, count, campaign]).await?;
     Ok(())
 }
 
@@ -220,9 +219,8 @@ async fn decided(
     state: &'static str,
     words: &str,
 ) -> Result<(), DbError> {
-    transaction
-        .execute("UPDATE campaign SET state = ?, decided_at = {now} WHERE id = ?", values![state, campaign.id])
-        .await?;
+    let statement = "UPDATE campaign SET state = ?, decided_at = {now} WHERE id = ?";
+    transaction.execute(statement, values![state, campaign.id]).await?;
     finish(transaction, campaign.id).await?;
     let text = format!("regrade {} {words}", campaign.id);
     let (course, assignment) = (Some(campaign.course), Some(campaign.assignment.id));

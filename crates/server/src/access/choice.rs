@@ -11,14 +11,14 @@ use crate::{
     values,
 };
 
-/// What there is to choose.
+/// The choices.
 #[derive(Debug, Clone)]
 pub enum Choice {
     /// The course, of those that one teaches, or a new one.
     Course {
         /// The platform.
         platform: String,
-        /// What it is called there.
+        /// Its name there.
         title: String,
         /// A name for a new one.
         slug: String,
@@ -29,7 +29,7 @@ pub enum Choice {
     Assignment {
         /// The course.
         course: Course,
-        /// What the link is called there.
+        /// The name of the link there.
         title: Option<String>,
         /// Those that are there.
         assignments: Vec<Assignment>,
@@ -63,7 +63,7 @@ struct Place {
 from_row! { Place { id, course, slug, title } }
 
 impl Person {
-    /// What there is to choose.
+    /// The choices.
     ///
     /// # Errors
     /// When there is nothing of this secret for this person.

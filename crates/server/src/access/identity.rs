@@ -56,7 +56,7 @@ impl fmt::Debug for NewSecret {
 pub struct Session(pub(super) NewSecret);
 
 impl Session {
-    /// What the cookie holds.
+    /// The content of the cookie.
     pub fn secret(&self) -> &str {
         self.0.reveal()
     }
@@ -93,7 +93,7 @@ pub(super) fn digest(secret: &str) -> String {
     hex(&Sha256::digest(secret))
 }
 
-/// Whose token it is, and its number.
+/// The owner of the token, and its number.
 pub(super) async fn account_of_token(transaction: &mut Transaction, token: &str) -> Result<(Account, i64), Problem> {
     let statement = "SELECT account.id, account.login, account.name, account.is_admin, token.id AS token FROM token
         JOIN account ON account.id = token.account
@@ -187,9 +187,8 @@ pub(super) async fn use_link(transaction: &mut Transaction, link: &str) -> Resul
     let Some(row) = row else { return Ok(None) };
     let (account, way) = (row.int("account")?, if row.flag("vouched")? { Way::Vouched } else { Way::Own });
     // Who needs a link has forgotten the password: the next one is set without it.
-    let able = transaction
-        .row("UPDATE account SET password = NULL WHERE id = ? AND disabled_at IS NULL RETURNING id", values![account])
-        .await?;
+    let statement = "UPDATE account SET password = NULL WHERE id = ? AND disabled_at IS NULL RETURNING id";
+    let able = transaction.row(statement, values![account]).await?;
     Ok(able.map(|_| (account, way)))
 }
 
@@ -204,9 +203,8 @@ pub(super) async fn end_all(transaction: &mut Transaction, account: i64) -> Resu
     end_sessions(transaction, account).await?;
     transaction.execute("UPDATE account SET password = NULL, managed_by = NULL WHERE id = ?", values![account]).await?;
     transaction.execute("DELETE FROM sign_in_link WHERE account = ? AND used_at IS NULL", values![account]).await?;
-    transaction
-        .execute("UPDATE token SET revoked_at = {now} WHERE account = ? AND revoked_at IS NULL", values![account])
-        .await?;
+    let statement = "UPDATE token SET revoked_at = {now} WHERE account = ? AND revoked_at IS NULL";
+    transaction.execute(statement, values![account]).await?;
     Ok(())
 }
 
@@ -222,9 +220,8 @@ pub(super) async fn end_vouched(
         transaction.execute("UPDATE session SET vouched = 0 WHERE digest = ?", values![keep]).await?;
     }
     transaction.execute("DELETE FROM session WHERE account = ? AND vouched = 1", values![account]).await?;
-    transaction
-        .execute("DELETE FROM sign_in_link WHERE account = ? AND vouched = 1 AND used_at IS NULL", values![account])
-        .await?;
+    let statement = "DELETE FROM sign_in_link WHERE account = ? AND vouched = 1 AND used_at IS NULL";
+    transaction.execute(statement, values![account]).await?;
     let statement = "UPDATE token SET revoked_at = {now} WHERE account = ? AND vouched = 1 AND revoked_at IS NULL";
     transaction.execute(statement, values![account]).await?;
     Ok(())

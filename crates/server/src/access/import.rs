@@ -14,7 +14,7 @@ const COLUMNS: [&str; 4] = ["name", "login", "email", "role"];
 pub struct Imported {
     /// Its number.
     pub line: u64,
-    /// What they are called.
+    /// Their name.
     pub name: String,
     /// What their account is to be called.
     pub login: String,
@@ -22,7 +22,7 @@ pub struct Imported {
     pub email: String,
     /// `student` or `staff`.
     pub role: String,
-    /// What is wrong with the line.
+    /// The fault of the line.
     pub error: Option<String>,
     /// A link that signs in once.
     pub link: Option<NewSecret>,

@@ -20,7 +20,7 @@ pub struct Invitation {
     pub course: Course,
     /// `student` or `staff`.
     pub role: String,
-    /// Who invited.
+    /// The one who invited.
     pub by: String,
 }
 
@@ -41,7 +41,7 @@ impl Person {
         Ok(kept.into_iter().map(|(_, kept)| kept.invitation).collect())
     }
 
-    /// What a link invites to.
+    /// The course to which a link invites.
     ///
     /// # Errors
     /// When there is no such invitation for this person.
@@ -98,9 +98,8 @@ impl Person {
     }
 
     async fn forget(&self, transaction: &mut Transaction, kept: &Kept) -> Result<(), DbError> {
-        transaction
-            .execute("DELETE FROM invitation WHERE course = ? AND account = ?", values![kept.course, self.account.id])
-            .await?;
+        let statement = "DELETE FROM invitation WHERE course = ? AND account = ?";
+        transaction.execute(statement, values![kept.course, self.account.id]).await?;
         Ok(())
     }
 

@@ -213,9 +213,8 @@ async fn arrive(
     let account = account(transaction, platform, message).await?;
     let (id, course, slug) = (place.int("id")?, place.int("course")?, place.text("slug")?);
     if let Some(memberships) = &arrival.memberships {
-        transaction
-            .execute("UPDATE platform_course SET memberships = ? WHERE id = ?", values![memberships, id])
-            .await?;
+        let statement = "UPDATE platform_course SET memberships = ? WHERE id = ?";
+        transaction.execute(statement, values![memberships, id]).await?;
     }
     enrol(transaction, platform.id, id, course, account, role).await?;
     let Some(resource) = &arrival.resource else {
@@ -340,9 +339,8 @@ pub(super) async fn find_or_make(
     if let Some(row) = known {
         let account = row.int("account")?;
         if let Some(name) = name {
-            transaction
-                .execute("UPDATE account SET name = ? WHERE id = ? AND name <> ?", values![&name, account, &name])
-                .await?;
+            let statement = "UPDATE account SET name = ? WHERE id = ? AND name <> ?";
+            transaction.execute(statement, values![&name, account, &name]).await?;
         }
         return Ok(account);
     }
@@ -395,9 +393,8 @@ pub(super) async fn enrol(
     let statement = "INSERT INTO platform_member (platform_course, account) VALUES (?, ?)
         ON CONFLICT (platform_course, account) DO NOTHING";
     transaction.execute(statement, values![place, account]).await?;
-    let was = transaction
-        .row("SELECT role, platform FROM member WHERE course = ? AND account = ?", values![course, account])
-        .await?;
+    let statement = "SELECT role, platform FROM member WHERE course = ? AND account = ?";
+    let was = transaction.row(statement, values![course, account]).await?;
     if let Some(was) = &was
         && (was.maybe_int("platform")?.is_none() || was.text("role")? == role.name())
     {

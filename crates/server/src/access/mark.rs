@@ -17,9 +17,9 @@ const LONGEST: usize = 2000;
 /// A student's work on an assignment.
 #[derive(Debug, Clone)]
 pub struct Work {
-    /// What their account is called.
+    /// The name of their account.
     pub login: String,
-    /// What they are called.
+    /// Their name.
     pub name: String,
     /// All that they handed in, newest first.
     pub submissions: Vec<Submission>,
@@ -32,9 +32,9 @@ pub struct Work {
 pub struct Request {
     /// The submission.
     pub submission: i64,
-    /// Whose it is.
+    /// Its owner.
     pub login: String,
-    /// What they ask.
+    /// The question.
     pub text: String,
 }
 
@@ -146,9 +146,8 @@ impl Staff {
         let mut transaction = self.begin().await?;
         let assignment = self.find_assignment(&mut transaction, slug).await?;
         let account = self.student(&mut transaction, &assignment, login).await?.int("id")?;
-        transaction
-            .execute("DELETE FROM extension WHERE assignment = ? AND account = ?", values![assignment.id, account])
-            .await?;
+        let statement = "DELETE FROM extension WHERE assignment = ? AND account = ?";
+        transaction.execute(statement, values![assignment.id, account]).await?;
         if let Some(due) = due_at {
             let statement =
                 "INSERT INTO extension (assignment, account, due_at, set_by, set_at) VALUES (?, ?, ?, ?, {now})";
@@ -197,9 +196,8 @@ impl Member {
 }
 
 async fn extension(transaction: &mut Transaction, assignment: i64, account: i64) -> Result<Option<i64>, DbError> {
-    let row = transaction
-        .row("SELECT due_at FROM extension WHERE assignment = ? AND account = ?", values![assignment, account])
-        .await?;
+    let statement = "SELECT due_at FROM extension WHERE assignment = ? AND account = ?";
+    let row = transaction.row(statement, values![assignment, account]).await?;
     row.map(|row| row.int("due_at")).transpose()
 }
 

@@ -15,9 +15,9 @@ use utoipa::ToSchema;
 /// A member of a course.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct MemberInfo {
-    /// What their account is called.
+    /// The name of their account.
     pub login: String,
-    /// What they are called.
+    /// Their name.
     pub name: String,
     /// `student` or `staff`.
     pub role: String,
@@ -91,9 +91,8 @@ impl Staff {
         let found =
             transaction.one("SELECT id, managed_by FROM account WHERE login = ? {for update}", values![login]).await?;
         let (account, managed_by) = (found.int("id")?, found.maybe_int("managed_by")?);
-        let was = transaction
-            .row("SELECT role FROM member WHERE course = ? AND account = ?", values![course, account])
-            .await?;
+        let statement = "SELECT role FROM member WHERE course = ? AND account = ?";
+        let was = transaction.row(statement, values![course, account]).await?;
         let was = was.map(|row| row.text("role")).transpose()?;
         if was.as_deref() == Some(role) {
             return Ok(added);

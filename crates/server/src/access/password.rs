@@ -155,9 +155,8 @@ impl Visitor {
         let passwords = self.app.passwords()?;
         let attempt = passwords.try_of(self.address, login)?;
         let mut transaction = self.app.0.database.read().await?;
-        let row = transaction
-            .row("SELECT id, password FROM account WHERE login = ? AND disabled_at IS NULL", values![login])
-            .await?;
+        let statement = "SELECT id, password FROM account WHERE login = ? AND disabled_at IS NULL";
+        let row = transaction.row(statement, values![login]).await?;
         drop(transaction);
         let kept = match &row {
             Some(row) => row.maybe_text("password")?,

@@ -31,7 +31,7 @@ pub struct CourseOf {
 pub struct TokenInfo {
     /// Its number.
     pub id: i64,
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// When it was made, in milliseconds since 1970.
     pub created_at: i64,
@@ -100,9 +100,8 @@ impl Person {
         identity::check_title("a token's name", name)?;
         let way = if self.lately_at_browser()?.is_vouched { Way::Vouched } else { Way::Own };
         let mut transaction = self.app.0.database.begin().await?;
-        let count = transaction
-            .one("SELECT count(*) AS n FROM token WHERE account = ? AND revoked_at IS NULL", values![self.account.id])
-            .await?;
+        let statement = "SELECT count(*) AS n FROM token WHERE account = ? AND revoked_at IS NULL";
+        let count = transaction.one(statement, values![self.account.id]).await?;
         if count.int("n")? >= 50 {
             return Err(Problem::conflict("an account has at most 50 tokens", "revoke those that nobody uses"));
         }

@@ -28,7 +28,7 @@ pub struct RosterRead {
 pub struct ScoreInfo {
     /// The platform.
     pub platform: String,
-    /// Whose work.
+    /// The student.
     pub login: String,
     /// What it is to know.
     #[schema(value_type = Object)]
@@ -93,9 +93,8 @@ impl Admin {
     /// When the database does not answer.
     pub async fn platforms(&self) -> Result<Vec<Platform>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
-        let rows = transaction
-            .rows("SELECT id, name, settings FROM platform WHERE disabled_at IS NULL ORDER BY name", values![])
-            .await?;
+        let statement = "SELECT id, name, settings FROM platform WHERE disabled_at IS NULL ORDER BY name";
+        let rows = transaction.rows(statement, values![]).await?;
         Ok(rows.iter().map(Platform::read).collect::<Result<_, DbError>>()?)
     }
 
@@ -120,9 +119,8 @@ impl Admin {
     /// When there is none of this name.
     pub async fn shut_platform(&self, name: &str) -> Result<(), Problem> {
         let mut transaction = self.app.0.database.begin().await?;
-        let shut = transaction
-            .execute("UPDATE platform SET disabled_at = {now} WHERE name = ? AND disabled_at IS NULL", values![name])
-            .await?;
+        let statement = "UPDATE platform SET disabled_at = {now} WHERE name = ? AND disabled_at IS NULL";
+        let shut = transaction.execute(statement, values![name]).await?;
         if shut == 0 {
             return Err(Problem::not_found("platform"));
         }
@@ -203,9 +201,8 @@ impl Staff {
             }
             enrol(&mut transaction, platform.id, place, course, account, role).await?;
         }
-        let known = transaction
-            .rows("SELECT account FROM platform_member WHERE platform_course = ? ORDER BY account", values![place])
-            .await?;
+        let statement = "SELECT account FROM platform_member WHERE platform_course = ? ORDER BY account";
+        let known = transaction.rows(statement, values![place]).await?;
         let mut left = 0;
         for row in &known {
             let account = row.int("account")?;
@@ -228,7 +225,7 @@ impl Staff {
         Ok(RosterRead { members, left })
     }
 
-    /// What platforms were told of an assignment's scores.
+    /// The messages to platforms about an assignment's scores.
     ///
     /// # Errors
     /// When there is no such assignment.

@@ -41,7 +41,7 @@ pub struct Regrade {
     pub reason: String,
     /// What submissions are graded by this time.
     pub settings: Settings,
-    /// Who began it.
+    /// The one who began it.
     pub by: String,
     /// When, in milliseconds since 1970.
     pub created_at: i64,
@@ -80,7 +80,7 @@ pub struct Doing {
 pub struct Change {
     /// The submission.
     pub submission: i64,
-    /// Whose it is.
+    /// Its owner.
     pub login: String,
     /// The verdict that counts now.
     pub old_code: Option<String>,
@@ -94,7 +94,7 @@ pub struct Change {
     pub new_points: Option<String>,
     /// Its line.
     pub new_summary: String,
-    /// What differs between the two gradings: version, suite, rules, limits.
+    /// The differences of the two gradings: version, suite, rules, limits.
     pub why: Vec<String>,
 }
 
@@ -109,9 +109,8 @@ impl Staff {
         let settings = settings.unwrap_or(&assignment.settings).checked(&self.app.suites)?;
         let mut transaction = self.begin().await?;
         transaction.one("SELECT id FROM assignment WHERE id = ? {for update}", values![assignment.id]).await?;
-        let open = transaction
-            .row("SELECT id FROM campaign WHERE assignment = ? AND state = 'open'", values![assignment.id])
-            .await?;
+        let statement = "SELECT id FROM campaign WHERE assignment = ? AND state = 'open'";
+        let open = transaction.row(statement, values![assignment.id]).await?;
         if open.is_some() {
             return Err(Problem::conflict("another regrade is open", "apply or discard it first"));
         }
@@ -182,9 +181,8 @@ impl Staff {
         }
         let missing = row.int("missing")?;
         if missing > 0 {
-            transaction
-                .execute("UPDATE campaign SET doing = 'begin', total = done + ? WHERE id = ?", values![missing, id])
-                .await?;
+            let statement = "UPDATE campaign SET doing = 'begin', total = done + ? WHERE id = ?";
+            transaction.execute(statement, values![missing, id]).await?;
             transaction.commit().await?;
             self.hurry(id).await;
             return Err(Problem::conflict(
@@ -200,9 +198,8 @@ impl Staff {
         let statement =
             "UPDATE campaign SET settings_before = (SELECT settings FROM assignment WHERE id = ?) WHERE id = ?";
         transaction.execute(statement, values![assignment.id, id]).await?;
-        transaction
-            .execute("UPDATE assignment SET settings = ? WHERE id = ?", values![row.text("settings")?, assignment.id])
-            .await?;
+        let statement = "UPDATE assignment SET settings = ? WHERE id = ?";
+        transaction.execute(statement, values![row.text("settings")?, assignment.id]).await?;
         let statement = "UPDATE campaign SET doing = 'apply', decided_by = ?, cursor = 0, done = 0,
             total = (SELECT count(*) FROM result WHERE campaign = ?) WHERE id = ?";
         transaction.execute(statement, values![self.account.id, id, id]).await?;
@@ -314,9 +311,8 @@ async fn find(transaction: &mut Transaction, assignment: &Assignment, id: i64, a
     let statement = "SELECT count(*) AS n, count(CASE WHEN state IN ('waiting', 'running') THEN 1 END) AS waiting
         FROM job WHERE campaign = ?";
     let jobs = transaction.one(statement, values![id]).await?;
-    let failed = transaction
-        .one("SELECT count(*) AS n FROM result WHERE campaign = ? AND code = ?", values![id, JUDGE_ERROR])
-        .await?;
+    let statement = "SELECT count(*) AS n FROM result WHERE campaign = ? AND code = ?";
+    let failed = transaction.one(statement, values![id, JUDGE_ERROR]).await?;
     let coming = regrade.doing.as_ref().filter(|doing| doing.what == "begin");
     let coming = coming.map_or(0, |doing| count(doing.total - doing.done));
     regrade.submissions = count(jobs.int("n")?) + coming;
@@ -353,7 +349,7 @@ async fn find(transaction: &mut Transaction, assignment: &Assignment, id: i64, a
     Ok(regrade)
 }
 
-/// What differs between two gradings of one submission.
+/// The differences of two gradings of one submission.
 fn why(row: &Row) -> Result<Vec<String>, DbError> {
     let (Some(old_version), Some(old_task)) = (row.maybe_text("old_version")?, row.maybe_text("old_task")?) else {
         return Ok(vec!["there was no grade before".to_owned()]);

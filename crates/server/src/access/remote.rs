@@ -56,9 +56,8 @@ impl Remote {
     /// Whether a lease was given to this token: another's counts for nothing.
     async fn owns(&self, lease: &Lease) -> Result<bool, Problem> {
         let mut transaction = self.app.0.database.first().read().await?;
-        let row = transaction
-            .row("SELECT token FROM job WHERE id = ? AND attempt = ?", values![lease.job, lease.attempt])
-            .await?;
+        let statement = "SELECT token FROM job WHERE id = ? AND attempt = ?";
+        let row = transaction.row(statement, values![lease.job, lease.attempt]).await?;
         Ok(row.map(|row| row.maybe_int("token")).transpose()?.flatten() == Some(self.token))
     }
 

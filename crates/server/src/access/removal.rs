@@ -205,9 +205,8 @@ impl Admin {
             managed_by = NULL, disabled_at = {now} WHERE id = ?";
         transaction.execute(statement, values![&nobody, account]).await?;
         // The log has logins in its sentences, too.
-        let rows = transaction
-            .rows("SELECT id, text FROM event WHERE text LIKE '%' || CAST(? AS TEXT) || '%'", values![login])
-            .await?;
+        let statement = "SELECT id, text FROM event WHERE text LIKE '%' || CAST(? AS TEXT) || '%'";
+        let rows = transaction.rows(statement, values![login]).await?;
         for row in &rows {
             let text = without_name(&row.text("text")?, login, &nobody);
             transaction.execute("UPDATE event SET text = ? WHERE id = ?", values![text, row.int("id")?]).await?;

@@ -21,7 +21,7 @@ pub struct Secrets {
 }
 
 impl App {
-    /// Whose these secrets are.
+    /// The owner of these secrets.
     async fn account(&self, secrets: &Secrets) -> Result<(Account, Option<Seen>), Problem> {
         let (account, seen) = match secrets {
             Secrets { bearer: Some(token), .. } => {

@@ -1,4 +1,4 @@
-//! What an assignment asks for.
+//! The settings of an assignment.
 use super::{Suites, file_name::is_file_name};
 use crate::{
     calendar,

@@ -19,9 +19,9 @@ pub struct Staff(pub(super) Member);
 /// How a student stands in an assignment.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Standing {
-    /// What their account is called.
+    /// The name of their account.
     pub login: String,
-    /// What they are called.
+    /// Their name.
     pub name: String,
     /// How often they handed in.
     pub submissions: usize,
@@ -78,9 +78,8 @@ impl Staff {
             ));
         }
         let mut transaction = self.app.0.database.begin().await?;
-        let before = transaction
-            .row("SELECT settings FROM assignment WHERE course = ? AND slug = ?", values![self.course, slug])
-            .await?;
+        let statement = "SELECT settings FROM assignment WHERE course = ? AND slug = ?";
+        let before = transaction.row(statement, values![self.course, slug]).await?;
         let before = before.map(|row| row.text("settings")).transpose()?;
         let statement = "INSERT INTO assignment (course, slug, title, visible, settings, created_at)
             VALUES (?, ?, ?, ?, ?, {now})

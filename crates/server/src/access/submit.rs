@@ -16,10 +16,10 @@ use std::path::Path;
 
 const HOUR: i64 = 3600 * 1000;
 
-/// What is handed in.
+/// The upload.
 #[derive(Debug, Clone)]
 pub struct Upload<'a> {
-    /// What kind of thing it is.
+    /// Its kind.
     pub form: Form,
     /// What it is called: a plain file name.
     pub name: &'a str,
@@ -29,7 +29,7 @@ pub struct Upload<'a> {
     pub key: Option<&'a str>,
 }
 
-/// What became of it.
+/// The outcome.
 #[derive(Debug, Clone)]
 pub struct Accepted {
     /// The submission.
@@ -84,9 +84,8 @@ impl Member {
         let mut transaction = self.app.0.database.read().await?;
         let assignment = self.find_assignment(&mut transaction, assignment).await?;
         if let Some(key) = key {
-            let known = transaction
-                .row("SELECT word FROM upload_key WHERE account = ? AND word = ?", values![self.account.id, key])
-                .await?;
+            let statement = "SELECT word FROM upload_key WHERE account = ? AND word = ?";
+            let known = transaction.row(statement, values![self.account.id, key]).await?;
             // It may have been handed in before.
             if known.is_some() {
                 return Ok(());

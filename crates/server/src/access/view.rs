@@ -18,9 +18,9 @@ use utoipa::ToSchema;
 /// A course.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Course {
-    /// What it is called in addresses.
+    /// Its name in addresses.
     pub slug: String,
-    /// What it is called.
+    /// Its name.
     pub title: String,
 }
 
@@ -29,9 +29,9 @@ pub struct Course {
 pub struct Assignment {
     #[serde(skip)]
     pub(crate) id: i64,
-    /// What it is called in addresses.
+    /// Its name in addresses.
     pub slug: String,
-    /// What it is called.
+    /// Its name.
     pub title: String,
     /// Whether students see it.
     pub visible: bool,
@@ -53,9 +53,9 @@ pub struct Submission {
     pub assignment: String,
     /// The assignment's title.
     pub title: String,
-    /// Whose it is.
+    /// Its owner.
     pub login: String,
-    /// What they are called.
+    /// Their name.
     pub name: String,
     /// `program`, `sources` or `traces`.
     pub form: String,
@@ -116,13 +116,13 @@ pub struct Mark {
     pub points: Option<String>,
     /// Why, or what else there is to say.
     pub comment: String,
-    /// Who says so.
+    /// The one who says so.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub by: Option<String>,
     /// When, in milliseconds since 1970.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub marked_at: Option<i64>,
-    /// What the owner asks.
+    /// The question of the owner.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub request: Option<String>,
     /// When they asked, in milliseconds since 1970.
@@ -135,7 +135,7 @@ pub struct Mark {
 pub struct Graded {
     #[serde(skip)]
     pub(crate) result: i64,
-    /// What it came to.
+    /// The result.
     #[serde(flatten)]
     pub outcome: Outcome,
     /// When it was graded, in milliseconds since 1970.
@@ -157,7 +157,7 @@ pub struct History {
     pub changed_at: i64,
     /// Why, as students read it.
     pub reason: String,
-    /// Who wanted it; nobody when the grader did.
+    /// The one who wanted it; nobody when the grader did.
     pub by: Option<String>,
     /// The verdict before.
     pub old_code: Option<String>,
@@ -188,9 +188,9 @@ pub struct Event {
     pub id: i64,
     /// When, in milliseconds since 1970.
     pub happened_at: i64,
-    /// What kind of thing.
+    /// Its kind.
     pub kind: String,
-    /// Who did it; nobody when the service did.
+    /// The one who did it; nobody when the service did.
     pub actor: Option<String>,
     /// The submission that it is about.
     pub submission: Option<i64>,
@@ -218,7 +218,7 @@ pub struct Queue {
 /// A worker.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct QueueWorker {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// Its version.
     pub version: String,
@@ -233,7 +233,7 @@ pub struct QueueWorker {
     pub aside_since: Option<i64>,
     /// How often something went wrong with it.
     pub faults: i64,
-    /// What went wrong last.
+    /// The last fault.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fault: Option<String>,
     /// When that was.

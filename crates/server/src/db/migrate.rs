@@ -47,7 +47,7 @@ pub enum MigrateError {
     Changed {
         /// Its place in the list.
         number: i64,
-        /// What it is called.
+        /// Its name.
         name: &'static str,
     },
     /// The database failed.

@@ -51,7 +51,7 @@ impl Transaction {
     /// Runs a statement and says how many rows it changed.
     ///
     /// # Errors
-    /// What the database says.
+    /// An error of the database.
     pub async fn execute(&mut self, statement: &'static str, values: &[Value]) -> Result<u64, DbError> {
         let text = statement::text(statement, self.dialect());
         Ok(match &mut self.0 {
@@ -63,7 +63,7 @@ impl Transaction {
     /// Runs a statement and returns its rows.
     ///
     /// # Errors
-    /// What the database says.
+    /// An error of the database.
     pub async fn rows(&mut self, statement: &'static str, values: &[Value]) -> Result<Vec<Row>, DbError> {
         let text = statement::text(statement, self.dialect());
         Ok(match &mut self.0 {
@@ -89,7 +89,7 @@ impl Transaction {
     /// Runs a statement that has one row or none.
     ///
     /// # Errors
-    /// What the database says.
+    /// An error of the database.
     pub async fn row(&mut self, statement: &'static str, values: &[Value]) -> Result<Option<Row>, DbError> {
         Ok(self.rows(statement, values).await?.into_iter().next())
     }
@@ -116,7 +116,7 @@ impl Transaction {
     /// Makes everything stand that this transaction wrote. After an error nobody knows whether it does: ask.
     ///
     /// # Errors
-    /// What the database says.
+    /// An error of the database.
     pub async fn commit(self) -> Result<(), DbError> {
         match self.0 {
             Inner::Sqlite(inner) => inner.commit().await?,

@@ -32,7 +32,7 @@ impl Key {
 /// Makes a key, which is to sign from an hour on, or at once when it is the first.
 ///
 /// # Errors
-/// What the database says.
+/// An error of the database.
 pub async fn new_key(database: &Database) -> Result<(), DbError> {
     let made = tokio::task::spawn_blocking(make).await.map_err(|error| DbError::Other(error.to_string()))?;
     let (private, modulus, exponent) = made?;
@@ -92,7 +92,7 @@ pub(super) async fn signing(database: &Database) -> Result<Key, DbError> {
 /// What the world may know of the keys: a JSON Web Key Set (RFC 7517).
 ///
 /// # Errors
-/// What the database says.
+/// An error of the database.
 pub async fn published(database: &Database) -> Result<Value, DbError> {
     let mut keys = Vec::new();
     for row in &all(database).await? {

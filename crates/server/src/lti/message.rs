@@ -69,7 +69,7 @@ pub struct Message {
     pub subject: String,
     /// What they are in the course there; nothing for parents, guests and others.
     pub role: Option<LtiRole>,
-    /// What they are called, where the platform tells.
+    /// Their name, where the platform tells.
     pub name: Option<String>,
     /// Their address, where the platform tells; used for a login's name only.
     pub email: Option<String>,
@@ -308,7 +308,7 @@ pub(crate) fn role_of(roles: &[String]) -> Option<LtiRole> {
 /// The answer to who asked for a link to be chosen: one link to an assignment (DL 4.5), as a signed token.
 ///
 /// # Errors
-/// What the database says.
+/// An error of the database.
 pub async fn deep_linking_response(
     database: &Database,
     platform: &Platform,

@@ -54,7 +54,7 @@ impl Lti {
     /// Reads what a platform says about somebody who comes from it, and checks all of it (SEC 5.1.3).
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// Its fault.
     pub async fn receive(&self, platform: &Platform, token: &str, nonce: &str) -> Result<Message, Refused> {
         let kid = message::key_of(token)?;
         let key = self.trust.key(&self.client, platform, &kid).await?;

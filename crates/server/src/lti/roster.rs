@@ -19,7 +19,7 @@ const KIND: &str = "application/vnd.ims.lti-nrps.v2.membershipcontainer+json";
 pub struct RosterMember {
     /// The platform's name for the person.
     pub subject: String,
-    /// What they are called, where the platform tells.
+    /// Their name, where the platform tells.
     pub name: Option<String>,
     /// Their address, where the platform tells.
     pub email: Option<String>,

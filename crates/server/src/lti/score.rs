@@ -21,7 +21,7 @@ use serde_json::{Value, json};
 pub(super) struct Order {
     /// The platform's link.
     pub(super) link: i64,
-    /// Whose work.
+    /// The student.
     pub(super) account: i64,
     /// Also when the platform was told the same before.
     #[serde(default)]

@@ -143,7 +143,7 @@ fn places(wanted: usize) -> usize {
     room.min(wanted).max(8)
 }
 
-/// What all connections have in common.
+/// The common parts of all connections.
 struct Door {
     manners: Manners,
     router: Router,

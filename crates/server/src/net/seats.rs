@@ -14,7 +14,7 @@ pub(super) struct Seats {
     plan: Arc<Mutex<Plan>>,
 }
 
-/// Who sits where.
+/// The connections by address.
 #[derive(Default)]
 struct Plan {
     /// Numbers connections, and tells who waits longest.

@@ -5,7 +5,7 @@ use crate::{
     secret, values,
 };
 
-/// Who claims.
+/// The one who claims.
 #[derive(Debug, Clone, Copy)]
 pub struct Claimant<'a> {
     /// What the worker is called.
@@ -22,7 +22,7 @@ pub struct Claimant<'a> {
 /// by others, until the caller commits.
 ///
 /// # Errors
-/// What the database says.
+/// An error of the database.
 pub async fn claim(
     transaction: &mut Transaction,
     policy: &QueuePolicy,
@@ -64,7 +64,7 @@ pub async fn claim(
 /// let go of. Costs a reader's transaction only.
 ///
 /// # Errors
-/// What the database says.
+/// An error of the database.
 pub async fn is_due(transaction: &mut Transaction, policy: &QueuePolicy, lane: Lane) -> Result<bool, DbError> {
     let statement = "SELECT id FROM job WHERE lane = ? AND (
            (state = 'waiting' AND (run_after <= {now} OR run_after > {now} + ?)) OR (state = 'running' AND lease_until < {now})

@@ -77,7 +77,7 @@ pub struct NewJob<'a> {
     pub campaign: Option<i64>,
     /// Whose turn it uses up.
     pub turn: Turn,
-    /// What to do.
+    /// The task.
     pub payload: &'a str,
 }
 
@@ -85,7 +85,7 @@ pub struct NewJob<'a> {
 /// [`super::Notifier::notify`], within the same transaction.
 ///
 /// # Errors
-/// What the database says.
+/// An error of the database.
 pub async fn enqueue(transaction: &mut Transaction, job: &NewJob<'_>) -> Result<i64, DbError> {
     let key = job.turn.key();
     let rank = job.turn.next(transaction).await?;
@@ -101,7 +101,7 @@ pub async fn enqueue(transaction: &mut Transaction, job: &NewJob<'_>) -> Result<
 /// Takes a job out of the queue, also from the worker that runs it; whether there was anything to take.
 ///
 /// # Errors
-/// What the database says.
+/// An error of the database.
 pub async fn cancel(transaction: &mut Transaction, job: i64) -> Result<bool, DbError> {
     let statement = "UPDATE job SET state = 'cancelled', finished_at = {now}, lease_key = NULL, lease_until = NULL
         WHERE id = ? AND state IN ('waiting', 'running')";
@@ -113,10 +113,9 @@ pub async fn cancel(transaction: &mut Transaction, job: i64) -> Result<bool, DbE
 /// change what it is about need not enqueue another one.
 ///
 /// # Errors
-/// What the database says.
+/// An error of the database.
 pub async fn waits(transaction: &mut Transaction, turn: Turn) -> Result<bool, DbError> {
-    let row = transaction
-        .row("SELECT id FROM job WHERE fair_key = ? AND state = 'waiting' LIMIT 1 {for update}", values![turn.key()])
-        .await?;
+    let statement = "SELECT id FROM job WHERE fair_key = ? AND state = 'waiting' LIMIT 1 {for update}";
+    let row = transaction.row(statement, values![turn.key()]).await?;
     Ok(row.is_some())
 }

@@ -46,7 +46,7 @@ pub struct Progress {
 /// when the lease was lost, and the work is for nothing.
 ///
 /// # Errors
-/// What the database says.
+/// An error of the database.
 pub async fn renew(
     transaction: &mut Transaction,
     policy: &QueuePolicy,
@@ -65,7 +65,7 @@ pub async fn renew(
 /// What the holder of a lease is to do; nothing when the lease was lost.
 ///
 /// # Errors
-/// What the database says.
+/// An error of the database.
 pub async fn payload(transaction: &mut Transaction, lease: &Lease) -> Result<Option<String>, DbError> {
     let statement = "SELECT payload FROM job WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running'";
     let row = transaction.row(statement, values![lease.job, lease.attempt, &lease.key]).await?;
@@ -75,7 +75,7 @@ pub async fn payload(transaction: &mut Transaction, lease: &Lease) -> Result<Opt
 /// Ends a job. A lease that ran out but was given to nobody else still counts: the work is done.
 ///
 /// # Errors
-/// What the database says.
+/// An error of the database.
 pub async fn complete(transaction: &mut Transaction, lease: &Lease) -> Result<Completion, DbError> {
     // The key stays, so that the same answer sent twice is known again.
     let statement = "UPDATE job SET state = 'done', finished_at = {now}, lease_until = NULL
@@ -92,7 +92,7 @@ pub async fn complete(transaction: &mut Transaction, lease: &Lease) -> Result<Co
 /// Gives a job back at no cost: its worker is asked to stop. False when the lease was lost.
 ///
 /// # Errors
-/// What the database says.
+/// An error of the database.
 pub async fn release(transaction: &mut Transaction, lease: &Lease) -> Result<bool, DbError> {
     let statement =
         "UPDATE job SET state = 'waiting', run_after = {now}, worker = NULL, lease_key = NULL, lease_until = NULL
@@ -104,7 +104,7 @@ pub async fn release(transaction: &mut Transaction, lease: &Lease) -> Result<boo
 /// Says that this try came to nothing, and why.
 ///
 /// # Errors
-/// What the database says.
+/// An error of the database.
 pub async fn fail(
     transaction: &mut Transaction,
     policy: &QueuePolicy,
@@ -117,7 +117,7 @@ pub async fn fail(
 /// The same, and the next try comes no sooner than `least` from now.
 ///
 /// # Errors
-/// What the database says.
+/// An error of the database.
 pub async fn fail_for(
     transaction: &mut Transaction,
     policy: &QueuePolicy,

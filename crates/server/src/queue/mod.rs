@@ -149,7 +149,7 @@ const SUSPECTED_LATER: Duration = Duration::from_secs(1800);
 /// A job that was claimed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Claim {
-    /// What to show from now on.
+    /// The lease to show from now on.
     pub lease: Lease,
     /// What the job is about.
     pub submission: Option<i64>,

@@ -28,7 +28,7 @@ impl Notifier {
     /// Commits, and wakes subscribers everywhere.
     ///
     /// # Errors
-    /// What the database says.
+    /// An error of the database.
     pub async fn commit(&self, mut transaction: Transaction) -> Result<(), DbError> {
         Self::notify(&mut transaction).await?;
         transaction.commit().await?;
@@ -40,7 +40,7 @@ impl Notifier {
     /// [`wake`](Self::wake) after the commit.
     ///
     /// # Errors
-    /// What the database says.
+    /// An error of the database.
     pub async fn notify(transaction: &mut Transaction) -> Result<(), DbError> {
         if transaction.dialect() == Dialect::Postgres {
             transaction.rows("SELECT CAST(pg_notify(?, '') AS TEXT) AS notify", values![CHANNEL]).await?;

@@ -22,7 +22,7 @@ pub struct Place {
 /// A waiting job's place; nothing when it does not wait (any more).
 ///
 /// # Errors
-/// What the database says.
+/// An error of the database.
 pub async fn place(
     transaction: &mut Transaction,
     policy: &QueuePolicy,

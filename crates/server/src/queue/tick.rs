@@ -36,7 +36,7 @@ pub struct Buried {
 /// Gives up on workers whose leases ran out, at most every [`QueuePolicy::tick_every`], by any caller.
 ///
 /// # Errors
-/// What the database says.
+/// An error of the database.
 pub async fn tick(transaction: &mut Transaction, policy: &QueuePolicy) -> Result<Tick, DbError> {
     let pulse =
         transaction.row("SELECT beat_at, {now} AS now FROM pulse WHERE id = 1 {skip locked}", values![]).await?;
@@ -77,7 +77,7 @@ async fn set_back(transaction: &mut Transaction, by: i64) -> Result<(), DbError>
 /// Gives up on a worker that is known to be dead, before its leases run out.
 ///
 /// # Errors
-/// What the database says.
+/// An error of the database.
 pub async fn abandon(transaction: &mut Transaction, policy: &QueuePolicy, worker: &str) -> Result<Tick, DbError> {
     let statement = "SELECT id, attempt, failures, deaths, lone_deaths, is_alone, worker FROM job
         WHERE state = 'running' AND worker = ? ORDER BY id {skip locked}";

@@ -17,7 +17,7 @@ use utoipa::{
     },
 };
 
-/// What the body of an upload is called.
+/// The name of an upload's body.
 const FILE: &str = "application/octet-stream";
 
 /// The largest number that JSON can hold in every language.
@@ -46,7 +46,7 @@ const MOST: i64 = (1 << 53) - 1;
 )]
 struct Base;
 
-/// What is said before any handler.
+/// Answers that are given before any handler.
 pub(super) fn base() -> OpenApi {
     Base::openapi()
 }
@@ -205,7 +205,7 @@ fn bytes() -> RefOr<Schema> {
     ObjectBuilder::new().schema_type(Type::String).format(Some(format)).min_length(Some(1)).into()
 }
 
-/// What an answer is that nobody describes.
+/// The description of an answer that nobody describes.
 fn answer(status: &str) -> String {
     if status == "default" {
         return "Refused, or failed: what is wrong, and what to do about it".to_owned();

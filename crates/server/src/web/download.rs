@@ -69,7 +69,7 @@ fn insert(response: &mut Response, name: header::HeaderName, value: &str) {
     }
 }
 
-/// What `Range` asks for.
+/// The range that `Range` asks for.
 #[derive(Debug, PartialEq, Eq)]
 enum Part {
     /// Everything: also where it asks for something that is not understood, or for several parts.

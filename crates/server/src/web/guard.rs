@@ -70,7 +70,7 @@ fn is_own(headers: &HeaderMap, app: &App) -> bool {
         || text(header::HOST).is_some_and(|host| origin.split_once("://").is_some_and(|(_, place)| place == host))
 }
 
-/// What every answer says.
+/// The headers of every answer.
 pub(super) async fn headers(State(app): State<App>, request: Request, next: Next) -> Response {
     let mut response = next.run(request).await;
     let headers = response.headers_mut();

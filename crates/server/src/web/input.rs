@@ -30,7 +30,7 @@ pub(super) struct At {
     pub(super) id: i64,
 }
 
-/// What stands behind the question mark.
+/// The query of the address.
 pub(super) struct Asked<T>(pub(super) T);
 
 fn is_of_type(headers: &HeaderMap, wanted: &str) -> bool {

@@ -1,4 +1,4 @@
-//! What is refused, as an answer.
+//! Refusals as answers.
 use crate::problem::Problem;
 use axum::{
     http::{HeaderValue, StatusCode, header},

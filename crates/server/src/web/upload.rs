@@ -49,11 +49,11 @@ impl Untaken {
 pub(super) struct Received {
     /// Where it lies until it is stored.
     pub(super) file: TempPath,
-    /// What the sender calls it.
+    /// The sender's name for it.
     pub(super) name: Option<String>,
     /// What kind of thing it is, where a form said so.
     pub(super) form: Option<String>,
-    /// What the sender calls this upload.
+    /// The sender's name for this upload.
     pub(super) key: Option<String>,
 }
 
@@ -95,7 +95,7 @@ pub(super) async fn refuse(app: &App, request: Request, most: u64, problem: Prob
 /// kind, and its key.
 ///
 /// # Errors
-/// What is wrong with the form.
+/// The fault of the form.
 pub async fn receive_form(
     incoming: &Path,
     body: &[u8],
@@ -224,7 +224,7 @@ pub(super) fn plain_name(name: &str) -> String {
     if is_file_name(plain) { plain.to_owned() } else { "submission".to_owned() }
 }
 
-/// What a program is, in words.
+/// A program, in words.
 const PROGRAM: &str = "a program for Linux (ELF, or a script that begins with #!)";
 
 /// Files that are looked into at one time: an archive may need some 100 MiB to be unpacked, and all of a processor.

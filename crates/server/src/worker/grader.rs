@@ -13,9 +13,9 @@ pub type Graded = Outcome<NewFile>;
 /// A file that belongs to a result.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NewFile {
-    /// What it is called.
+    /// Its name.
     pub name: String,
-    /// What it holds.
+    /// Its content.
     pub media_type: String,
     /// Where it lies.
     pub path: PathBuf,
@@ -35,7 +35,7 @@ pub enum GraderFault {
     Stopped,
 }
 
-/// What grades.
+/// The grader.
 pub trait Grader: Clone + Send + Sync + 'static {
     /// Proves that it can grade here and now, and may use the empty folder as it likes.
     ///

@@ -23,7 +23,7 @@ pub struct LocalSource {
     database: Database,
     store: Store,
     notifier: Notifier,
-    /// What this copy has heard.
+    /// The notifications that this copy has heard.
     subscription: Mutex<Subscription>,
     policy: QueuePolicy,
     worker: String,

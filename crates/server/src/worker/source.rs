@@ -10,11 +10,11 @@ use thiserror::Error;
 /// A job that was claimed.
 #[derive(Debug, Clone)]
 pub struct ClaimedJob {
-    /// What to show from now on.
+    /// The lease to show from now on.
     pub lease: Lease,
     /// How often to renew it.
     pub renew_every: Duration,
-    /// What to do.
+    /// The task.
     pub task: Task,
     /// Whether nothing else may run beside it in this worker: it may have killed workers before.
     pub alone: bool,

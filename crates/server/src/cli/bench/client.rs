@@ -28,7 +28,7 @@ pub(super) struct Client {
     session: Option<String>,
 }
 
-/// What the server says.
+/// The answer of the server.
 pub(super) struct Answer {
     pub(super) status: StatusCode,
     pub(super) body: Bytes,

@@ -70,7 +70,7 @@ pub(super) async fn climb(arguments: &Bench) -> Result<()> {
     stage.stop().await
 }
 
-/// What is handed in.
+/// The upload.
 fn program(arguments: &Bench) -> Result<Bytes> {
     Ok(match &arguments.program {
         Some(file) => Bytes::from(std::fs::read(file)?),

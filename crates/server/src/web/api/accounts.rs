@@ -18,7 +18,7 @@ pub(super) struct NewToken {
     token: String,
 }
 
-/// What a token is to be called.
+/// The name of a token.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::web) struct TokenName {
@@ -26,7 +26,7 @@ pub(in crate::web) struct TokenName {
     pub(in crate::web) name: String,
 }
 
-/// What workers with a token are to be called.
+/// The name of workers with a token.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::web) struct WorkerTokenName {
@@ -74,7 +74,7 @@ pub(super) fn link(app: &crate::access::App, secret: Option<NewSecret>) -> Link 
     Link { link: secret.map(|secret| app.welcome_address(&secret)) }
 }
 
-/// Who asks.
+/// The one who asks.
 #[utoipa::path(get, path = "/api/v1/me", tag = "accounts",
     responses((status = 200, body = Account)))]
 pub(super) async fn me(person: Person) -> Json<Account> {

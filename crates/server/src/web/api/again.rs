@@ -5,7 +5,7 @@ use axum::{Json, http::StatusCode};
 use serde::Serialize;
 use utoipa::ToSchema;
 
-/// What is graded again.
+/// The submissions that are graded again.
 #[derive(Serialize, ToSchema)]
 pub(super) struct Again {
     /// How many submissions.

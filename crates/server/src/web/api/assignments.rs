@@ -42,17 +42,6 @@ pub(super) struct Format {
     format: Option<String>,
 }
 
-/// Makes an assignment or changes it. Submissions that are graded already stay as they are: that takes a regrade.
-#[utoipa::path(put, path = "/api/v1/courses/{course}/assignments/{assignment}", tag = "assignments", request_body = AssignmentWish,
-    responses((status = 200, body = Assignment)))]
-pub(super) async fn set_assignment(
-    staff: Staff,
-    At { assignment, .. }: At,
-    Body(wish): Body<AssignmentWish>,
-) -> Result<Json<Assignment>, Problem> {
-    Ok(Json(staff.set_assignment(&assignment, &wish.title, wish.visible, &wish.settings).await?))
-}
-
 /// A due date of a student's own.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
@@ -61,18 +50,6 @@ pub(super) struct Extension {
     #[serde(deserialize_with = "moment")]
     #[schema(schema_with = moment_schema)]
     due_at: Option<i64>,
-}
-
-/// Lets a student hand in until another moment than the others.
-#[utoipa::path(put, path = "/api/v1/courses/{course}/assignments/{assignment}/extensions/{login}", tag = "assignments", request_body = Extension,
-    responses((status = 204, description = "Set")))]
-pub(super) async fn extend(
-    staff: Staff,
-    At { assignment, login, .. }: At,
-    Body(wish): Body<Extension>,
-) -> Result<StatusCode, Problem> {
-    staff.extend(&assignment, &login, wish.due_at).await?;
-    Ok(StatusCode::NO_CONTENT)
 }
 
 /// Uploads an archive (zip, 7z, tar, tar.gz, tar.xz, tar.bz2) with a `suite.toml` at its top as the assignment's suite.
@@ -165,6 +142,10 @@ async fn lines(staff: Staff, assignment: &str) -> Result<HttpBody, Problem> {
 }
 
 answers! {
+    /// Makes an assignment or changes it. Submissions that are graded already stay as they are: that takes a regrade.
+    put "/api/v1/courses/{course}/assignments/{assignment}" "assignments"
+        set_assignment(staff: Staff, { assignment }, wish: AssignmentWish) -> Assignment:
+            staff.set_assignment(&assignment, &wish.title, wish.visible, &wish.settings);
     /// The assignments of a course.
     get "/api/v1/courses/{course}/assignments" "assignments"
         assignments(member: Member) -> Vec<Assignment>: member.assignments();
@@ -183,6 +164,10 @@ answers! {
 }
 
 deeds! {
+    /// Lets a student hand in until another moment than the others.
+    put "/api/v1/courses/{course}/assignments/{assignment}/extensions/{login}" "assignments"
+        extend(staff: Staff, { assignment, login }, wish: Extension) -> "Set":
+            staff.extend(&assignment, &login, wish.due_at);
     /// Removes an assignment with all submissions to it, for ever.
     delete "/api/v1/courses/{course}/assignments/{assignment}" "assignments"
         remove_assignment(staff: Staff, { assignment }) -> "Removed": staff.remove_assignment(&assignment);

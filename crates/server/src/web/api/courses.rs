@@ -150,7 +150,7 @@ pub(super) async fn member_link(staff: Staff, At { login, .. }: At) -> Result<Js
     Ok(Json(link(&staff.app, Some(secret))))
 }
 
-/// What happened in the course, latest first, 200 at a time.
+/// The events of the course, latest first, 200 at a time.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/audit", operation_id = "course_audit", tag = "courses",
     params(("before" = Option<i64>, Query, description = "Only events before this one")),
     responses((status = 200, body = Vec<Event>)))]

@@ -1,14 +1,18 @@
 //! The API. Each handler says by its first argument whom it serves.
 
-/// Operations that answer with what was asked for, one a row: method, address, tag, and name; whom it serves, and which
-/// parts of the address it takes; and what it answers with.
+/// Operations that answer with what was asked for, one a row: method, address, tag, and name; whom it serves, which
+/// parts of the address it takes, and its body; and what it answers with.
 macro_rules! answers {
     ($($(#[doc = $doc:literal])* $method:ident $path:tt $tag:tt
-        $name:ident($who:ident: $role:ty $(, { $($at:ident),* })?) -> $type:ty: $answer:expr;)*) => {
+        $name:ident($who:ident: $role:ty $(, { $($at:ident),* })? $(, $wish:ident: $body:ty)?)
+            -> $type:ty: $answer:expr;)*) => {
         $($(#[doc = $doc])*
-        #[utoipa::path($method, path = $path, tag = $tag, responses((status = 200, body = $type)))]
-        pub(super) async fn $name($who: $role $(, At { $($at,)* .. }: At)?) -> Result<Json<$type>, Problem> {
-            Ok(Json($answer.await?))
+        #[utoipa::path($method, path = $path, tag = $tag $(, request_body = $body)?,
+            responses((status = 200, body = $type)))]
+        pub(super) async fn $name(
+            $who: $role $(, At { $($at,)* .. }: At)? $(, Body($wish): Body<$body>)?
+        ) -> Result<Json<$type>, Problem> {
+            Ok(Json($answer.await?.into()))
         })*
     };
 }
@@ -16,10 +20,14 @@ macro_rules! answers {
 /// The same for those that only do something: then it is said in words what was done.
 macro_rules! deeds {
     ($($(#[doc = $doc:literal])* $method:ident $path:tt $tag:tt
-        $name:ident($who:ident: $role:ty $(, { $($at:ident),* })?) -> $done:tt: $do:expr;)*) => {
+        $name:ident($who:ident: $role:ty $(, { $($at:ident),* })? $(, $wish:ident: $body:ty)?)
+            -> $done:tt: $do:expr;)*) => {
         $($(#[doc = $doc])*
-        #[utoipa::path($method, path = $path, tag = $tag, responses((status = 204, description = $done)))]
-        pub(super) async fn $name($who: $role $(, At { $($at,)* .. }: At)?) -> Result<StatusCode, Problem> {
+        #[utoipa::path($method, path = $path, tag = $tag $(, request_body = $body)?,
+            responses((status = 204, description = $done)))]
+        pub(super) async fn $name(
+            $who: $role $(, At { $($at,)* .. }: At)? $(, Body($wish): Body<$body>)?
+        ) -> Result<StatusCode, Problem> {
             $do.await?;
             Ok(StatusCode::NO_CONTENT)
         })*

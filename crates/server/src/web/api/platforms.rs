@@ -7,18 +7,6 @@ use crate::{
 };
 use axum::{Json, http::StatusCode};
 
-/// Registers a platform, or changes it.
-#[utoipa::path(put, path = "/api/v1/platforms/{name}", tag = "administration",
-    request_body = PlatformWish,
-    responses((status = 200, body = Platform)))]
-pub(super) async fn set_platform(
-    admin: Admin,
-    At { name, .. }: At,
-    Body(wish): Body<PlatformWish>,
-) -> Result<Json<Platform>, Problem> {
-    Ok(Json(admin.set_platform(&name, &wish).await?))
-}
-
 /// Sends all scores of an assignment once more, also those that platforms took.
 #[utoipa::path(post, path = "/api/v1/courses/{course}/assignments/{assignment}/scores", tag = "assignments",
     responses((status = 202, description = "They are on their way")))]
@@ -28,11 +16,14 @@ pub(super) async fn send_scores(staff: Staff, At { assignment, .. }: At) -> Resu
 }
 
 answers! {
+    /// Registers a platform, or changes it.
+    put "/api/v1/platforms/{name}" "administration"
+        set_platform(admin: Admin, { name }, wish: PlatformWish) -> Platform: admin.set_platform(&name, &wish);
     /// The registered platforms.
     get "/api/v1/platforms" "administration" platforms(admin: Admin) -> Vec<Platform>: admin.platforms();
     /// Reads who is in the course from the platforms that it is connected with.
     post "/api/v1/courses/{course}/roster" "courses" roster(staff: Staff) -> RosterRead: staff.read_roster();
-    /// What platforms were told of an assignment's scores.
+    /// The messages to platforms about an assignment's scores.
     get "/api/v1/courses/{course}/assignments/{assignment}/scores" "assignments"
         scores(staff: Staff, { assignment }) -> Vec<ScoreInfo>: staff.scores(&assignment);
 }

@@ -84,7 +84,7 @@ pub(in crate::web) async fn receive(
     Ok((accepted.submission, accepted.repeated))
 }
 
-/// What staff says of a submission.
+/// The mark that staff gives a submission.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MarkWish {
@@ -98,37 +98,13 @@ pub(super) struct MarkWish {
     comment: String,
 }
 
-/// What a student asks.
+/// The question of a student.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::web) struct RequestWish {
-    /// What is wrong with the grade.
+    /// The fault of the grade.
     #[schema(min_length = 1, max_length = 2000)]
     pub(in crate::web) text: String,
-}
-
-/// Gives a submission other points than the grader, with a comment, or the grader's again.
-#[utoipa::path(put, path = "/api/v1/courses/{course}/submissions/{id}/mark", tag = "submissions", request_body = MarkWish,
-    responses((status = 200, body = Submission)))]
-pub(super) async fn mark(
-    staff: Staff,
-    At { id, .. }: At,
-    Body(wish): Body<MarkWish>,
-) -> Result<Json<Submission>, Problem> {
-    let points = wish.points.map(|points| points.to_string());
-    Ok(Json(staff.mark(id, points.as_deref(), &wish.comment).await?))
-}
-
-/// Asks staff to look at one's own submission again.
-#[utoipa::path(post, path = "/api/v1/courses/{course}/submissions/{id}/request", tag = "submissions", request_body = RequestWish,
-    responses((status = 204, description = "Staff sees it")))]
-pub(super) async fn request(
-    member: Member,
-    At { id, .. }: At,
-    Body(wish): Body<RequestWish>,
-) -> Result<StatusCode, Problem> {
-    member.request(id, &wish.text).await?;
-    Ok(StatusCode::NO_CONTENT)
 }
 
 /// Its state as server-sent events: one at once, one whenever it changes; the stream ends with the grade. Each event is
@@ -164,7 +140,7 @@ pub(in crate::web) async fn report_response(
     Ok((headers, download::send(member, asked, &file.artefact).await?).into_response())
 }
 
-/// What was handed in.
+/// The upload.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/submissions/{id}/upload", tag = "submissions",
     responses((status = 200, description = "The file")))]
 pub(super) async fn upload(member: Member, At { id, .. }: At, headers: HeaderMap) -> Result<Response, Problem> {
@@ -223,6 +199,10 @@ fn cell(text: &str) -> String {
 }
 
 answers! {
+    /// Gives a submission other points than the grader, with a comment, or the grader's again.
+    put "/api/v1/courses/{course}/submissions/{id}/mark" "submissions"
+        mark(staff: Staff, { id }, wish: MarkWish) -> Submission:
+            staff.mark(id, wish.points.map(|points| points.to_string()).as_deref(), &wish.comment);
     /// One's own submissions, newest first.
     get "/api/v1/courses/{course}/assignments/{assignment}/submissions" "submissions"
         own(member: Member, { assignment }) -> Vec<Submission>: member.submissions(&assignment);
@@ -235,6 +215,9 @@ answers! {
 }
 
 deeds! {
+    /// Asks staff to look at one's own submission again.
+    post "/api/v1/courses/{course}/submissions/{id}/request" "submissions"
+        request(member: Member, { id }, wish: RequestWish) -> "Staff sees it": member.request(id, &wish.text);
     /// Removes a submission with its grades and reports, for ever.
     delete "/api/v1/courses/{course}/submissions/{id}" "submissions"
         remove_submission(staff: Staff, { id }) -> "Removed": staff.remove_submission(id);

@@ -28,7 +28,7 @@ pub(super) async fn tick(remote: Remote, Body(alive): Body<Alive>) -> Result<Jso
     Ok(Json(Manners { tick_every: remote.tick_every() }))
 }
 
-/// Who claims.
+/// The one who claims.
 #[derive(Deserialize)]
 pub(super) struct Claimant {
     idle: Option<bool>,
@@ -46,32 +46,18 @@ pub(super) async fn claim(remote: Remote, Asked(claimant): Asked<Claimant>) -> R
     })
 }
 
-/// Extends a lease, and says how far the grading is.
-#[utoipa::path(post, path = "/api/v1/worker/renew", tag = "workers", request_body = Renewal,
-    responses((status = 200, body = Held)))]
-pub(super) async fn renew(remote: Remote, Body(renewal): Body<Renewal>) -> Result<Json<Held>, Problem> {
-    Ok(Json(Held { held: remote.renew(&renewal.lease, renewal.progress).await? }))
-}
-
-/// Gives a job back at no cost.
-#[utoipa::path(post, path = "/api/v1/worker/release", tag = "workers", request_body = Lease,
-    responses((status = 200, body = Held)))]
-pub(super) async fn release(remote: Remote, Body(lease): Body<Lease>) -> Result<Json<Held>, Problem> {
-    Ok(Json(Held { held: remote.release(&lease).await? }))
-}
-
-/// Says that a try came to nothing.
-#[utoipa::path(post, path = "/api/v1/worker/fail", tag = "workers", request_body = Fault,
-    responses((status = 200, body = Held)))]
-pub(super) async fn fail(remote: Remote, Body(fault): Body<Fault>) -> Result<Json<Held>, Problem> {
-    Ok(Json(Held { held: remote.fail(&fault.lease, &fault.fault).await? }))
-}
-
-/// Brings a result.
-#[utoipa::path(post, path = "/api/v1/worker/finish", tag = "workers", request_body = Finished,
-    responses((status = 200, body = Held)))]
-pub(super) async fn finish(remote: Remote, Body(result): Body<Finished>) -> Result<Json<Held>, Problem> {
-    Ok(Json(Held { held: remote.finish(&result.lease, &result.outcome).await? }))
+answers! {
+    /// Extends a lease, and says how far the grading is.
+    post "/api/v1/worker/renew" "workers"
+        renew(remote: Remote, renewal: Renewal) -> Held: remote.renew(&renewal.lease, renewal.progress);
+    /// Gives a job back at no cost.
+    post "/api/v1/worker/release" "workers" release(remote: Remote, lease: Lease) -> Held: remote.release(&lease);
+    /// Says that a try came to nothing.
+    post "/api/v1/worker/fail" "workers"
+        fail(remote: Remote, fault: Fault) -> Held: remote.fail(&fault.lease, &fault.fault);
+    /// Brings a result.
+    post "/api/v1/worker/finish" "workers"
+        finish(remote: Remote, result: Finished) -> Held: remote.finish(&result.lease, &result.outcome);
 }
 
 fn lease(headers: &HeaderMap) -> Result<Lease, Problem> {

@@ -1,4 +1,4 @@
-//! What administrators see.
+//! The pages of administrators.
 use super::{
     super::{
         api::{CourseWish, WorkerTokenName},

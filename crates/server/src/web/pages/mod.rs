@@ -145,9 +145,9 @@ fn constant(kind: &'static str, text: &'static str) -> Response {
     ([(header::CONTENT_TYPE, kind), (header::CACHE_CONTROL, "max-age=300")], text).into_response()
 }
 
-/// What every page shows around itself.
+/// The frame of every page.
 pub(super) struct Frame {
-    /// Who is signed in.
+    /// The person who is signed in.
     login: Option<String>,
     is_admin: bool,
     /// The way here: addresses and titles.

@@ -15,9 +15,9 @@ use serde::Deserialize;
 #[template(path = "remove.html")]
 struct RemovePage {
     frame: Frame,
-    /// What is to be removed.
+    /// The thing to be removed.
     title: String,
-    /// What goes with it.
+    /// The things that go with it.
     words: &'static str,
     /// What the form says that is meant.
     confirm: String,

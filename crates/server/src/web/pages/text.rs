@@ -35,7 +35,7 @@ pub(super) fn regrade(state: &RegradeState) -> &'static str {
     }
 }
 
-/// What was decided on a suspicion, in words.
+/// The decision on a suspicion, in words.
 pub(super) fn suspicion(state: &str) -> &'static str {
     match state {
         "dismissed" => "the reference is right",
@@ -44,7 +44,7 @@ pub(super) fn suspicion(state: &str) -> &'static str {
     }
 }
 
-/// What a learning platform is to know.
+/// The facts that a learning platform is to know.
 pub(super) fn score(score: &serde_json::Value) -> String {
     match (score["scoreGiven"].as_f64(), score["scoreMaximum"].as_f64()) {
         (Some(points), Some(most)) => format!("{} / {}", rounded(&points.to_string()), rounded(&most.to_string())),
@@ -58,7 +58,7 @@ pub(super) fn short(digest: &str) -> &str {
     digest.get(..12).unwrap_or(digest)
 }
 
-/// What becomes of a submission, in words.
+/// The state of a submission, in words.
 pub(super) fn state(state: &str) -> &'static str {
     match state {
         "waiting" => "waiting",
