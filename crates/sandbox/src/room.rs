@@ -25,7 +25,7 @@ fn left() -> Option<u64> {
     {
         return left;
     }
-    let left = std::iter::once(available()).chain(groups().iter().map(Limited::left)).flatten().min();
+    let left = std::iter::once(available()).chain(groups().iter().map(LimitedGroup::left)).flatten().min();
     *last = Some((Instant::now(), left));
     left
 }
@@ -42,12 +42,12 @@ fn available_in(meminfo: &str) -> Option<u64> {
 
 /// A control group that this process is in and that may have a limit.
 #[derive(Debug, PartialEq, Eq)]
-struct Limited {
+struct LimitedGroup {
     limit: PathBuf,
     usage: PathBuf,
 }
 
-impl Limited {
+impl LimitedGroup {
     /// `None` without a limit.
     fn left(&self) -> Option<u64> {
         let number = |path: &Path| std::fs::read_to_string(path).ok()?.trim().parse::<u64>().ok();
@@ -56,14 +56,14 @@ impl Limited {
 }
 
 /// The groups around this process, in either version's files.
-fn groups() -> &'static [Limited] {
-    static GROUPS: OnceLock<Vec<Limited>> = OnceLock::new();
+fn groups() -> &'static [LimitedGroup] {
+    static GROUPS: OnceLock<Vec<LimitedGroup>> = OnceLock::new();
     GROUPS.get_or_init(|| {
         let places = crate::supervisor::memory_groups();
         let limited = |place: &PathBuf| {
             let names = [("memory.max", "memory.current"), ("memory.limit_in_bytes", "memory.usage_in_bytes")];
             let (limit, usage) = names.into_iter().find(|(limit, _)| place.join(limit).exists())?;
-            Some(Limited { limit: place.join(limit), usage: place.join(usage) })
+            Some(LimitedGroup { limit: place.join(limit), usage: place.join(usage) })
         };
         places.iter().filter_map(limited).collect()
     })
@@ -83,7 +83,8 @@ mod tests {
     #[test]
     fn what_a_group_may_still_have_counts() {
         let folder = tempfile::tempdir().unwrap();
-        let group = Limited { limit: folder.path().join("memory.max"), usage: folder.path().join("memory.current") };
+        let group =
+            LimitedGroup { limit: folder.path().join("memory.max"), usage: folder.path().join("memory.current") };
         assert_eq!(group.left(), None);
         std::fs::write(&group.usage, "300\n").unwrap();
         std::fs::write(&group.limit, "max\n").unwrap();

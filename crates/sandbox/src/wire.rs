@@ -1,9 +1,9 @@
 //! The messages between the grader and its supervisor process.
 //!
-//! The grader writes one length-prefixed [`RunOrder`] to the supervisor's standard input, a socket, and then, if need be,
-//! single command bytes. A working folder in memory comes back there, open, and so does its trace pipe. The supervisor
-//! answers on its standard output with length-prefixed [`Event`]s; the last one is followed by the captured bytes.
-//! Paths travel as bytes, because they need not be UTF-8.
+//! The grader writes one length-prefixed [`RunOrder`] to the supervisor's standard input, a socket, and then, if need
+//! be, single command bytes. A working folder in memory comes back there, open, and so does its trace pipe. The
+//! supervisor answers on its standard output with length-prefixed [`Event`]s; the last one is followed by the captured
+//! bytes. Paths travel as bytes, because they need not be UTF-8.
 
 use std::{
     io::{self, Read, Write},

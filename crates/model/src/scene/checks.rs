@@ -7,7 +7,7 @@ use super::document::Document;
 use super::model::{Collision, Edge, Force, HalfPlane, Integrator, Particle};
 use super::problem::{Report, SceneFinding};
 use super::tag::Tag;
-use super::xml::{Part, Parts};
+use super::xml::{Part, SceneParts};
 use fosssim_num::vector::Vec2;
 
 /// The most particles that an implicit integrator is given: its dense matrix of (2N)^2 numbers then takes half a
@@ -19,7 +19,7 @@ pub const LARGEST_IMPLICIT: usize = 4096;
 const MOST_PAIRS: usize = 4_000_000;
 
 /// Judges the scene as a whole.
-pub(super) fn check(document: &Document<'_>, parts: &Parts<'_, '_>, report: &mut Report) {
+pub(super) fn check(document: &Document<'_>, parts: &SceneParts<'_, '_>, report: &mut Report) {
     steps(parts, report);
     size(document, parts, report);
     methods(parts, report);
@@ -40,7 +40,7 @@ fn about(tag: &Tag<'_>, message: String, help: &str) -> SceneFinding {
     SceneFinding::new(tag.span.clone(), message).element(tag.rule.name).help(help)
 }
 
-fn steps(parts: &Parts<'_, '_>, report: &mut Report) {
+fn steps(parts: &SceneParts<'_, '_>, report: &mut Report) {
     let (Some(duration), Some(integrator)) = (&parts.duration, &parts.integrator) else { return };
     let (Some(time), Some((_, time_step))) = (duration.value, integrator.value) else { return };
     if time < 0.0 || time_step <= 0.0 {
@@ -58,7 +58,7 @@ fn steps(parts: &Parts<'_, '_>, report: &mut Report) {
     }
 }
 
-fn size(document: &Document<'_>, parts: &Parts<'_, '_>, report: &mut Report) {
+fn size(document: &Document<'_>, parts: &SceneParts<'_, '_>, report: &mut Report) {
     let count = parts.particles.len();
     if count == 0 && !report.has_errors() {
         let span = document.scene.clone().unwrap_or(0..0);
@@ -77,13 +77,13 @@ fn size(document: &Document<'_>, parts: &Parts<'_, '_>, report: &mut Report) {
     }
 }
 
-fn is_implicit(parts: &Parts<'_, '_>) -> Option<bool> {
+fn is_implicit(parts: &SceneParts<'_, '_>) -> Option<bool> {
     let (integrator, _) = parts.integrator.as_ref()?.value?;
     Some(matches!(integrator, Integrator::ImplicitEuler | Integrator::LinearizedImplicitEuler))
 }
 
 /// Integrators and forces that do not go together.
-fn methods(parts: &Parts<'_, '_>, report: &mut Report) {
+fn methods(parts: &SceneParts<'_, '_>, report: &mut Report) {
     let Some(integrator) = &parts.integrator else { return };
     if is_implicit(parts) == Some(true) {
         for part in parts.forces.iter().filter(|part| part.tag.rule.name == "vortexforce") {
@@ -102,7 +102,7 @@ fn methods(parts: &Parts<'_, '_>, report: &mut Report) {
     }
 }
 
-fn normals(parts: &Parts<'_, '_>, report: &mut Report) {
+fn normals(parts: &SceneParts<'_, '_>, report: &mut Report) {
     for (number, part) in parts.half_planes.iter().enumerate() {
         let Some(HalfPlane { normal, .. }) = part.value else { continue };
         if normal.dot(&normal) == 0.0 {
@@ -115,7 +115,7 @@ fn normals(parts: &Parts<'_, '_>, report: &mut Report) {
 }
 
 /// Half-planes reflect fixed particles, too.
-fn fixed_and_moving(parts: &Parts<'_, '_>, report: &mut Report) {
+fn fixed_and_moving(parts: &SceneParts<'_, '_>, report: &mut Report) {
     let responds = matches!(
         parts.collision,
         Some(Collision::Simple { .. } | Collision::ContinuousTime { .. } | Collision::Hybrid { .. })
@@ -137,7 +137,7 @@ fn fixed_and_moving(parts: &Parts<'_, '_>, report: &mut Report) {
 struct Places(Vec<Option<Vec2>>);
 
 impl Places {
-    fn new(parts: &Parts<'_, '_>) -> Self {
+    fn new(parts: &SceneParts<'_, '_>) -> Self {
         Self(parts.particles.iter().map(|part| part.value.as_ref().map(|particle| particle.position)).collect())
     }
 
@@ -150,7 +150,7 @@ impl Places {
     }
 }
 
-fn edges_without_length(parts: &Parts<'_, '_>, places: &Places, report: &mut Report) {
+fn edges_without_length(parts: &SceneParts<'_, '_>, places: &Places, report: &mut Report) {
     for (number, part) in parts.edges.iter().enumerate() {
         let Some(Edge { first, second, .. }) = part.value else { continue };
         if places.same(first, second) {
@@ -166,7 +166,7 @@ fn edges_without_length(parts: &Parts<'_, '_>, places: &Places, report: &mut Rep
     }
 }
 
-fn forces_without_direction(parts: &Parts<'_, '_>, places: &Places, report: &mut Report) {
+fn forces_without_direction(parts: &SceneParts<'_, '_>, places: &Places, report: &mut Report) {
     for part in &parts.forces {
         let Some(Force::Gravitation { first, second, .. } | Force::Vortex { first, second, .. }) = part.value else {
             continue;
@@ -191,7 +191,7 @@ struct ContactRule {
 }
 
 impl ContactRule {
-    fn of(parts: &Parts<'_, '_>) -> Option<Self> {
+    fn of(parts: &SceneParts<'_, '_>) -> Option<Self> {
         match parts.collision? {
             Collision::None | Collision::Simple { .. } => None,
             Collision::Penalty { thickness, .. } => Some(Self { penalty: true, responds: false, thickness }),
@@ -216,7 +216,7 @@ impl ContactRule {
     }
 }
 
-fn coincident_particles(parts: &Parts<'_, '_>, rule: &ContactRule, report: &mut Report) {
+fn coincident_particles(parts: &SceneParts<'_, '_>, rule: &ContactRule, report: &mut Report) {
     let mut particles: Vec<(usize, &Tag<'_>, &Particle)> = parts
         .particles
         .iter()
@@ -243,7 +243,7 @@ fn coincident_particles(parts: &Parts<'_, '_>, rule: &ContactRule, report: &mut 
     }
 }
 
-fn particles_on_edges(parts: &Parts<'_, '_>, rule: &ContactRule, places: &Places, report: &mut Report) {
+fn particles_on_edges(parts: &SceneParts<'_, '_>, rule: &ContactRule, places: &Places, report: &mut Report) {
     let fixed = |particle: usize| {
         parts.particles.get(particle).and_then(|part| part.value.as_ref()).is_none_or(|particle| particle.fixed)
     };
@@ -267,7 +267,7 @@ fn particles_on_edges(parts: &Parts<'_, '_>, rule: &ContactRule, places: &Places
     }
 }
 
-fn particles_on_half_planes(parts: &Parts<'_, '_>, rule: &ContactRule, report: &mut Report) {
+fn particles_on_half_planes(parts: &SceneParts<'_, '_>, rule: &ContactRule, report: &mut Report) {
     let planes = parts.half_planes.iter().enumerate();
     let pairs = planes.flat_map(|plane| parts.particles.iter().enumerate().map(move |particle| (plane, particle)));
     for ((plane_number, plane), (number, particle)) in pairs.take(MOST_PAIRS) {

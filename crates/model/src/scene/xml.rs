@@ -12,7 +12,7 @@ use super::tag::Tag;
 use crate::assignments::CollisionType;
 
 /// The elements that objects were read from, so that later checks can point to them.
-pub(super) struct Parts<'d, 't> {
+pub(super) struct SceneParts<'d, 't> {
     pub(super) particles: Vec<Part<'d, 't, Particle>>,
     pub(super) edges: Vec<Part<'d, 't, Edge>>,
     pub(super) half_planes: Vec<Part<'d, 't, HalfPlane>>,
@@ -30,7 +30,7 @@ pub(super) struct Part<'d, 't, T> {
     pub(super) value: Option<T>,
 }
 
-impl Parts<'_, '_> {
+impl SceneParts<'_, '_> {
     /// The scene, when nothing of it is missing.
     pub(super) fn into_scene(self) -> Option<Scene> {
         fn values<T>(parts: Vec<Part<'_, '_, T>>) -> Option<Vec<T>> {
@@ -53,7 +53,7 @@ impl Parts<'_, '_> {
 }
 
 /// Reads all elements. `None` when the scene is of a kind that is not simulated here.
-pub(super) fn read<'d, 't>(document: &'d Document<'t>, report: &mut Report) -> Option<Parts<'d, 't>> {
+pub(super) fn read<'d, 't>(document: &'d Document<'t>, report: &mut Report) -> Option<SceneParts<'d, 't>> {
     let mut reading = SceneBuilder { document, report };
     if reading.is_rigid() {
         return None;
@@ -67,7 +67,7 @@ pub(super) fn read<'d, 't>(document: &'d Document<'t>, report: &mut Report) -> O
         Some(HalfPlane { point: point?, normal: normal? })
     });
     let of_half_planes = reading.count("halfplane", "half-plane", half_planes.len());
-    Some(Parts {
+    Some(SceneParts {
         forces: reading.forces(of_particles, of_edges),
         integrator: reading.required("integrator", "type=\"...\" dt=\"...\"", integrator),
         duration: reading.required("duration", "time=\"...\"", duration),

@@ -186,8 +186,8 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
     }
 }
 
-/// What the first one puts in place the second one sees. The geometric part starts from the synchronised state if one of
-/// them says so.
+/// What the first one puts in place the second one sees. The geometric part starts from the synchronised state if one
+/// of them says so.
 impl<A: Observer, B: Observer> Steer for (A, B) {
     fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
         let both = [self.0.steers(), self.1.steers()].into_iter().flatten();

@@ -15,7 +15,7 @@ pub struct Suites {
 }
 
 #[derive(Deserialize)]
-struct SuiteList {
+struct ListedSuites {
     suites: Vec<Entry>,
 }
 
@@ -34,7 +34,7 @@ impl Suites {
     /// # Errors
     /// When it is none.
     pub fn read(json: &[u8]) -> Result<Self, serde_json::Error> {
-        let list: SuiteList = serde_json::from_slice(json)?;
+        let list: ListedSuites = serde_json::from_slice(json)?;
         let default = list.suites.iter().find(|suite| suite.default).map(|suite| suite.name.clone());
         let mut newest: Vec<(String, String)> = Vec::new();
         for entry in list.suites.iter().filter(|entry| !entry.suite.is_empty()) {

@@ -50,8 +50,8 @@ impl Follower<'_> {
         decision
     }
 
-    /// The decision about a call whose logged polynomials exclude an impact, where the reference's own, of which nothing
-    /// was lost, say this.
+    /// The decision about a call whose logged polynomials exclude an impact, where the reference's own, of which
+    /// nothing was lost, say this.
     pub(super) fn dispute(&mut self, pair: Pair, by_own: Decision) -> Decision {
         let Decision::Hit { time, .. } = by_own else { return by_own };
         self.call.own = Some(Own { time, lost: false });

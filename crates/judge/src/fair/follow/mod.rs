@@ -81,12 +81,12 @@ struct CurrentCall {
     /// Whether the polynomials are right, nothing was lost, and those that were logged exclude an impact.
     misses_logged: bool,
     /// How the objects move.
-    seen: Option<Seen>,
+    seen: Option<SeenCall>,
 }
 
 /// How the objects of a call move. What its polynomials should be follows, and is seldom asked once they are compared.
 #[derive(Debug, Clone, Copy)]
-struct Seen {
+struct SeenCall {
     motion: BoundedPairMotion,
     /// Whether the trace has the right approach polynomial, and not the course's.
     has_right_approach: bool,
@@ -148,7 +148,7 @@ impl<'a> Follower<'a> {
 
     /// How the call's objects move, and what its polynomials should be.
     fn expected(&self) -> Option<(BoundedPairMotion, Expected)> {
-        let Seen { motion, has_right_approach } = self.call.seen?;
+        let SeenCall { motion, has_right_approach } = self.call.seen?;
         let polynomials = motion.polynomials();
         Some((motion, if has_right_approach { polynomials.with_right_approach() } else { polynomials }))
     }
@@ -234,7 +234,7 @@ impl Steer for Follower<'_> {
             if self.sensitivity.is_some() || !self.is_hybrid() {
                 // Should the decision be disputed, it must be known how far round-off may reach.
                 let motion = BoundedPairMotion::of(self.context.scene, pair, q_start, q_end);
-                self.call.seen = Some(Seen { motion, has_right_approach: false });
+                self.call.seen = Some(SeenCall { motion, has_right_approach: false });
             }
             self.note_course_form(pair, q_start, q_end, index);
             return;
@@ -252,7 +252,7 @@ impl Steer for Follower<'_> {
                 && exclusion_of((0..count).map(logged)).is_some();
             if self.call.seen.is_none() && !(self.call.misses_logged && self.is_hybrid()) {
                 let motion = BoundedPairMotion::of(self.context.scene, pair, q_start, q_end);
-                self.call.seen = Some(Seen { motion, has_right_approach: false });
+                self.call.seen = Some(SeenCall { motion, has_right_approach: false });
             }
             if self.call.misses_logged {
                 return;
@@ -261,7 +261,7 @@ impl Steer for Follower<'_> {
             self.call.own = contact::time_of(polynomials).map(|time| Own { time, lost });
         }
         let Some(searched) = self.searchable(index, count) else { return };
-        if let (true, Some(Own { time, lost: false }), Some(Seen { motion, .. })) =
+        if let (true, Some(Own { time, lost: false }), Some(SeenCall { motion, .. })) =
             (is_right, self.call.own, &self.call.seen)
             && let Some(other) = contact::time_of(&searched[..count])
         {

@@ -1,5 +1,5 @@
 //! What a step's polynomials are charged for.
-use super::{Follower, Seen};
+use super::{Follower, SeenCall};
 use crate::{
     fair::{
         compare::{Match, Mismatch, compare, shows_factor},
@@ -85,7 +85,7 @@ impl<'a> Follower<'a> {
             // What a response has led to has its round-off.
             self.judged.hangs |= self.is_moved(pair) && (hangs || matches!(said, Said::Wrong(_)));
         }
-        self.call.seen = Some(Seen { motion: seen, has_right_approach });
+        self.call.seen = Some(SeenCall { motion: seen, has_right_approach });
         is_right
     }
 
