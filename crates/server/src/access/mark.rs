@@ -38,6 +38,20 @@ pub struct Request {
     pub text: String,
 }
 
+/// How an assignment stands, for the table of its course.
+#[derive(Debug, Clone)]
+pub struct Overview {
+    /// Students who handed something in.
+    pub students: i64,
+    /// What they handed in.
+    pub submissions: i64,
+    /// Requests of students that nobody has answered.
+    pub requests: i64,
+    /// Scenes in which the reference may be wrong, and nobody has decided.
+    pub suspicions: i64,
+}
+
+from_row! { Overview { students, submissions, requests, suspicions } }
 from_row! { Request { submission, login, text = "request" } }
 
 fn check_words(what: &str, text: &str, least: usize) -> Result<(), Problem> {
@@ -183,6 +197,24 @@ impl Member {
         transaction.execute(statement, values![id, text]).await?;
         transaction.commit().await?;
         Ok(())
+    }
+
+    /// How an assignment stands, for staff.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn overview(&self, assignment: &Assignment) -> Result<Option<Overview>, Problem> {
+        if !self.is_staff {
+            return Ok(None);
+        }
+        let mut transaction = self.app.0.database.read().await?;
+        let statement = "SELECT count(DISTINCT submission.account) AS students, count(*) AS submissions,
+            (SELECT count(*) FROM mark JOIN submission AS asked ON asked.id = mark.submission
+                WHERE asked.assignment = ? AND mark.requested_at > coalesce(mark.marked_at, 0)) AS requests,
+            (SELECT count(*) FROM suspicion WHERE assignment = ? AND state = 'open') AS suspicions
+            FROM submission WHERE submission.assignment = ?";
+        let all = transaction.all(statement, values![assignment.id, assignment.id, assignment.id]).await?;
+        Ok(all.into_iter().next())
     }
 
     /// Until when this member may hand in.

@@ -47,7 +47,7 @@ pub use import::Imported;
 pub use invitation::Invitation;
 pub use launch::{Launched, LoginAnswer, LoginRequest};
 pub use limits::{Transfer, TransferLimits};
-pub use mark::{Request, Work};
+pub use mark::{Overview, Request, Work};
 pub use member::Member;
 pub use members::{Added, MemberInfo};
 pub use password::Passwords;

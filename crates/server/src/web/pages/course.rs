@@ -4,12 +4,13 @@ use super::{
     Frame, see, show, text,
 };
 use crate::{
-    access::{Assignment, Event, Member, MemberInfo, Queue, Settings, Staff},
+    access::{Assignment, Event, Member, MemberInfo, Overview, Queue, Settings, Staff, Submission},
     problem::Problem,
 };
 use askama::Template;
 use axum::response::{Html, Redirect};
 use serde::Deserialize;
+use std::time::{SystemTime, UNIX_EPOCH};
 
 #[derive(Template)]
 #[template(path = "course.html")]
@@ -19,7 +20,58 @@ struct CoursePage {
     title: String,
     is_staff: bool,
     is_archived: bool,
-    assignments: Vec<Assignment>,
+    assignments: Vec<Row>,
+}
+
+/// An assignment in the table of its course.
+struct Row {
+    assignment: Assignment,
+    work: OwnWork,
+    /// How the class stands, for staff.
+    overview: Option<Overview>,
+}
+
+/// What a member did in an assignment, and may still do.
+pub(super) struct OwnWork {
+    /// Until when they may hand in.
+    pub(super) due: Option<i64>,
+    /// Whether that has passed.
+    pub(super) is_late: bool,
+    /// Whether nothing is taken any more, not even late.
+    pub(super) is_over: bool,
+    /// How often they may still hand in, where that is limited.
+    pub(super) left: Option<usize>,
+    /// All that they handed in, newest first.
+    pub(super) submissions: Vec<Submission>,
+    /// The submission with the most points, the later one of equals.
+    pub(super) best: Option<Submission>,
+}
+
+impl OwnWork {
+    pub(super) async fn of(member: &Member, assignment: &Assignment) -> Result<Self, Problem> {
+        let due = member.due(assignment).await?;
+        let submissions = member.submissions(&assignment.slug).await?;
+        let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_millis());
+        let late = u128::from(assignment.settings.late_days) * 86_400_000;
+        let passed = |late: u128| due.is_some_and(|due| u128::try_from(due).is_ok_and(|due| due + late < now));
+        let attempts = assignment.settings.attempts as usize;
+        let points = |one: &Submission| one.grade.as_ref()?.points.as_ref()?.parse::<f64>().ok();
+        let graded = submissions.iter().rev().filter_map(|one| Some((points(one)?, one)));
+        let best = graded.max_by(|(one, _), (other, _)| one.total_cmp(other)).map(|(_, one)| one.clone());
+        Ok(Self {
+            due,
+            is_late: passed(0),
+            is_over: passed(late),
+            left: (attempts > 0).then(|| attempts.saturating_sub(submissions.len())),
+            submissions,
+            best,
+        })
+    }
+
+    /// Whether they may hand in now.
+    pub(super) fn is_open(&self) -> bool {
+        !self.is_over && self.left != Some(0)
+    }
 }
 
 #[derive(Template)]
@@ -71,13 +123,18 @@ pub(super) struct Before {
 
 pub(super) async fn course(member: Member) -> Result<Html<String>, Problem> {
     let course = member.course();
+    let mut assignments = Vec::new();
+    for assignment in member.assignments().await? {
+        let (work, overview) = (OwnWork::of(&member, &assignment).await?, member.overview(&assignment).await?);
+        assignments.push(Row { assignment, work, overview });
+    }
     show(&CoursePage {
         frame: Frame::course(&member),
         slug: course.slug,
         title: course.title,
         is_staff: member.is_staff,
         is_archived: member.is_archived,
-        assignments: member.assignments().await?,
+        assignments,
     })
 }
 

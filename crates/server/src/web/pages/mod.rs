@@ -134,7 +134,11 @@ pages! {
 }
 
 async fn style() -> Response {
-    constant("text/css; charset=utf-8", include_str!("static/style.css"))
+    // One style sheet for reports and pages; what only pages have comes behind it.
+    constant(
+        "text/css; charset=utf-8",
+        concat!(include_str!("../../../../report/src/page/style.css"), include_str!("static/style.css")),
+    )
 }
 
 async fn script() -> Response {

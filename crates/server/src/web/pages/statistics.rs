@@ -8,6 +8,7 @@ const BIN: usize = 10;
 /// How a class did.
 pub(super) struct Statistics {
     pub(super) students: usize,
+    pub(super) accepted: usize,
     pub(super) mean: String,
     pub(super) median: String,
     /// Students by percent of the points.
@@ -20,9 +21,11 @@ impl Statistics {
     /// Of those who have points; nothing where nobody has.
     pub(super) fn of(standings: &[Standing]) -> Option<Self> {
         let mut parts = Vec::new();
+        let mut accepted = 0;
         let mut mistakes: BTreeMap<String, Vec<String>> = BTreeMap::new();
         for standing in standings {
             let Some(grade) = standing.counts.as_ref().and_then(|counts| counts.grade.as_ref()) else { continue };
+            accepted += usize::from(grade.verdict == "accepted");
             let number = |text: &Option<String>| text.as_ref().and_then(|text| text.parse::<f64>().ok());
             if let (Some(points), Some(most)) = (number(&grade.points), number(&grade.max_points))
                 && most > 0.0
@@ -47,6 +50,7 @@ impl Statistics {
         mistakes.sort_by_key(|(_, logins)| std::cmp::Reverse(logins.len()));
         Some(Self {
             students,
+            accepted,
             mean: rounded(&mean.to_string()),
             median: rounded(&median.to_string()),
             bins: (0..100).step_by(BIN).map(bin).collect(),

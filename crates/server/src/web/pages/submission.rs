@@ -1,7 +1,9 @@
 //! Handing in, and what came of it.
 use super::{
     super::{api, input::At},
-    Frame, see, show, text,
+    Frame,
+    course::OwnWork,
+    see, show, text,
 };
 use crate::{
     access::{Assignment, History, Member, Staff, Submission},
@@ -25,9 +27,7 @@ struct AssignmentPage {
     slug: String,
     is_staff: bool,
     assignment: Assignment,
-    /// Until when this member may hand in.
-    due: Option<i64>,
-    submissions: Vec<Submission>,
+    work: OwnWork,
     key: String,
 }
 
@@ -39,6 +39,8 @@ struct SubmissionPage {
     is_own: bool,
     is_staff: bool,
     submission: Submission,
+    /// What its owner may still do; nothing for others.
+    work: Option<OwnWork>,
     is_moving: bool,
     history: Vec<History>,
     /// Scenes in which the reference may be wrong, as staff says.
@@ -53,10 +55,9 @@ pub(super) async fn assignment(
 ) -> Result<Html<String>, Problem> {
     let assignment = member.assignment(&assignment).await?;
     let frame = Frame::assignment(&member, &assignment.slug, &assignment.title);
-    let submissions = member.submissions(&assignment.slug).await?;
-    let due = member.due(&assignment).await?;
+    let work = OwnWork::of(&member, &assignment).await?;
     let key = secret::random_hex();
-    show(&AssignmentPage { frame, slug, is_staff: member.is_staff, assignment, due, submissions, key })
+    show(&AssignmentPage { frame, slug, is_staff: member.is_staff, assignment, work, key })
 }
 
 pub(super) async fn submit(
@@ -80,11 +81,17 @@ pub(super) async fn submission(member: Member, At { course: slug, id, .. }: At) 
     } else {
         None
     };
+    let is_own = submission.login == member.account.login;
+    let work = match is_own && !member.is_staff {
+        true => Some(OwnWork::of(&member, &member.assignment(&submission.assignment).await?).await?),
+        false => None,
+    };
     show(&SubmissionPage {
         frame,
         slug,
         is_staff: member.is_staff,
-        is_own: submission.login == member.account.login,
+        is_own,
+        work,
         is_moving: matches!(submission.state.as_str(), "waiting" | "running"),
         history: member.history(id).await?,
         doubts: member.doubts(id).await?,

@@ -1,5 +1,9 @@
 //! Values as people read them.
-use crate::{access::RegradeState, calendar, task::rounded};
+use crate::{
+    access::{RegradeState, Submission},
+    calendar,
+    task::rounded,
+};
 
 /// A moment, as markup: in UTC, which a script makes the reader's own time.
 pub(super) fn time(milliseconds: &i64) -> String {
@@ -56,6 +60,42 @@ pub(super) fn score(score: &serde_json::Value) -> String {
 /// The beginning of a digest.
 pub(super) fn short(digest: &str) -> &str {
     digest.get(..12).unwrap_or(digest)
+}
+
+/// How the chip of a submission's state looks.
+pub(super) fn look(submission: &Submission) -> &'static str {
+    match (submission.state.as_str(), &submission.grade) {
+        ("waiting" | "running", _) => "warn",
+        (_, Some(grade)) if grade.verdict == "accepted" => "good",
+        _ => "bad",
+    }
+}
+
+/// What the chip says: the verdict, or what becomes of the submission while there is none.
+pub(super) fn outcome(submission: &Submission) -> &str {
+    match (submission.state.as_str(), &submission.grade) {
+        ("waiting" | "running", _) | (_, None) => state(&submission.state),
+        (_, Some(grade)) => &grade.verdict,
+    }
+}
+
+/// Whether a submission is accepted.
+pub(super) fn is_accepted(submission: &Option<Submission>) -> bool {
+    submission.as_ref().is_some_and(|submission| look(submission) == "good")
+}
+
+/// A size in bytes, in the unit that leaves few digits.
+pub(super) fn size(bytes: &(impl Copy + TryInto<u64>)) -> String {
+    match (*bytes).try_into().unwrap_or(0) {
+        few @ ..1024 => format!("{few} B"),
+        some @ ..1_048_576 => format!("{} KiB", (some + 512) / 1024),
+        many => format!("{} MiB", (many + 524_288) / 1_048_576),
+    }
+}
+
+/// Its points; a dash while there are none.
+pub(super) fn of(submission: &Submission) -> String {
+    submission.grade.as_ref().map_or_else(|| points(&None, &None), |grade| points(&grade.points, &grade.max_points))
 }
 
 /// The state of a submission, in words.
