@@ -101,7 +101,9 @@ class Viewer extends Words {
         el("label", {}, "speed ", this.speeds()),
         el("span", { class: "group" }, data.full ? button("Near", "Near the difference", () => { this.approach(); this.look(); }, "z") : "", button("All", "Show everything", () => this.whole(), "0"), data.full ? this.besideButton : ""),
         el("span", { class: "group" }, button("PNG", "Save this picture", () => this.picture()), button("SVG", "Save this picture as a drawing", () => this.drawing()),
-          button("Clip", "Record a film of the steps", () => this.clip()), button("Link", "Copy a link to this moment", () => this.link()))),
+          button("Clip", "Record a film of the steps", () => this.clip()),
+          // A page within a page has no address of its own.
+          location.protocol === "about:" ? "" : button("Link", "Copy a link to this moment", () => this.link()))),
       el("div", { class: "bar" }, el("label", { class: "grow" }, "inside the step, t = ", this.insideText, this.inside, this.ticks),
         el("label", {}, "moving ", this.passes), hybrid ? el("label", { class: "check" }, this.midBox, "after the impulses") : ""),
       data.full ? el("div", { class: "bar" }, check("reference", "reference from the start", "k-ref"), check("expected", "expected from your own state", "k-exp"),

@@ -98,6 +98,11 @@ pub(super) fn of(submission: &Submission) -> String {
     submission.grade.as_ref().map_or_else(|| points(&None, &None), |grade| points(&grade.points, &grade.max_points))
 }
 
+/// A number of students.
+pub(super) fn students(count: &usize) -> String {
+    format!("{count} {}", if *count == 1 { "student" } else { "students" })
+}
+
 /// The state of a submission, in words.
 pub(super) fn state(state: &str) -> &'static str {
     match state {

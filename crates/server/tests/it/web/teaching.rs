@@ -80,7 +80,7 @@ async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
     eve.wait_for_grade("physics", eve_handed_in);
     let class = teacher.get("/c/physics/a/m1/class?q=EVE").expect(200).text();
     assert!(
-        class.contains("1 students") && class.contains("students/eve") && !class.contains("students/ada"),
+        class.contains("1 student.") && class.contains("students/eve") && !class.contains("students/ada"),
         "{class}"
     );
     let class = teacher.get("/c/physics/a/m1/class?sort=points&page=7").expect(200).text();
