@@ -223,6 +223,40 @@ test("a suite of one's own brings its scenes along; what is wrong with it is tol
   await close();
 });
 
+// What a hand does: the browser makes files, folders and handles of it, which no picker makes.
+async function drag(page, paths) {
+  const debug = await page.context().newCDPSession(page);
+  const data = { items: [], files: paths, dragOperationsMask: 1 };
+  for (const type of ["dragEnter", "dragOver", "drop"]) await debug.send("Input.dispatchDragEvent", { type, x: 300, y: 200, data });
+  await debug.detach();
+}
+
+test("what is dragged onto the page is taken, whichever tab is open: a trace, a folder, a suite with it", async () => {
+  const { page, complaints, close } = await opened(browser, html);
+  const right = trace("ContinuousTimeTests/head-on-equal-masses");
+  await page.locator("#tab-submission").click();
+  await drag(page, [right]);
+  await page.waitForFunction(() => document.documentElement.dataset.checked === "1");
+  assert.match(await said(page), /^trace\.bin: accepted/);
+  // The program has run again: the key reads the file once more, without another drop.
+  trace("ContinuousTimeTests/head-on-equal-masses", "pp-contact-reversed");
+  await page.keyboard.press("r");
+  await page.waitForFunction(() => document.documentElement.dataset.checked === "2");
+  assert.match(await said(page), /^trace\.bin: wrong answer/);
+  mkdirSync(join(folder, "dragged/GeometricTests"), { recursive: true });
+  trace(WRONG[0], null, `dragged/${WRONG[0]}.bin`);
+  await drag(page, [join(folder, "dragged")]);
+  await page.waitForFunction(() => document.documentElement.dataset.marked === "1", null, { timeout: 60_000 });
+  assert.match(await page.locator("#folder-name").innerText(), /^dragged, 1 trace$/);
+  const suite = join(folder, "dragged.toml");
+  writeFileSync(suite, `schema = 1\nname = "one"\n[[group]]\nname = "G"\npoints = 7\nscenes = ["asset:${WRONG[0]}"]\n`);
+  await drag(page, [suite]);
+  await page.waitForFunction(() => document.documentElement.dataset.marked === "2", null, { timeout: 60_000 });
+  assert.match(await page.locator("#marks-said").innerText(), /\b7\b/);
+  assert.deepEqual(complaints.filter((one) => !one.includes("postMessage")), []);
+  await close();
+});
+
 test("a scene is written: messages in place, its motion, and files that are the program's", async () => {
   const { page, complaints, close } = await opened(browser, html);
   await page.locator("#tab-try").click();
