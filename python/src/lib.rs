@@ -1,6 +1,6 @@
 //! What the Python module `fosssim` asks of the program (`fosssim/__init__.py` has the surface that people use). Numbers
 //! go over as bytes in the machine's order, which NumPy reads where they lie.
-use fosssim_browser::{Host, Session, parts};
+use fosssim_browser::{PageHost, PageSession, parts};
 use fosssim_model::{
     scene::{self, Loaded, Scene},
     trace::{Frame, Layout, Reader},
@@ -17,7 +17,7 @@ use pyo3::{
 /// A trace in memory, the only file of a request.
 struct Memory<'a>(&'a [u8]);
 
-impl Host for Memory<'_> {
+impl PageHost for Memory<'_> {
     fn read(&self, file: u32, offset: u64, into: &mut [u8]) -> Option<usize> {
         let rest = usize::try_from(offset).ok().and_then(|offset| self.0.get(offset..)).filter(|_| file == 0)?;
         let count = rest.len().min(into.len());
@@ -61,7 +61,7 @@ mod _native {
             .map(|request| parts::joined(&request.iter().map(|part| &part[..]).collect::<Vec<_>>()))
             .collect();
         let answers: Vec<Vec<u8>> = py.detach(|| {
-            let (mut session, host) = (Session::default(), Memory(&trace));
+            let (mut session, host) = (PageSession::default(), Memory(&trace));
             joined.iter().map(|request| session.answer(request, &host)).collect()
         });
         let cut = || PyValueError::new_err("the answer is cut");

@@ -1,5 +1,4 @@
-//! The program for browsers: the same rooms as the command line's `check`, `simulate`, `detect` and
-//! `grade --traces`, asked by messages
+//! The program for browsers: `check`, `simulate`, `detect` and `grade --traces` of the command line, asked by messages
 //! instead of arguments.
 //!
 //! A [`PageSession`] answers one request after the other. A request is a list of byte strings, of which the first is
