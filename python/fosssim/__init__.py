@@ -71,7 +71,7 @@ def _numbers(data: bytes, *shape: int) -> NDArray[np.float64]:
 def scenes() -> list[str]:
     """The names of the scenes that come with the program, as ``Scene`` takes them."""
     ((listed,),) = _ask([_request("scenes")])
-    groups = [group for assignment in _json.loads(listed) for group in assignment["groups"]]
+    groups = [group for assignment in _json.loads(listed)["assignments"] for group in assignment["groups"]]
     return [f"asset:{group['group']}/{name}" for group in groups for name in group["names"]]
 
 
