@@ -99,8 +99,8 @@ pub(super) fn of(submission: &Submission) -> String {
 }
 
 /// A number of students.
-pub(super) fn students(count: &usize) -> String {
-    format!("{count} {}", if *count == 1 { "student" } else { "students" })
+pub(super) fn students(count: usize) -> String {
+    format!("{count} {}", if count == 1 { "student" } else { "students" })
 }
 
 /// The state of a submission, in words.
