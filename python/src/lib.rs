@@ -7,12 +7,7 @@ use fosssim_model::{
 };
 use fosssim_num::vector::Vec2;
 use fosssim_report::problems;
-use pyo3::{
-    exceptions::PyValueError,
-    prelude::*,
-    pybacked::PyBackedBytes,
-    types::PyBytes,
-};
+use pyo3::{exceptions::PyValueError, prelude::*, pybacked::PyBackedBytes, types::PyBytes};
 
 /// A trace in memory, the only file of a request.
 struct Memory<'a>(&'a [u8]);
