@@ -9,7 +9,7 @@ use fosssim_server::{
 };
 
 /// What takes a database back to the tables of the first version, with an account in it.
-const BACK_TO_THE_FIRST: [&str; 73] = [
+const BACK_TO_THE_FIRST: [&str; 75] = [
     "DROP INDEX job_token",
     "DROP INDEX job_buried",
     "DROP INDEX job_cancelled",
@@ -18,6 +18,8 @@ const BACK_TO_THE_FIRST: [&str; 73] = [
     "DROP INDEX result_campaign",
     "DROP INDEX job_campaign",
     "DROP TABLE tally",
+    "ALTER TABLE job DROP COLUMN scenes",
+    "ALTER TABLE job DROP COLUMN scenes_done",
     "ALTER TABLE job DROP COLUMN deaths",
     "ALTER TABLE job DROP COLUMN lone_deaths",
     "ALTER TABLE job DROP COLUMN is_alone",
