@@ -77,15 +77,12 @@ $("other").addEventListener("click", () => { $("ask").open = true; $("pick").foc
 $("save-html").addEventListener("click", () => save(`${check.report.name}.html`, check.report.html, "text/html"));
 $("save-json").addEventListener("click", () => save(`${check.report.name}.json`, check.report.json, "application/json"));
 $("pick").addEventListener("change", async ({ target }) => { await takeFiles([...target.files].map((file) => ({ file }))); target.value = ""; });
-document.addEventListener("keydown", (event) => {
+function readsAgain(event) {
   const writes = /^(input|select|textarea)$/i.test(event.target.tagName ?? "");
   if (event.key === "r" && !event.ctrlKey && !event.metaKey && !event.altKey && !writes && current() === "check" && check.report) judge();
-});
+}
 
-// Files may be dropped anywhere.
-addEventListener("dragover", (event) => { event.preventDefault(); document.body.classList.add("drops"); });
-addEventListener("dragleave", (event) => { if (!event.relatedTarget) document.body.classList.remove("drops"); });
-addEventListener("drop", async (event) => {
+async function dropped(event) {
   event.preventDefault();
   document.body.classList.remove("drops");
   // Handles have to be asked for before anything is waited for.
@@ -107,4 +104,14 @@ addEventListener("drop", async (event) => {
   const files = [];
   for (const { file, handle } of entries) if (file) files.push({ file, handle: await handle });
   takeFiles(files);
-});
+}
+
+// Files may be dropped anywhere, also on the report, which is a document of its own; so it is with the key.
+function listens(target) {
+  target.addEventListener("keydown", readsAgain);
+  target.addEventListener("dragover", (event) => { event.preventDefault(); document.body.classList.add("drops"); });
+  target.addEventListener("dragleave", (event) => { if (!event.relatedTarget) document.body.classList.remove("drops"); });
+  target.addEventListener("drop", dropped);
+}
+listens(window);
+$("frame").addEventListener("load", () => listens($("frame").contentWindow));
