@@ -17,7 +17,7 @@ use fosssim_oracle::{
         polynomial::Polynomial,
         vector::{Vec2, length},
     },
-    scene::{Collision, Integrator, Scene},
+    scene::{Collision, CollisionDetection, Integrator, Scene},
     sim::{Decision, Detection, Observer, Pair, PairKind, RootSearch, Simulation, State},
 };
 use proptest::prelude::*;
@@ -102,12 +102,17 @@ fn is_explicit(scene: &Scene) -> bool {
     !matches!(scene.integrator, Integrator::ImplicitEuler | Integrator::LinearizedImplicitEuler)
 }
 
+/// The contest's penalty force is summed in the order of a sweep along x, which a turn changes.
+fn sums_along_x(scene: &Scene) -> bool {
+    matches!(scene.collision, Collision::Penalty { detection: CollisionDetection::Contest, .. })
+}
+
 #[test]
 fn quarter_turns_and_mirrors_change_no_bit() {
     let maps = [[[0.0, -1.0], [1.0, 0.0]], [[-1.0, 0.0], [0.0, 1.0]], [[0.0, 1.0], [1.0, 0.0]]];
     let different: Vec<String> = built_in()
         .par_iter()
-        .filter(|(_, scene)| is_explicit(scene))
+        .filter(|(_, scene)| is_explicit(scene) && !sums_along_x(scene))
         .flat_map_iter(|(name, scene)| {
             let maps = maps.map(|rows| Map { rows, ..Map::NONE });
             let differs = move |map: Map| same_steps(scene, &map).1.map(|_| format!("{name} {:?}", map.rows));
