@@ -14,10 +14,10 @@ use std::{
     process::{Command, Stdio},
 };
 
-/// What Rust's standard library asks the linker for.
+/// The libraries that Rust's standard library asks the linker for.
 const SHARED: [&str; 7] = ["gcc_s", "c", "m", "rt", "pthread", "dl", "util"];
 
-/// What it gets for each of them: archives that need one another.
+/// The archives that it gets for each of them, which need one another.
 const ARCHIVES: &str = "GROUP(-l:libc.a -l:libm.a -l:libgcc_eh.a -l:libgcc.a)\n";
 
 fn main() {

@@ -163,7 +163,7 @@ fn ratio(slow: Duration, fast: Duration) -> f64 {
     slow.as_secs_f64() / fast.as_secs_f64()
 }
 
-/// What grading adds to the processor time of the program that is graded.
+/// The processor time that grading adds to that of the program that is graded.
 fn sandbox() {
     let (grader, sample) = (env!("CARGO_BIN_EXE_fosssim-oracle"), env!("CARGO_BIN_EXE_fosssim-sample"));
     let folder = tempfile::tempdir().expect("a folder");

@@ -1,4 +1,4 @@
-//! What the fuzz target of the service does with its bytes; the service's tests replay the seeds, and what becomes of
+//! The work of the service's fuzz target on its bytes; the service's tests replay the seeds, and what becomes of
 //! them when bytes change, through the same function.
 use fosssim_server::{
     archive::{self, ArchiveLimits},
@@ -20,7 +20,7 @@ pub fn archive(bytes: &[u8]) -> bool {
     let looked = archive::look_through(&file, LIMITS);
     let unpacked = archive::unpack(&file, &folder, LIMITS);
     assert_eq!(looked.is_ok(), unpacked.is_ok(), "what is looked through can be unpacked: {looked:?}, {unpacked:?}");
-    // Whatever became of it: nothing lies outside, nothing is a link, and no more came out than may.
+    // In every case nothing lies outside, nothing is a link, and no more came out than may.
     assert_eq!(fs::read_to_string(&outside).expect("the file"), "untouched");
     let beside: Vec<_> =
         fs::read_dir(place.path()).expect("a folder").map(|entry| entry.expect("an entry").file_name()).collect();
@@ -44,7 +44,7 @@ pub fn form(bytes: &[u8]) -> bool {
     let place = tempfile::tempdir().expect("a folder");
     let runtime = tokio::runtime::Builder::new_current_thread().enable_time().build().expect("a runtime");
     let received = runtime.block_on(web::receive_form(place.path(), body, usize::from(*pieces), LARGEST));
-    // Whatever became of it: no more than allowed, and nothing lies around.
+    // In every case there is no more than allowed, and nothing lies around.
     assert_eq!(fs::read_dir(place.path()).expect("a folder").count(), 0);
     match received {
         Ok((size, [_, kind, key])) => {

@@ -1,4 +1,4 @@
-//! What the Python module `fosssim` asks of the program (`fosssim/__init__.py` has the surface that people use). Numbers
+//! The native part of the Python module `fosssim` (`fosssim/__init__.py` has the surface that people use). Numbers
 //! go over as bytes in the machine's order, which NumPy reads where they lie.
 use fosssim_browser::{PageHost, PageSession, parts};
 use fosssim_model::{
@@ -93,8 +93,8 @@ mod _native {
         Ok((bytes(py, &positions)?, bytes(py, &velocities)?, fault))
     }
 
-    /// What a scene holds: duration, time step, steps; positions, velocities, masses and radii of particles as doubles;
-    /// whether each is fixed, a byte each; the ends of edges as pairs.
+    /// The contents of a scene: duration, time step, steps; positions, velocities, masses and radii of particles as
+    /// doubles; whether each is fixed, a byte each; the ends of edges as pairs.
     #[pyfunction]
     #[expect(clippy::type_complexity, reason = "a tuple that Python names")]
     fn scene<'py>(

@@ -1,12 +1,11 @@
 //! The command line as typed. What it means is decided by the commands.
 use super::{
     grading::{Demo, Doctor, Grade, Merge, Selftest, Suite},
-    later::Later,
-    pictures::{Detect, Render},
+    pictures::{DetectArguments, Render},
     scenes::Scene,
-    values::{Rules, TextOrJson, at_least_one},
+    values::{TextOrJson, at_least_one, explaining, reader, rules},
 };
-use crate::suite::config;
+use crate::{judge::Rules, report::page::Audience, suite::config::Hints};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use std::{ffi::OsString, num::NonZeroUsize, path::PathBuf};
@@ -16,15 +15,22 @@ use std::{ffi::OsString, num::NonZeroUsize, path::PathBuf};
 #[command(name = "fosssim-oracle", version, max_term_width = 100, after_help = EXIT_CODES)]
 pub(super) struct Arguments {
     /// When to use colours; auto: on a terminal without NO_COLOR, and always with CLICOLOR_FORCE.
-    #[arg(long, global = true, value_enum, value_name = "WHEN", default_value_t = Colour::Auto, display_order = 900)]
-    pub(super) color: Colour,
+    #[arg(
+        long,
+        global = true,
+        value_enum,
+        value_name = "WHEN",
+        default_value_t = ColourChoice::Auto,
+        display_order = 900
+    )]
+    pub(super) color: ColourChoice,
     #[command(subcommand)]
     pub(super) command: Command,
 }
 
 /// When colours are used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum Colour {
+pub(super) enum ColourChoice {
     Auto,
     Always,
     Never,
@@ -40,52 +46,52 @@ SUITE is a file, or a milestone of the course: t1m1, t1m2, t1m3, t2m1, t2m2 or t
 SCENE is a file, or asset:Group/name for a scene that comes with the program.
 TRACE is a file (.zst files are unpacked), - for standard input, or asset:Group/name for its recording.";
 
-// What help says of each among the others stands here, all else with its arguments.
+// Help's sentence about each among the others stands here, all else with its arguments.
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
     /// Simulates a scene, and records its trace.
-    Simulate(Later<Simulate>),
+    Simulate(Simulate),
     /// Grades a trace by the original's rules and by fair ones: what is wrong, and where.
-    Check(Later<Check>),
+    Check(CheckArguments),
     /// Names the likely mistake of a program, from its trace or by running it.
-    Explain(Later<Explain>),
+    Explain(Explain),
     /// Computes one pair: polynomials, zeros, intervals, decision, time of impact, normal.
-    Detect(Box<Later<Detect>>),
+    Detect(Box<DetectArguments>),
     /// Draws a scene's motion: a picture per step, an animated PNG, a GIF, or a movie.
-    Render(Box<Later<Render>>),
+    Render(Box<Render>),
     /// Shows what a trace holds, one of its steps, or how two traces differ.
     #[command(subcommand)]
-    Trace(Later<Trace>),
+    Trace(Trace),
     /// Records the traces of all scenes of a folder, or checks that they are still the same.
-    Record(Later<Record>),
+    Record(Record),
     /// Grades programs: runs them on a suite of scenes in a sandbox, and judges their traces while they are written.
-    Grade(Later<Grade>),
+    Grade(Grade),
     /// Joins the parts that `grade --shard` graded into one grading.
-    Merge(Later<Merge>),
+    Merge(Merge),
     /// Writes and explains suites: what is graded, with what limits and points.
     #[command(subcommand)]
-    Suite(Later<Suite>),
+    Suite(Suite),
     /// Lists the scenes that come with the program, prints one, or writes them into a folder.
     #[command(subcommand)]
-    Scene(Later<Scene>),
+    Scene(Scene),
     /// Grades a right and a wrong sample program, to show how everything works.
-    Demo(Later<Demo>),
+    Demo(Demo),
     /// Says which layers of the sandbox hold on this machine, and what to install.
-    Doctor(Later<Doctor>),
+    Doctor(Doctor),
     /// Runs hostile programs in the sandbox of this machine, and prints which of its promises hold.
-    Selftest(Later<Selftest>),
+    Selftest(Selftest),
     /// Runs a course's grading server, the program fosssim-server beside this one.
-    Serve(Later<Serve>),
+    Serve(ServeArguments),
     /// Writes the page that checks traces in any browser, with nothing installed.
-    Page(Later<Page>),
+    Page(PageArguments),
     /// Behaves as the original program: same flags, same output, same files, same exit codes.
     ///
     /// The same happens when the program is called under a name that starts with FOSSSimOracle.
-    Original(Later<Original>),
+    Original(Original),
     /// Prints a completion script for a shell.
-    Completions(Later<Completions>),
+    Completions(Completions),
     /// Prints the manual page, or that of a command.
-    Man(Later<Man>),
+    Man(Man),
 }
 
 /// The number of a step.
@@ -153,7 +159,7 @@ Example:
   fosssim-oracle check scenes/test00.xml submission.bin --format html --output report.html
   fosssim-oracle check scenes/test00.xml submission.bin --format json --output report.json
   fosssim-oracle check --self scenes/*.xml")]
-pub(super) struct Check {
+pub(super) struct CheckArguments {
     /// The scene, a file or asset:Group/name.
     #[arg(required_unless_present = "own")]
     pub(super) scene: Option<PathBuf>,
@@ -165,7 +171,7 @@ pub(super) struct Check {
     #[arg(long = "self", value_name = "SCENE", num_args = 0.., conflicts_with_all = ["scene", "audit", "rules", "no_explain"])]
     pub(super) own: Option<Vec<PathBuf>>,
     /// The rule books.
-    #[arg(long, value_enum, default_value_t = Rules::Both)]
+    #[arg(long, value_parser = rules(), default_value = "both")]
     pub(super) rules: Rules,
     /// How the report is written.
     #[arg(long, value_enum, default_value_t = CheckFormat::Text)]
@@ -196,24 +202,6 @@ pub(super) struct Check {
     pub(super) quiet: Quiet,
 }
 
-/// How much an explanation tells.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum Hints {
-    /// The likely mistake, in one sentence.
-    What,
-    /// Also the exact terms and an example: this may give the right formula away.
-    Full,
-}
-
-impl From<Hints> for config::Hints {
-    fn from(hints: Hints) -> Self {
-        match hints {
-            Hints::What => Self::What,
-            Hints::Full => Self::Full,
-        }
-    }
-}
-
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
@@ -231,7 +219,7 @@ pub(super) struct Explain {
     #[arg(long, value_name = "PROGRAM")]
     pub(super) program: Option<PathBuf>,
     /// How much the explanation tells.
-    #[arg(long, value_enum, default_value_t = Hints::Full)]
+    #[arg(long, value_parser = explaining(), default_value = "full")]
     pub(super) hints: Hints,
     /// How the report is written.
     #[arg(long, value_enum, default_value_t = ExplainFormat::Text)]
@@ -353,7 +341,7 @@ pub(super) struct Original {
 Example:
   fosssim-oracle serve --data course --listen 127.0.0.1:8080"
 )]
-pub(super) struct Serve {
+pub(super) struct ServeArguments {
     /// The server's own options; serve --help lists them.
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "OPTIONS")]
     pub(super) words: Vec<OsString>,
@@ -362,14 +350,27 @@ pub(super) struct Serve {
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
-  fosssim-oracle page --output oracle.html")]
-pub(super) struct Page {
+  fosssim-oracle page --output oracle.html
+  fosssim-oracle page --suite course/suite.toml --for student --output course.html")]
+pub(super) struct PageArguments {
     /// Where to write it; - is standard output.
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: PathBuf,
     /// The module (WebAssembly) to put inside, instead of the program's own; scripts/browser-page makes it.
     #[arg(long, value_name = "FILE")]
     pub(super) module: Option<PathBuf>,
+    /// The suite of a course, with its scenes, to put inside.
+    #[arg(long, value_name = "SUITE")]
+    pub(super) suite: Option<String>,
+    /// The page's readers: nothing of what the suite hides from students is in theirs.
+    #[arg(
+        long = "for",
+        value_parser = reader(),
+        value_name = "READER",
+        default_value = "student",
+        requires = "suite"
+    )]
+    pub(super) reader: Audience,
 }
 
 #[derive(Debug, Args)]

@@ -1,7 +1,7 @@
 //! The terminal: standard output that survives a closed pipe, the decision about colours, lines that fit, and progress
 //! bars that nothing is written across.
 use super::{
-    arguments::Colour,
+    arguments::ColourChoice,
     interrupt,
     screen::{clear_bars, on_screen, write_above_bars},
     values::TextOrJson,
@@ -23,10 +23,10 @@ use std::{
 use terminal_size::{Width, terminal_size_of};
 
 /// The value of `--color`.
-static COLOUR: OnceLock<Colour> = OnceLock::new();
+static COLOUR: OnceLock<ColourChoice> = OnceLock::new();
 
 /// Remembers what `--color` says; the first word counts.
-pub(super) fn choose_colour(colour: Colour) {
+pub(super) fn choose_colour(colour: ColourChoice) {
     let _ = COLOUR.set(colour);
 }
 
@@ -47,12 +47,12 @@ fn is_quiet() -> bool {
 pub(super) fn style() -> Style {
     let is = |name: &str, value: &str| std::env::var_os(name).is_some_and(|found| found == value);
     let is_set = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
-    let wanted = match COLOUR.get().copied().unwrap_or(Colour::Auto) {
-        Colour::Always => true,
-        Colour::Never => false,
-        Colour::Auto if is_set("NO_COLOR") => false,
-        Colour::Auto if is_set("CLICOLOR_FORCE") && !is("CLICOLOR_FORCE", "0") => true,
-        Colour::Auto => io::stdout().is_terminal() && !is("TERM", "dumb") && !is("CLICOLOR", "0"),
+    let wanted = match COLOUR.get().copied().unwrap_or(ColourChoice::Auto) {
+        ColourChoice::Always => true,
+        ColourChoice::Never => false,
+        ColourChoice::Auto if is_set("NO_COLOR") => false,
+        ColourChoice::Auto if is_set("CLICOLOR_FORCE") && !is("CLICOLOR_FORCE", "0") => true,
+        ColourChoice::Auto => io::stdout().is_terminal() && !is("TERM", "dumb") && !is("CLICOLOR", "0"),
     };
     if wanted { Style::Colour } else { Style::Plain }
 }

@@ -1,11 +1,12 @@
 //! Arguments of the commands that run programs, as typed.
-use super::values::{Rules, TextOrJson, at_least_one};
+use super::values::{TextOrJson, at_least_one, hints, reader, rules};
 use crate::{
     assignments::Assignment,
-    report::{grade::Format, page},
-    suite::{config, plan},
+    judge::Rules,
+    report::{grade::Format, page::Audience},
+    suite::{config::Hints, plan},
 };
-use clap::{Args, Subcommand, ValueEnum};
+use clap::{Args, Subcommand};
 use std::{num::NonZeroUsize, path::PathBuf, str::FromStr};
 
 /// The help of `--format`, where these formats are taken.
@@ -51,7 +52,7 @@ pub(super) struct Grade {
     #[arg(long, value_name = "SUITE", default_value = Assignment::DEFAULT.key(), help = help_of_suite())]
     pub(super) suite: String,
     /// The rule books; by default the suite's.
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = rules())]
     pub(super) rules: Option<Rules>,
     /// The folder for results, logs and the journal.
     #[arg(short, long, value_name = "DIR")]
@@ -60,7 +61,7 @@ pub(super) struct Grade {
     pub(super) format: Vec<String>,
     /// The reader of HTML pages. Pages for students leave out groups that the suite hides, and everything that tells
     /// of them. The output folder gets both kinds; pages to hand out are in students/.
-    #[arg(long = "for", value_enum, value_name = "READER", default_value_t = Audience::Staff)]
+    #[arg(long = "for", value_parser = reader(), value_name = "READER", default_value = "staff")]
     pub(super) reader: Audience,
     /// Number of runs at one time. One per core by default.
     #[arg(short, long, value_name = "N", value_parser = at_least_one::<NonZeroUsize>)]
@@ -72,8 +73,8 @@ pub(super) struct Grade {
     #[arg(long)]
     pub(super) failed: bool,
     /// How much reports tell; by default the suite's choice. `full` may give a formula away.
-    #[arg(long, value_enum, value_name = "LEVEL")]
-    pub(super) hints: Option<Level>,
+    #[arg(long, value_parser = hints(), value_name = "LEVEL")]
+    pub(super) hints: Option<Hints>,
     /// Keep the traces of scenes that are not accepted, in the output folder.
     #[arg(long)]
     pub(super) keep_traces: bool,
@@ -144,24 +145,6 @@ impl FromStr for Shard {
     }
 }
 
-/// The reader of a page.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum Audience {
-    /// Staff: every group. The suite's hints, or `--hints`, say how much of each scene is shown.
-    Staff,
-    /// The student: the groups that the suite shows students at once.
-    Student,
-}
-
-impl From<Audience> for page::Audience {
-    fn from(reader: Audience) -> Self {
-        match reader {
-            Audience::Staff => Self::Staff,
-            Audience::Student => Self::Student,
-        }
-    }
-}
-
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
@@ -180,35 +163,11 @@ pub(super) struct Merge {
     #[arg(long, value_name = "FORMAT[=FILE]", help = help_of_formats(Format::takes_several))]
     pub(super) format: Vec<String>,
     /// The reader of HTML pages. Pages for students go to students/, beside those for staff.
-    #[arg(long = "for", value_enum, value_name = "READER", default_value_t = Audience::Staff)]
+    #[arg(long = "for", value_parser = reader(), value_name = "READER", default_value = "staff")]
     pub(super) reader: Audience,
     /// Show a line per submission only.
     #[arg(short, long)]
     pub(super) quiet: bool,
-}
-
-/// How much reports tell.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum Level {
-    /// The verdict only.
-    None,
-    /// Where the first divergence is.
-    Where,
-    /// Also the likely mistake, in a sentence.
-    What,
-    /// Everything, formulas and values included.
-    Full,
-}
-
-impl From<Level> for config::Hints {
-    fn from(level: Level) -> Self {
-        match level {
-            Level::None => Self::None,
-            Level::Where => Self::Where,
-            Level::What => Self::What,
-            Level::Full => Self::Full,
-        }
-    }
 }
 
 #[derive(Debug, Subcommand)]
@@ -219,7 +178,6 @@ pub(super) enum Suite {
     Init(SuiteInit),
     Check(SuiteCheck),
     List(SuiteList),
-    Scenes(SuiteScenes),
 }
 
 /// Prints a commented suite to start from.
@@ -259,13 +217,6 @@ pub(super) struct SuiteList {
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t = TextOrJson::Text)]
     pub(super) format: TextOrJson,
 }
-
-/// Lists the scenes that come with the program, as `scene list` does.
-#[derive(Debug, Args)]
-#[command(after_help = "\
-Example:
-  fosssim-oracle suite scenes")]
-pub(super) struct SuiteScenes {}
 
 #[derive(Debug, Args)]
 #[command(after_help = "\

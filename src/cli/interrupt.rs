@@ -1,4 +1,4 @@
-//! What is cleared up when the user ends the program, and who sees to it that it ends.
+//! Clearing up when the user ends the program, and who sees to it that it ends.
 //!
 //! The first signal lets a grading come to its end: programs are ended, and what is known is written. A user who waits
 //! for something that never comes is not waited for: where nothing moves for some seconds the program ends all the
@@ -37,7 +37,7 @@ pub(super) fn clean_up_when_interrupted() {
 
 /// Ends the program, and leaves nothing half done behind.
 fn end() -> ! {
-    // Whatever follows could wait, too: for a lock, or for somebody who reads what is written.
+    // The code below could wait, too: for a lock, or for somebody who reads what is written.
     thread::spawn(|| {
         thread::sleep(Duration::from_secs(1));
         std::process::exit(exit::INTERRUPTED.into());

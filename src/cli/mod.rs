@@ -7,7 +7,6 @@ pub mod exit;
 mod grading;
 mod input;
 mod interrupt;
-mod later;
 mod original;
 mod output;
 mod pictures;

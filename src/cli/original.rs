@@ -1,4 +1,4 @@
-//! What the drop-in for the original program asks of this one: pictures, and words for what has no result.
+//! The parts of this program that the drop-in for the original asks for: pictures, and words for what has no result.
 use crate::original::{NO_PICTURE_FOLDER, Outside, Pictures};
 use crate::{
     cli::output::Folder,

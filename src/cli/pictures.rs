@@ -89,7 +89,7 @@ The first two are the assignment's worked examples. Their overlap polynomials ar
 A pair is one word: pp, pe or ph (particle with particle, edge, half-plane) and its points behind colons: the \
 particles' centres, the particle and the edge's two ends, or the particle, a point on the boundary and the normal. A \
 moving point is X,Y+DX,DY (start and displacement) or X,Y..X,Y (start and end).")]
-pub(super) struct Detect {
+pub(super) struct DetectArguments {
     /// The kind of pair (pp, pe, ph) and its points.
     #[arg(value_name = "KIND:POINTS")]
     pub(super) word: Option<String>,

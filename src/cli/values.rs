@@ -1,6 +1,9 @@
 //! Values that several commands take as arguments.
-use crate::judge;
-use clap::ValueEnum;
+use crate::{judge::Rules, report::page::Audience, suite::config::Hints};
+use clap::{
+    ValueEnum,
+    builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
+};
 use std::str::FromStr;
 
 /// A count that can't be zero.
@@ -17,23 +20,59 @@ pub(super) enum TextOrJson {
     Json,
 }
 
-/// Which rule books are asked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum Rules {
-    /// The original's rules alone.
-    Parity,
-    /// The fair rules give the verdict: round-off, scale and the course's own slip can't change it.
-    Fair,
-    /// The original's rules give the verdict, and the report says where the fair ones differ, and why.
-    Both,
+/// A word of the command line, the library's value that it means, and its help.
+type Word<T> = (&'static str, T, &'static str);
+
+/// Reads the words of a value.
+fn one_of<T: Copy + Send + Sync + 'static>(words: &'static [Word<T>]) -> impl TypedValueParser<Value = T> {
+    PossibleValuesParser::new(words.iter().map(|(word, _, help)| PossibleValue::new(*word).help(*help))).try_map(
+        |found| words.iter().find(|(word, ..)| *word == found).map(|(_, value, _)| *value).ok_or("no such word"),
+    )
 }
 
-impl From<Rules> for judge::Rules {
-    fn from(rules: Rules) -> Self {
-        match rules {
-            Rules::Parity => Self::Parity,
-            Rules::Fair => Self::Fair,
-            Rules::Both => Self::Both,
-        }
-    }
+/// The choice of rule books.
+pub(super) fn rules() -> impl TypedValueParser<Value = Rules> {
+    one_of(&[
+        ("parity", Rules::Parity, "The original's rules alone"),
+        (
+            "fair",
+            Rules::Fair,
+            "The fair rules give the verdict: round-off, scale and the course's own slip can't change it",
+        ),
+        (
+            "both",
+            Rules::Both,
+            "The original's rules give the verdict, and the report says where the fair ones differ, and why",
+        ),
+    ])
+}
+
+/// How much reports tell.
+pub(super) fn hints() -> impl TypedValueParser<Value = Hints> {
+    one_of(&[
+        ("none", Hints::None, "The verdict only"),
+        ("where", Hints::Where, "Where the first divergence is"),
+        ("what", Hints::What, "Also the likely mistake, in a sentence"),
+        ("full", Hints::Full, "Everything, formulas and values included"),
+    ])
+}
+
+/// How much an explanation tells: at least the likely mistake.
+pub(super) fn explaining() -> impl TypedValueParser<Value = Hints> {
+    one_of(&[
+        ("what", Hints::What, "The likely mistake, in one sentence"),
+        ("full", Hints::Full, "Also the exact terms and an example: this may give the right formula away"),
+    ])
+}
+
+/// The reader of a page.
+pub(super) fn reader() -> impl TypedValueParser<Value = Audience> {
+    one_of(&[
+        (
+            "staff",
+            Audience::Staff,
+            "Staff: every group. The suite's hints, or `--hints`, say how much of each scene is shown",
+        ),
+        ("student", Audience::Student, "The student: the groups that the suite shows students at once"),
+    ])
 }

@@ -6,7 +6,7 @@ import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync, readdir
 import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { after, before, test as node } from "node:test";
-import { inflateRawSync } from "node:zlib";
+import { gzipSync, inflateRawSync } from "node:zlib";
 import { judgeAccessibility, launch, opened, programs, root } from "./browser.js";
 
 const html = resolve(process.env.FOSSSIM_PAGE ?? join(root, "target/page/oracle.html"));
@@ -31,6 +31,17 @@ const oracle = (...words) => spawnSync(join(programs, "fosssim-oracle"), words, 
 function trace(name, mistake, file = "trace.bin") {
   execFileSync(join(programs, "fosssim-sample"), [...(mistake ? ["--mistake", mistake] : []), "-s", scene(name), "-d", "0", "-o", join(folder, file)]);
   return join(folder, file);
+}
+
+// A frame of zstd whose blocks hold the bytes as they are.
+function zstd(bytes) {
+  const blocks = [];
+  for (let at = 0; at < bytes.length; at += 1 << 16) {
+    const piece = bytes.subarray(at, at + (1 << 16)), head = Buffer.alloc(4);
+    head.writeUInt32LE((piece.length << 3) | (at + piece.length === bytes.length ? 1 : 0));
+    blocks.push(head.subarray(0, 3), piece);
+  }
+  return Buffer.concat([Buffer.from([0x28, 0xb5, 0x2f, 0xfd, 0x00, 0x58]), ...blocks]);
 }
 
 const WRONG = ["GeometricTests/pair-becomes-rigid", "failsafe-angular-overwritten"];
@@ -111,6 +122,20 @@ test("a trace that is cut, one of another scene, a text, an empty file: each has
   await close();
 });
 
+test("a trace that may be one of several scenes is asked about by their names", async () => {
+  const { page, complaints, close } = await opened(browser, html);
+  const names = ["implicit-euler-stiff-chain", "linearized-implicit-chain"];
+  execFileSync(join(programs, "fosssim-sample"), ["-s", join(root, `assets/t1m3/IntegratorTests/${names[0]}.xml`), "-d", "0", "-o", join(folder, "alike.bin")]);
+  await page.locator("#pick").setInputFiles(join(folder, "alike.bin"));
+  await page.getByText("The trace begins like those of").waitFor();
+  for (const name of names) assert.ok((await said(page)).includes(name), await said(page));
+  await page.locator("#scene").selectOption(`IntegratorTests/${names[0]}`);
+  await page.waitForFunction(() => document.documentElement.dataset.checked === "1");
+  assert.match(await said(page), /^alike\.bin: accepted/);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
 test("a scene of one's own is dropped with its trace; a broken one gets the strict reader's words", async () => {
   const { page, complaints, close } = await opened(browser, html);
   const file = trace(...WRONG);
@@ -121,6 +146,23 @@ test("a scene of one's own is dropped with its trace; a broken one gets the stri
   writeFileSync(join(folder, "broken.xml"), readFileSync(scene(WRONG[0]), "utf8").replace('radius="', 'radios="'));
   await drop(page, [join(folder, "broken.xml"), file]);
   assert.match(await said(page), /broken\.xml:\d+:\d+: unknown attribute `radios`.*did you mean `radius`/s);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test("packed traces are unpacked on the way; what is damaged is told", async () => {
+  const { page, complaints, close } = await opened(browser, html);
+  const bytes = readFileSync(trace(...WRONG));
+  const packed = { "trace.bin.zst": zstd(bytes), "trace.bin.gz": gzipSync(bytes) };
+  for (const [name, content] of Object.entries(packed)) {
+    writeFileSync(join(folder, name), content);
+    await drop(page, join(folder, name));
+    assert.match(await said(page), /^trace\.bin.*: wrong answer/, name);
+    assert.match(await report(page).locator("main").innerText(), /angular momentum is overwritten/);
+    writeFileSync(join(folder, name), content.subarray(0, content.length / 2));
+    await drop(page, join(folder, name));
+    assert.match(await said(page), /cut short or damaged; copy it again/, name);
+  }
   assert.deepEqual(complaints, []);
   await close();
 });
@@ -295,6 +337,60 @@ test("a pair is moved: its numbers are those of the command beside them", async 
   const { bytes } = await saved(page, "Save JSON", page.locator("#save-pair"));
   const [, ...words] = (await page.locator("#command").innerText()).split(" ");
   assert.equal(bytes.toString(), oracle(...words, "--format", "json").stdout);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test("points of a pair are dragged, and the polynomials follow", async () => {
+  const { page, complaints, close } = await opened(browser, html);
+  await page.locator("#tab-pair").click();
+  await page.locator("#preset").selectOption("balls");
+  const settled = () => page.waitForFunction(() => document.documentElement.dataset.looked === document.getElementById("command").textContent);
+  await settled();
+  assert.match(await page.locator("#decision").innerText(), /they collide|collision/);
+  const before = await page.locator("#command").innerText();
+  // The tip of the first arrow goes up and back, away from the other particle.
+  const box = await page.locator("#sketch .grip").first().boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(box.x - 350, box.y - 100, { steps: 5 });
+  await page.mouse.up();
+  await settled();
+  const after = await page.locator("#command").innerText();
+  assert.notEqual(after, before);
+  const [, dx, dy] = after.match(/pp:-2,0\+([^,]*),([^:]*):/).map(Number);
+  assert.ok(dx < 1 && dy > 0.6, after);
+  // A hand leaves few digits, and fields and sliders say the same.
+  assert.ok(after.length < 90, after);
+  assert.equal(Number(await page.getByRole("spinbutton", { name: "x1: dy" }).inputValue()), dy);
+  assert.match(await page.locator("#decision").innerText(), /no collision/);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test("the page of a course has its suite and scenes, and gives the points of what students may see", async () => {
+  const course = join(folder, "of-a-course");
+  mkdirSync(join(course, "own"), { recursive: true });
+  writeFileSync(join(course, "own/mine.xml"), readFileSync(scene(WRONG[0]), "utf8").replace("<scene>", "<scene><!-- of the course -->"));
+  const groups = (hidden) => `schema = 1\nname = "The course"\n[[group]]\nname = "own"\npoints = 7\nscenes = ["own/*.xml"]\n${hidden}`;
+  writeFileSync(join(course, "suite.toml"), groups('[[group]]\nname = "secret"\nvisibility = "hidden"\nscenes = ["asset:ImpulsesTests/*"]\n'));
+  writeFileSync(join(course, "module.wasm"), inflateRawSync(Buffer.from(readFileSync(html, "utf8").match(/id="module">([^<]*)</)[1], "base64")));
+  const made = oracle("page", "--module", "of-a-course/module.wasm", "--suite", "of-a-course/suite.toml", "--output", "course.html");
+  assert.equal(made.status, 0, made.stderr);
+  const { page, complaints, close } = await opened(browser, join(folder, "course.html"));
+  mkdirSync(join(folder, "handed/own"), { recursive: true });
+  execFileSync(join(programs, "fosssim-sample"), ["--mistake", WRONG[1], "-s", join(course, "own/mine.xml"), "-d", "0", "-o", join(folder, "handed/own/mine.bin")]);
+  await page.locator("#tab-submission").click();
+  await page.locator("#pick-folder").setInputFiles(join(folder, "handed"));
+  await page.waitForFunction(() => document.documentElement.dataset.marked === "1");
+  assert.match(await page.locator("#marks-said").innerText(), /0 of 7 points by The course/);
+  writeFileSync(join(course, "suite.toml"), groups(""));
+  const { bytes } = await saved(page, "Save JSON", page.locator("#save-marks"));
+  assert.equal(bytes.toString(), oracle("grade", "--traces", "handed", "--suite", "of-a-course/suite.toml", "--format", "json").stdout);
+  // The scene is found by the trace's name, too.
+  await page.getByRole("button", { name: "mine", exact: true }).click();
+  await page.waitForFunction(() => document.documentElement.dataset.checked === "1");
+  assert.match(await said(page), /^mine\.bin: wrong answer/);
   assert.deepEqual(complaints, []);
   await close();
 });

@@ -155,6 +155,9 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   // The teacher sees the class, and what a regrade would change before it does.
   await page.goto(`${address}/c/physics/a/m1/class`);
   await page.getByRole("link", { name: "Submission 1 of ada" }).waitFor();
+  // What is likely wrong, and in which scenes.
+  assert.match(await page.getByRole("row", { name: /Submission 1 of ada/ }).innerText(), /0 of \d+ scenes accepted; \S/);
+  assert.match(await page.getByRole("row", { name: /Submission 1 of ada/ }).getByRole("img").getAttribute("aria-label"), /scenes? (is|are) wrong/);
   await accessible(page);
   await page.getByLabel("Reason, as students will read it").fill("Nobody should fail this");
   await page.getByRole("button", { name: "Grade all again" }).click();

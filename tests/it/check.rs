@@ -382,7 +382,7 @@ fn single_steps_are_shown_alone() {
     let run = workspace.run(["check", "scene.xml", "trace.bin", "--step", "5"]);
     assert_eq!(run.code, Some(2));
     assert!(run.err().contains("has 4 steps; there is no step 5"), "{}", run.err());
-    // What could not be judged is not called right.
+    // A trace that could not be judged is not called right.
     workspace.write("cut.bin", &wrong_drift()[..150]);
     let run = workspace.run(["check", "scene.xml", "cut.bin", "--step", "4"]);
     assert!(run.out().contains("Step 4 of 4: not judged"), "{}", run.shown());
@@ -465,7 +465,7 @@ fn what_is_no_trace_is_told_in_one_line() {
         assert_eq!((run.code, run.out().lines().count()), (Some(1), 1), "{}", run.shown());
         assert!(run.out().starts_with("BAD TRACE: thing is no trace: ") && run.out().contains(says), "{}", run.shown());
     }
-    // What is cut short is a trace all the same.
+    // A trace that is cut short is a trace all the same.
     workspace.write("thing", &trace_of(BOUNCE)[..20]);
     assert!(!workspace.run(["check", "scene.xml", "thing"]).out().contains("is no trace"));
 }

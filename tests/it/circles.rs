@@ -30,7 +30,7 @@ const KNOWN: [&[&str]; 1] = [&["crates/report/src", "check", "diagnosis", "grade
 /// A module, as the names on the way to it.
 type Module = Vec<String>;
 
-/// What is known of a file.
+/// The facts about a file.
 #[derive(Default)]
 struct File {
     /// Names that `use` brings, each with the paths that it may stand for, and whether they are only passed on.

@@ -119,7 +119,7 @@ fn every_entry_of_a_class_has_one_row_and_a_name_of_its_own() {
     seen.sort_unstable();
     seen.dedup();
     assert_eq!(seen.len(), names.len(), "two rows of one name");
-    // What an import does to cells: blanks around them go, case counts or not.
+    // The changes that an import makes to cells: blanks around them go, case counts or not.
     let mut imported: Vec<String> = seen.iter().map(|name| name.trim().to_lowercase()).collect();
     imported.sort_unstable();
     imported.dedup();

@@ -1,4 +1,4 @@
-//! What the packages of others allow, and which Rust they ask for: from cargo's own data.
+//! The licences of others' packages, and which Rust they ask for: from cargo's own data.
 use crate::{
     ratchets::modules,
     tree::{files, root, text},
@@ -113,7 +113,7 @@ fn the_promised_rust_compiles_all_dependencies() {
     }
 }
 
-/// What a manifest asks for, some source names; optional packages may be there for their features.
+/// The packages that a manifest asks for are named by some source; optional ones may be there for their features.
 #[test]
 fn every_dependency_is_used() {
     let mut unused = Vec::new();

@@ -210,7 +210,7 @@ fn what_can_not_be_looked_at_is_said() {
     );
 }
 
-/// What is wrong in a later pass is looked at there: in the first one nothing is.
+/// A pair that is wrong in a later pass is looked at there: in the first one nothing is wrong.
 #[test]
 fn the_pair_of_a_later_pass_is_looked_at_in_that_pass() {
     let workspace = Workspace::new();

@@ -41,7 +41,7 @@ fn suite() -> Vec<(String, Scene)> {
     scenes
 }
 
-/// What is said of the row's traces that the fair rules reject; after the first two only which known mistake it is.
+/// The explanations of the row's traces that the fair rules reject; after the first two only which known mistake it is.
 fn explained(scenes: &[(String, Scene)], row: &Row) -> Vec<Vec<Explanation>> {
     let options = replay::Options { threads: 1, fair: true, ..replay::Options::default() };
     let mut found = Vec::new();
@@ -76,7 +76,7 @@ fn nine_of_ten_mistakes_are_named_first() {
     assert!(10 * confused.len() <= rows.len(), "{confused:#?}");
 }
 
-/// What submissions of the corpus do wrong, by the name of their mistake: where the fair rules refuse one of their
+/// The mistakes of the corpus's submissions, by name: where the fair rules refuse one of their
 /// traces, that is named first, or told with what this trace can't tell it from.
 const SUBMISSIONS: [(&str, &str); 27] = [
     ("b02-", "pp-no-two"),

@@ -186,7 +186,7 @@ fn a_small_factor_of_edges_is_no_mistake_on_the_courses_scenes() {
     corpus::ran("a small factor of edges", files.len());
 }
 
-/// What the fair rules find does not depend on how many threads look.
+/// The findings of the fair rules do not depend on how many threads look.
 #[test]
 fn threads_change_nothing() {
     for (name, scene) in assets().iter().take(FIRST.len()) {

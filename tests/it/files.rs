@@ -3,7 +3,7 @@
 use crate::tree::{files, name, root, text};
 use std::collections::BTreeMap;
 
-/// What opens, makes or lists files on its own.
+/// Calls that open, make or list files on their own.
 const WORDS: [&str; 10] = [
     "File::open(",
     "File::create(",

@@ -401,7 +401,7 @@ fn suites_are_written_checked_and_explained() {
         let checked = workspace.run(["suite", "check", name]).out();
         assert!(checked.contains(&format!("{} scenes", suite["scenes"])), "{checked}");
     }
-    let scenes = workspace.run(["suite", "scenes"]);
+    let scenes = workspace.run(["scene", "list"]);
     assert!(scenes.out().lines().count() >= 48 && scenes.out().starts_with("asset:"), "{}", scenes.out());
 }
 

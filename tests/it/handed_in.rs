@@ -1,4 +1,4 @@
-//! What may be handed in besides a student's own program: a sample that is always wrong, and traces that are there
+//! Submissions besides a student's own program: a sample that is always wrong, and traces that are there
 //! already.
 use crate::{
     grading::{SUITE, workspace},
@@ -69,7 +69,7 @@ fn traces_that_are_there_already_are_graded_without_running_anything() {
     assert!(wrong.out().contains(",WA,") && wrong.out().contains(",pe-square-no-eh"), "{}", wrong.out());
     let page = String::from_utf8(workspace.read("wrong.html")).expect("text");
     assert!(page.contains("data-scene="), "the page has a viewer");
-    // What is missing, cut or a link is no trace.
+    // A file that is missing, cut or a link is no trace.
     let first = workspace.path(format!("right/{}.bin", scenes[0]));
     let bytes = std::fs::read(&first).expect("a trace");
     std::fs::write(&first, &bytes[..bytes.len() / 2]).expect("cut");

@@ -98,7 +98,7 @@ fn graders_killed_at_any_moment_lose_and_leave_nothing() {
     let Some(workspace) = class() else { return };
     let whole = finish(&mut grading(&workspace, "whole"));
     assert_eq!(whole.code, Some(0), "{}", whole.shown());
-    // What the moments are does not matter: each is as good as any other.
+    // The moments do not matter: each is as good as any other.
     for moment in [0, 15, 45, 90, 130, 170, 220, 300] {
         let mut grader =
             grading(&workspace, "out").stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("a grader");

@@ -120,7 +120,7 @@ fn rooms_of_one_crate_import_only_from_lower_rooms() {
     assert!(wrong.is_empty(), "imports that point upwards:\n{}", wrong.join("\n"));
 }
 
-/// What judges and what writes reports is good for machines without processes and files, such as a browser's.
+/// The rooms that judge and that write reports are good for machines without processes and files, such as a browser's.
 #[test]
 fn browsers_and_reports_know_no_processes() {
     let mut wanted = vec!["browser".to_owned()];
@@ -128,7 +128,7 @@ fn browsers_and_reports_know_no_processes() {
     while let Some(name) = wanted.pop() {
         let manifest =
             std::fs::read_to_string(root().join("crates").join(&name).join("Cargo.toml")).expect("a manifest");
-        // What is for Linux alone is in a section of its own.
+        // Packages for Linux alone are in a section of their own.
         let (built, _) = manifest.split_once("[dev-dependencies]").unwrap_or((&manifest, ""));
         let (built, _) = built.split_once("[target.").unwrap_or((built, ""));
         for line in built.lines().filter_map(|line| line.split_once(".workspace")).map(|(name, _)| name) {

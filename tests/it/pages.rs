@@ -5,7 +5,7 @@ fn text(workspace: &Workspace, file: &str) -> String {
     String::from_utf8(workspace.read(file)).expect("text")
 }
 
-/// What is on a page besides the style sheet and the script, which are the same on all.
+/// The part of a page besides the style sheet and the script, which are the same on all.
 fn body(page: &str) -> &str {
     let body = page.split_once("</style>").expect("a style sheet").1;
     body.rsplit_once("<script>").map_or(body, |(body, _)| body)
@@ -135,7 +135,7 @@ fn a_grading_against_recordings_has_its_motions() {
     assert!(body.contains("Likely mistake"), "{body}");
 }
 
-/// What the suite hides from students is on no page that is handed out.
+/// A group that the suite hides from students is on no page that is handed out.
 #[test]
 fn pages_to_hand_out_hold_no_hidden_group() {
     let Some(workspace) = grading::workspace() else { return };
@@ -169,4 +169,40 @@ fn pages_to_hand_out_hold_no_hidden_group() {
         assert_eq!(text(&workspace, "progress"), runs, "a count tells of no hidden scene");
     }
     assert!(!text(&workspace, "student.html").contains("Veiled"));
+}
+
+/// A page for browsers that a course makes has the course's suite inside; of what the suite hides nothing.
+#[test]
+fn a_course_s_page_for_browsers_holds_nothing_that_its_suite_hides_from_its_readers() {
+    let workspace = Workspace::new();
+    let scene = |words: &str| format!("{}<!-- {words} -->\n", fosssim_testing::scenes::ALL_KINDS);
+    for (name, words) in [("seen/[a]", "in the open"), ("kept/b", "behind the curtain"), ("late/c", "for later")] {
+        std::fs::create_dir_all(workspace.path(name).parent().expect("a folder")).expect("made");
+        workspace.write(format!("{name}.xml"), scene(words));
+    }
+    let suite = "schema = 1\nname = \"A \\\"course\\\"\"\n# the secret is a sum\n\
+        [[group]]\nname = \"Open\"\npoints = 3\nscenes = [\"seen/*.xml\", \"asset:GeometricTests/pair-becomes-rigid\"]\n\
+        [[group]]\nname = \"Curtain\"\nvisibility = \"hidden\"\nscenes = [\"kept/*.xml\"]\n\
+        [[group]]\nname = \"Later\"\nvisibility = \"after_due_date\"\nscenes = [\"late/*.xml\"]\n";
+    workspace.write("suite.toml", suite);
+    workspace.write("module.wasm", b"\0asm\x01\0\0\0");
+    let page = |reader: &[&str]| {
+        let words = ["page", "--module", "module.wasm", "--suite", "suite.toml", "--output", "page.html"];
+        let run = workspace.run(words.iter().chain(reader));
+        assert_eq!(run.code, Some(0), "{}", run.shown());
+        text(&workspace, "page.html")
+    };
+    let open =
+        ["in the open", "Open", "A \\\\\\\"course", "seen/[[]a[]].xml", "asset:GeometricTests/pair-becomes-rigid"];
+    let hidden = ["behind the curtain", "Curtain", "kept/b", "for later", "Later", "late/c"];
+    for reader in [&[][..], &["--for", "student"]] {
+        let page = page(reader);
+        assert!(open.iter().all(|words| page.contains(words)), "{reader:?}");
+        assert!(!hidden.iter().any(|words| page.contains(words)) && !page.contains("the secret"), "{reader:?}");
+    }
+    let staff = page(&["--for", "staff"]);
+    assert!(open.iter().chain(&hidden).all(|words| staff.contains(words)));
+    workspace.write("suite.toml", suite.replace("points = 3", "visibility = \"hidden\""));
+    let run = workspace.run(["page", "--module", "module.wasm", "--suite", "suite.toml", "--output", "none.html"]);
+    assert!(run.code == Some(2) && run.err().contains("hides all of its groups"), "{}", run.shown());
 }

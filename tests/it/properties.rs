@@ -68,7 +68,7 @@ proptest! {
         ..ProptestConfig::default()
     })]
 
-    /// Whatever bytes change: no panic, no endless loop, and every number of threads says the same.
+    /// Damaged bytes lead to no panic and no endless loop, and every number of threads says the same.
     #[test]
     fn damaged_traces_are_judged_alike_on_all_threads(
         which in 0_usize..1000,

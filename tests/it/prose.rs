@@ -85,6 +85,28 @@ fn nouns_stand_for_people_and_numbers() {
     assert!(found.is_empty(), "{found:#?}");
 }
 
+/// Comments that begin with such a word have no subject: "What a worker does" names neither the thing nor its kind.
+const QUESTIONS: [&str; 4] = ["What", "Who", "Whatever", "Whoever"];
+
+/// Lines of comments that begin so; the number may only fall.
+const MOST_QUESTIONS: usize = 169;
+
+#[test]
+fn comments_begin_with_a_subject() {
+    let sources = ["src", "crates", "tests", "benches", "fuzz", "python/src"];
+    let sources = sources.map(|folder| files(&root().join(folder), ".rs")).concat();
+    let begins_so = |line: &str| {
+        let comment = line.trim_start().strip_prefix("//").unwrap_or_default();
+        let words = comment.trim_start_matches(['/', '!']);
+        QUESTIONS.contains(&words.split_whitespace().next().unwrap_or_default().trim_end_matches([':', ',']))
+    };
+    let count = |path: &PathBuf| text(path).lines().filter(|line| begins_so(line)).count();
+    let found: Vec<(String, usize)> =
+        sources.iter().map(|path| (path.display().to_string(), count(path))).filter(|(_, count)| *count > 0).collect();
+    let all: usize = found.iter().map(|(_, count)| count).sum();
+    assert!(all <= MOST_QUESTIONS, "{all} comments begin with a question: {found:#?}");
+}
+
 #[test]
 fn readme_is_one_page() {
     let words = text(&root().join("README.md")).split_whitespace().count();
@@ -133,7 +155,7 @@ fn the_table_of_contents_has_every_page() {
     }
 }
 
-/// What a document puts between backticks.
+/// The words that a document puts between backticks.
 fn quoted(text: &str) -> impl Iterator<Item = &str> {
     text.split('`').skip(1).step_by(2)
 }

@@ -6,13 +6,13 @@ use std::{
 };
 
 /// Lines wider than rustfmt makes code, which are comments and texts.
-const MOST_WIDE_LINES: usize = 529;
+const MOST_WIDE_LINES: usize = 525;
 
 /// A line is as wide as rustfmt makes code (`rustfmt.toml`).
 const WIDTH: usize = 120;
 
 /// Types whose name stands in a second crate, too.
-const MOST_SHARED_NAMES: usize = 94;
+const MOST_SHARED_NAMES: usize = 68;
 
 /// A file that is longer holds a second noun.
 const LONGEST_FILE: usize = 600;
@@ -86,7 +86,7 @@ fn is_root(name: &str) -> bool {
             | ["crates", _, "src", "bin", _]
             | ["crates", _, "src", "bin", _, "main.rs"]
             | ["crates", _, "benches" | "tests" | "examples", _]
-            | ["crates", _, "tests", _, "main.rs"]
+            | ["crates", _, "benches" | "tests", _, "main.rs"]
     )
 }
 

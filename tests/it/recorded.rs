@@ -68,7 +68,7 @@ fn cut_traces_have_no_verdict_and_cut_recordings_are_a_fault() {
     let outcome = recorded::judge(&scene, half, &right[..], &mut ()).expect("a recording");
     assert_eq!(outcome.parity.overall, Overall::None);
     assert!(matches!(outcome.stop, Some(Stop::Trace { .. })));
-    // What was found before the end is listed in the order of the kinds, as in any other outcome.
+    // The findings before the end are listed in the order of the kinds, as in any other outcome.
     let mut faster = scene.clone();
     faster.particles.iter_mut().for_each(|particle| particle.velocity *= 1.25);
     let wrong = simulate(&faster);

@@ -48,7 +48,7 @@ fn record(scene: &Scene, search: RootSearch) -> (Vec<u8>, SearchCounts) {
     (trace, simulation.search_counts())
 }
 
-/// What is wrong with a trace, if anything: with the first difference where the original's is at hand.
+/// The fault of a trace, if it has one: with the first difference where the original's is at hand.
 fn difference(folder: &Path, entry: &Entry, trace: &[u8]) -> Option<String> {
     let digest: String = Sha256::digest(trace).iter().map(|byte| format!("{byte:02x}")).collect();
     if digest == entry.sha256 {

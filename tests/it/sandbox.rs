@@ -528,10 +528,10 @@ fn a_script_in_a_folder_that_is_closed_to_others_runs_all_the_same() {
 
 #[test]
 fn a_staged_program_that_is_gone_or_changed_is_our_fault() {
-    use fosssim_oracle::sandbox::Identity;
+    use fosssim_oracle::sandbox::ProgramIdentity;
     let Some(bench) = Bench::new() else { return };
     let program = bench.script("#!/bin/sh\nexit 0\n");
-    let job = bench.job(&program, &[]).staged(Identity::of(&program));
+    let job = bench.job(&program, &[]).staged(ProgramIdentity::of(&program));
     assert_eq!(bench.finish(&job).ended, Ended::Exited(0));
     std::fs::write(&program, "#!/bin/sh\nexit 1\n").unwrap();
     let changed = bench.backend.start(&job).unwrap_err();

@@ -1,4 +1,4 @@
-//! What must hold for every scene and for every sequence of bytes, by random search.
+//! Rules for every scene and for every sequence of bytes, by random search.
 use fosssim_oracle::num::vector::Vec2;
 use fosssim_oracle::scene::{
     self, Collision, CollisionDetection, Color, Display, Edge, Force, HalfPlane, Integrator, Particle, ParticlePath,

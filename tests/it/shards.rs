@@ -26,7 +26,7 @@ fn class(workspace: &Workspace) {
     fs::copy("/bin/true", workspace.path("class/frank")).expect("a copy");
 }
 
-/// What was measured, taken out of a table, a page or JSON lines.
+/// A table, a page or JSON lines without measurements.
 fn without_measurements(name: &str, bytes: &[u8]) -> String {
     let text = String::from_utf8(bytes.to_vec()).expect("text");
     if name.ends_with(".csv") {

@@ -134,7 +134,6 @@ fn every_command_has_help_with_an_example() {
         &["suite", "init"],
         &["suite", "check"],
         &["suite", "list"],
-        &["suite", "scenes"],
         &["scene"],
         &["scene", "list"],
         &["scene", "show"],

@@ -19,7 +19,7 @@ pub struct Workspace {
     folder: tempfile::TempDir,
 }
 
-/// What the program did.
+/// A run of the program.
 #[derive(Debug)]
 pub struct Run {
     pub code: Option<i32>,

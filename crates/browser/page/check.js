@@ -2,8 +2,18 @@
 const check = { oracle: new Oracle(), trace: null, scene: null, report: null };
 const say = (words, look = "") => { $("said").textContent = words; $("said").className = look; };
 
-// A dropped file that may be read again later: the handle sees what was written since.
-const freshFile = async (item) => (item.handle?.getFile ? item.handle.getFile() : item.file);
+// A dropped file that may be read again later: the handle sees what was written since. Browsers unpack gzip themselves.
+async function freshFile(item) {
+  const file = item.handle?.getFile ? await item.handle.getFile() : item.file;
+  if (!/\.gz$/i.test(file.name)) return file;
+  try {
+    const unpacked = await new Response(file.stream().pipeThrough(new DecompressionStream("gzip"))).blob();
+    return new File([unpacked], file.name.replace(/\.gz$/i, ""));
+  } catch {
+    throw new Error(`cannot read the trace ${file.name}: the gzip data is cut short or damaged; copy it again`);
+  }
+}
+const bare = (name) => name.replace(/\.bin(\.(zst|gz))?$/i, "");
 
 async function takeFiles(items) {
   for (const item of items) {
@@ -14,7 +24,7 @@ async function takeFiles(items) {
   $("trace-name").textContent = check.trace ? `${check.trace.file.name}, ${counted(check.trace.file.size, "byte")}` : "none yet";
   if (check.trace && !check.scene && !$("scene").value) await recognise();
   if (check.trace && (check.scene || $("scene").value)) return judge();
-  if (check.trace) say("Which scene is this a trace of? Choose one, or drop its XML.");
+  if (check.trace) say(check.alike?.length > 1 ? `The trace begins like those of ${check.alike.join(" and ")}: choose its scene, or drop its XML.` : "Which scene is this a trace of? Choose one, or drop its XML.");
   else if (check.scene) say("Now drop the trace.");
 }
 
@@ -28,16 +38,23 @@ async function takeScene(item) {
 
 // A trace begins with the state of its scene.
 async function recognise() {
-  const { value } = await check.oracle.ask({ do: "recognise" }, { files: [check.trace.file] });
-  const name = check.trace.file.name.replace(/\.bin(\.zst)?$/i, "");
+  check.alike = [];
+  const name = bare(check.trace.file.name);
+  const own = course?.scenes.findIndex((scene) => scene.name.replace(/\.xml$/, "").split("/").pop() === name) ?? -1;
+  if (own >= 0) { $("scene").value = `course:${own}`; return; }
+  const file = await freshFile(check.trace).catch(() => null);
+  if (!file) return;
+  const { value } = await check.oracle.ask({ do: "recognise" }, { files: [file] });
   const found = value.scenes.find((scene) => scene === name || scene.endsWith(`/${name}`)) ?? (value.scenes.length === 1 ? value.scenes[0] : null);
+  check.alike = value.scenes;
   if (found) $("scene").value = found;
 }
 
 async function judge() {
-  const asset = $("scene").value;
+  const own = ownScene($("scene").value), asset = own ? "" : $("scene").value;
+  const scene = own ? { name: own.name, xml: bytesOf(own.xml) } : check.scene;
   if (!check.trace) return say("Choose a trace first.", "bad");
-  if (!asset && !check.scene) return say("Choose a scene first.", "bad");
+  if (!asset && !scene) return say("Choose a scene first.", "bad");
   check.oracle.stop();
   const started = performance.now();
   $("bar").hidden = $("stop").hidden = false;
@@ -45,12 +62,12 @@ async function judge() {
   say(`Checking ${check.trace.file.name} ...`);
   try {
     const file = await freshFile(check.trace);
-    const request = { do: "check", scene: asset ? `asset:${asset}` : check.scene.name, trace: file.name, rules: $("rules").value, html: true };
+    const request = { do: "check", scene: asset ? `asset:${asset}` : scene.name, trace: file.name, rules: $("rules").value, html: true };
     const progress = (done, all) => { $("bar").max = all; $("bar").value = done; };
-    const answer = await check.oracle.ask(request, { blobs: asset ? [] : [check.scene.xml], files: [file], progress });
+    const answer = await check.oracle.ask(request, { blobs: asset ? [] : [scene.xml], files: [file], progress });
     if (!answer) return say("Stopped.");
     const [json, html] = answer.parts;
-    check.report = { name: file.name.replace(/\.bin(\.zst)?$/i, ""), json, html };
+    check.report = { name: bare(file.name), json, html };
     $("frame").srcdoc = text(html);
     $("ask").open = false;
     $("frame").hidden = $("doing").hidden = false;

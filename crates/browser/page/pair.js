@@ -21,6 +21,7 @@ function controls() {
     const number = el("input", { type: "number", step: "any", min: least ?? false, value, "aria-label": label });
     const slider = el("input", { type: "range", min: least ?? Math.min(-10, value - 10), max: Math.max(10, value + 10), step: "0.05", "aria-label": `${label}, slider` });
     slider.value = value;
+    pair.fields.push(() => { number.value = slider.value = list[index]; });
     const change = (from, other) => () => { if (from.value === "" || !Number.isFinite(from.valueAsNumber)) return; list[index] = from.valueAsNumber; other.value = from.value; look(); };
     number.addEventListener("input", change(number, slider));
     slider.addEventListener("input", change(slider, number));
@@ -28,6 +29,7 @@ function controls() {
   };
   const group = (name, ...fields) => el("fieldset", {}, el("legend", {}, name), ...fields);
   const parts = ["x", "y", "dx", "dy"];
+  pair.fields = [];
   $("numbers").replaceChildren(
     ...names.map(([short, name], point) => group(`${short}: ${name}`, ...parts.map((part, index) => field(`${short}: ${part}`, points[point], index)))),
     ...(plane ? [group("the half-plane", ...["point x", "point y", "normal x", "normal y"].map((name, index) => field(`half-plane: ${name}`, plane, index)))] : []),
@@ -41,7 +43,9 @@ function sketch() {
   const all = points.flatMap(([x, y, dx, dy], point) => { const r = kind === "pe" && point > 0 ? radii[1] : radii[Math.min(point, radii.length - 1)]; return [[x - r, y - r], [x + r, y + r], [x + dx - r, y + dy - r], [x + dx + r, y + dy + r]]; });
   if (plane) all.push([plane[0], plane[1]]);
   const low = [0, 1].map((axis) => Math.min(...all.map((one) => one[axis]))), high = [0, 1].map((axis) => Math.max(...all.map((one) => one[axis])));
-  const size = Math.max(high[0] - low[0], (high[1] - low[1]) * 1.5, 1e-9) * 1.1, middle = [0, 1].map((axis) => (low[axis] + high[axis]) / 2);
+  // While a point is held the paper stays where it is.
+  pair.view = pair.held ? pair.view : { size: Math.max(high[0] - low[0], (high[1] - low[1]) * 1.5, 1e-9) * 1.1, middle: [0, 1].map((axis) => (low[axis] + high[axis]) / 2) };
+  const { size, middle } = pair.view;
   const X = (x) => 300 + ((x - middle[0]) / size) * 600, Y = (y) => 200 - ((y - middle[1]) / size) * 600, R = (r) => (r / size) * 600;
   const svg = (tag, attributes) => { const node = document.createElementNS("http://www.w3.org/2000/svg", tag); for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value); return node; };
   const shapes = [];
@@ -57,8 +61,41 @@ function sketch() {
   }
   for (const [x, y, dx, dy] of points) if (dx || dy) shapes.push(svg("line", { class: "way", x1: X(x), y1: Y(y), x2: X(x + dx), y2: Y(y + dy), "marker-end": "url(#tip)" }));
   points.forEach(([x, y], point) => { const label = svg("text", { x: X(x) + 6, y: Y(y) - 6 }); label.textContent = `x${point + 1}`; shapes.push(label); });
+  handles().forEach(({ at: [x, y] }, handle) => shapes.push(svg("circle", { class: "handle", cx: X(x), cy: Y(y), r: 5 }), svg("circle", { class: "grip", cx: X(x), cy: Y(y), r: 18, "data-handle": handle })));
   $("sketch").replaceChildren(...shapes);
 }
+
+// Places that can be held: the tips of displacements, and above them, so that they are found first, points.
+function handles() {
+  const { points, plane } = pair.now;
+  const of = (list, from, base) => ({ at: [base[0] + list[from], base[1] + list[from + 1]], move: (to) => [0, 1].forEach((axis) => { list[from + axis] = to[axis] - base[axis]; }) });
+  const zero = [0, 0];
+  return [...points.map((point) => of(point, 2, point)), ...points.map((point) => of(point, 0, zero)), ...(plane ? [of(plane, 2, plane), of(plane, 0, zero)] : [])];
+}
+
+// A point is moved with mouse, finger or pen, to places that have few digits; fields and sliders do the same by keyboard.
+function drags(paper) {
+  paper.addEventListener("pointerdown", (event) => {
+    const handle = event.target.dataset.handle;
+    if (handle === undefined) return;
+    event.preventDefault();
+    paper.setPointerCapture(event.pointerId);
+    pair.held = { handle };
+  });
+  paper.addEventListener("pointermove", (event) => {
+    if (!pair.held) return;
+    const box = paper.getBoundingClientRect(), { size, middle } = pair.view;
+    const unit = 10 ** Math.floor(Math.log10(size / 100));
+    const place = [(event.clientX - box.left) / box.width - 0.5, (0.5 - (event.clientY - box.top) / box.height) / 1.5];
+    const to = place.map((part, axis) => Math.round((middle[axis] + part * size) / unit) * unit);
+    handles()[pair.held.handle].move(to);
+    for (const list of [...pair.now.points, pair.now.plane ?? []]) list.forEach((value, index) => { list[index] = Number(value.toPrecision(12)); });
+    pair.fields.forEach((fill) => fill());
+    look();
+  });
+  for (const end of ["pointerup", "pointercancel"]) paper.addEventListener(end, () => { if (pair.held) { pair.held = null; sketch(); } });
+}
+drags($("sketch").ownerSVGElement);
 
 const number = (value) => (Object.is(value, -0) ? "-0" : String(value));
 function command() {

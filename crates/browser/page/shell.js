@@ -99,9 +99,14 @@ const current = () => tabs.find((tab) => tab.getAttribute("aria-selected") === "
 const inside = (async () => {
   const { value } = await new Oracle().ask({ do: "scenes" });
   $("suite").append(...value.suites.map((name) => el("option", { value: name }, name)));
+  if (course) { $("suite").prepend(el("option", { value: "" }, course.name)); $("suite").value = ""; }
   return value.assignments;
 })();
+// The suite of the course whose page this is, and its own scenes.
+const course = $("course") && JSON.parse($("course").textContent);
+const ownScene = (value) => { const [, number] = value.match(/^course:(\d+)$/) ?? []; return number && course.scenes[number]; };
 const choices = async (select) => {
+  if (course?.scenes.length) select.append(el("optgroup", { label: course.name }, ...course.scenes.map(({ name }, number) => el("option", { value: `course:${number}` }, name.replace(/\.xml$/, "")))));
   for (const { title, groups } of await inside) {
     for (const { group, names } of groups) {
       select.append(el("optgroup", { label: `${title}: ${group}` }, ...names.map((name) => el("option", { value: `${group}/${name}` }, name))));

@@ -1,6 +1,7 @@
 // A submission's traces: a folder with Group/name.bin, points by a suite, a row per scene, and what became right since the
 // last drop.
-const marks = { oracle: new Oracle(), files: new Map(), suite: null, last: null, json: null };
+const courseSuite = course && { name: "", text: bytesOf(course.suite), scenes: course.scenes.map(({ name }) => name), xml: course.scenes.map(({ xml }) => bytesOf(xml)) };
+const marks = { oracle: new Oracle(), files: new Map(), suite: courseSuite, last: null, json: null };
 
 // All files below what was dropped, by their paths in it.
 async function walk(entry, handle, path, found) {
@@ -37,7 +38,7 @@ async function takeFolder(name, found) {
     $("folder-name").textContent = `${name}, ${counted(traces.length, "trace")}`;
   }
   if (marks.files.size) return mark_all();
-  $("marks-said").textContent = suite ? "Now drop the folder of traces." : "There is no trace in that folder: they are called Group/name.bin.";
+  $("marks-said").textContent = suite ? "Now drop the folder of traces." : found.some(({ path }) => /\.bin\.(zst|gz)$/i.test(path)) ? "The traces in that folder are packed: unpack them, or check them one by one." : "There is no trace in that folder: they are called Group/name.bin.";
 }
 
 // The trace of a scene, under its whole name or the name behind its group; below a folder of the folder if that is where
@@ -122,7 +123,9 @@ function showMarks(suite, grade, rows) {
 // The whole report on one scene.
 function lookAt(scene, file) {
   open("check");
-  if ([...$("scene").options].some((option) => option.value === scene)) $("scene").value = scene;
+  const own = course?.scenes.findIndex(({ name }) => name === `${scene}.xml`) ?? -1;
+  if (marks.suite === courseSuite && own >= 0) $("scene").value = `course:${own}`;
+  else if ([...$("scene").options].some((option) => option.value === scene)) $("scene").value = scene;
   else if (marks.suite) {
     const number = marks.suite.scenes.findIndex((name) => name.replace(/\.xml$/i, "") === scene);
     return takeFiles([{ file: new File([marks.suite.xml[number]], marks.suite.scenes[number].split("/").pop()) }, { file }]);
@@ -138,7 +141,7 @@ $("pick-folder").addEventListener("change", ({ target }) => {
   if (files.length) takeFolder(name, files);
 });
 $("pick-suite").addEventListener("change", ({ target }) => { const files = [...target.files].map((file) => ({ path: file.name, file })); target.value = ""; takeFolder(marks.name ?? "traces", files); });
-$("suite").addEventListener("change", () => { marks.suite = null; $("suite-name").textContent = ""; if (marks.files.size) mark_all(); });
+$("suite").addEventListener("change", () => { marks.suite = $("suite").value ? null : courseSuite; $("suite-name").textContent = ""; if (marks.files.size) mark_all(); });
 $("marks-stop").addEventListener("click", () => marks.oracle.stop());
 $("marks-again").addEventListener("click", mark_all);
 $("save-marks").addEventListener("click", () => save(`${marks.name}.json`, marks.json, "application/json"));

@@ -155,6 +155,8 @@ $("save-xml").addEventListener("click", () => save(`${stem()}.xml`, $("source").
 $("open-xml").addEventListener("change", ({ target }) => { tryFile(target.files[0]); target.value = ""; });
 $("start").addEventListener("change", async ({ target }) => {
   if (!target.value) return tryScene(STARTER, "scene.xml");
+  const own = ownScene(target.value);
+  if (own) return tryScene(own.xml, own.name);
   const { parts } = await film.oracle.ask({ do: "scene", name: target.value });
   tryScene(text(parts[0]), `${target.value}.xml`);
 });

@@ -1,6 +1,6 @@
 //! `check`: the same reports as the command's.
 use crate::{
-    dropped::{Dropped, PIECE, PageHost},
+    dropped::{PageHost, ReadFault, opened},
     parts::PageAnswer,
     scenes,
 };
@@ -16,10 +16,7 @@ use fosssim_report::{
 };
 use serde::Deserialize;
 use serde_json::json;
-use std::{
-    io::{BufReader, Cursor, Read},
-    sync::atomic::{AtomicBool, Ordering},
-};
+use std::io::{Cursor, Read};
 
 /// A trace to be judged.
 #[derive(Debug, Deserialize)]
@@ -41,10 +38,9 @@ pub(crate) struct CheckRequest {
 /// Judges a trace: the second part of the answer is `check --format json`, the third `check --format html`.
 pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn PageHost) -> PageAnswer {
     let scene = read_scene(&request.scene, xml)?;
-    let failed = AtomicBool::new(false);
-    let opened = || BufReader::with_capacity(PIECE, Dropped::new(host, request.file, &failed));
-    let (mut trace, mut start) = (opened(), Vec::new());
-    // What can't be read is noticed below.
+    let fault = ReadFault::new();
+    let (mut trace, mut start) = (opened(host, request.file, &fault), Vec::new());
+    // Bytes that can't be read are noticed below.
     let _ = trace.by_ref().take(LOOKED_AT).read_to_end(&mut start);
     let looks_like = looks_like(&start);
     let options = Options { threads: 1, fair: request.rules.ask_fair(), ..Options::default() };
@@ -54,8 +50,8 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
     if let Some(why) = no_verdict(outcome, &request.scene) {
         return Err(why);
     }
-    if failed.load(Ordering::Relaxed) {
-        return Err(unreadable(&request.trace, outcome));
+    if let Some(why) = fault.get() {
+        return Err(unreadable(&request.trace, outcome, why));
     }
     let explanations = if is_wrong(outcome) { examined.explain() } else { Vec::new() };
     let check = Check {
@@ -71,7 +67,7 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
     };
     let mut parts = vec![check.json().into_bytes()];
     if request.html {
-        let mut again = (!examined.trace.is_whole()).then(opened);
+        let mut again = (!examined.trace.is_whole()).then(|| opened(host, request.file, &fault));
         let evidence = examined.evidence(again.as_mut().map(|trace| trace as &mut dyn Read), evidence::BUDGET);
         parts.push(page::of_examined(check, &examined, &evidence).into_bytes());
     }
@@ -91,12 +87,12 @@ pub(crate) fn read_scene(name: &str, xml: Option<&[u8]>) -> Result<Scene, String
     }
 }
 
-fn unreadable(trace: &str, outcome: &Outcome) -> String {
+fn unreadable(trace: &str, outcome: &Outcome, why: &str) -> String {
     let place = match &outcome.stop {
         Some(Stop::Trace { cause: Unreadable::Io, offset, .. }) => format!(" at byte {offset}"),
         _ => String::new(),
     };
-    format!("cannot read the trace {trace}{place}: it has changed or is gone; drop it again")
+    format!("cannot read the trace {trace}{place}: {why}")
 }
 
 /// Tells how far judging is, and gathers the wrong steps.

@@ -2,6 +2,7 @@
 //!
 //! Its policy allows its script, its style and those of the reports that it shows by their digests, the module, and a
 //! worker that the page makes itself; no address is among the sources.
+use crate::CourseSuite;
 use base64::{Engine, engine::general_purpose::STANDARD};
 use fosssim_report::page::{digest, framed, style};
 use miniz_oxide::deflate::compress_to_vec;
@@ -21,9 +22,9 @@ const WORKER: [&str; 2] = [include_str!("../page/engine.js"), include_str!("../p
 const BODY: &str = include_str!("../page/body.html");
 const STYLE: &str = include_str!("../page/page.css");
 
-/// The page around the module (WebAssembly, not packed).
+/// The page around the module (WebAssembly, not packed), with the suite of a course if it is one's.
 #[must_use]
-pub fn page(module: &[u8]) -> String {
+pub fn page(module: &[u8], course: Option<&CourseSuite>) -> String {
     let script = format!("\"use strict\";\n(() => {{\n{}}})();\n", lines(&SCRIPT));
     let worker = lines(&WORKER);
     let style = style() + STYLE;
@@ -35,13 +36,16 @@ pub fn page(module: &[u8]) -> String {
         digest(&style)
     );
     let module = STANDARD.encode(compress_to_vec(module, 10));
+    let course = course.map_or_else(String::new, |course| {
+        format!("<script type=\"application/json\" id=\"course\">{}</script>\n", course.data())
+    });
     format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta http-equiv=\"Content-Security-Policy\" content=\"{policy}\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <title>fosssim-oracle in the browser</title>\n<style>{style}</style>\n</head>\n<body>\n{BODY}\
          <script type=\"application/octet-stream\" id=\"module\">{module}</script>\n\
-         <script type=\"text/plain\" id=\"worker\">{worker}</script>\n\
+         {course}<script type=\"text/plain\" id=\"worker\">{worker}</script>\n\
          <script>{script}</script>\n</body>\n</html>\n"
     )
 }

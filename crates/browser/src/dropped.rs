@@ -1,11 +1,19 @@
-//! Files that were dropped on the page, read piece by piece.
+//! Files that were dropped on the page, read piece by piece; packed traces are unpacked on the way.
+use ruzstd::decoding::{FrameDecoder, StreamingDecoder};
 use std::{
-    io::{self, Read},
-    sync::atomic::{AtomicBool, Ordering},
+    io::{self, BufRead, BufReader, Read},
+    mem,
+    sync::OnceLock,
 };
 
 /// How many bytes the browser is asked for at once: each call takes some 0.1 ms.
-pub(crate) const PIECE: usize = 1 << 20;
+const PIECE: usize = 1 << 20;
+
+/// The first bytes of every zstd frame.
+const ZSTD_MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
+
+/// Why a file can't be read to its end, and what to do.
+pub(crate) type ReadFault = OnceLock<&'static str>;
 
 /// The page, as far as requests need it.
 pub trait PageHost: Sync {
@@ -17,28 +25,133 @@ pub trait PageHost: Sync {
     fn progress(&self, done: u32, all: u32);
 }
 
+/// A dropped trace from its beginning, unpacked where it is a zstd file.
+pub(crate) fn opened<'a>(host: &'a dyn PageHost, file: u32, fault: &'a ReadFault) -> Box<dyn Read + Send + 'a> {
+    let mut bytes = BufReader::with_capacity(PIECE, Dropped { host, file, offset: 0, fault });
+    // A file that can't be read is noticed when it is read.
+    match bytes.fill_buf() {
+        Ok(start) if start.starts_with(&ZSTD_MAGIC) => Box::new(ZstdContent { frames: Frames::Next(bytes), fault }),
+        _ => Box::new(bytes),
+    }
+}
+
 /// A dropped file from its beginning.
-pub(crate) struct Dropped<'a> {
+struct Dropped<'a> {
     host: &'a dyn PageHost,
     file: u32,
     offset: u64,
-    failed: &'a AtomicBool,
-}
-
-impl<'a> Dropped<'a> {
-    /// The file of this number; `failed` becomes true when it can't be read.
-    pub(crate) fn new(host: &'a dyn PageHost, file: u32, failed: &'a AtomicBool) -> Self {
-        Self { host, file, offset: 0, failed }
-    }
+    fault: &'a ReadFault,
 }
 
 impl Read for Dropped<'_> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         let Some(count) = self.host.read(self.file, self.offset, into) else {
-            self.failed.store(true, Ordering::Relaxed);
+            let _ = self.fault.set("it has changed or is gone; drop it again");
             return Err(io::Error::other("the browser can't read the file any more"));
         };
         self.offset += count as u64;
         Ok(count)
+    }
+}
+
+/// The content of a zstd file. A copy that was damaged on its way says nothing about the trace.
+struct ZstdContent<'a> {
+    frames: Frames<BufReader<Dropped<'a>>>,
+    fault: &'a ReadFault,
+}
+
+/// The frames of a zstd file, one after the other.
+enum Frames<R: Read> {
+    /// Before the next frame.
+    Next(R),
+    /// In one.
+    Within(Box<StreamingDecoder<R, FrameDecoder>>),
+    /// Behind the last one.
+    End,
+}
+
+impl Read for ZstdContent<'_> {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        self.frames.read(into).inspect_err(|_| {
+            // That the file is gone has been told already, and is the better explanation.
+            let _ = self.fault.set("the zstd data is cut short or damaged; copy it again");
+        })
+    }
+}
+
+impl<R: BufRead> Frames<R> {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        loop {
+            *self = match mem::replace(self, Self::End) {
+                Self::End => return Ok(0),
+                Self::Next(mut bytes) => {
+                    if bytes.fill_buf()?.is_empty() {
+                        return Ok(0);
+                    }
+                    Self::Within(Box::new(StreamingDecoder::new(bytes).map_err(io::Error::other)?))
+                }
+                Self::Within(mut frame) => {
+                    let count = frame.read(into)?;
+                    if count > 0 || into.is_empty() {
+                        *self = Self::Within(frame);
+                        return Ok(count);
+                    }
+                    let (bytes, decoder) = frame.into_parts();
+                    let (told, made) = (decoder.get_checksum_from_data(), decoder.get_calculated_checksum());
+                    if told.is_some() && told != made {
+                        return Err(io::Error::other("the content is not what was packed"));
+                    }
+                    Self::Next(bytes)
+                }
+            };
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Bytes(Vec<u8>);
+
+    impl PageHost for Bytes {
+        fn read(&self, _: u32, offset: u64, into: &mut [u8]) -> Option<usize> {
+            let rest = &self.0[usize::try_from(offset).ok()?.min(self.0.len())..];
+            let count = rest.len().min(into.len()).min(1000);
+            into[..count].copy_from_slice(&rest[..count]);
+            Some(count)
+        }
+
+        fn progress(&self, _: u32, _: u32) {}
+    }
+
+    fn content(bytes: Vec<u8>) -> (Vec<u8>, Option<&'static str>) {
+        let (fault, host, mut content) = (ReadFault::new(), Bytes(bytes), Vec::new());
+        let _ = opened(&host, 0, &fault).read_to_end(&mut content);
+        (content, fault.get().copied())
+    }
+
+    #[test]
+    fn packed_traces_are_read_like_others_and_damaged_ones_are_told() {
+        let trace: Vec<u8> = (0..100_000_u32).flat_map(|k| (k / 7 * k).to_le_bytes()).collect();
+        let pack = |bytes: &[u8]| {
+            let mut encoder = zstd::Encoder::new(Vec::new(), 3).expect("an encoder");
+            encoder.include_checksum(true).expect("checksums");
+            io::Write::write_all(&mut encoder, bytes).expect("packed");
+            encoder.finish().expect("packed")
+        };
+        assert_eq!(content(trace.clone()), (trace.clone(), None));
+        let packed = pack(&trace);
+        assert_eq!(content(packed.clone()), (trace.clone(), None));
+        // Two frames are one content.
+        let (one, other) = trace.split_at(1000);
+        assert_eq!(content([pack(one), pack(other)].concat()), (trace, None));
+        let damaged = |bytes: Vec<u8>| content(bytes).1.expect("it is told").contains("cut short or damaged");
+        assert!(damaged(packed[..packed.len() / 2].to_vec()));
+        let mut other = packed.clone();
+        let last = other.len() - 1;
+        other[last] ^= 1;
+        assert!(damaged(other), "the checksum is another one");
+        assert!(damaged([packed, b"more".to_vec()].concat()));
     }
 }

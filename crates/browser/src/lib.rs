@@ -8,6 +8,7 @@
 #![deny(unsafe_code)]
 
 mod check;
+mod course;
 mod detect;
 mod document;
 mod dropped;
@@ -19,6 +20,7 @@ mod submission;
 #[cfg(target_arch = "wasm32")]
 mod wasm;
 
+pub use course::CourseSuite;
 pub use document::page;
 pub use dropped::PageHost;
 pub use session::PageSession;

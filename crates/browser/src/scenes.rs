@@ -1,5 +1,5 @@
 //! The scenes that are inside.
-use crate::dropped::PageHost;
+use crate::dropped::{PageHost, ReadFault, opened};
 use fosssim_grading::library;
 use fosssim_model::{
     assignments::Assignment,
@@ -8,10 +8,10 @@ use fosssim_model::{
     trace::{Layout, Recorder},
 };
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, io::Read};
 
 /// No first record is longer, but of scenes that nobody drops.
-const LONGEST_RECORD: usize = 1 << 16;
+const LONGEST_RECORD: u64 = 1 << 16;
 
 /// Their names by assignment and group, in alphabetical order.
 pub(crate) fn list() -> Value {
@@ -34,9 +34,10 @@ pub(crate) fn xml(name: &str) -> Result<&'static [u8], String> {
 
 /// The names of the scenes with whose first record a dropped trace begins.
 pub(crate) fn beginning(file: u32, host: &dyn PageHost) -> Vec<&'static str> {
-    let mut start = vec![0; LONGEST_RECORD];
-    let Some(count) = host.read(file, 0, &mut start) else { return Vec::new() };
-    start.truncate(count);
+    let (fault, mut start) = (ReadFault::new(), Vec::new());
+    if opened(host, file, &fault).take(LONGEST_RECORD).read_to_end(&mut start).is_err() {
+        return Vec::new();
+    }
     library::names().filter(|name| library::scene(name).is_some_and(|xml| is_beginning(xml, &start))).collect()
 }
 

@@ -11,7 +11,7 @@ use fosssim_grading::plan;
 use serde::Deserialize;
 use serde_json::json;
 
-/// What the page may ask. The parts behind the first are named with each request.
+/// The requests of the page. The parts behind the first are named with each request.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "do", rename_all = "kebab-case")]
 enum PageRequest {
@@ -44,7 +44,7 @@ enum PageRequest {
     Grade { name: String },
 }
 
-/// What is kept between requests: the motion of the scene that was simulated last, the submission that is being graded.
+/// The values between requests: the motion of the scene that was simulated last, the submission that is being graded.
 #[derive(Debug, Default)]
 pub struct PageSession {
     film: Option<Film>,

@@ -1,6 +1,6 @@
 //! A submission's traces: points by a suite, as `grade --traces` gives them.
 use crate::{
-    dropped::{Dropped, PIECE, PageHost},
+    dropped::{PageHost, ReadFault, opened},
     parts::PageAnswer,
 };
 use fosssim_grading::{
@@ -17,10 +17,7 @@ use fosssim_report::{
 };
 use serde::Deserialize;
 use serde_json::{Value, json};
-use std::{
-    io::{BufReader, Read, empty},
-    sync::atomic::{AtomicBool, Ordering},
-};
+use std::io::{Read, empty};
 
 /// A suite with which a submission is going to be graded. Scenes that the suite names by files were dropped with it:
 /// their names, as the suite may write them, in the order of the parts behind the suite's text.
@@ -75,20 +72,17 @@ impl DroppedSubmission {
     /// Judges the trace of one scene.
     pub(crate) fn scene(&mut self, asked: &SceneRequest, host: &dyn PageHost) -> PageAnswer {
         let task = self.plan.scenes().nth(asked.number).ok_or("there is no such scene")?;
-        let failed = AtomicBool::new(false);
+        let fault = ReadFault::new();
         let most = self.plan.limits.trace;
         let bytes = asked.bytes.unwrap_or(0).min(most);
         let trace: Box<dyn Read + Send> = match asked.bytes {
-            Some(_) => Box::new(BufReader::with_capacity(PIECE, Dropped::new(host, 0, &failed)).take(most)),
+            Some(_) => Box::new(opened(host, 0, &fault).take(most)),
             None => Box::new(empty()),
         };
         let mut heard = ToldProgress { host, all: task.scene.steps() };
         let (result, _) = traces::judged(&self.plan, task, (trace, bytes), &mut heard);
-        if failed.load(Ordering::Relaxed) {
-            return Err(format!(
-                "cannot read the trace of {}: it has changed or is gone; drop the folder again",
-                task.name
-            ));
+        if let Some(why) = fault.get() {
+            return Err(format!("cannot read the trace of {}: {why}", task.name));
         }
         let tells = self.plan.hints > Hints::None;
         let likely = result.explanations.first().filter(|_| tells).map(explanation::what);

@@ -12,7 +12,7 @@ use fosssim_mistakes::diagnose::{Explanation, explain_kept};
 use fosssim_model::scene::Scene;
 use std::io::Read;
 
-/// What is kept of a trace while it is judged.
+/// The part of a trace that is kept while it is judged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Keep {
     /// Nothing: the trace is neither explained nor shown.
@@ -31,7 +31,7 @@ pub struct Examined<'a> {
     pub outcome: Outcome,
     /// The rulings on its steps.
     pub rulings: Vec<StepRuling>,
-    /// What was kept.
+    /// The trace that was kept.
     pub trace: KeptTrace<'a>,
 }
 

@@ -73,7 +73,7 @@ pub struct Focus {
 }
 
 impl Focus {
-    /// What both books found, the official one's first.
+    /// The findings of both books, the official one's first.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Vec<Self> {
         let books = outcome.fair.iter().map(|fair| &fair.findings).chain([&outcome.parity.findings]);

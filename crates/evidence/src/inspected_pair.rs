@@ -8,7 +8,7 @@ use fosssim_model::{
 
 /// The records of a step in the trace, without the state that it starts from.
 #[derive(Debug, Clone, Copy)]
-pub struct Records<'a> {
+pub struct StepRecords<'a> {
     /// Its mid record's state, from which a `hybrid` step goes on.
     pub mid: Option<&'a State>,
     /// The polynomials of its end record.
@@ -29,7 +29,13 @@ pub struct InspectedPair {
 /// Looks at all detection calls of a pair in a step that starts from `before`; without `records` as the reference goes
 /// on.
 #[must_use]
-pub fn inspect(scene: &Scene, step: u32, before: &State, records: Option<Records<'_>>, pair: Pair) -> InspectedPair {
+pub fn inspect(
+    scene: &Scene,
+    step: u32,
+    before: &State,
+    records: Option<StepRecords<'_>>,
+    pair: Pair,
+) -> InspectedPair {
     let none = PolynomialLog::default();
     let mid = records.and_then(|records| records.mid).filter(|_| matches!(scene.collision, Collision::Hybrid { .. }));
     let log = records.map_or(&none, |records| records.polynomials);
@@ -40,7 +46,7 @@ pub fn inspect(scene: &Scene, step: u32, before: &State, records: Option<Records
     simulation.set_steps_done(step - 1);
     let failed = simulation.step(&mut watch).err();
     let mut step = watch.finish();
-    // What else is wrong in the step is not asked for.
+    // Other faults of the step are not asked for.
     step.calls.retain(|call| call.pair == pair);
     InspectedPair { step, end: simulation.state().clone(), failed }
 }

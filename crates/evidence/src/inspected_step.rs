@@ -234,8 +234,8 @@ impl<'a> Inspector<'a> {
         }
         let mut surplus = is_claimed.iter().filter(|claimed| !**claimed).count();
         self.step.surplus = Some(surplus);
-        // What stands for no call may be one that was made twice: then it follows or precedes the polynomials of its
-        // pass.
+        // A polynomial that stands for no call may be of one that was made twice: then it follows or precedes the
+        // polynomials of its pass.
         let mut place = 0;
         while place < log.len() && surplus > 0 {
             if is_claimed[place] {

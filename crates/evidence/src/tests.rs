@@ -154,7 +154,7 @@ fn a_pair_is_looked_at_in_every_pass_from_the_trace_s_own_records() {
     };
     let (before, mid) = (state(evidence.layout.end_record(step - 1)), state(evidence.layout.end_record(step) - 1));
     let pair = close.passes[0].hits[0].pair;
-    let records = Records { mid: Some(&mid), polynomials: &PolynomialLog::default() };
+    let records = StepRecords { mid: Some(&mid), polynomials: &PolynomialLog::default() };
     let seen = inspect(&scene, step, &before, Some(records), pair);
     assert_eq!(seen.step.calls.len(), close.expected_passes);
     assert!(seen.step.calls.iter().all(|call| call.pair == pair && call.logged == Logged::Nothing));

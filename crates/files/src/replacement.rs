@@ -97,7 +97,7 @@ impl Replacement {
 impl Drop for Replacement {
     fn drop(&mut self) {
         if !self.finished {
-            // What stays behind is hidden and of no use to anybody.
+            // A file that stays behind is hidden and of no use to anybody.
             let _ = unlinkat(&self.folder, &self.unfinished, AtFlags::empty());
         }
     }

@@ -1,4 +1,4 @@
-//! What one rule book has found in a trace: the same of both.
+//! The findings of one rule book in a trace: the same type for both.
 use super::{counts::FindingCounts, finding::Finding};
 
 /// The findings of one book.

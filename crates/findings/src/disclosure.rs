@@ -1,4 +1,4 @@
-//! What may be told of a judged trace: findings as values, cut to what the suite's hints let through
+//! The part of a judged trace that may be told: findings as values, cut to what the suite's hints let through
 //! ([`Hints`](super::Hints)).
 use super::{
     Book, Damage, FindingCounts, Residuals, Ruling,
@@ -6,14 +6,14 @@ use super::{
 };
 use serde::{Deserialize, Serialize};
 
-/// What may be told of a trace. Hints that tell nothing make none of it.
+/// The part of a trace that may be told. Hints that tell nothing make none of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Disclosure {
     /// The book whose verdict counts.
     pub official: Book,
-    /// What the original's rules found.
+    /// The findings of the original's rules.
     pub parity: DisclosedBook,
-    /// What the fair rules found, if they were asked.
+    /// The findings of the fair rules, if they were asked.
     pub fair: Option<DisclosedBook>,
     /// The residuals (oracle-behaviour.md 6.3), which are values: with full hints only.
     pub residuals: Option<Residuals>,
@@ -24,7 +24,7 @@ pub struct Disclosure {
 }
 
 impl Disclosure {
-    /// What the book whose verdict counts found; the original's, if the fair one was not asked.
+    /// The findings of the book whose verdict counts; the original's, if the fair one was not asked.
     #[must_use]
     pub fn official(&self) -> &DisclosedBook {
         match (self.official, &self.fair) {
@@ -34,7 +34,7 @@ impl Disclosure {
     }
 }
 
-/// What one rule book found.
+/// The findings of one rule book.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DisclosedBook {
     /// Its verdict.
@@ -49,7 +49,7 @@ pub struct DisclosedBook {
     pub examples: Vec<DisclosedFinding>,
 }
 
-/// What may be told of one finding.
+/// The part of one finding that may be told.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum DisclosedFinding {
     /// Where it is and of what kind, without values.

@@ -1,4 +1,4 @@
-//! What the fair rule book says of a trace (numerics.md 2).
+//! The fair rule book's judgement of a trace (numerics.md 2).
 use super::book_findings::BookFindings;
 use fosssim_model::sim::{Pair, Pass};
 use serde::{Deserialize, Serialize};
@@ -39,7 +39,7 @@ pub enum Form {
     Either,
     /// The course's formula, with its slip in t^3.
     Course,
-    /// What the definition gives.
+    /// The answer that the definition gives.
     Right,
 }
 
@@ -90,7 +90,7 @@ pub struct Judgement {
     pub verdict: FairVerdict,
     /// Why the trace is refused as a whole, whatever its steps hold.
     pub refusal: Option<FairRefusal>,
-    /// What was found.
+    /// Its findings.
     pub findings: BookFindings,
     /// How many decisions about pairs the trace holds, in all steps and passes.
     pub decisions: u64,

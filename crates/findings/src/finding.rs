@@ -1,4 +1,4 @@
-//! What can be wrong with a step, and where.
+//! Findings: what is wrong with a step, and where.
 use fosssim_model::{
     sim::{Impulse, Pair, PairKind, Pass},
     trace::LoggedImpulse,
@@ -42,11 +42,13 @@ pub enum FindingKind {
     TrimmedDecision,
     /// Fair rules: the two accepted forms of the approach polynomial are mixed.
     MixedForms,
+    /// Fair rules: the penalty force between two bodies was left out, or applied twice.
+    PairForce,
 }
 
 impl FindingKind {
     /// All kinds, in order.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::MissedCollision,
         Self::SuperfluousCollision,
         Self::WrongNormal,
@@ -63,6 +65,7 @@ impl FindingKind {
         Self::ImpossibleLog,
         Self::TrimmedDecision,
         Self::MixedForms,
+        Self::PairForce,
     ];
 
     /// The original's message for it; positions and velocities have none, they only raise residuals, and what it does
@@ -85,7 +88,8 @@ impl FindingKind {
             | Self::RecordsDiffer
             | Self::ImpossibleLog
             | Self::TrimmedDecision
-            | Self::MixedForms => None,
+            | Self::MixedForms
+            | Self::PairForce => None,
         }
     }
 }
@@ -122,6 +126,7 @@ impl Finding {
             FindingDetail::ImpossibleLog => FindingKind::ImpossibleLog,
             FindingDetail::TrimmedDecision { .. } | FindingDetail::TrimmedTime { .. } => FindingKind::TrimmedDecision,
             FindingDetail::MixedForms { .. } => FindingKind::MixedForms,
+            FindingDetail::PairForce { .. } => FindingKind::PairForce,
         }
     }
 }
@@ -300,6 +305,13 @@ pub enum FindingDetail {
         /// The first such polynomial.
         place: PolynomialPlace,
     },
+    /// Two bodies are within reach of the penalty force, and it was left out, or applied twice (fair rules).
+    PairForce {
+        /// The bodies.
+        pair: Pair,
+        /// Whether it was applied twice.
+        is_doubled: bool,
+    },
 }
 
 impl FindingDetail {
@@ -310,6 +322,7 @@ impl FindingDetail {
             Self::MissedCollision { expected }
             | Self::WrongNormal { expected, .. }
             | Self::ContactTime { expected, .. } => FindingPlace::Pair(expected.pair),
+            Self::PairForce { pair, .. } => FindingPlace::Pair(*pair),
             Self::PolynomialDegree { place, .. }
             | Self::VanishingPolynomial { place, .. }
             | Self::Coefficient { place, .. }

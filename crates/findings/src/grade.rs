@@ -58,7 +58,7 @@ pub struct Grade {
     pub shows_output: bool,
     /// How the build ended, when the suite builds.
     pub build: Option<Build>,
-    /// What weakened the sandbox, in words; empty when every required layer held.
+    /// The weaknesses of the sandbox, in words; empty when every required layer held.
     pub warnings: Vec<String>,
     /// Layers of the sandbox that were active.
     pub layers: Vec<String>,
@@ -66,7 +66,8 @@ pub struct Grade {
     pub wall: Duration,
     /// Keys of mistakes that accepted scenes speak against.
     pub refuted: Vec<String>,
-    /// What the scenes have in common in which the program crashes or runs into a limit, where hints let it through.
+    /// The common properties of the scenes in which the program crashes or runs into a limit, where hints let them
+    /// through.
     pub located: Option<Located>,
 }
 
@@ -94,7 +95,7 @@ impl Grade {
         self.count(Verdict::NotRun) > 0
     }
 
-    /// What is wrong with the submission itself, and the reason of each of its scenes: no program that can be run is in
+    /// The fault of the submission itself, and the reason of each of its scenes: no program that can be run is in
     /// it, its sources do not build, or nothing is written yet.
     #[must_use]
     pub fn unfit(&self) -> Option<Unfit<'_>> {
@@ -156,12 +157,12 @@ pub struct Build {
     pub output: String,
 }
 
-/// What is wrong with a submission itself.
+/// A fault of a submission itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Unfit<'a> {
     /// Its build.
     Build(&'a BuildEnd),
-    /// What its first scene says, and all others with it.
+    /// The words of its first scene, and of all others with it.
     Scene(&'a SceneResult),
 }
 
@@ -170,7 +171,7 @@ pub enum Unfit<'a> {
 pub struct GroupGrade {
     /// Its name.
     pub name: String,
-    /// Who sees it.
+    /// The readers who see it.
     pub visibility: Visibility,
     /// Points reached; `None` when a scene has none.
     pub points: Option<f64>,
@@ -185,7 +186,7 @@ pub struct GroupGrade {
 /// One scene with its points.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SceneGrade {
-    /// What happened.
+    /// The result.
     pub result: SceneResult,
     /// Points reached; `None` when the grader failed or did not come to run it, which is nobody's zero.
     pub points: Option<f64>,
@@ -193,7 +194,7 @@ pub struct SceneGrade {
     pub max_points: f64,
     /// Whether the result was taken from an earlier run.
     pub cached: bool,
-    /// What is likely wrong here, the likeliest first: what all scenes together say of this one, else what it says
+    /// The likely mistakes here, the likeliest first: by what all scenes together say of this one, else by what it says
     /// alone (made of [`SceneResult::explanations`]). This is what reports tell.
     pub settled: Vec<Explanation>,
     /// The number of explanations, the first of [`settled`](Self::settled), that all scenes together give.

@@ -14,7 +14,7 @@ pub enum Hints {
     None,
     /// Where: kind, step, pair and polynomial of the first divergence.
     Where,
-    /// What: the likely mistake in a sentence, too.
+    /// The likely mistake in a sentence, too.
     What,
     /// Everything: expected and actual values, and the mistake in detail. May give a right formula away.
     Full,
@@ -63,7 +63,7 @@ impl Hints {
         }
     }
 
-    /// What of a finding may be told: nothing at [`Hints::None`], no values below [`Hints::Full`].
+    /// The part of a finding that may be told: nothing at [`Hints::None`], no values below [`Hints::Full`].
     #[must_use]
     pub const fn finding(self, finding: &Finding) -> Option<DisclosedFinding> {
         match self {

@@ -1,4 +1,4 @@
-//! What is said of a submission, as values: findings, the outcome of judging a trace by both rule books, explanations,
+//! The judgement of a submission, as values: findings, the outcome of judging a trace by both rule books, explanations,
 //! results of scenes and grades.
 //!
 //! A fact has one type here, from where it arises to where somebody reads it: `judge` and `mistakes` fill these values,

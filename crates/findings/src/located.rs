@@ -1,4 +1,4 @@
-//! What scenes have in common in which a program crashes or runs into a limit, as a value.
+//! The common properties of scenes in which a program crashes or runs into a limit, as a value.
 use fosssim_ended::Ended;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;

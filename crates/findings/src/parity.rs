@@ -1,4 +1,4 @@
-//! What the original's rule book says of a trace: lock-step comparison (oracle-behaviour.md 4 to 6).
+//! The original's rule book on a trace: lock-step comparison (oracle-behaviour.md 4 to 6).
 use super::book_findings::BookFindings;
 use fosssim_num::tolerances::{PARITY_ACCUMULATED, PARITY_MAXIMUM};
 use serde::{Deserialize, Serialize};

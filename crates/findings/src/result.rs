@@ -1,4 +1,4 @@
-//! What happened on one scene, as values: `report::words` makes sentences of it, `grading::score` the points.
+//! Results of scenes, as values: `report::words` makes sentences of them, `grading::score` the points.
 use super::{
     cause::Cause,
     disclosure::Disclosure,
@@ -15,7 +15,7 @@ use std::{path::PathBuf, time::Duration};
 
 pub use fosssim_ended::{Ended, StartProblem, Stream};
 
-/// What happened on one scene: everything but its points, which follow from the suite. It holds no more than the
+/// The result of one scene: everything but its points, which follow from the suite. It holds no more than the
 /// suite's hints let through, so that nothing that is made of it can give away more.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SceneResult {
@@ -29,7 +29,7 @@ pub struct SceneResult {
     pub ended: Option<Ended>,
     /// Where the two rule books come to different verdicts about the trace: the rule of the original that is the cause.
     pub differs: Option<Cause>,
-    /// What may be told of the trace.
+    /// The part of the trace that may be told.
     pub disclosure: Option<Disclosure>,
     /// Likely mistakes, the likeliest first; no more of them than the suite's hints let through.
     pub explanations: Vec<Explanation>,
@@ -37,11 +37,11 @@ pub struct SceneResult {
     pub right_steps: u32,
     /// Steps of the scene.
     pub steps: u32,
-    /// What was measured, which differs from run to run.
+    /// The measurements, which differ from run to run.
     pub measured: Measurements,
-    /// What the program wrote to its standard output, capped; raw text that a report has to escape.
+    /// The program's standard output, capped; raw text that a report has to escape.
     pub stdout: String,
-    /// What the program wrote to its standard error, capped; raw text that a report has to escape.
+    /// The program's standard error, capped; raw text that a report has to escape.
     pub stderr: String,
     /// The name of the card that was drawn of its trace.
     pub card: Option<String>,
@@ -89,14 +89,14 @@ impl SceneResult {
     }
 }
 
-/// What was measured of a run; all else that a result says follows from the program and the scene.
+/// The measurements of a run; all else that a result says follows from the program and the scene.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Measurements {
     /// Processor time of the program.
     pub cpu: Duration,
     /// Wall time of the run.
     pub wall: Duration,
-    /// What judging and explaining took beyond that.
+    /// The time that judging and explaining took beyond that.
     pub judging: Duration,
     /// Peak memory of the program in bytes, when known.
     pub memory: Option<u64>,
@@ -144,7 +144,7 @@ pub enum Wrong {
         wrong: u64,
         /// The first one.
         first: u32,
-        /// What is wrong there first.
+        /// The first fault there.
         kind: FindingKind,
     },
     /// Only in that its records are damaged.
@@ -226,14 +226,14 @@ pub enum Unusable {
     NoProgram {
         /// That name.
         sought: String,
-        /// What is there instead.
+        /// The contents that are there instead.
         found: FolderContents,
     },
     /// Its program can't be read or copied, for this reason of the operating system or of the copy.
     Unreadable(String),
 }
 
-/// What a submission's folder holds where a program is missing.
+/// The contents of a submission's folder where a program is missing.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FolderContents {
     /// It can't be read, for this reason of the operating system.
@@ -251,14 +251,14 @@ pub enum FolderContents {
     },
 }
 
-/// What the grader failed on.
+/// A failure of the grader.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Failure {
     /// The machine, or what the grader was given, in its own words.
     Machine(String),
     /// Itself: a panic, with its words and its place in the source.
     Panic {
-        /// What it was doing; nothing, where that is not known.
+        /// The activity on which it failed; nothing, where that is not known.
         stage: Option<Activity>,
         /// The panic.
         fault: String,
@@ -267,7 +267,7 @@ pub enum Failure {
     },
 }
 
-/// What the grader was doing.
+/// The grader's activities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Activity {
     /// Comparing the trace with the reference.
@@ -278,7 +278,7 @@ pub enum Activity {
     Reporting,
 }
 
-/// What became of a trace on which the grader failed.
+/// The place of a trace on which the grader failed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum SavedTrace {
     /// It is in this file.
@@ -301,7 +301,7 @@ pub enum BuildEnd {
     Ended(Ended),
     /// It ended well and made no program of this name.
     MadeNo(String),
-    /// What it made can't be used, for this reason.
+    /// Its product can't be used, for this reason.
     Unusable(String),
     /// The sources can't be copied, for this reason.
     Sources(String),

@@ -1,4 +1,4 @@
-//! What is said about one scene or one submission.
+//! Verdicts on one scene or one submission.
 use serde::{Deserialize, Serialize};
 
 /// The verdict words, from best to worst; of several, the worst counts.

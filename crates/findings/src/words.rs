@@ -49,9 +49,12 @@ impl Display for WithoutStep<'_> {
     }
 }
 
-/// What makes a decision another one, and where coefficients may have gone. Whether a factor explains it, the trace's
-/// other polynomials tell.
+/// The reason why a decision is another one, and where coefficients may have gone. Whether a factor explains it, the
+/// trace's other polynomials tell.
 const LACKING: &str = "the trace's polynomials lack coefficients for that";
+const OTHER_FORM: &str = "the other one of the two accepted forms; a program uses one of them throughout";
+const LEFT_OUT: &str = "are within reach of the penalty force, no force was applied between them";
+const DOUBLED: &str = "are within reach of the penalty force, the force between them was applied twice";
 const DROPPING: &str = "the course's library drops leading ones below 1e-12";
 
 impl Display for FindingDetail {
@@ -129,9 +132,9 @@ impl Display for FindingDetail {
                 "the step starts or ends with particle {particle} at ({x}, {y}) with velocity ({vx}, {vy}): no \
                  run of the scene leads to such states"
             ),
-            Self::MixedForms { place } => {
-                write!(f, "{place}: the other one of the two accepted forms; a program uses one of them throughout")
-            }
+            Self::MixedForms { place } => write!(f, "{place}: {OTHER_FORM}"),
+            Self::PairForce { pair, is_doubled: false } => write!(f, "{} {LEFT_OUT}", PairWords(pair)),
+            Self::PairForce { pair, is_doubled: true } => write!(f, "{} {DOUBLED}", PairWords(pair)),
         }
     }
 }
@@ -216,6 +219,7 @@ impl Display for FindingKind {
             Self::ImpossibleLog => "impossible log",
             Self::TrimmedDecision => "decision changed by lost coefficients",
             Self::MixedForms => "mixed forms of the approach",
+            Self::PairForce => "force of a pair left out or doubled",
         })
     }
 }

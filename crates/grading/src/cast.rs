@@ -53,9 +53,9 @@ pub(super) fn right_trace(job: &Job) -> Vec<u8> {
 }
 
 /// Hears whether the failsafe moves a zone.
-struct Moved(bool);
+struct ZonesMoved(bool);
 
-impl Observer for Moved {
+impl Observer for ZonesMoved {
     fn failsafe(&mut self, _round: u32, _zone: &Zone<'_>) {
         self.0 = true;
     }
@@ -90,7 +90,7 @@ fn act(job: &Job) -> FakeRun {
         Some("crashes-in-the-failsafe") => {
             let scene = scene(job);
             let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
-            let mut moved = Moved(false);
+            let mut moved = ZonesMoved(false);
             let step = (1..=scene.steps()).find(|_| {
                 simulation.step(&mut moved).expect("a step");
                 moved.0

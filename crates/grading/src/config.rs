@@ -12,9 +12,9 @@ use toml::Spanned;
 
 pub use super::assignments::TEMPLATE;
 
-/// A validated suite, its scenes not yet looked up.
+/// A validated suite: its scenes are patterns until they are looked up (see [`Plan`](super::plan::Plan)).
 #[derive(Debug, Clone, PartialEq)]
-pub struct Suite {
+pub struct Suite<Scene = Pattern> {
     /// Its name, shown in reports.
     pub name: String,
     /// How the program is run; `{program}`, `{scene}` and `{trace}` are replaced.
@@ -23,7 +23,7 @@ pub struct Suite {
     pub rules: Rules,
     /// How much a report tells.
     pub hints: Hints,
-    /// Whether students see all of visible scenes even though some groups are not visible to them.
+    /// Whether students see what their programs print even though some groups are not visible to them.
     pub show_output: bool,
     /// The build step.
     pub build: Option<BuildStep>,
@@ -32,30 +32,33 @@ pub struct Suite {
     /// When the rest of a submission is not run any more.
     pub patience: Patience,
     /// The groups.
-    pub groups: Vec<Group>,
+    pub groups: Vec<Group<Scene>>,
 }
 
 /// A group of scenes.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Group {
+pub struct Group<Scene = Pattern> {
     /// Its name.
     pub name: String,
-    /// Patterns: `asset:Group/*` for embedded scenes, else files relative to the suite's own folder.
-    pub scenes: Vec<String>,
-    /// Where each pattern stands, for messages about patterns that match nothing.
-    pub positions: Vec<Position>,
-    /// Points of the whole group, shared evenly among its scenes.
-    pub points: f64,
-    /// How partial success counts.
-    pub credit: Credit,
-    /// The readers who see it.
-    pub visibility: Visibility,
+    /// Its points, credit and visibility.
+    pub marking: Marking,
+    /// Its scenes, in the order of the patterns, each pattern's in alphabetical order.
+    pub scenes: Vec<Scene>,
+}
+
+/// A pattern of scenes: `asset:Group/*` for embedded ones, else files relative to the suite's own folder.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pattern {
+    /// Its text.
+    pub text: String,
+    /// Where it stands, for messages about patterns that match nothing.
+    pub at: Position,
 }
 
 /// The settings of a group that decide its points.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Marking {
-    /// Points of the whole group.
+    /// Points of the whole group, shared evenly among its scenes.
     pub points: f64,
     /// How partial success counts.
     pub credit: Credit,
@@ -271,7 +274,7 @@ pub(super) fn read_all(text: &str) -> (Suite, Vec<(Position, String)>) {
     for (number, group) in groups.iter().enumerate() {
         if !group.name.is_empty() && groups[..number].iter().any(|other| other.name == group.name) {
             checker.problems.push((
-                group.positions.first().copied().unwrap_or_default(),
+                group.scenes.first().map(|pattern| pattern.at).unwrap_or_default(),
                 format!("two groups have the name \"{}\"", group.name),
             ));
         }
@@ -388,16 +391,13 @@ fn read_group(checker: &mut Checker<'_>, raw: RawGroup) -> Group {
         checker.problem(none.span(), format!("group \"{name}\" has no scenes"));
     }
     let points = checker.number("points", raw.points.as_ref(), 1.0, MOST_POINTS);
-    let scenes = raw.scenes.map(Spanned::into_inner).unwrap_or_default();
-    let positions = scenes.iter().map(|pattern| Position::of(checker.text, pattern.span().start)).collect();
-    Group {
-        name,
-        scenes: scenes.into_iter().map(Spanned::into_inner).collect(),
-        positions,
-        points,
-        credit: raw.credit.unwrap_or(Credit::Scenes),
-        visibility: raw.visibility.unwrap_or(Visibility::Visible),
-    }
+    let scenes = raw.scenes.map(Spanned::into_inner).unwrap_or_default().into_iter();
+    let pattern = |pattern: Spanned<String>| {
+        let at = Position::of(checker.text, pattern.span().start);
+        Pattern { text: pattern.into_inner(), at }
+    };
+    let (credit, visibility) = (raw.credit.unwrap_or(Credit::Scenes), raw.visibility.unwrap_or(Visibility::Visible));
+    Group { name, scenes: scenes.map(pattern).collect(), marking: Marking { points, credit, visibility } }
 }
 
 #[cfg(test)]

@@ -21,7 +21,7 @@ use fosssim_judge::{
     replay::{Options, Progress, Remark},
 };
 use fosssim_mistakes::diagnose;
-use fosssim_sandbox::{self as sandbox, Backend, Identity, Job, Limits, Policy, Running, SandboxError};
+use fosssim_sandbox::{self as sandbox, Backend, Job, Limits, Policy, ProgramIdentity, Running, SandboxError};
 use std::{
     io::{self, Read},
     path::Path,
@@ -108,7 +108,9 @@ impl Runner<'_> {
         let mut watch = Watch { on_step };
         let mut rulings = StepRulings::new(&mut watch);
         let judged = match running.trace() {
-            Some(inner) => self.judge_pipe(program, task, &keeper, Counted { inner, bytes: &bytes }, &mut rulings),
+            Some(inner) => {
+                self.judge_pipe(program, task, &keeper, CountedReader { inner, bytes: &bytes }, &mut rulings)
+            }
             None => guarded(|| self.judge(task, &keeper, io::empty(), &mut rulings)),
         };
         let outcome = running.wait()?;
@@ -193,7 +195,7 @@ impl Runner<'_> {
     fn start(
         &self,
         program: &Path,
-        identity: Option<Identity>,
+        identity: Option<ProgramIdentity>,
         task: &SceneTask,
     ) -> Result<(Running, Temporary), ExecuteError> {
         let folder = self.folders.take().map_err(ExecuteError::Folder)?;
@@ -306,12 +308,12 @@ enum ExecuteError {
 }
 
 /// Counts the bytes that arrive.
-struct Counted<'a, R> {
+struct CountedReader<'a, R> {
     inner: R,
     bytes: &'a AtomicU64,
 }
 
-impl<R: Read> Read for Counted<'_, R> {
+impl<R: Read> Read for CountedReader<'_, R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.inner.read(buffer)?;
         self.bytes.fetch_add(count as u64, Ordering::Relaxed);

@@ -1,4 +1,4 @@
-//! What becomes of a scene on which the grader itself failed: a judge error, and its trace put aside for the developer
+//! Scenes on which the grader itself failed: each is a judge error, and its trace is put aside for the developer
 //! who mends it.
 use super::{
     guard::Fault,

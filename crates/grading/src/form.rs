@@ -28,7 +28,7 @@ pub fn write(key: &Key, submission: &str, result: &SceneResult) -> Vec<u8> {
     serde_json::to_vec(&Entry { form: VERSION, key, submission, result }).unwrap_or_default()
 }
 
-/// What [`write`] wrote; `None` where it is damaged or of another version.
+/// The entry that [`write`] wrote; `None` where it is damaged or of another version.
 #[must_use]
 pub fn read(bytes: &[u8]) -> Option<Entry> {
     serde_json::from_slice(bytes).ok().filter(|entry: &Entry| entry.form == VERSION)

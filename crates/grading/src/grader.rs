@@ -106,7 +106,7 @@ impl Grader<'_> {
 }
 
 /// The values that the submissions of one grading share.
-pub(super) struct Shared<'a> {
+pub(super) struct SharedGrading<'a> {
     cancellation: &'a Cancellation,
     results: Option<&'a dyn Results>,
     folders: Folders,
@@ -120,7 +120,7 @@ pub(super) struct Shared<'a> {
     contents: OnceLock<Vec<Contents>>,
 }
 
-impl<'a> Shared<'a> {
+impl<'a> SharedGrading<'a> {
     pub(super) fn new(grader: &Grader<'_>, results: Option<&'a dyn Results>, cancellation: &'a Cancellation) -> Self {
         let (folders, kept, full, contents) = (Folders::default(), Mutex::default(), OnceLock::new(), OnceLock::new());
         Self { cancellation, results, folders, words: grader.words(), kept, full, contents }
@@ -199,7 +199,7 @@ pub(super) enum SceneProgress {
 /// it, and its copy stays until the grade is drawn.
 pub(super) struct SubmissionGrading<'a> {
     pub(super) grader: &'a Grader<'a>,
-    pub(super) shared: &'a Shared<'a>,
+    pub(super) shared: &'a SharedGrading<'a>,
     pub(super) submission: &'a Submission,
     /// The digest of the program as it lies there; none for what has to be built or copied first.
     digest: OnceLock<Option<blake3::Hash>>,
@@ -217,7 +217,7 @@ struct Known {
 
 impl<'a> SubmissionGrading<'a> {
     /// A submission of which nothing is known yet.
-    pub(super) fn new(grader: &'a Grader<'a>, shared: &'a Shared<'a>, submission: &'a Submission) -> Self {
+    pub(super) fn new(grader: &'a Grader<'a>, shared: &'a SharedGrading<'a>, submission: &'a Submission) -> Self {
         let done = vec![None; grader.plan.scenes().count()];
         Self {
             grader,

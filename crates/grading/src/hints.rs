@@ -1,6 +1,6 @@
-//! What of explanations hints let through.
+//! The part of explanations that hints let through.
 //!
-//! What is not to be told is cut here, before a report or the journal sees it, so that no format can let it out.
+//! The rest is cut here, before a report or the journal sees it, so that no format can let it out.
 use fosssim_findings::{Hints, explanation::Explanation};
 use fosssim_mistakes::student::find;
 

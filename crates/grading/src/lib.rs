@@ -1,4 +1,4 @@
-//! What to grade, and grading it: suites, verdicts, grades, recordings.
+//! Suites and grading by them: verdicts, grades, recordings.
 //!
 //! The only place that knows both traces and programs. Yields a [`Grade`]; it writes no markup, speaks no HTTP and
 //! parses no arguments. Programs are run on Linux alone; suites, and grades by traces that are there already

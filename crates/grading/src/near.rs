@@ -25,7 +25,7 @@ pub fn nearest<'c>(word: &str, names: impl Iterator<Item = &'c str>, most: usize
     let (typed, typed_last) = (plain(word), last(word));
     let slips = |name: &str| {
         let (known, known_last) = (plain(name), last(name));
-        // What holds the whole of it is as near as one slip.
+        // A name that holds the whole of it is as near as one slip.
         let holds = typed.len() >= 3 && known.windows(typed.len()).any(|part| part == typed);
         let of_last = distance(&typed_last, &known_last);
         (if holds { 1 } else { of_last.min(distance(&typed, &known)) }, of_last)

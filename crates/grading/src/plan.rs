@@ -1,52 +1,23 @@
 //! A suite with its scenes looked up: what a grading really runs.
 use super::{
     assignments,
-    config::{self, BuildStep, Hints, Marking, Patience, RunLimits, Suite, SuiteError},
+    config::{self, Group, Pattern, Suite, SuiteError},
     library,
     task::SceneTask,
 };
-use fosssim_judge::Rules;
 use fosssim_model::scene;
 use std::collections::BTreeMap;
 
 #[cfg(target_os = "linux")]
 mod on_disk;
 #[cfg(target_os = "linux")]
-pub use on_disk::{FindError, LARGEST_SUITE, MOST_SCENE_BYTES, MOST_SCENES, find, load, resolve};
+pub use on_disk::{FindError, LARGEST_SUITE, MOST_SCENE_BYTES, MOST_SCENES, find, load};
 
-/// A suite ready to run.
-#[derive(Debug, Clone)]
-pub struct Plan {
-    /// Its name.
-    pub name: String,
-    /// The command line.
-    pub run: Vec<String>,
-    /// The rule books to ask.
-    pub rules: Rules,
-    /// How much a report tells.
-    pub hints: Hints,
-    /// Whether students see what their programs print even though some groups are not visible to them.
-    pub show_output: bool,
-    /// The build step.
-    pub build: Option<BuildStep>,
-    /// Limits of each run.
-    pub limits: RunLimits,
-    /// When the rest of a submission is not run any more.
-    pub patience: Patience,
-    /// The groups.
-    pub groups: Vec<PlannedGroup>,
-}
+/// A suite ready to run: its scenes have been looked up.
+pub type Plan = Suite<SceneTask>;
 
 /// A group with its scenes.
-#[derive(Debug, Clone)]
-pub struct PlannedGroup {
-    /// Its name.
-    pub name: String,
-    /// Its points, credit and visibility.
-    pub marking: Marking,
-    /// Its scenes, in the order of the patterns, each pattern's in alphabetical order.
-    pub scenes: Vec<SceneTask>,
-}
+pub type PlannedGroup = Group<SceneTask>;
 
 impl Plan {
     /// All scenes in order.
@@ -106,23 +77,24 @@ pub type Found = Vec<(String, Vec<u8>)>;
 ///
 /// # Errors
 /// Patterns that match nothing, scenes that can't be read or are not sound, each at the pattern's position.
-pub fn resolve_by(suite: &Suite, files: &mut dyn FnMut(&str) -> Result<Found, String>) -> Result<Plan, SuiteError> {
+pub fn resolve_by(suite: Suite, files: &mut dyn FnMut(&str) -> Result<Found, String>) -> Result<Plan, SuiteError> {
+    let Suite { name, run, rules, hints, show_output, build, limits, patience, groups: patterns } = suite;
     let mut problems = Vec::new();
     let mut seen = BTreeMap::new();
     let mut groups = Vec::new();
-    for group in &suite.groups {
+    for group in patterns {
         let mut scenes = Vec::new();
-        for (pattern, &position) in group.scenes.iter().zip(&group.positions) {
-            let found = match pattern.strip_prefix("asset:") {
+        for Pattern { text, at } in group.scenes {
+            let found = match text.strip_prefix("asset:") {
                 Some(pattern) => embedded(pattern),
-                None => files(pattern),
+                None => files(&text),
             };
             match found {
                 Ok(found) => {
                     for (name, xml) in found {
                         match seen.insert(name.clone(), group.name.clone()) {
                             Some(other) => {
-                                problems.push((position, format!("scene {name} is in group \"{other}\" already")));
+                                problems.push((at, format!("scene {name} is in group \"{other}\" already")));
                             }
                             None => match scene::read(&name, &xml) {
                                 Ok(loaded) => {
@@ -131,31 +103,21 @@ pub fn resolve_by(suite: &Suite, files: &mut dyn FnMut(&str) -> Result<Found, St
                                     let recording = known.then(|| library::recording(&name)).flatten();
                                     scenes.push(SceneTask { name, xml, scene: loaded.scene, recording });
                                 }
-                                Err(error) => problems.push((position, format!("scene {name} is not sound:\n{error}"))),
+                                Err(error) => problems.push((at, format!("scene {name} is not sound:\n{error}"))),
                             },
                         }
                     }
                 }
-                Err(message) => problems.push((position, message)),
+                Err(message) => problems.push((at, message)),
             }
         }
-        let marking = Marking { points: group.points, credit: group.credit, visibility: group.visibility };
-        groups.push(PlannedGroup { name: group.name.clone(), marking, scenes });
+        groups.push(Group { name: group.name, marking: group.marking, scenes });
     }
-    if !problems.is_empty() {
-        return Err(SuiteError { problems });
+    if problems.is_empty() {
+        Ok(Suite { name, run, rules, hints, show_output, build, limits, patience, groups })
+    } else {
+        Err(SuiteError { problems })
     }
-    Ok(Plan {
-        name: suite.name.clone(),
-        run: suite.run.clone(),
-        rules: suite.rules,
-        hints: suite.hints,
-        show_output: suite.show_output,
-        build: suite.build.clone(),
-        limits: suite.limits,
-        patience: suite.patience,
-        groups,
-    })
 }
 
 /// Reads, validates and looks up a suite in one go.
@@ -165,7 +127,7 @@ pub fn resolve_by(suite: &Suite, files: &mut dyn FnMut(&str) -> Result<Found, St
 pub fn load_by(text: &str, files: &mut dyn FnMut(&str) -> Result<Found, String>) -> Result<Plan, SuiteError> {
     let (suite, mut problems) = config::read_all(text);
     // Patterns are looked up although something else is wrong: everything is told at once.
-    let resolved = resolve_by(&suite, files);
+    let resolved = resolve_by(suite, files);
     if problems.is_empty() {
         return resolved;
     }
@@ -181,7 +143,7 @@ fn embedded(pattern: &str) -> Result<Found, String> {
         .filter_map(|name| Some((name.to_owned(), library::scene(name)?.to_vec())))
         .collect();
     if found.is_empty() {
-        return Err(format!("no embedded scene matches asset:{pattern}; `fosssim-oracle suite scenes` lists them"));
+        return Err(format!("no embedded scene matches asset:{pattern}; `fosssim-oracle scene list` lists them"));
     }
     Ok(found)
 }
@@ -198,7 +160,7 @@ mod tests {
             let (assignment, version) = assignments::version(name).expect("a suite is an assignment's");
             assert!(plan.scenes().count() > 4, "{name}");
             assert!(plan.max_points() > 0.0);
-            assert_eq!(plan.rules, Rules::Fair, "{name}");
+            assert_eq!(plan.rules, fosssim_judge::Rules::Fair, "{name}");
             assert_eq!(plan.name, format!("{} ({name})", assignment.definition().title));
             let is_own = |name: &&str| library::assignment(name) == Some(assignment) && version.has(name);
             let own: BTreeSet<&str> = library::names().filter(is_own).collect();

@@ -81,7 +81,7 @@ pub(super) fn checked(text: &str) -> (Spanned<DeTable<'_>>, Vec<Problem>, bool) 
     if is_readable {
         clean(table.get_mut(), SUITE, "the suite", 0..0, &mut problems);
     } else {
-        // What a broken line was meant to be nobody knows.
+        // Nobody knows the meaning of a broken line.
         table.get_mut().clear();
     }
     (table, problems, is_readable)

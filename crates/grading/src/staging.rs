@@ -1,6 +1,6 @@
 //! Brings a submission to where it can be run: a copy that nobody else reads or changes, digested while it is copied.
 //!
-//! Whatever is copied is opened once, beneath the submission's folder and without following links or waiting, and
+//! Each file that is copied is opened once, beneath the submission's folder and without following links or waiting, and
 //! judged by the open file: who may write in that folder can exchange a name, not what was opened. What can't be copied
 //! for what it is, or for who may read it, is the submission's own fault and not the grader's. Sources are built in a
 //! copy of their folder, in the sandbox, so that a build changes nothing of the submission.
@@ -14,7 +14,7 @@ use super::{
     upload,
 };
 use fosssim_sandbox::{
-    Backend, Ended, Identity, Job, Limits, Policy, SandboxError, StartProblem,
+    Backend, Ended, Job, Limits, Policy, ProgramIdentity, SandboxError, StartProblem,
     collect::{self, CollectError, FolderEntry, OpenFolder},
     is_own,
 };
@@ -49,7 +49,7 @@ pub struct Staged {
     /// Why the submission itself can't be run: its own fault.
     pub refused: Option<Unusable>,
     /// Which file the copy is.
-    pub(super) identity: Option<Identity>,
+    pub(super) identity: Option<ProgramIdentity>,
     _folder: Option<Temporary>,
 }
 
@@ -199,7 +199,7 @@ fn copied(file: File, path: &Path) -> Result<Staged, StagingError> {
     if is_own(LARGEST_FOLDER - room, &digest, (metadata.dev(), metadata.ino())) {
         return Ok(Staged::refused(path, Unusable::CouldNotStart(StartProblem::GradersOwn)));
     }
-    let identity = Identity::of(&copy);
+    let identity = ProgramIdentity::of(&copy);
     Ok(Staged { program: copy, digest, build: None, refused: None, identity, _folder: Some(folder) })
 }
 

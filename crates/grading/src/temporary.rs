@@ -45,7 +45,7 @@ impl Temporary {
 
 impl Drop for Temporary {
     fn drop(&mut self) {
-        // What can't be removed now is swept away another day.
+        // A folder that can't be removed now is swept away another day.
         drop(collect::remove_folder(&self.path));
     }
 }

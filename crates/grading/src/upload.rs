@@ -1,4 +1,4 @@
-//! What a submission's folder holds, for messages about a submission without a program.
+//! The contents of a submission's folder, for messages about a submission without a program.
 use super::{
     names,
     result::{FolderContents, Unusable},

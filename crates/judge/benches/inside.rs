@@ -1,4 +1,4 @@
-//! What recording and judging take inside one process, on one thread: the least time of some rounds.
+//! The cost of recording and judging inside one process, on one thread: the least time of some rounds.
 //!
 //! `cargo bench -p fosssim-judge --bench inside -- [rounds] [what] SCENE...` prints a line per scene and the sum.
 //! `what` is `all`, or one of `step` (without an observer), `record` (into nothing), `parity` and `fair` (the scene's
@@ -189,7 +189,7 @@ fn counted(what: &str, scene: &str) -> f64 {
     count.split_whitespace().next().and_then(|word| word.parse().ok()).expect("a number")
 }
 
-/// What a step of a penalty scene costs for each of more and more balls at one density.
+/// The cost of a step of a penalty scene for each of more and more balls at one density.
 fn crowd() {
     println!("| balls | instructions of a step, a ball |\n|---:|---:|");
     let file = std::env::temp_dir().join(format!("fosssim-crowd-{}.xml", std::process::id()));
@@ -224,7 +224,7 @@ fn box_of(balls: u32, steps: u32) -> String {
     xml + "</scene>"
 }
 
-/// What a pair costs, and the most memory that was used so far, in scenes of more and more particles.
+/// The cost of a pair, and the most memory that was used so far, in scenes of more and more particles.
 fn growth() {
     println!(
         "| particles | pairs in a pass | record, ns a pair | grade, ns a pair | trace, MB | most memory so far, MB |"

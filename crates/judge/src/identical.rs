@@ -34,11 +34,11 @@ pub(super) struct Identical {
 
 /// A step that was found.
 pub(super) struct Found {
-    /// What the reference has spent on it.
+    /// The reference's work on it.
     pub(super) work: u64,
     /// Bytes of its records.
     pub(super) bytes: usize,
-    /// What the fair rules say about it, if they are asked.
+    /// The judgement of the fair rules about it, if they are asked.
     pub(super) fair: Option<StepJudgement>,
 }
 

@@ -1,4 +1,4 @@
-//! What judging tells while it goes on.
+//! Progress of judging, as it is told to others.
 use super::{
     counts::FindingCounts,
     finding::{Finding, FindingKind},

@@ -66,9 +66,9 @@ struct StepSlot {
     beyond_limit: bool,
     /// Whether it was judged to its end.
     is_done: bool,
-    /// What judging it took, in detection calls.
+    /// The work of judging it, in detection calls.
     work: u64,
-    /// What was read, in bytes.
+    /// The number of bytes that were read.
     bytes: usize,
 }
 
@@ -144,9 +144,9 @@ struct Replay<'a, R> {
     /// Byte offset of its record.
     state_at: u64,
     steps_read: u32,
-    /// What leads nowhere by the fair rules, if they are asked.
+    /// The bound beyond which nothing leads anywhere by the fair rules, if they are asked.
     reach: Option<Reach<'a>>,
-    /// What work is left.
+    /// The work that is left.
     budget: Budget<'a>,
     /// Judges what is the reference's byte for byte.
     identical: Identical,
@@ -154,7 +154,7 @@ struct Replay<'a, R> {
     damage: Option<Damage>,
     /// Whether a record of the steps delivered so far, or the first one, is damaged.
     damaged: bool,
-    /// What the fair rules say so far, if they are asked.
+    /// The judgement of the fair rules so far, if they are asked.
     judging: Option<Box<Judging>>,
     outcome: Outcome,
 }
@@ -378,7 +378,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             }
             tally::accumulate(&mut outcome.parity.residuals, &slot.result.residuals);
             outcome.parity.findings.counts += slot.result.counts;
-            // What is left of a damaged record counts for the original, but nobody is to blame for its numbers.
+            // The rest of a damaged record counts for the original, but nobody is to blame for its numbers.
             if !self.damaged {
                 slot.result.firsts.iter().for_each(|first| outcome.parity.findings.keep_first(first));
                 if let (Some(judgement), Some(context), Some(reach)) =
@@ -468,13 +468,13 @@ impl Batch {
         self.slots[..self.filled].iter_mut().any(|slot| !lock(slot).is_done)
     }
 
-    /// What judging it took so far.
+    /// The work of judging it so far.
     fn work(&mut self) -> u64 {
         self.slots[..self.filled].iter_mut().map(|slot| lock(slot).work).sum()
     }
 }
 
-/// What a record's lists take, in bytes.
+/// The memory of a record's lists, in bytes.
 fn memory(frame: &LenientFrame) -> usize {
     let LenientFrame { impulses, polynomials, .. } = frame;
     8 * polynomials.coefficients.len() + 8 * polynomials.ends.len() + size_of::<LoggedImpulse>() * impulses.len()

@@ -31,7 +31,7 @@ use fosssim_num::{
 /// comparison is made as it is written.
 pub(super) const SAFE_SUM: f64 = 1e5;
 
-/// What judging one step yields; reused from step to step.
+/// The result of judging one step; reused from step to step.
 #[derive(Debug, Default)]
 pub(super) struct StepResult {
     /// The original's lines about this step, in its order.
@@ -83,7 +83,7 @@ impl StepResult {
 /// Buffers of a tally, kept from step to step.
 #[derive(Debug)]
 pub(super) struct Buffers {
-    /// What a pass looks at.
+    /// The pairs that a pass looks at.
     order: Pairs<'static>,
     /// The reference's polynomials of the current pass.
     own: PolynomialBytes,
@@ -407,7 +407,7 @@ fn passes(own: &[f64], actual: &[f64]) -> bool {
     own.iter().zip(actual).fold(true, |all, pair| all & alike(pair))
 }
 
-/// What is known at once of a polynomial of the trace.
+/// The facts about a polynomial of the trace that are known at once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Likeness {
     /// It is the reference's bit for bit.
@@ -479,7 +479,8 @@ mod tests {
         assert!(!equal_and_safe(&[1.0], &[1.0, 2.0]));
     }
 
-    /// What clearly has a factor passes, too, and nearly everything that passes with one does so clearly.
+    /// A polynomial that clearly has a factor passes, too, and nearly every one that passes with a factor has it
+    /// clearly.
     #[test]
     fn what_clearly_has_a_factor_passes() {
         let mut seed = 1_u64;

@@ -186,7 +186,7 @@ mod tests {
         assert!((left.value - 0.1).abs() <= left.bound * UNIT_ROUNDOFF);
     }
 
-    /// Whatever the signs of the inputs, neither value nor bound is larger than what sizes say.
+    /// Neither value nor bound is larger than what sizes say, whatever the signs of the inputs.
     #[test]
     fn sizes_are_the_most_that_values_and_bounds_can_be() {
         let number = |value: f64| Bounded { value, bound: 2.0 * value.abs() };

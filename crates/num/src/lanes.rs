@@ -88,15 +88,24 @@ impl Default for Instructions {
     }
 }
 
-/// Fewer pairs than this are not worth looking for wide instructions.
-const FEW_PAIRS: usize = 8;
+/// Fewer pairs than this in all steps of a scene are not worth looking for wide instructions: a virtual machine may
+/// take 0.1 ms to say what its processor can do.
+const FEW_PAIRS: u64 = 1000;
+
+/// The same of the unknowns of a system of linear equations.
+const FEW_UNKNOWNS: usize = 8;
 
 impl Instructions {
-    /// The widest instructions, if there are enough pairs to make looking for them worth the time: a virtual
-    /// machine may take longer to say what its processor can do than small scenes take to simulate.
+    /// The widest instructions for this many pairs in all steps of a scene, if looking for them is worth the time.
     #[must_use]
-    pub fn for_pairs(pairs: usize) -> Self {
+    pub fn for_pairs(pairs: u64) -> Self {
         if pairs < FEW_PAIRS { Self::plain() } else { Self::default() }
+    }
+
+    /// The same for systems of linear equations with this many unknowns.
+    #[must_use]
+    pub fn for_unknowns(unknowns: usize) -> Self {
+        if unknowns < FEW_UNKNOWNS { Self::plain() } else { Self::default() }
     }
 
     /// One lane, on every machine.

@@ -1,8 +1,9 @@
 //! Gaussian elimination with complete pivoting, in the original's order of operations (simulation.md 5).
 //!
 //! It serves the implicit integrators, whose matrices have two rows per particle. Every product, subtraction and
-//! division happens once and in the order of the specification; what is free, such as the order in which moduli are
-//! compared, is arranged for speed.
+//! division happens once and in the order of the specification. The order in which moduli are compared is free: each
+//! column's largest is found while its entries are computed.
+use super::lanes::{Instructions, Lanes, Simd, Work};
 
 /// The columns that a triangular solve treats as one panel.
 const PANEL: usize = 8;
@@ -15,6 +16,7 @@ const GROUP: usize = 4;
 pub struct Workspace {
     row_swaps: Vec<usize>,
     column_order: Vec<usize>,
+    moduli: Vec<f64>,
     solution: Vec<f64>,
 }
 
@@ -29,8 +31,9 @@ pub struct Workspace {
 pub fn solve(matrix: &mut [f64], rhs: &mut [f64], workspace: &mut Workspace) {
     let n = rhs.len();
     assert_eq!(matrix.len(), n * n, "the matrix must be square and fit the right-hand side");
-    let rank = decompose(matrix, n, workspace);
-    let Workspace { row_swaps, column_order, solution } = workspace;
+    let Workspace { row_swaps, column_order, moduli, solution } = workspace;
+    let decomposition = Decomposition { matrix: &mut *matrix, n, row_swaps, column_order, moduli };
+    let rank = Instructions::for_unknowns(n).run(decomposition);
     for (k, &row) in row_swaps.iter().enumerate() {
         rhs.swap(k, row);
     }
@@ -44,55 +47,122 @@ pub fn solve(matrix: &mut [f64], rhs: &mut [f64], workspace: &mut Workspace) {
     rhs.copy_from_slice(solution);
 }
 
-/// Replaces the matrix by its unit lower and its upper triangle, both permuted; returns the rank.
+/// Replaces the matrix by its unit lower and its upper triangle, both permuted; gives the rank.
 ///
 /// `row_swaps[k]` is the row that was exchanged with row k; `column_order[k]` the original column that is now in
 /// place k.
-fn decompose(matrix: &mut [f64], n: usize, workspace: &mut Workspace) -> usize {
-    let Workspace { row_swaps, column_order, .. } = workspace;
-    row_swaps.clear();
-    row_swaps.extend(0..n);
-    column_order.clear();
-    column_order.extend(0..n);
-    let mut cutoff = 0.0;
-    for k in 0..n {
-        let pivot = largest(matrix, n, k);
-        if k == 0 {
-            cutoff = pivot.modulus * f64::EPSILON;
+struct Decomposition<'a> {
+    /// n x n, column-major.
+    matrix: &'a mut [f64],
+    n: usize,
+    row_swaps: &'a mut Vec<usize>,
+    column_order: &'a mut Vec<usize>,
+    /// Of each column the largest modulus in the rows that have no pivot yet, NaN ignored.
+    moduli: &'a mut Vec<f64>,
+}
+
+impl Work for Decomposition<'_> {
+    type Output = usize;
+
+    #[inline(always)]
+    fn run<S: Simd>(mut self, simd: S) -> usize {
+        let n = self.n;
+        self.row_swaps.clear();
+        self.row_swaps.extend(0..n);
+        self.column_order.clear();
+        self.column_order.extend(0..n);
+        self.moduli.clear();
+        self.moduli.resize(n, 0.0);
+        for (modulus, column) in self.moduli.iter_mut().zip(self.matrix.chunks_exact(n)) {
+            for entry in column {
+                *modulus = larger(*modulus, *entry);
+            }
         }
-        // A NaN pivot does not stop the elimination.
-        if pivot.modulus < cutoff {
-            return k;
+        let mut cutoff = 0.0;
+        for k in 0..n {
+            let pivot = self.pivot(k);
+            if k == 0 {
+                cutoff = pivot.modulus * f64::EPSILON;
+            }
+            // A NaN pivot does not stop the elimination.
+            if pivot.modulus < cutoff {
+                return k;
+            }
+            self.exchange(k, &pivot);
+            self.eliminate(simd, k);
         }
-        row_swaps[k] = pivot.row;
+        n
+    }
+}
+
+impl Decomposition<'_> {
+    /// The entry of largest modulus in rows and columns from k on: of equal ones the first, column by column. NaN never
+    /// wins, but a NaN at the start stays.
+    #[inline(always)]
+    fn pivot(&self, k: usize) -> Pivot {
+        let n = self.n;
+        let mut best = Pivot { row: k, column: k, modulus: self.matrix[k * n + k].abs() };
+        let mut is_first = true;
+        for (column, &modulus) in self.moduli.iter().enumerate().skip(k) {
+            if modulus > best.modulus {
+                best = Pivot { row: k, column, modulus };
+                is_first = false;
+            }
+        }
+        if !is_first {
+            let entries = &self.matrix[best.column * n + k..(best.column + 1) * n];
+            best.row += entries.iter().position(|entry| entry.abs() == best.modulus).unwrap_or(0);
+        }
+        best
+    }
+
+    /// Brings the pivot to row k and column k.
+    #[inline(always)]
+    fn exchange(&mut self, k: usize, pivot: &Pivot) {
+        let n = self.n;
+        self.row_swaps[k] = pivot.row;
         if pivot.row != k {
-            for column in matrix.chunks_exact_mut(n) {
+            for column in self.matrix.chunks_exact_mut(n) {
                 column.swap(k, pivot.row);
             }
         }
         if pivot.column != k {
-            column_order.swap(k, pivot.column);
-            let (before, from) = matrix.split_at_mut(pivot.column * n);
+            self.column_order.swap(k, pivot.column);
+            self.moduli.swap(k, pivot.column);
+            let (before, from) = self.matrix.split_at_mut(pivot.column * n);
             before[k * n..(k + 1) * n].swap_with_slice(&mut from[..n]);
         }
-        eliminate(matrix, n, k);
     }
-    n
-}
 
-/// Subtracts multiples of row k from the rows below, and leaves the multipliers in column k.
-fn eliminate(matrix: &mut [f64], n: usize, k: usize) {
-    let (done, rest) = matrix.split_at_mut((k + 1) * n);
-    let (top, multipliers) = done[k * n + k..].split_first_mut().expect("column k has a row k");
-    let reciprocal = 1.0 / *top;
-    for multiplier in &mut *multipliers {
-        *multiplier *= reciprocal;
-    }
-    for column in rest.chunks_exact_mut(n) {
-        let (top, below) = column[k..].split_first_mut().expect("every column has a row k");
-        let top = *top;
-        for (entry, multiplier) in below.iter_mut().zip(&*multipliers) {
-            *entry -= *multiplier * top;
+    /// Subtracts multiples of row k from the rows below, and leaves the multipliers in column k.
+    #[inline(always)]
+    fn eliminate<S: Simd>(&mut self, simd: S, k: usize) {
+        let (n, width) = (self.n, Lanes::<S>::COUNT);
+        let (done, rest) = self.matrix.split_at_mut((k + 1) * n);
+        let Some((top, multipliers)) = done[k * n + k..].split_first_mut() else { return };
+        let reciprocal = 1.0 / *top;
+        for multiplier in &mut *multipliers {
+            *multiplier *= reciprocal;
+        }
+        let (whole, single) = multipliers.split_at(multipliers.len() / width * width);
+        for (column, largest) in rest.chunks_exact_mut(n).zip(&mut self.moduli[k + 1..]) {
+            let Some((top, below)) = column[k..].split_first_mut() else { return };
+            let (tops, mut moduli) = (Lanes::all(simd, *top), Lanes::all(simd, 0.0));
+            let (in_lanes, alone) = below.split_at_mut(whole.len());
+            for (entries, multipliers) in in_lanes.chunks_exact_mut(width).zip(whole.chunks_exact(width)) {
+                let difference = Lanes::load(simd, entries) - Lanes::load(simd, multipliers) * tops;
+                difference.store(entries);
+                moduli = difference.abs().max(moduli);
+            }
+            *largest = moduli.largest();
+            // With some instructions the larger of a number and NaN is NaN.
+            if largest.is_nan() {
+                *largest = in_lanes.iter().fold(0.0, |largest, entry| larger(largest, *entry));
+            }
+            for (entry, multiplier) in alone.iter_mut().zip(single) {
+                *entry -= *multiplier * *top;
+                *largest = larger(*largest, *entry);
+            }
         }
     }
 }
@@ -104,34 +174,10 @@ struct Pivot {
     modulus: f64,
 }
 
-/// The entry of largest modulus in rows and columns from k on: of equal ones the first, column by column. NaN never
-/// wins, but a NaN at the start stays.
-fn largest(matrix: &[f64], n: usize, k: usize) -> Pivot {
-    let mut best = Pivot { row: k, column: k, modulus: matrix[k * n + k].abs() };
-    for (column, entries) in matrix.chunks_exact(n).enumerate().skip(k) {
-        let entries = &entries[k..];
-        let modulus = largest_modulus(entries);
-        if modulus > best.modulus {
-            let row = k + entries.iter().position(|entry| entry.abs() == modulus).unwrap_or(0);
-            best = Pivot { row, column, modulus };
-        }
-    }
-    best
-}
-
-/// The largest modulus, NaN ignored; several running maxima let the processor compare in parallel.
-#[inline]
-fn largest_modulus(entries: &[f64]) -> f64 {
-    const LANES: usize = 8;
-    let larger = |largest: f64, entry: f64| if entry.abs() > largest { entry.abs() } else { largest };
-    let mut lanes = [0.0; LANES];
-    let (chunks, rest) = entries.as_chunks::<LANES>();
-    for chunk in chunks {
-        for (lane, &entry) in lanes.iter_mut().zip(chunk) {
-            *lane = larger(*lane, entry);
-        }
-    }
-    lanes.iter().chain(rest).fold(0.0, |largest, &entry| larger(largest, entry))
+/// The larger of a modulus and that of an entry, unless this is NaN.
+#[inline(always)]
+fn larger(modulus: f64, entry: f64) -> f64 {
+    if entry.abs() > modulus { entry.abs() } else { modulus }
 }
 
 /// Solves with the unit lower triangle, panel by panel.
@@ -316,6 +362,24 @@ mod tests {
                 let expected = literal(&mut rows, &rhs);
                 solve(&mut matrix, &mut rhs, &mut workspace);
                 assert_eq!(bits(&rhs), bits(&expected));
+            }
+        }
+    }
+
+    /// NaN and infinity below the pivots: what is compared and what is computed is as in the plain order.
+    #[test]
+    fn values_that_are_no_numbers_are_passed_over_where_pivots_are_chosen() {
+        let mut numbers = Numbers(5);
+        let mut workspace = Workspace::default();
+        for n in [2, 6, 12, 22] {
+            for value in [f64::NAN, f64::INFINITY, -0.0] {
+                let mut rows: Vec<Vec<f64>> = (0..n).map(|_| (0..n).map(|_| numbers.next()).collect()).collect();
+                rows[n - 1][n / 2] = value;
+                rows[n / 2][0] = value;
+                let mut rhs: Vec<f64> = (0..n).map(|_| numbers.next()).collect();
+                let (target, mut matrix) = (rhs.clone(), columns(&rows));
+                solve(&mut matrix, &mut rhs, &mut workspace);
+                assert_eq!(bits(&rhs), bits(&literal(&mut rows, &target)), "n = {n}, {value}");
             }
         }
     }

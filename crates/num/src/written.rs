@@ -33,7 +33,7 @@ impl<'de> Deserialize<'de> for Number {
     }
 }
 
-/// What is made of numbers and written as such.
+/// A type that is made of numbers and written as such.
 pub trait Written: Sized {
     /// Its serialised form.
     type Form: Serialize + DeserializeOwned;

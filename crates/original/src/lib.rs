@@ -4,8 +4,8 @@
 //! and the exit code is 1. Files are written through, as the original does: a course's script may watch them, link
 //! them or read them while they grow.
 //!
-//! What the original says of an assignment's things (its version, how it calls a collision type or the second object of
-//! a pair) stands in `assignments`; the rest is one program's, whichever assignment a scene belongs to, and stands
+//! The original's words about an assignment's things (its version, its name for a collision type or the second object
+//! of a pair) stands in `assignments`; the rest is one program's, whichever assignment a scene belongs to, and stands
 //! here.
 //!
 //! A grader starts this once for every trace, and most scenes are small: then the time goes into the pages of the
@@ -100,7 +100,7 @@ pub trait Outside {
     /// A drawer of pictures: of `-g 1` as PNG, of `-m DIR` as SVG in that folder.
     ///
     /// # Errors
-    /// What to print, when a folder is missing.
+    /// The text to print, when a folder is missing.
     fn pictures(&self, png: bool, svg: Option<&Path>, scene: &Scene) -> Result<Box<dyn Pictures>, String>;
 
     /// The step of a computation without result, and the reason.
@@ -112,7 +112,7 @@ pub trait Pictures {
     /// Draws the state after a step, from 1; positions as in [`State`](fosssim_model::sim::State).
     ///
     /// # Errors
-    /// What to print, when a picture can't be written.
+    /// The text to print, when a picture can't be written.
     fn step(&mut self, step: u32, positions: &[f64]) -> Result<(), String>;
 }
 

@@ -1,4 +1,4 @@
-//! What the original says on standard error, and its colours, which are part of the text in files and pipes, too.
+//! The original's words on standard error, and its colours, which are part of the text in files and pipes, too.
 
 /// Ends every colour.
 pub(crate) const PLAIN: &str = "\x1b[m";

@@ -1,5 +1,5 @@
-//! What pictures are made of, in pixels from the upper left corner. Everything lies in or near the picture: far
-//! coordinates have been clipped, so that no drawing library sees numbers it can't handle.
+//! The shapes that pictures are made of, in pixels from the upper left corner. Everything lies in or near the picture:
+//! far coordinates have been clipped, so that no drawing library sees numbers it can't handle.
 use crate::colour::Colour;
 
 /// A point in pixels.

@@ -63,25 +63,25 @@ impl Detect<'_> {
         format!("{}{rest} in step {} of {run}, scene {}", first.to_uppercase(), place.step, place.scene)
     }
 
-    /// The decision in one sentence.
+    /// The decision in one sentence, whose numbers are written like this.
     #[must_use]
-    pub fn decision(&self) -> String {
+    pub fn decision(&self, number: impl Fn(f64) -> String) -> String {
         let answer = &self.study.answer;
         match answer.decision {
             Decision::Hit { time, normal } => {
-                let (x, y) = (exact(normal.x), exact(normal.y));
-                format!("they collide at time {} with normal ({x}, {y})", exact(time))
+                let (x, y) = (number(normal.x), number(normal.y));
+                format!("they collide at time {} with normal ({x}, {y})", number(time))
             }
             Decision::Miss { .. } if answer.time() <= 1.0 => {
                 format!(
                     "no collision: all are positive from time {}, but the normal is zero there",
-                    exact(answer.time())
+                    number(answer.time())
                 )
             }
             Decision::Miss { .. } if answer.time().is_finite() => {
                 format!(
                     "no collision in this step: all are positive from time {} on, which is after it",
-                    exact(answer.time())
+                    number(answer.time())
                 )
             }
             Decision::Miss { .. } => "no collision: there is no time from 0 on at which all are positive".to_owned(),
@@ -138,7 +138,7 @@ impl Detect<'_> {
         text += &format!("\n{}\n", style.paint(Look::Strong, "Decision"));
         text += &format!("  all positive: {}\n", intervals(&study.answer.positive));
         let look = if study.answer.collides() { Look::Notice } else { Look::Good };
-        text += &format!("  {}\n", style.paint(look, &self.decision()));
+        text += &format!("  {}\n", style.paint(look, &self.decision(exact)));
         text += match study.certain {
             Some(certain) if certain == study.answer.collides() => "  certain: round-off can't change this\n",
             Some(_) => "  the true answer is the other one: the root finder is misled by rounding\n",

@@ -13,7 +13,7 @@ use std::fmt::Write;
 /// The version of the JSON report's schema (`schemas/explain.schema.json`).
 const SCHEMA: u32 = 2;
 
-/// What is to be said of one trace.
+/// A trace, and all that is to be said of it.
 #[derive(Debug, Clone)]
 pub struct Case {
     /// The scene's name.
@@ -22,7 +22,7 @@ pub struct Case {
     pub trace: String,
     /// Whether the fair rules accept it.
     pub accepted: bool,
-    /// What else is to be said of it, such as how its program ended, or why it can't be read.
+    /// A further remark, such as how its program ended, or why it can't be read.
     pub note: Option<String>,
     /// The first thing that is wrong, as far as it may be told.
     pub first: Option<DisclosedFinding>,
@@ -37,7 +37,7 @@ pub struct Diagnosis {
     pub cases: Vec<Case>,
     /// With several traces, the mistakes that explain them together, the one that explains most first.
     pub common: Vec<Explanation>,
-    /// What the scenes have in common in which the program crashes or runs into a limit.
+    /// The common properties of the scenes in which the program crashes or runs into a limit.
     pub located: Option<Located>,
 }
 

@@ -36,13 +36,13 @@ pub fn sentence(explanations: &[Explanation]) -> Option<String> {
     })
 }
 
-/// What is said of one explanation, in its parts.
+/// The sentences about one explanation, in their parts.
 pub(crate) struct Told {
     /// Whether it is a mistake that is likely, and not an observation.
     pub(crate) is_likely: bool,
     /// The sentence.
     pub(crate) what: String,
-    /// What it rests on.
+    /// The evidence for it.
     pub(crate) evidence: Option<String>,
     /// The exact form, and what can't be told apart from it.
     pub(crate) details: Vec<String>,
@@ -53,12 +53,14 @@ pub(crate) struct Told {
 impl From<&Explanation> for Told {
     fn from(explanation: &Explanation) -> Self {
         let Explanation { reproduced, samples, about, .. } = explanation;
-        // What reproduces nothing is an observation, not a mistake that is likely.
+        // An explanation that reproduces nothing is an observation, not a mistake that is likely.
         let (is_likely, evidence) = match (about, *reproduced) {
             _ if *samples == 0 => (false, None),
             (_, 0) => (false, Some(format!("{samples} looked at"))),
             (About::Unfinished, _) => (false, None),
-            (About::Mistake, _) => (true, Some(format!("in {reproduced} of {samples} wrong steps tried"))),
+            (About::Mistake | About::Forces(_), _) => {
+                (true, Some(format!("in {reproduced} of {samples} wrong steps tried")))
+            }
             _ => (true, Some(format!("fits {reproduced} of {samples} polynomials looked at"))),
         };
         let mut details = details(explanation);
@@ -79,8 +81,8 @@ fn of_one(explanation: &Explanation) -> Vec<String> {
     lines
 }
 
-/// What can't be told apart from an explanation. Known mistakes are named; what is only found in polynomials has no
-/// sentence of its own, and is counted.
+/// The explanations that can't be told apart from one. Known mistakes are named; one that is only found in polynomials
+/// has no sentence of its own, and is counted.
 fn others(keys: &[String]) -> Option<String> {
     let named: Vec<String> = keys.iter().filter_map(|key| known(key)).collect();
     let (shown, more) = named.split_at(named.len().min(LISTED));

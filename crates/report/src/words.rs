@@ -1,4 +1,4 @@
-//! What happened on scenes, in words. Results travel as values up to here; every report takes its sentences from this
+//! Results of scenes, in words. Results travel as values up to here; every report takes its sentences from this
 //! place.
 pub mod explanation;
 mod located;
@@ -254,7 +254,7 @@ pub(crate) fn first_divergence(first: &DisclosedFinding) -> String {
 /// `counts: wrong coefficient (12), missed collision (3)`, when there is more than the first finding tells.
 fn counts(account: &DisclosedBook) -> Option<String> {
     let counts = &account.counts;
-    // What is found in damaged records alone has no example, and says nothing about the program.
+    // A kind that is found in damaged records alone has no example, and says nothing about the program.
     let has_example = |kind: FindingKind| account.examples.iter().any(|example| example.kind() == kind);
     let list: Vec<String> = FindingKind::ALL
         .into_iter()

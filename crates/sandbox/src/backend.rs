@@ -18,7 +18,7 @@ use super::{
     bubblewrap,
     fake::FakeRun,
     fault::{SandboxError, set_up_failed},
-    job::{Identity, Job, Policy},
+    job::{Job, Policy, ProgramIdentity},
     keepers::{Host, Keeper, KeeperPool, Kind as Keeping},
     layers::{self, Layer, LayerReport},
     outcome::StartProblem,
@@ -328,7 +328,7 @@ impl Backend {
             }
         };
         if let Some(staged) = &job.staged
-            && Identity::of(&job.program).as_ref() != Some(staged)
+            && ProgramIdentity::of(&job.program).as_ref() != Some(staged)
         {
             return Err(SandboxError::Changed { program: job.program.display().to_string() });
         }

@@ -6,7 +6,7 @@
 
 use super::{
     outcome::{Ended, StartProblem, Stream},
-    wire::{Report, RunOrder, StopCause},
+    wire::{Report, RunOrder},
 };
 
 /// The exit code of the dynamic loader when it finds no library.
@@ -18,18 +18,7 @@ pub(super) fn ended(order: &RunOrder, report: &Report, stderr: &[u8]) -> Ended {
         return Ended::CouldNotStart(start_problem(errno));
     }
     if let Some(cause) = &report.cause {
-        return match cause {
-            StopCause::Cpu => Ended::CpuLimit,
-            StopCause::Wall => Ended::WallLimit,
-            StopCause::Memory => Ended::MemoryLimit,
-            StopCause::Stdout => Ended::OutputLimit(Stream::Stdout),
-            StopCause::Stderr => Ended::OutputLimit(Stream::Stderr),
-            StopCause::Trace => Ended::OutputLimit(Stream::Trace),
-            StopCause::Processes => Ended::ProcessLimit,
-            StopCause::Folder => Ended::FolderLimit,
-            StopCause::Call(call) => Ended::Violation { call: call.clone() },
-            StopCause::Cancelled => Ended::Cancelled,
-        };
+        return cause.clone();
     }
     let signal = libc::WIFSIGNALED(report.status).then(|| libc::WTERMSIG(report.status));
     match signal {
@@ -150,7 +139,7 @@ mod tests {
 
     #[test]
     fn the_reason_to_kill_outranks_the_kill() {
-        let report = Report { status: libc::SIGKILL, cause: Some(StopCause::Wall), ..Report::default() };
+        let report = Report { status: libc::SIGKILL, cause: Some(Ended::WallLimit), ..Report::default() };
         assert_eq!(ended(&order(), &report, b""), Ended::WallLimit);
         assert_eq!(ended(&order(), &Report { cause: None, ..report }, b""), Ended::Signalled(libc::SIGKILL));
     }

@@ -1,4 +1,4 @@
-//! What can go wrong that is never the program's doing.
+//! Faults that are never the program's doing.
 
 use std::{
     io::{self, Read},

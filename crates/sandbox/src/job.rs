@@ -1,4 +1,4 @@
-//! What to run and within which limits.
+//! Jobs: a program to run, and its limits.
 //!
 //! A [`Job`] is a description; nothing here runs a process.
 
@@ -68,9 +68,9 @@ impl Default for Limits {
 
 /// Which file lies at a path, and that nobody has written to it since.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Identity([i64; 5]);
+pub struct ProgramIdentity([i64; 5]);
 
-impl Identity {
+impl ProgramIdentity {
     /// The identity of the regular file at the path, links followed; `None` where there is none.
     #[must_use]
     pub fn of(path: &Path) -> Option<Self> {
@@ -93,7 +93,7 @@ pub struct Job {
     pub(crate) policy: Policy,
     pub(crate) environment: Vec<(OsString, OsString)>,
     pub(crate) sanitisers: bool,
-    pub(crate) staged: Option<Identity>,
+    pub(crate) staged: Option<ProgramIdentity>,
     pub(crate) in_memory: bool,
     pub(crate) files: Vec<(String, Vec<u8>)>,
     pub(crate) limits: Limits,
@@ -193,7 +193,7 @@ impl Job {
     /// Says that the program is a copy of ours, with this identity: when it is gone or another file at the start, that
     /// is our fault and not the program's.
     #[must_use]
-    pub fn staged(mut self, identity: Option<Identity>) -> Self {
+    pub fn staged(mut self, identity: Option<ProgramIdentity>) -> Self {
         self.staged = identity;
         self
     }

@@ -15,7 +15,7 @@ use std::{
 
 use super::{
     fault::{SandboxError, lost},
-    job::{Identity, Job},
+    job::{Job, ProgramIdentity},
     outcome::StartProblem,
     program::Program,
     sys,
@@ -27,7 +27,7 @@ use super::{
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Kind {
     order: RunOrder,
-    program: Option<Identity>,
+    program: Option<ProgramIdentity>,
     files: Vec<Option<(u64, u64)>>,
 }
 
@@ -54,7 +54,7 @@ impl Kind {
         let named = order.readable.iter().chain(&order.executable).chain(&order.named);
         let identity = |path: &Path| path.metadata().ok().map(|metadata| (metadata.dev(), metadata.ino()));
         let files = named.map(|path| identity(&wire::path(path))).collect();
-        Some(Self { order: common, program: Identity::of(&wire::path(&order.program)), files })
+        Some(Self { order: common, program: ProgramIdentity::of(&wire::path(&order.program)), files })
     }
 }
 
@@ -105,7 +105,7 @@ impl Drop for Keeper {
 pub(super) struct KeeperPool {
     idle: Mutex<Vec<Keeper>>,
     /// The last result of examining a copy of ours.
-    known: Mutex<Option<(PathBuf, Identity, Program)>>,
+    known: Mutex<Option<(PathBuf, ProgramIdentity, Program)>>,
 }
 
 impl KeeperPool {
@@ -200,7 +200,7 @@ fn has_simply_ended(report: &Report) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::wire::{StopCause, Walls};
+    use crate::{outcome::Ended, wire::Walls};
 
     fn order() -> RunOrder {
         let walls = Walls { namespaces: true, seccomp: true, ..Walls::default() };
@@ -252,7 +252,7 @@ mod tests {
         let exited = Report { status: 7 << 8, ..Report::default() };
         assert!(has_simply_ended(&exited));
         for report in [
-            Report { cause: Some(StopCause::Wall), ..exited.clone() },
+            Report { cause: Some(Ended::WallLimit), ..exited.clone() },
             Report { status: libc::SIGKILL, ..exited.clone() },
             Report { survivors: 1, ..exited.clone() },
             Report { folder_over: true, ..exited.clone() },

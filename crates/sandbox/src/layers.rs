@@ -98,7 +98,7 @@ pub(super) fn reports(probe: &Probe) -> Vec<LayerReport> {
     reports
 }
 
-/// What holds of a wall where it has no problem, and what to do where it has one.
+/// The report on a wall: what holds where it has no problem, and what to do where it has one.
 fn report(layer: Layer, problem: Option<String>, held: &str, required: bool, remedy: &'static str) -> LayerReport {
     LayerReport {
         layer,

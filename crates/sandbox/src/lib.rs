@@ -16,8 +16,8 @@
 //! once and forks a supervisor for each run into fresh namespaces; one whose run was stopped, crashed or left anything
 //! serves no other.
 //!
-//! What it never does: trust a path the program could change, read a result while the program lives, or go on
-//! silently when a required layer is missing ([`Backend::best`] refuses).
+//! The sandbox never trusts a path that the program could change, never reads a result while the program lives, and
+//! never goes on silently when a required layer is missing ([`Backend::best`] refuses).
 //!
 //! ```no_run
 //! use fosssim_sandbox::{Backend, Job, Supervisor};
@@ -55,7 +55,7 @@ pub use backend::{Backend, Supervisor};
 pub use doctor::doctor;
 pub use fake::FakeRun;
 pub use fault::SandboxError;
-pub use job::{Identity, Job, Limits, Policy};
+pub use job::{Job, Limits, Policy, ProgramIdentity};
 pub use layers::{Layer, LayerReport};
 pub use outcome::{Captured, Ended, RunOutcome, StartProblem, Stream};
 pub use own::is_own;

@@ -47,7 +47,7 @@ pub(super) struct Readable {
     pub(super) missing: Vec<String>,
 }
 
-/// What the loader and the C library open for a program. `dynamic` is what the program asks for, `loader` is
+/// The files that the loader and the C library open for a program. `dynamic` is what the program asks for, `loader` is
 /// its loader, and `interpreter` is the program that runs it if it is a script.
 pub(super) fn readable(
     dynamic: Dynamic,

@@ -13,7 +13,7 @@ use std::{
 
 use crate::sys::{Fork, SingleThread};
 
-/// Whatever lies there can be read and not changed.
+/// Files there can be read and not changed.
 pub(super) const READ_ONLY: u64 = 0x1;
 /// Set-user bits are without effect.
 pub(super) const NO_SET_USER: u64 = 0x2;

@@ -1,4 +1,4 @@
-//! What kind of program a file is, read from its first bytes before anything is executed.
+//! The kind of a program, read from its first bytes before anything is executed.
 //!
 //! The kernel's own answers are poor ("no such file or directory" for a missing loader, "exec format error" for a
 //! foreign processor), so the headers are read here: ELF class, machine, type, interpreter and the names in the
@@ -103,8 +103,9 @@ pub(super) fn examine(path: &Path, own: &[PathBuf]) -> Result<Program, StartProb
 
 /// The way to a script's interpreter, given its first line without `#!`.
 ///
-/// Whatever is named here becomes executable for the submission. So it must be one of the system's own programs, after
-/// all links and `..` are resolved: a script that names the grader's program would be graded by its own answers.
+/// Each program that is named here becomes executable for the submission. So it must be one of the system's own
+/// programs, after all links and `..` are resolved: a script that names the grader's program would be graded by its own
+/// answers.
 fn script(line: &[u8], own: &[PathBuf]) -> Result<Program, StartProblem> {
     let program = interpreted(line, own, 0)?;
     let interpreter = program.script.as_ref().and_then(|script| script.interpreter.canonicalize().ok());
@@ -210,7 +211,8 @@ fn systems(
     // A relative path would be looked up in the program's folder, and one in /proc depends on the process that looks.
     let resolved = path.canonicalize().map_err(|_| refused())?;
     let beneath = |folder: &str| Path::new(folder).canonicalize().is_ok_and(|folder| resolved.starts_with(folder));
-    // What every user may execute. A file that its owner keeps to himself would be refused only when it is too late.
+    // The bit by which every user may execute. A file that its owner keeps to himself would be refused only when it is
+    // too late.
     const EXECUTE: u32 = 0o001;
     let open = |path: &Path| path.metadata().is_ok_and(|metadata| metadata.permissions().mode() & EXECUTE != 0);
     if !resolved.ancestors().all(open) {

@@ -11,6 +11,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use fosssim_ended::Ended;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 /// The hidden first argument that turns the binary into the supervisor.
@@ -135,26 +136,11 @@ impl Failure {
     }
 }
 
-/// Why the supervisor killed the program.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) enum StopCause {
-    Cpu,
-    Wall,
-    Memory,
-    Stdout,
-    Stderr,
-    Trace,
-    Processes,
-    Folder,
-    Call(String),
-    Cancelled,
-}
-
 /// The facts of a finished run.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Report {
     /// The first reason to kill, if any.
-    pub(super) cause: Option<StopCause>,
+    pub(super) cause: Option<Ended>,
     /// The main process's raw wait status.
     pub(super) status: i32,
     /// The error number of `execve`, if the program never ran.

@@ -76,7 +76,7 @@ pub fn look_through(archive: &Path, limits: ArchiveLimits) -> Result<Vec<PathBuf
 /// Unpacks an archive into a folder that is there and empty.
 ///
 /// # Errors
-/// What is wrong with it; the folder may hold a part of it then.
+/// The first thing that is wrong with it; the folder may hold a part of it then.
 pub fn unpack(archive: &Path, folder: &Path, limits: ArchiveLimits) -> Result<Vec<PathBuf>, ArchiveError> {
     walk(archive, limits, &Target::Folder(folder))
 }

@@ -140,7 +140,7 @@ pub(crate) async fn pause_broken(
     Ok(newly > 0)
 }
 
-/// What a task's suite looks like in its text.
+/// The part of a task's text that names its suite.
 fn suite_of(task: &str) -> Option<String> {
     let value: serde_json::Value = serde_json::from_str(task).ok()?;
     Some(format!("%\"suite\":{}%", value.get("suite")?))

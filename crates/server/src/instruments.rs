@@ -60,7 +60,7 @@ impl Instruments {
         self.seconds.with_label_values(&[method, route]).observe(took.as_secs_f64());
     }
 
-    /// What all of them show. Without a database that answers there is nothing about the queue.
+    /// The page of all numbers. Without a database that answers there is nothing about the queue.
     ///
     /// # Errors
     /// When it can't be written as text.
@@ -105,7 +105,7 @@ impl Instruments {
     }
 }
 
-/// What may be counted without knowing anybody.
+/// The numbers that can be counted without knowing anybody.
 #[derive(Debug, Clone, Default)]
 pub struct Metrics {
     /// Jobs by state.
@@ -132,7 +132,7 @@ pub struct Metrics {
     pub suspicions: i64,
 }
 
-/// What is shown at this moment; names begin with `fosssim_`, and a label without a name is none.
+/// The numbers of this moment; names begin with `fosssim_`, and a label without a name is none.
 struct MetricsPage(Registry);
 
 impl MetricsPage {
@@ -158,7 +158,7 @@ impl MetricsPage {
         self.gauge(name, help, "", &[("", value)])
     }
 
-    /// What the database knows of the queue.
+    /// The database's numbers about the queue.
     fn queue(&self, queue: &Metrics) -> Result<(), prometheus::Error> {
         let named = |counts: &'_ [(String, i64)], name: &str| {
             counts.iter().find(|(known, _)| known == name).map_or(0, |(_, count)| *count)

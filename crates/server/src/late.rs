@@ -1,4 +1,4 @@
-//! What a submission is worth that came after it was due.
+//! The worth of a submission that came after it was due.
 use crate::db::{DbError, Row};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -6,7 +6,7 @@ use utoipa::ToSchema;
 /// A day in milliseconds.
 const DAY: i64 = 86_400_000;
 
-/// What an assignment's settings say about being late.
+/// The part of an assignment's settings about being late.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(default)]
 pub(crate) struct LatePolicy {
@@ -49,7 +49,7 @@ impl Late {
         Ok(policy.late(row.maybe_int("own_due")?, row.int("created_at")?))
     }
 
-    /// What is left of the grader's points.
+    /// The rest of the grader's points.
     pub(crate) fn left_of(self, points: &str) -> String {
         let left = |points: f64| (points * (100 - self.percent) as f64 / 100.0).to_string();
         points.parse().map_or_else(|_| points.to_owned(), left)

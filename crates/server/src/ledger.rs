@@ -1,6 +1,6 @@
-//! What became of jobs: results, grades and the history of both, written in one transaction with the end of the job.
+//! The results of jobs: grades and their history, written in one transaction with the end of the job.
 use crate::{
-    db::{Database, DbError, Transaction},
+    db::{Database, DbError, Transaction, read_row},
     health,
     lti::score,
     queue::{self, Buried, Completion, Failure, Lease, QueuePolicy, Tick},
@@ -52,7 +52,7 @@ pub async fn fail(
         && health::pause_broken(transaction, policy, assignment, &row.task, fault).await?
     {
         let text = format!("nothing can be graded by this suite, so its submissions wait for staff: {fault}");
-        let of_all = About { submission: None, task: String::new(), worker: String::new(), ..row };
+        let of_all = JobFacts { submission: None, task: String::new(), worker: String::new(), ..row };
         note(transaction, &of_all, "assignment paused", &text).await?;
     }
     // Last, as when a job is finished: anybody who holds a worker's row waits for no job.
@@ -93,7 +93,7 @@ pub async fn abandon(transaction: &mut Transaction, policy: &QueuePolicy, worker
 }
 
 /// The subject of a job.
-struct About {
+struct JobFacts {
     job: i64,
     submission: Option<i64>,
     campaign: Option<i64>,
@@ -104,29 +104,22 @@ struct About {
     seconds: i64,
 }
 
-async fn about(transaction: &mut Transaction, job: i64) -> Result<About, DbError> {
-    let statement = "SELECT job.submission, job.campaign, job.payload, coalesce(job.worker, job.failed_by) AS worker,
+async fn about(transaction: &mut Transaction, job: i64) -> Result<JobFacts, DbError> {
+    let statement =
+        "SELECT job.submission, job.campaign, job.payload, coalesce(job.worker, job.failed_by, '') AS worker,
            submission.assignment, assignment.course,
            {now} - coalesce(job.started_at, {now}) AS took
         FROM job
         LEFT JOIN submission ON submission.id = job.submission
         LEFT JOIN assignment ON assignment.id = submission.assignment
         WHERE job.id = ?";
-    let row = transaction.one(statement, values![job]).await?;
-    Ok(About {
-        job,
-        submission: row.maybe_int("submission")?,
-        campaign: row.maybe_int("campaign")?,
-        assignment: row.maybe_int("assignment")?,
-        course: row.maybe_int("course")?,
-        worker: row.maybe_text("worker")?.unwrap_or_default(),
-        task: row.text("payload")?,
-        seconds: row.int("took")? / 1000,
-    })
+    let row = &transaction.one(statement, values![job]).await?;
+    let seconds = row.int("took")? / 1000;
+    Ok(read_row!(row => JobFacts { submission, campaign, assignment, course, worker, task = "payload"; job, seconds }))
 }
 
 /// Writes an event about a job.
-async fn note(transaction: &mut Transaction, about: &About, kind: &str, text: &str) -> Result<(), DbError> {
+async fn note(transaction: &mut Transaction, about: &JobFacts, kind: &str, text: &str) -> Result<(), DbError> {
     let statement = "INSERT INTO event (happened_at, kind, course, assignment, submission, job, text)
         VALUES ({now}, ?, ?, ?, ?, ?, ?)";
     transaction
@@ -167,15 +160,15 @@ async fn write_result(
     job: i64,
     attempt: i64,
     outcome: &Outcome,
-) -> Result<About, DbError> {
+) -> Result<JobFacts, DbError> {
     let about = about(transaction, job).await?;
     // Jobs of other lanes have no result.
     let Some(submission) = about.submission else { return Ok(about) };
     let seconds = if outcome.code == JUDGE_ERROR { about.seconds.to_string() } else { outcome.seconds.clone() };
     let statement =
         "INSERT INTO result (job, submission, campaign, attempt, worker, verdict, code, points, max_points, summary,
-           version, task, seconds, grader, essence, nearly_right, shown, created_at)
-        VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, {now}) RETURNING id";
+           version, task, seconds, grader, essence, nearly_right, shown, failed, created_at)
+        VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, {now}) RETURNING id";
     let result = transaction
         .one(
             statement,
@@ -196,7 +189,8 @@ async fn write_result(
                 &outcome.grader,
                 &outcome.essence,
                 outcome.code == "AC" || !outcome.wrong.is_empty(),
-                outcome.shown.clone()
+                outcome.shown.clone(),
+                outcome.failed.clone()
             ],
         )
         .await?
@@ -233,10 +227,7 @@ async fn write_result(
         }
         _ => outcome.code.clone(),
     };
-    // A judge error is noted as what it is, by who writes it.
-    if outcome.code != JUDGE_ERROR {
-        note(transaction, &about, if about.campaign.is_none() { "graded" } else { "regraded" }, &text).await?;
-    }
+    note(transaction, &about, if about.campaign.is_none() { "graded" } else { "regraded" }, &text).await?;
     Ok(about)
 }
 

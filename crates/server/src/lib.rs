@@ -6,6 +6,7 @@ pub mod archive;
 pub mod calendar;
 pub mod cli;
 pub mod db;
+mod grade_file;
 pub mod health;
 pub mod instruments;
 mod late;

@@ -1,4 +1,4 @@
-//! What goes wrong, as those who asked are told: what it is, and how to mend it (RFC 9457, problem+json).
+//! Problems, as those who asked are told: what went wrong, and how to mend it (RFC 9457, problem+json).
 use crate::{db::DbError, store::StoreError};
 use serde::Serialize;
 use utoipa::ToSchema;
@@ -13,9 +13,9 @@ pub struct Problem {
     pub title: String,
     /// The status of the answer.
     pub status: u16,
-    /// What is wrong with this request.
+    /// The fault of this request.
     pub detail: String,
-    /// What to do about it.
+    /// The advice about it.
     pub remedy: String,
 }
 

@@ -26,7 +26,7 @@ pub enum RetentionError {
     Store(#[from] StoreError),
 }
 
-/// What was given up.
+/// The number of things that were given up.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct GivenUp {
     /// Submissions whose upload and reports are not kept any more.
@@ -39,7 +39,7 @@ pub struct GivenUp {
 /// `least` that nothing names. Submissions that are being graded or regraded stay.
 ///
 /// # Errors
-/// What database or store say; the rest is given up the next time.
+/// An error of database or store; the rest is given up the next time.
 pub async fn give_up(
     database: &Database,
     store: &Store,
@@ -93,7 +93,7 @@ async fn give_up_submissions(database: &Database, keep: i64) -> Result<u64, DbEr
     Ok(submissions)
 }
 
-/// What the database names.
+/// The digests that the database names.
 struct Named<'a> {
     database: &'a Database,
 }

@@ -1,5 +1,5 @@
 //! Texts of a certain form, as the API's description names them: clients that keep to these are not refused for them.
-//! What is checked, and said to people, stands where it is used.
+//! The checks, and their words for people, stand where they are used.
 use utoipa::{
     PartialSchema, ToSchema,
     openapi::{

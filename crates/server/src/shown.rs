@@ -1,5 +1,7 @@
-//! What students see of a grade while groups that its suite hides are withheld: as if there were no such groups.
+//! The part of a grade that students see while groups that its suite hides are withheld: as if there were no such
+//! groups.
 use crate::{
+    grade_file::{GradeFile, GroupInFile, SceneInFile},
     store::{Store, StoreError},
     task::{Outcome, OutputFile},
 };
@@ -24,17 +26,40 @@ pub struct Shown {
     wrong: Vec<String>,
 }
 
-/// What the database keeps about an outcome: empty where its suite hides nothing.
+/// The texts that the database keeps about the scenes of an outcome.
+#[derive(Debug, Default)]
+pub struct KeptTexts {
+    /// The part that students see while groups are withheld; empty where its suite hides nothing.
+    pub shown: String,
+    /// The scenes that are not accepted, a line each with the verdict in short; nothing where they are not known.
+    pub failed: Option<String>,
+}
+
+/// Reads the scenes of an outcome.
 ///
 /// # Errors
 /// When the store fails.
-pub async fn of_outcome(store: &Store, files: &[OutputFile]) -> Result<String, StoreError> {
-    let Some(file) = files.iter().find(|file| file.name == "grade.json") else { return Ok(String::new()) };
+pub async fn of_outcome(store: &Store, files: &[OutputFile]) -> Result<KeptTexts, StoreError> {
+    let Some(file) = files.iter().find(|file| file.name == "grade.json") else { return Ok(KeptTexts::default()) };
     let opened = store.open(&file.artefact.digest, None).await?;
     let pieces = StreamReader::new(opened.pieces.map(|piece| piece.map_err(io::Error::other)));
-    let reading = move || of_grade(SyncIoBridge::new(Box::pin(pieces)));
-    let shown = tokio::task::spawn_blocking(reading).await.unwrap_or_else(|_| Some(nothing()));
-    Ok(shown.as_ref().map(text).unwrap_or_default())
+    let reading = move || read(SyncIoBridge::new(Box::pin(pieces)));
+    let report = tokio::task::spawn_blocking(reading).await.unwrap_or_default();
+    let shown = report.as_ref().map_or_else(|| Some(nothing()), of_file);
+    Ok(KeptTexts { shown: shown.as_ref().map(text).unwrap_or_default(), failed: report.as_ref().map(failed) })
+}
+
+/// A `grade.json`, if it can be read.
+fn read(grade: impl io::Read) -> Option<GradeFile> {
+    serde_json::from_reader(io::BufReader::new(grade)).ok()
+}
+
+/// The scenes that are not accepted, hidden ones, too.
+fn failed(report: &GradeFile) -> String {
+    let groups = report.grades.iter().flat_map(|grade| &grade.groups);
+    let scenes = groups.flat_map(|group| &group.scenes).filter(|scene| scene.code != "AC");
+    // A name with a line break would make two lines.
+    scenes.map(|scene| format!("{} {}\n", scene.code, scene.scene.replace('\n', " "))).collect()
 }
 
 fn text(shown: &Shown) -> String {
@@ -53,52 +78,21 @@ fn nothing() -> Shown {
     }
 }
 
-#[derive(Deserialize)]
-struct Report {
-    #[serde(default)]
-    grades: Vec<Grade>,
-}
-
-#[derive(Deserialize)]
-struct Grade {
-    #[serde(default)]
-    groups: Vec<Group>,
-}
-
-#[derive(Deserialize)]
-struct Group {
-    visibility: Option<String>,
-    points: Option<f64>,
-    max_points: Option<f64>,
-    #[serde(default)]
-    scenes: Vec<Scene>,
-}
-
-#[derive(Deserialize)]
-struct Scene {
-    #[serde(default)]
-    scene: String,
-    code: String,
-    #[serde(default)]
-    verdict: String,
-}
-
-/// What is left of a `grade.json` without hidden groups; nothing where it hides none, and [`nothing`] where it can't be
-/// read. Of what it says besides nothing is kept in memory.
-fn of_grade(grade: impl io::Read) -> Option<Shown> {
-    let Ok(report) = serde_json::from_reader::<_, Report>(io::BufReader::new(grade)) else { return Some(nothing()) };
-    let groups: Vec<&Group> = report.grades.iter().flat_map(|grade| &grade.groups).collect();
-    let is_visible = |group: &&&Group| group.visibility.as_deref().is_none_or(|visibility| visibility == "visible");
-    let visible: Vec<&Group> = groups.iter().filter(is_visible).copied().collect();
+/// The rest of a `grade.json` without hidden groups; nothing where it hides none.
+fn of_file(report: &GradeFile) -> Option<Shown> {
+    let groups: Vec<&GroupInFile> = report.grades.iter().flat_map(|grade| &grade.groups).collect();
+    let is_visible =
+        |group: &&&GroupInFile| group.visibility.as_deref().is_none_or(|visibility| visibility == "visible");
+    let visible: Vec<&GroupInFile> = groups.iter().filter(is_visible).copied().collect();
     if visible.len() == groups.len() {
         return None;
     }
-    let scenes: Vec<&Scene> = visible.iter().flat_map(|group| &group.scenes).collect();
-    let rank = |scene: &&&Scene| CODES.iter().position(|code| scene.code == *code);
+    let scenes: Vec<&SceneInFile> = visible.iter().flat_map(|group| &group.scenes).collect();
+    let rank = |scene: &&&SceneInFile| CODES.iter().position(|code| scene.code == *code);
     let Some(worst) = scenes.iter().max_by_key(rank) else { return Some(nothing()) };
     let wrong: Vec<String> =
         scenes.iter().filter(|scene| scene.code != "AC").map(|scene| scene.scene.clone()).collect();
-    let sum = |of: fn(&Group) -> Option<f64>| {
+    let sum = |of: fn(&GroupInFile) -> Option<f64>| {
         let numbers: Option<Vec<f64>> = visible.iter().map(|group| of(group)).collect();
         numbers.and_then(|numbers| Number::from_f64(numbers.iter().sum())).map(|sum| sum.to_string())
     };
@@ -115,7 +109,7 @@ fn of_grade(grade: impl io::Read) -> Option<Shown> {
 }
 
 impl Shown {
-    /// What the database keeps; nothing where nothing is withheld.
+    /// The grade in a text of the database; nothing where nothing is withheld.
     pub fn read(text: &str) -> Option<Self> {
         match text {
             "" => None,
@@ -153,7 +147,12 @@ mod tests {
     use super::*;
 
     fn shown(groups: &str) -> Option<Shown> {
-        of_grade(format!(r#"{{"grades": [{{"code": "RTE", "points": 45, "groups": [{groups}]}}]}}"#).as_bytes())
+        of_file(&file(groups))
+    }
+
+    fn file(groups: &str) -> GradeFile {
+        let grade = format!(r#"{{"verdict": "x", "code": "RTE", "points": 45, "groups": [{groups}]}}"#);
+        read(format!(r#"{{"schema": 4, "version": "1.0", "grades": [{grade}]}}"#).as_bytes()).expect("a file")
     }
 
     #[test]
@@ -175,6 +174,8 @@ mod tests {
         assert!(one.tells_of("b") && !one.tells_of("secret"));
         assert_eq!(Shown::read(&text(&one)), Some(one));
         assert_eq!(shown(&hidden("AC", 90)), Some(nothing()));
-        assert_eq!(of_grade(&b"{"[..]), Some(nothing()), "what can't be read is not shown");
+        assert!(read(&b"{"[..]).is_none(), "what can't be read is not shown");
+        let both = file(&format!("{seen}, {}", hidden("RTE", 0)));
+        assert_eq!(failed(&both), "WA b\nRTE secret\n", "staff knows of hidden scenes, too");
     }
 }

@@ -42,7 +42,7 @@ const FRESH: Duration = Duration::from_secs(6 * 3600);
 #[serde(try_from = "String", into = "String")]
 pub struct Digest(String);
 
-/// What an artefact is called and how large it is.
+/// An artefact's name and size.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Artefact {
     /// The digest of its bytes.
@@ -219,7 +219,7 @@ impl Store {
             return Ok(artefact);
         }
         let mut input = tokio::fs::File::open(file).await?;
-        // What is not completed never shows under its name.
+        // An upload that is not completed never shows under its name.
         let mut upload = WriteMultipart::new(self.objects.put_multipart(&artefact.digest.key()).await?);
         let mut hasher = Sha256::new();
         let mut chunk = vec![0; CHUNK];

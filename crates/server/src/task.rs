@@ -1,4 +1,4 @@
-//! What a worker is asked to do and what it answers: the same words in the queue, over HTTP and in the database.
+//! A worker's task and its answer: the same words in the queue, over HTTP and in the database.
 use crate::{
     schema::{Code, Decimal, ReportName},
     store::{Artefact, Digest},
@@ -11,7 +11,7 @@ use utoipa::ToSchema;
 pub struct Task {
     /// The upload.
     pub submission: Input,
-    /// What it is graded by.
+    /// The suite that it is graded by.
     pub suite: Suite,
     /// The rule books, when the suite is not to decide: `parity`, `fair` or `both`.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -30,7 +30,7 @@ pub struct Task {
 pub struct Input {
     /// Its kind.
     pub form: Form,
-    /// What it was called, made harmless.
+    /// The file's name, made harmless.
     pub name: String,
     /// Its bytes.
     #[serde(flatten)]
@@ -60,7 +60,7 @@ impl Form {
     }
 }
 
-/// What a submission is graded by.
+/// The suite that a submission is graded by.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Suite {
@@ -70,7 +70,7 @@ pub enum Suite {
     Archive(Digest),
 }
 
-/// What a grading came to: as the grader tells it (`F` are files of its own), as a worker brings it and as the service
+/// The result of a grading: as the grader tells it (`F` are files of its own), as a worker brings it and as the service
 /// shows it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Outcome<F = OutputFile> {
@@ -108,10 +108,13 @@ pub struct Outcome<F = OutputFile> {
     pub seconds: String,
     /// Reports and logs; empty in lists.
     pub files: Vec<F>,
-    /// What students see while groups are withheld, as [`Shown`](crate::shown::Shown) keeps it; nothing while nobody
-    /// has looked.
+    /// The part that students see while groups are withheld, as [`Shown`](crate::shown::Shown) keeps it; nothing while
+    /// nobody has looked.
     #[serde(skip)]
     pub shown: Option<String>,
+    /// The scenes that are not accepted, a line each with the verdict in short; nothing while nobody has looked.
+    #[serde(skip)]
+    pub failed: Option<String>,
 }
 
 /// A scene that is not accepted.
@@ -140,6 +143,7 @@ impl<F> Outcome<F> {
             seconds: self.seconds,
             files,
             shown: self.shown,
+            failed: self.failed,
         }
     }
 }
@@ -160,6 +164,7 @@ impl Outcome {
             seconds: "0".to_owned(),
             files: Vec::new(),
             shown: Some(String::new()),
+            failed: None,
         }
     }
 }
@@ -177,7 +182,7 @@ pub const JUDGE_ERROR: &str = "JE";
 /// A report or log.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct OutputFile {
-    /// What it is called, `grade.json` for example.
+    /// Its name, `grade.json` for example.
     #[schema(value_type = ReportName)]
     pub name: String,
     /// Its content.

@@ -1,4 +1,4 @@
-//! What workers on other machines and the server say to each other, as JSON.
+//! The messages between workers on other machines and the server, as JSON.
 use crate::{
     queue::{Lease, Progress},
     task::{Outcome, Task},
@@ -31,7 +31,7 @@ pub(crate) struct Alive {
     pub(crate) fault: Option<String>,
 }
 
-/// What a worker is to know.
+/// The rules that a worker is to know.
 #[derive(Serialize, Deserialize, ToSchema)]
 pub(crate) struct Manners {
     /// How often to say that it is alive, in milliseconds.
@@ -40,12 +40,12 @@ pub(crate) struct Manners {
 
 /// Whether the lease still holds.
 #[derive(Serialize, Deserialize, ToSchema)]
-pub(crate) struct Held {
+pub(crate) struct LeaseAnswer {
     /// If not, somebody else has the job and nothing was changed.
     pub(crate) held: bool,
 }
 
-impl From<bool> for Held {
+impl From<bool> for LeaseAnswer {
     fn from(held: bool) -> Self {
         Self { held }
     }
@@ -64,7 +64,7 @@ pub(crate) struct Renewal {
 /// Why a try came to nothing.
 #[derive(Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Fault {
+pub(crate) struct JobFault {
     pub(crate) lease: Lease,
     #[schema(max_length = 2000)]
     pub(crate) fault: String,

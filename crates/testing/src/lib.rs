@@ -1,4 +1,4 @@
-//! What tests need of a machine, and what they say where it is not there. Only tests use it.
+//! The needs of tests from a machine, and their message where one is not met. Only tests use it.
 //!
 //! A test that can't run asks [`skip`] and returns. That leaves a line in a list, which `cargo test` prints at its end
 //! (the test `skips` of this crate, which comes last because of the crate's name). Where `FOSSSIM_REQUIRE` names the

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use clap::Parser;
 use fosssim_oracle::{
     pin,
-    student::{self, CATALOGUE, Mistake, Student},
+    student::{self, Mistake, Student, all_rows},
 };
 
 /// The environment variable that names a mistake.
@@ -121,7 +121,7 @@ fn mistake_of_name(program: Option<&Path>) -> Option<String> {
 /// The ids that a misspelt one may have meant.
 fn hint(id: &str) -> String {
     let alike: Vec<&str> =
-        CATALOGUE.iter().map(|row| row.id).filter(|known| known.contains(id) || id.contains(known)).take(5).collect();
+        all_rows().map(|row| row.id).filter(|known| known.contains(id) || id.contains(known)).take(5).collect();
     if alike.is_empty() {
         "; fosssim-sample --list shows all".to_owned()
     } else {

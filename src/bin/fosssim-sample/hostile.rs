@@ -1,5 +1,5 @@
-//! What hostile programs do besides simulating. Everything is bounded where it could harm a machine without a sandbox;
-//! only the endless loop and the sleep are for ever.
+//! The deeds of hostile programs besides simulating. Everything is bounded where it could harm a machine without a
+//! sandbox; only the endless loop and the sleep are for ever.
 use std::{
     fs::File,
     hint::black_box,

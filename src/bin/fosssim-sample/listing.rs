@@ -1,7 +1,7 @@
 //! The catalogue as a table or as JSON.
 use std::io::{self, Write};
 
-use fosssim_oracle::student::{CATALOGUE, Row, RowKind};
+use fosssim_oracle::student::{Row, RowKind, all_rows};
 use serde::Serialize;
 
 #[derive(Serialize)]
@@ -29,7 +29,7 @@ impl From<&Row> for Entry {
 /// Prints the catalogue on standard output.
 pub fn print(json: bool) -> anyhow::Result<u8> {
     let text = if json {
-        let listing = Listing { schema: "fosssim-sample/1", mistakes: CATALOGUE.iter().map(Entry::from).collect() };
+        let listing = Listing { schema: "fosssim-sample/1", mistakes: all_rows().map(Entry::from).collect() };
         serde_json::to_string_pretty(&listing)? + "\n"
     } else {
         table()
@@ -48,7 +48,7 @@ fn table() -> String {
         (RowKind::Variant, "Variants: other arithmetic, the same mathematics."),
         (RowKind::Hostile, "Hostile programs."),
     ] {
-        let rows: Vec<&Row> = CATALOGUE.iter().filter(|row| row.kind == kind).collect();
+        let rows: Vec<&Row> = all_rows().filter(|row| row.kind == kind).collect();
         text += &format!("{title} ({})\n\n", rows.len());
         for row in rows {
             text += &format!("  {:36} {}\n", row.id, row.what);

@@ -2,14 +2,14 @@
 use super::headroom;
 use crate::{
     cli::{
-        arguments::{Check, CheckFormat},
+        arguments::{CheckArguments, CheckFormat},
         console, exit,
         input::{self, SceneInput, TraceInput},
         output::Output,
     },
     evidence::{self, Evidence, Examined, Keep, examine},
     judge::{
-        Outcome, Rules, Stop, Unreadable,
+        Outcome, Stop, Unreadable,
         replay::{self, Progress, Remark, WrongStep},
     },
     report::{
@@ -24,7 +24,7 @@ use crate::{
 use anyhow::{Result, bail};
 use std::{io::Read, path::Path};
 
-pub(super) fn run(arguments: &Check) -> Result<u8> {
+pub(super) fn run(arguments: &CheckArguments) -> Result<u8> {
     if let Some(scenes) = &arguments.own {
         return headroom::run(scenes, arguments);
     }
@@ -35,11 +35,12 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
     let inputs: Vec<_> = scene.identity.into_iter().chain(trace.identity).collect();
     // An output that can't be written is said before the work is done, not after.
     let target = arguments.output.as_deref().map(|name| Output::create(name, &inputs)).transpose()?;
-    let (shown, lasts) = (Shown::of(arguments, target.is_some()), is_lasting(name));
-    let mut heard = Heard { bar: console::Bar::new(scene.scene.steps()), wrong: wrong_steps(arguments, &scene)? };
+    let (shown, lasts) = (ShownParts::of(arguments, target.is_some()), is_lasting(name));
+    let mut heard =
+        CheckProgress { bar: console::Bar::new(scene.scene.steps()), wrong: wrong_steps(arguments, &scene)? };
     let options = options(arguments);
     let examined = examine(&scene.scene, &mut trace.reader, shown.keep(lasts), &options, &mut heard);
-    let Heard { bar, wrong } = heard;
+    let CheckProgress { bar, wrong } = heard;
     drop(bar);
     let outcome = &examined.outcome;
     refuse_unreadable(outcome, &scene, &trace)?;
@@ -49,7 +50,7 @@ pub(super) fn run(arguments: &Check) -> Result<u8> {
         trace: &trace.name,
         outcome,
         explanations: &explanations,
-        rules: arguments.rules.into(),
+        rules: arguments.rules,
         steps: &wrong,
         audit: arguments.audit,
         tables: arguments.tables,
@@ -91,8 +92,8 @@ fn write(
     }
 }
 
-/// What is shown besides the verdict, which decides what is kept of a trace.
-struct Shown {
+/// The parts besides the verdict that are shown; they decide what is kept of a trace.
+struct ShownParts {
     is_explained: bool,
     drawing: Drawing,
 }
@@ -106,8 +107,8 @@ enum Drawing {
     Page,
 }
 
-impl Shown {
-    fn of(arguments: &Check, is_written: bool) -> Self {
+impl ShownParts {
+    fn of(arguments: &CheckArguments, is_written: bool) -> Self {
         // Of single steps the numbers are asked for.
         let is_whole = arguments.step.is_empty();
         let drawing = match (arguments.format, console::pictures()) {
@@ -127,18 +128,17 @@ impl Shown {
     }
 }
 
-fn options(arguments: &Check) -> replay::Options {
-    let rules: Rules = arguments.rules.into();
+fn options(arguments: &CheckArguments) -> replay::Options {
     replay::Options {
         threads: arguments.threads.map_or(0, |threads| threads.get().min(8)),
         root_search: if arguments.audit { RootSearch::Audit } else { RootSearch::WhereNeeded },
-        fair: rules.ask_fair(),
+        fair: arguments.rules.ask_fair(),
         ..replay::Options::default()
     }
 }
 
 /// The list for wrong steps, of those that are to be shown.
-fn wrong_steps(arguments: &Check, scene: &SceneInput) -> Result<WrongSteps> {
+fn wrong_steps(arguments: &CheckArguments, scene: &SceneInput) -> Result<WrongSteps> {
     let steps = scene.scene.steps();
     if let Some(step) = arguments.step.iter().find(|step| **step > steps) {
         bail!("the scene {} has {}; there is no step {step}", scene.name, counted(steps.into(), "step"));
@@ -186,12 +186,12 @@ fn with_plots(text: String, evidence: &Evidence, columns: usize) -> String {
 }
 
 /// Shows how far judging is, and gathers the wrong steps.
-struct Heard {
+struct CheckProgress {
     bar: console::Bar,
     wrong: WrongSteps,
 }
 
-impl Progress for Heard {
+impl Progress for CheckProgress {
     fn step_judged(&mut self, step: u32, remarks: &[Remark]) {
         self.bar.step_judged(step, remarks);
     }

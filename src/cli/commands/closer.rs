@@ -1,4 +1,4 @@
-//! What to type to look closer at a scene that is not accepted: the command that was typed, with the scene.
+//! Commands to look closer at a scene that is not accepted: the one that was typed, with the scene.
 use crate::{
     assignments::Assignment,
     cli::grading::Grade as Arguments,
@@ -33,6 +33,11 @@ impl Closer<'_> {
             lines.push(format!("$ fosssim-oracle check {} {}", quoted(&name), quoted(&trace.to_string_lossy())));
         }
         let wrong = grade.scenes().filter(|scene| !scene.verdict.is_accepted()).count();
+        if wrong > 1 && wrong == grade.scenes().count() && self.arguments.suite == Assignment::DEFAULT.key() {
+            let others = Assignment::ALL.into_iter().filter(|other| *other != Assignment::DEFAULT);
+            let others: Vec<&str> = others.map(Assignment::key).collect();
+            lines.push(format!("if this program is of another milestone: --suite {}", others.join(", ")));
+        }
         if wrong > 1 && wrong < grade.scenes().count() && !self.arguments.failed && self.submissions.len() == 1 {
             lines.push(format!("$ {} --failed", self.command(submission)));
         }

@@ -5,9 +5,9 @@ use crate::{
         console, exit,
         input::{self, SceneInput, pair},
         output::Output,
-        pictures::{Detect, DetectFormat, Points},
+        pictures::{DetectArguments, DetectFormat, Points},
     },
-    evidence::{self, InspectedPair, Logged, Records},
+    evidence::{self, InspectedPair, Logged, StepRecords},
     judge::study::Study,
     render::{detection, plot::Embedding},
     report::{
@@ -24,7 +24,7 @@ use std::path::Path;
 
 const NO_ANSWER: &str = "there is no answer: the numbers are too large or too small, and the original hangs here";
 
-pub(super) fn run(arguments: &Detect) -> Result<u8> {
+pub(super) fn run(arguments: &DetectArguments) -> Result<u8> {
     match &arguments.scene {
         Some(scene) => of_scene(arguments, scene)?,
         None => {
@@ -39,7 +39,7 @@ fn study(motion: &PairMotion) -> Result<Study> {
     Study::of(motion).context(NO_ANSWER)
 }
 
-fn show(arguments: &Detect, study: &Study, place: Option<Place<'_>>, inputs: &[Identity]) -> Result<()> {
+fn show(arguments: &DetectArguments, study: &Study, place: Option<Place<'_>>, inputs: &[Identity]) -> Result<()> {
     let target = arguments.output.as_deref().map(|name| Output::create(name, inputs)).transpose()?;
     let style = if target.is_some() { Style::Plain } else { console::style() };
     let report = Report { study, place };
@@ -56,7 +56,7 @@ fn show(arguments: &Detect, study: &Study, place: Option<Place<'_>>, inputs: &[I
 }
 
 /// The pair whose numbers were typed.
-fn typed(arguments: &Detect) -> Result<PairMotion> {
+fn typed(arguments: &DetectArguments) -> Result<PairMotion> {
     const NOTHING: &str = "name a pair: its points (detect pe:3,1+4,1:5,9+2,6:5,3+5,8 --radii 1,1), or where it is in a scene \
                            (--scene, --step, --pair)";
     let radii = arguments.radii.as_deref();
@@ -82,7 +82,7 @@ fn typed(arguments: &Detect) -> Result<PairMotion> {
 }
 
 /// A pair of a scene, in a step of the reference's run or of a trace.
-fn of_scene(arguments: &Detect, name: &Path) -> Result<()> {
+fn of_scene(arguments: &DetectArguments, name: &Path) -> Result<()> {
     let scene = input::scene(name)?;
     let (Some(step), Some(word)) = (arguments.step, &arguments.pair) else { bail!("name a step and a pair") };
     let steps = scene.scene.steps();
@@ -101,7 +101,7 @@ fn of_scene(arguments: &Detect, name: &Path) -> Result<()> {
         None => (simulated(&scene, step)?, None),
     };
     let records =
-        traced.as_ref().map(|traced| Records { mid: Some(&traced.mid), polynomials: &traced.end.polynomials });
+        traced.as_ref().map(|traced| StepRecords { mid: Some(&traced.mid), polynomials: &traced.end.polynomials });
     let InspectedPair { step: inspected, end, failed } = evidence::inspect(&scene.scene, step, &before, records, pair);
     let passes = inspected.calls.len();
     let call = inspected.calls.get(arguments.pass as usize - 1);

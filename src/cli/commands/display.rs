@@ -52,7 +52,7 @@ impl<'a> LiveDisplay<'a> {
                         bar.finish_and_clear();
                     }
                     match cached {
-                        // What was taken over says nothing about how long the rest will take.
+                        // A result that was taken over says nothing about how long the rest will take.
                         true => bars.overall.set_length(bars.overall.length().unwrap_or(1).saturating_sub(1)),
                         false => bars.overall.inc(1),
                     }

@@ -1,4 +1,4 @@
-//! What the commands that grade have in common at their end: exit code, file names, and how much is shown.
+//! The common end of the commands that grade: exit code, file names, and how much is shown.
 use crate::{
     cli::{exit, grading::Grade as Arguments},
     report::{

@@ -78,7 +78,7 @@ fn trace_on_scene(scene: &Path, trace: &Path, arguments: &Explain) -> Result<(Ca
     let mut trace = input::trace(trace)?;
     let (case, card, _) =
         case((scene.name, trace.name.clone()), true, &scene.scene, &mut trace.reader, None, arguments);
-    // What follows the last step is of interest only where it can't be read.
+    // Bytes behind the last step are of interest only where they can't be read.
     let _ = io::copy(&mut (&mut trace.reader).take(LONGEST), &mut io::sink());
     if let Some(message) = trace.failure() {
         bail!("cannot read the trace {}: {message}", trace.name);
@@ -95,7 +95,7 @@ fn case(
     note: Option<String>,
     arguments: &Explain,
 ) -> (Case, Option<Card>, u32) {
-    let hints: Hints = arguments.hints.into();
+    let hints: Hints = arguments.hints;
     let options = Options { fair: true, ..Options::default() };
     let examined = examine(scene, bytes, Keep::All, &options, &mut ());
     let outcome = &examined.outcome;

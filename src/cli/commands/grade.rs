@@ -13,7 +13,7 @@ use super::{
 use crate::{
     cli::{
         console, exit,
-        grading::{Audience, Grade as Arguments},
+        grading::Grade as Arguments,
         interrupt::{cancelled_by_signals, still_at_work},
         output,
         selection::Selection,
@@ -24,6 +24,7 @@ use crate::{
         explain,
         grade::{self, Format, Text},
         number::counted,
+        page::Audience,
         style::Style,
         words,
     },
@@ -54,13 +55,13 @@ const FAULTS: &str = "fosssim-faults";
 pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     let mut plan = plan::find(&arguments.suite)?;
     if let Some(rules) = arguments.rules {
-        plan.rules = rules.into();
+        plan.rules = rules;
     }
-    if arguments.recorded && arguments.rules.map(Rules::from) == Some(Rules::Fair) {
+    if arguments.recorded && arguments.rules == Some(Rules::Fair) {
         bail!("the fair rules follow the submission, so they can't judge against recordings: leave --recorded out");
     }
     if let Some(hints) = arguments.hints {
-        plan.hints = hints.into();
+        plan.hints = hints;
     }
     let reports = reports(&arguments.format)?;
     if arguments.traces {
@@ -270,7 +271,7 @@ impl GradingSession<'_> {
         Ok((grades, fault.map(anyhow::Error::from).or(log_error)))
     }
 
-    /// What counts scenes for `--progress`: those that the reader of the pages sees.
+    /// The counter of scenes for `--progress`: those that the reader of the pages sees.
     fn counter(&self, file: &Path, submissions: &[Submission]) -> Result<Counter> {
         let sees_all = self.arguments.reader == Audience::Staff;
         let groups = self.plan.groups.iter();
@@ -289,7 +290,7 @@ impl GradingSession<'_> {
 
     /// Writes the reports and, into the folder, the files that a batch ends with.
     fn report(&self, grades: &[Grade], submissions: &[Submission], reports: &[Report]) -> Result<()> {
-        let (folder, pages, reader) = (self.folder.as_deref(), self.pages.as_ref(), self.arguments.reader.into());
+        let (folder, pages, reader) = (self.folder.as_deref(), self.pages.as_ref(), self.arguments.reader);
         let passed_over = self.passed_over();
         let results = Results { folder, pages, reader, is_part: self.is_part, grades, passed_over };
         results.write(reports, || self.text(grades, submissions))

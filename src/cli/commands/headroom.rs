@@ -2,7 +2,7 @@
 use crate::{
     assignments::Assignment,
     cli::{
-        arguments::{Check, CheckFormat},
+        arguments::{CheckArguments, CheckFormat},
         console, exit, input,
         output::Output,
     },
@@ -14,7 +14,7 @@ use anyhow::{Context, Result, bail};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
-pub(super) fn run(scenes: &[PathBuf], arguments: &Check) -> Result<u8> {
+pub(super) fn run(scenes: &[PathBuf], arguments: &CheckArguments) -> Result<u8> {
     if matches!(arguments.format, CheckFormat::Html | CheckFormat::Github) {
         bail!("check --self has no trace to show; use --format text or json");
     }

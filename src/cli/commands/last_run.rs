@@ -1,4 +1,4 @@
-//! What the last grading of the same submissions did not accept, for `grade --failed`.
+//! The scenes that the last grading of the same submissions did not accept, for `grade --failed`.
 //!
 //! Remembered in the output folder, or where there is none in the user's cache. A convenience: what can't be read or
 //! written is forgotten.

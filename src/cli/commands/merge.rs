@@ -69,7 +69,7 @@ pub(super) fn run(arguments: &Merge) -> Result<u8> {
     grade::warn_of(&mut grades, &passed_over);
     let pages = Pages::new(Some(&output))?;
     LastRun::open(Some(&output), &[], &suite).remember(&grades);
-    let reader = arguments.reader.into();
+    let reader = arguments.reader;
     let results = Results {
         folder: Some(&output),
         pages: Some(&pages),
@@ -167,7 +167,7 @@ fn keep_results(folder: &Path, kept: &FolderResults) -> Result<()> {
         Err(error) => return Err(error).with_context(|| format!("cannot read {}", place.path().display())),
     };
     each_line(BufReader::new(file.take(length)), |line| -> Result<()> {
-        // What somebody damaged is graded again, as in any folder.
+        // An entry that somebody damaged is graded again, as in any folder.
         if let Some(entry) = read_line(line) {
             kept.keep(&entry.key, &entry.submission, &entry.result)?;
         }

@@ -36,7 +36,7 @@ use anyhow::Result;
 /// Runs a command and returns its exit code.
 ///
 /// # Errors
-/// What keeps it from running: wrong usage, bad input, or our own fault.
+/// The reason why it can't run: wrong usage, bad input, or our own fault.
 pub(super) fn run(command: &Command) -> Result<u8> {
     console::be_quiet(is_quiet(command));
     match command {
@@ -45,7 +45,7 @@ pub(super) fn run(command: &Command) -> Result<u8> {
         Command::Explain(arguments) => explain::run(arguments),
         Command::Detect(arguments) => detect::run(arguments),
         Command::Render(arguments) => render::run(arguments),
-        Command::Trace(arguments) => match &**arguments {
+        Command::Trace(arguments) => match arguments {
             Trace::Info(arguments) => trace::info(arguments),
             Trace::Show(arguments) => trace::show(arguments),
             Trace::Diff(arguments) => trace::diff(arguments),
@@ -72,7 +72,7 @@ fn is_quiet(command: &Command) -> bool {
         Command::Simulate(arguments) => arguments.quiet.quiet,
         Command::Check(arguments) => arguments.quiet.quiet,
         Command::Explain(arguments) => arguments.quiet.quiet,
-        Command::Trace(arguments) => matches!(&**arguments, Trace::Diff(arguments) if arguments.quiet.quiet),
+        Command::Trace(arguments) => matches!(arguments, Trace::Diff(arguments) if arguments.quiet.quiet),
         Command::Record(arguments) => arguments.quiet.quiet,
         _ => false,
     }

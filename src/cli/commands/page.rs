@@ -1,9 +1,12 @@
 //! `page`: the page that checks traces in a browser.
 use crate::{
-    cli::{arguments::Page, exit, output::Output},
+    cli::{arguments::PageArguments, exit, output::Output},
     files::{Identity, open_for_reading, read_limited},
+    report::page::Audience,
+    suite::{config::Visibility, plan},
 };
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
+use fosssim_browser::CourseSuite;
 use std::borrow::Cow;
 
 /// The module that was compiled into the program (build.rs).
@@ -18,7 +21,7 @@ const LARGEST: u64 = 64 << 20;
 /// The first bytes of every module.
 const MAGIC: &[u8] = b"\0asm";
 
-pub(super) fn run(arguments: &Page) -> Result<u8> {
+pub(super) fn run(arguments: &PageArguments) -> Result<u8> {
     let (module, inputs) = match (&arguments.module, MODULE) {
         (Some(name), _) => {
             let context = || format!("cannot read the module {}", name.display());
@@ -35,7 +38,15 @@ pub(super) fn run(arguments: &Page) -> Result<u8> {
     if !module.starts_with(MAGIC) {
         bail!("the module is no WebAssembly; scripts/browser-page makes one");
     }
+    let course = arguments.suite.as_deref().map(|name| course(name, arguments.reader)).transpose()?;
     let target = Output::create(&arguments.output, &inputs)?;
-    target.finish_and_tell(fosssim_browser::page(&module).as_bytes(), true)?;
+    target.finish_and_tell(fosssim_browser::page(&module, course.as_ref()).as_bytes(), true)?;
     Ok(exit::ACCEPTED)
+}
+
+/// The part of a suite that the page's readers may see.
+fn course(name: &str, reader: Audience) -> Result<CourseSuite> {
+    let plan = plan::find(name)?;
+    let shows = |visibility| reader == Audience::Staff || visibility == Visibility::Visible;
+    CourseSuite::of(&plan, shows).map_err(|why| anyhow!("the suite {name}: {why}"))
 }

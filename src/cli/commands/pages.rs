@@ -1,4 +1,4 @@
-//! What is drawn of judged traces, and the HTML pages that are put together of it.
+//! Pictures of judged traces, and the HTML pages that are put together of them.
 use super::ending::file_name;
 use crate::{
     cli::output,
@@ -60,7 +60,7 @@ impl Pages {
     pub(super) fn forget(&self) {
         let is_card = |name: &OsString| Path::new(name).extension().is_some_and(|extension| extension == "zst");
         for name in self.cards.names().unwrap_or_default().iter().filter(|name| is_card(name)) {
-            // What stays behind costs room and nothing else.
+            // A card that stays behind costs room and nothing else.
             drop(self.cards.join(name).remove());
         }
     }
@@ -123,7 +123,7 @@ pub(super) fn draw(judged: &Judged<'_>, names: (&str, Option<&str>), recorded: b
             let options = replay::Options { threads: 1, fair: true, ..replay::Options::default() };
             examine(&judged.task.scene, judged.trace, Keep::Nothing, &options, &mut ())
         });
-        // What failed while drawing costs nobody's points.
+        // A failure while drawing costs nobody's points.
         let Ok(Examined { outcome, rulings, .. }) = again else { return None };
         let own = Judged { outcome: &outcome, rulings: &rulings, rules: Rules::Fair, ..*judged };
         return draw(&own, names, false)

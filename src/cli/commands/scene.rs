@@ -21,10 +21,7 @@ pub(super) fn run(command: &Scene) -> Result<u8> {
 }
 
 /// Lists the scenes that these patterns name; without patterns, all.
-///
-/// # Errors
-/// A pattern that matches none.
-pub(super) fn list(patterns: &[String], quiet: bool) -> Result<u8> {
+fn list(patterns: &[String], quiet: bool) -> Result<u8> {
     let names = matching(patterns)?;
     if quiet {
         let text: String = names.iter().map(|name| format!("asset:{name}\n")).collect();

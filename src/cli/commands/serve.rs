@@ -1,9 +1,9 @@
 //! `serve`: becomes the program `fosssim-server`, so that users who grade at a terminal carry no server along.
-use crate::cli::arguments::Serve;
+use crate::cli::arguments::ServeArguments;
 use anyhow::{Context, Result, bail};
 use std::{os::unix::process::CommandExt, process::Command};
 
-pub(super) fn run(arguments: &Serve) -> Result<u8> {
+pub(super) fn run(arguments: &ServeArguments) -> Result<u8> {
     let server = std::env::current_exe().context("where this program is")?.with_file_name("fosssim-server");
     if !server.is_file() {
         bail!(

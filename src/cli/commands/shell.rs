@@ -2,7 +2,6 @@
 use crate::cli::{
     arguments::{Arguments, Completions, Man},
     console, exit,
-    later::at_once,
 };
 use anyhow::{Result, bail};
 use clap::CommandFactory;
@@ -13,7 +12,7 @@ const NAME: &str = "fosssim-oracle";
 
 pub(super) fn completions(arguments: &Completions) -> Result<u8> {
     let mut script = Vec::new();
-    clap_complete::generate(arguments.shell, &mut at_once(Arguments::command), NAME, &mut script);
+    clap_complete::generate(arguments.shell, &mut Arguments::command(), NAME, &mut script);
     if arguments.shell == Shell::Bash {
         script = mended(&script);
     }
@@ -30,7 +29,7 @@ fn mended(script: &[u8]) -> Vec<u8> {
 }
 
 pub(super) fn manual(arguments: &Man) -> Result<u8> {
-    let mut command = at_once(Arguments::command).disable_help_subcommand(true);
+    let mut command = Arguments::command().disable_help_subcommand(true);
     // Gives the commands their full names.
     command.build();
     for name in &arguments.command {

@@ -217,7 +217,8 @@ fn last_name(path: &Path) -> OsString {
 }
 
 /// The names of what lies at these paths, none twice: the last names; where several of these look the same, those that
-/// only look so are shown exactly, equal ones get their paths, and names that still look the same get a number.
+/// only look so are shown exactly, equal ones get as much of their paths as it takes, and names that still look the same
+/// get a number.
 pub(super) fn distinct_names(paths: &[&Path]) -> Vec<String> {
     let own: Vec<OsString> = paths.iter().map(|path| last_name(path)).collect();
     let mut alike: BTreeMap<String, BTreeMap<&OsStr, usize>> = BTreeMap::new();
@@ -228,7 +229,7 @@ pub(super) fn distinct_names(paths: &[&Path]) -> Vec<String> {
     let mut name = |(path, own): (&&Path, &OsString)| {
         let shown = names::shown(own);
         let plain = match &alike[&shown] {
-            same if same[own.as_os_str()] > 1 => names::shown(path.as_os_str()),
+            same if same[own.as_os_str()] > 1 => names::shown(end_of(path, paths).as_os_str()),
             same if same.len() > 1 => names::exact(own),
             _ => shown,
         };
@@ -241,6 +242,13 @@ pub(super) fn distinct_names(paths: &[&Path]) -> Vec<String> {
         name
     };
     paths.iter().zip(&own).map(&mut name).collect()
+}
+
+/// The shortest end of a path that none of the others has.
+fn end_of<'a>(path: &'a Path, all: &[&Path]) -> &'a Path {
+    let mut ends = path.ancestors().skip(1).filter_map(|folder| path.strip_prefix(folder).ok());
+    let is_own = |end: &&Path| all.iter().filter(|other| other.ends_with(end)).count() == 1;
+    ends.find(is_own).unwrap_or(path)
 }
 
 /// Which file each program is. Where several are one file, who owns it has handed it in: the owner of a folder, in
@@ -290,6 +298,7 @@ mod tests {
         assert_eq!(names(&["c/\u{e9}", "c/e\u{301}"]), ["\u{e9}", "e\\u{301}"]);
         assert_eq!(names(&["c/e\u{301}"]), ["\u{e9}"]);
         assert_eq!(names(&["one/x", "two/x", "x"]), ["one/x", "two/x", "x"]);
+        assert_eq!(names(&["/c/ada/x", "/c/bob/x", "/c/liu/y"]), ["ada/x", "bob/x", "y"]);
         assert_eq!(names(&["x", "x", "x (2)"]), ["x", "x (2)", "x (2) (2)"]);
     }
 }

@@ -1,8 +1,5 @@
 //! `suite`: writes, checks and explains suites.
-use super::{
-    scene,
-    suite_report::{SuiteContents, Undecided, list, list_json, text},
-};
+use super::suite_report::{SuiteContents, Undecided, list, list_json, text};
 use crate::{
     cli::{
         console, exit,
@@ -41,7 +38,6 @@ pub(super) fn run(suite: &Suite) -> Result<u8> {
             };
             console::show(&text, *format)?;
         }
-        Suite::Scenes(_) => return scene::list(&[], false),
     }
     Ok(exit::ACCEPTED)
 }

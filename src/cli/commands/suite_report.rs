@@ -1,4 +1,4 @@
-//! What a suite would grade, and what is worth knowing before it does: the text of `suite check`. And which suites
+//! The text of `suite check`: what a suite would grade, and what is worth knowing before it does. And which suites
 //! there are.
 use crate::{
     judge::{PairWords, PassWords, Rules, fair::Borderline},

@@ -86,7 +86,7 @@ pub(super) fn diff(arguments: &TraceDiff) -> Result<u8> {
     let comparison = compare(reader(&scene, &mut left), reader(&scene, &mut right));
     no_failure(&left)?;
     no_failure(&right)?;
-    let names = report::Names { scene: &scene.name, left: &left.name, right: &right.name };
+    let names = report::TraceNames { scene: &scene.name, left: &left.name, right: &right.name };
     let text = match arguments.format {
         TextOrJson::Text => report::diff_text(&names, &comparison, console::style()),
         TextOrJson::Json => report::diff_json(&names, &comparison),

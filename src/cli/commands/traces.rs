@@ -54,7 +54,7 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report]) -> Resu
     let paths: Vec<&Path> = arguments.programs.iter().map(PathBuf::as_path).collect();
     let named = paths.iter().zip(distinct_names(&paths));
     let grades: Vec<Grade> = named.map(|(folder, name)| grade(&plan, folder, name, pages.as_ref())).collect();
-    let (folder, reader) = (arguments.output.as_deref(), arguments.reader.into());
+    let (folder, reader) = (arguments.output.as_deref(), arguments.reader);
     let results = Results { folder, pages: pages.as_ref(), reader, is_part, grades: &grades, passed_over: &[] };
     results.write(reports, || {
         let shown = shown(arguments, grades.len() > 1);

@@ -161,7 +161,7 @@ struct Unpacked<R: io::BufRead> {
 impl<R: io::BufRead> Read for Unpacked<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         self.decoder.read(buffer).map_err(|error| {
-            // What the operating system said has been remembered already, and is the better explanation.
+            // The operating system's words have been remembered already, and are the better explanation.
             if error.kind() == io::ErrorKind::Interrupted || self.failure.get().is_some() {
                 return error;
             }

@@ -143,7 +143,7 @@ fn the_action_for_github_writes_summary_report_and_points() {
         assert_eq!(run.out().contains("::error"), code == 1, "annotations: {}", run.shown());
         assert!(!workspace.read("summary").is_empty() && workspace.exists("fosssim-grades/report.html"));
     }
-    // What the action runs is there, and its inputs are those that the script reads.
+    // The script that the action runs is there, and its inputs are those that the script reads.
     let action = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("action.yml")).expect("the action");
     for name in ["scripts/github/grade", "FOSSSIM_SUBMISSION", "FOSSSIM_SUITE", "FOSSSIM_OUTPUT"] {
         assert!(action.contains(name), "{name}");

@@ -1,4 +1,4 @@
-//! What impulses and the rigid failsafe conserve.
+//! The quantities that impulses and the rigid failsafe conserve.
 use super::{
     crowd::{TIME_STEP, Wanted, crowd, hybrid, scene},
     search,

@@ -1,4 +1,4 @@
-//! What other coordinates, other lengths and other names change: nothing but the names.
+//! Other coordinates, other lengths and other names change nothing but the names.
 //!
 //! Quarter turns and mirrors only exchange and negate coordinates, so every sum of products keeps its bits; so does a
 //! power of two as unit of length, unless an absolute constant bites. Elsewhere round-off differs, and a step is

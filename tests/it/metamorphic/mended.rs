@@ -71,7 +71,7 @@ impl Quadratics {
 pub struct Mended<'s, O> {
     /// The scene, for the ends of its edges.
     pub scene: &'s Scene,
-    /// Who hears the rest.
+    /// The observer that hears the rest.
     pub inner: O,
 }
 

@@ -12,7 +12,7 @@ pub struct Map {
     pub rows: [[f64; 2]; 2],
     /// The factor of lengths.
     pub factor: f64,
-    /// What is added last.
+    /// The shift, which is added last.
     pub shift: [f64; 2],
 }
 

@@ -1,4 +1,4 @@
-//! Who dies with whom: programs with their supervisor, supervisors with their grader.
+//! Deaths together: programs die with their supervisor, supervisors with their grader.
 use super::*;
 
 /// The process that runs exactly these words, and its parent.

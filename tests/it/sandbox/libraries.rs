@@ -1,4 +1,4 @@
-//! What programs of the course need of the system's libraries, though they may read few of its files.
+//! The needs of the course's programs from the system's libraries, though they may read few of its files.
 use super::*;
 
 /// Compiles a source that a bench holds; `None` where there is no such compiler or library.
@@ -138,7 +138,7 @@ int main() {
     let Some(bench) = Bench::new() else { return };
     let Some(program) = built(&bench, LIBRARY, &["-pthread"]) else { return };
     assert_eq!(said(&bench, &program), "\u{e4}\n");
-    // What the C library brings along, if it is there.
+    // The C library's own data, if it is there.
     if Path::new("/usr/lib/locale/C.utf8").exists() {
         let source = "#include <locale>\nint main() { std::locale::global(std::locale(\"C.UTF-8\")); }";
         let Some(program) = built(&bench, source, &[]) else { return };

@@ -1,4 +1,4 @@
-//! What stands on a terminal while a command works, and what is left of it.
+//! The terminal while a command works, and what is left there afterwards.
 use crate::workspace::{DRIFT, Workspace};
 use fosssim_testing::{Need, skip};
 use std::{
@@ -45,7 +45,7 @@ fn interrupted(workspace: &Workspace, words: &[&str], at: &str) -> (String, Opti
     (String::from_utf8_lossy(&seen).into_owned(), code)
 }
 
-/// What is still to be seen behind the last erasure.
+/// The text that is still to be seen behind the last erasure.
 fn left(seen: &str) -> &str {
     seen.rsplit("\u{1b}[2K").next().unwrap_or_default()
 }

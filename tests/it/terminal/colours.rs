@@ -1,4 +1,4 @@
-//! Who decides about colours: `--color`, then `NO_COLOR`, then `CLICOLOR_FORCE`, then the terminal.
+//! The choice of colours: `--color` decides, then `NO_COLOR`, then `CLICOLOR_FORCE`, then the terminal.
 use crate::workspace::{DRIFT, Workspace, finish};
 
 fn is_coloured(workspace: &Workspace, words: &[&str], variables: &[(&str, &str)]) -> bool {

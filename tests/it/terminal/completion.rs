@@ -3,7 +3,7 @@ use crate::workspace::{Workspace, finish};
 use fosssim_testing::{Need, skip};
 use std::process::Command;
 
-/// What bash offers for the last of these words, by the script as it is printed.
+/// The offers of bash for the last of these words, by the script as it is printed.
 fn offered(workspace: &Workspace, words: &[&str]) -> Vec<String> {
     let list: Vec<String> = words.iter().map(|word| format!("'{word}'")).collect();
     let (last, previous) = (words.len() - 1, words.get(words.len().wrapping_sub(2)).unwrap_or(&""));

@@ -3,7 +3,7 @@ use super::bars::terminal;
 use crate::workspace::Workspace;
 use std::{io::Read, path::Path, process::Stdio};
 
-/// What a command writes on a terminal.
+/// The output of a command on a terminal.
 fn on_terminal(workspace: &Workspace, words: &[&str], set: &[(&str, &str)]) -> String {
     let (mut main, side) = terminal();
     let mut command = workspace.command();

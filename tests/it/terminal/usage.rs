@@ -36,7 +36,7 @@ fn a_trace_in_the_place_of_the_scene_is_told_in_one_line() {
     workspace.write("trace.bin.zst", packed);
     let run = workspace.run(["check", "trace.bin.zst", "scene.xml"]);
     assert!(run.err().contains("SCENE comes first"), "{}", run.err());
-    // What is text is read as a scene, however wrong.
+    // A file of text is read as a scene, however wrong.
     workspace.write("notes.txt", "no scene\n");
     assert!(!workspace.run(["check", "notes.txt", "trace.bin"]).err().contains("SCENE comes first"));
 }
@@ -50,7 +50,7 @@ fn a_scene_in_the_place_of_the_trace_is_told_in_one_line() {
         assert_eq!((run.code, run.err().lines().count()), (Some(2), 1), "{}", run.shown());
         assert!(run.err().contains("scene.xml is a scene and no trace"), "{}", run.err());
     }
-    // Whatever else has such a name is a trace, if a bad one.
+    // Any other file of such a name is a trace, if a bad one.
     workspace.write("odd.xml", "no scene");
     assert_eq!(workspace.run(["check", "scene.xml", "odd.xml"]).code, Some(1));
 }

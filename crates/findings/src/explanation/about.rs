@@ -1,6 +1,7 @@
-//! What explanations are about.
+//! The subjects of explanations.
 use super::{
     fault::{NotFinite, StageFault},
+    force::{ForceTerm, WrongWeight},
     guess::Guess,
     subject::Subject,
 };
@@ -23,12 +24,14 @@ pub enum About {
     Polynomials {
         /// Which ones.
         subjects: Vec<Subject>,
-        /// What is found out about them.
+        /// The facts that are found out about them.
         found: OfPolynomials,
     },
     /// A stage of a step: what it leaves is wrong, and everything before is right.
     Stage(StageFault),
-    /// What is no finite number, which is an observation and comes before all that may be guessed.
+    /// Terms of the forces whose weight is wrong.
+    Forces(Vec<(ForceTerm, WrongWeight)>),
+    /// Values that are no finite numbers: an observation, which comes before all guesses.
     NotFinite(NotFinite),
 }
 
@@ -41,7 +44,7 @@ impl About {
     }
 }
 
-/// What is found out about wrong polynomials.
+/// The facts that are found out about wrong polynomials.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum OfPolynomials {
     /// A guess that reproduces them, or a part.

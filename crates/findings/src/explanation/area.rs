@@ -5,13 +5,23 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Area {
+    /// The forces that act on particles.
+    Forces,
+    /// Derivatives of forces by positions and velocities, for implicit integrators.
+    Jacobians,
+    /// How forces change velocities, and velocities positions.
+    Integrator,
+    /// The force between near bodies.
+    Penalty,
+    /// Which pairs reach the force between near bodies.
+    NearPairs,
     /// Polynomials of two particles.
     ParticleParticle,
     /// Polynomials of a particle and an edge.
     ParticleEdge,
     /// Polynomials of a particle and a half-plane.
     ParticleHalfPlane,
-    /// What all three detections have in common: how polynomials reach the root finder.
+    /// The common part of all three detections: how polynomials reach the root finder.
     Handover,
     /// The vector between the objects at the time of impact.
     ContactVector,
@@ -27,7 +37,7 @@ pub enum Area {
     ImpactZones,
     /// The rigid motion of one zone.
     Failsafe,
-    /// What is written to the trace.
+    /// The trace that is written.
     Trace,
     /// How the program behaves as a process.
     Process,
@@ -38,6 +48,11 @@ impl Area {
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
+            Self::Forces => "forces",
+            Self::Jacobians => "jacobians",
+            Self::Integrator => "integrator",
+            Self::Penalty => "penalty",
+            Self::NearPairs => "near-pairs",
             Self::ParticleParticle => "particle-particle",
             Self::ParticleEdge => "particle-edge",
             Self::ParticleHalfPlane => "particle-half-plane",

@@ -1,5 +1,5 @@
 //! The exact form of what is wrong, as values. May give a right formula away.
-use super::{area::Area, fault::Changed, reading::Reading, subject::Subject};
+use super::{area::Area, fault::Changed, force::ForceTerm, reading::Reading, subject::Subject};
 use fosssim_model::sim::PairKind;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -11,13 +11,21 @@ pub enum Detail {
     Term(Cow<'static, str>),
     /// Where to look for mistakes of this part of the assignment.
     Look(Area),
-    /// What the letters mean that stand in the lines before, which speak of pairs of these kinds. None where none needs
+    /// The meanings of the letters in the lines before, which speak of pairs of these kinds. None where none needs
     /// it.
     Letters(Vec<PairKind>),
-    /// What is wrong with polynomials.
+    /// A fault of polynomials.
     Polynomial(PolynomialDetail),
-    /// What is wrong with a stage.
+    /// A fault of a stage.
     Stage(StageDetail),
+    /// The weight that a term of the forces has.
+    Force {
+        /// The term.
+        term: ForceTerm,
+        /// Its weight, which should be 1.
+        #[serde(with = "fosssim_num::written")]
+        weight: f64,
+    },
 }
 
 /// The exact form of what is wrong with polynomials.

@@ -1,4 +1,4 @@
-//! What is wrong with a stage of a step, where no mistake that is known explains it; without what is measured of it
+//! Faults of a stage of a step, where no mistake that is known explains them; without what is measured of them
 //! ([`StageDetail`](super::StageDetail)).
 use super::area::Area;
 use fosssim_model::sim::PairKind;
@@ -308,7 +308,7 @@ impl StageFault {
             | Self::Zones(WrongZones::Partly | WrongZones::NotMerged | WrongZones::Joined | WrongZones::Others) => {
                 &[Area::ImpactZones]
             }
-            // What a larger zone leads to may be the fault of what moves it.
+            // The effects of a larger zone may be the fault of what moves it.
             Self::AfterRounds
             | Self::ZoneRounds(WrongZoneRounds::Growth | WrongZoneRounds::Later)
             | Self::Motion { or_zones: true, .. }

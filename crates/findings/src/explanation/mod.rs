@@ -1,9 +1,10 @@
-//! What an explanation says, as values: sentences are made of it where reports are.
+//! Explanations as values: sentences are made of them where reports are.
 pub mod about;
 mod area;
 pub mod detail;
 pub mod example;
 pub mod fault;
+pub mod force;
 pub mod guess;
 mod input;
 mod reading;
@@ -17,6 +18,7 @@ pub use fault::{
     Changed, LoopEnd, NanStage, NotFinite, Quantity, StageFault, StepStage, WrongDecisions, WrongGeometric,
     WrongMotion, WrongNumber, WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
 };
+pub use force::{ForceTerm, WrongWeight};
 pub use guess::{CoefficientGuess, Guess, ListGuess, QuantityGuess};
 pub use input::Input;
 pub use reading::Reading;
@@ -60,6 +62,9 @@ impl Explanation {
 
     /// The key of pairs that are looked at in another order.
     pub const ORDER: &'static str = StageFault::Order.key();
+
+    /// The key of terms of the forces that have a wrong weight.
+    pub const FORCES: &'static str = "forces";
 
     /// The key of what is no finite number.
     pub const NOT_FINITE: &'static str = "not-a-number";
@@ -137,6 +142,7 @@ impl Explanation {
             }
             About::Stage(fault) => format!("{}/{fault:?}", self.key),
             About::NotFinite(found) => format!("{}/{:?}", self.key, found.stage),
+            About::Forces(wrong) => format!("{}/{wrong:?}", self.key),
             _ => self.key.clone(),
         }
     }
@@ -156,7 +162,7 @@ impl Explanation {
     #[must_use]
     pub fn claims_by_subject(&self) -> BTreeMap<&str, Vec<(&str, &str)>> {
         let mut all: BTreeMap<&str, Vec<(&str, &str)>> = BTreeMap::new();
-        // What it tells and what reproduces only a part makes nothing.
+        // A guess that reproduces only a part makes none of them.
         let is_part =
             matches!(self.about, About::Polynomials { found: OfPolynomials::Guess(_), .. }) && !self.is_complete();
         for (number, claim) in self.claims.iter().enumerate() {

@@ -1,5 +1,5 @@
-//! What is bound to an assignment of the course: the versions of its suite, and the template of suites. One folder
-//! each.
+//! The parts of grading that are bound to an assignment of the course: the versions of its suite, and the template of
+//! suites. One folder each.
 use fosssim_model::assignments::Assignment;
 
 /// The commented suite to start from.

@@ -5,7 +5,7 @@
 use super::{
     cancellation::Cancellation,
     grade::Grade,
-    grader::{Grader, SceneProgress, Shared, Submission, SubmissionGrading},
+    grader::{Grader, SceneProgress, SharedGrading, Submission, SubmissionGrading},
     guard::{Fault, guarded},
     result::SceneResult,
     results::{KeepError, Results},
@@ -109,7 +109,7 @@ pub fn run(
     on_event: &mut dyn FnMut(Event<'_>),
 ) -> Graded {
     temporary::sweep();
-    let shared = Shared::new(grader, results, cancellation);
+    let shared = SharedGrading::new(grader, results, cancellation);
     let gradings: Vec<SubmissionGrading<'_>> =
         submissions.iter().map(|submission| SubmissionGrading::new(grader, &shared, submission)).collect();
     let mut telling = None;

@@ -130,7 +130,7 @@ fn the_official_book_gives_verdict_and_points_and_results_are_not_mixed_up() {
     assert!(fair.scenes().all(|scene| !scene.cached && scene.reason == trailing));
     let parity = grade(Rules::Parity, false);
     assert_eq!((parity.verdict, parity.differing()), (Verdict::Accepted, 0));
-    // What was kept says the same, and recordings know parity only.
+    // The kept results say the same, and recordings know parity only.
     let again = grade(Rules::Both, false);
     assert!(again.scenes().all(|scene| scene.cached && scene.differs == Some(Cause::TrailingBytes)));
     assert_eq!(grade(Rules::Both, true).rules, Rules::Parity);

@@ -1,4 +1,4 @@
-//! What happens in a step, by its properties: the kinds of events that are counted, and which properties exclude each
+//! The events in a step, by their properties: the kinds that are counted, and which properties exclude each
 //! other.
 use super::axes::{
     Age, Axis, Company, EdgeMotion, Ends, FixedOfThree, FixedOfTwo, FixedOne, Forces, Found, Held, Hits, Integrator,
@@ -35,7 +35,7 @@ macro_rules! family {
     };
 }
 
-/// What excludes each other: a value, and all those of another property that no event has with it.
+/// Values that exclude each other: one, and all those of another property that no event has with it.
 macro_rules! never {
     ($($one:ident::$value:ident with $other:ident::{$($excluded:ident),+}),* $(,)?) => {
         &[$($((($one::AXIS.name, $one::$value as usize), ($other::AXIS.name, $other::$excluded as usize))),+),*]
@@ -103,7 +103,7 @@ family!(MovedZone, "the failsafe moves a zone" {
     limit: Limit,
     integrator: Integrator,
 } never never![
-    // What is alone hits a half-plane, cannot turn, has not grown, has no edge and nobody to be unlike.
+    // A single body hits a half-plane, cannot turn, has not grown, has no edge and nobody to be unlike.
     Size::One with Held::{Nothing, Fixed},
     Size::One with Motion::{Turns},
     Size::One with Age::{Grown},
@@ -146,7 +146,7 @@ family!(HybridStep, "a step of hybrid" {
     ZoneCount::None with Rounds::{Two, More},
     ZoneCount::One with Rounds::{None},
     ZoneCount::Several with Rounds::{None},
-    // What a limit allows.
+    // The ends that a limit allows.
     Limit::Zero with LoopEnd::{Nothing, Within, JustEnough, RunOut},
     Limit::One with LoopEnd::{Within, JustEnough, NotAllowed},
     Limit::More with LoopEnd::{NotAllowed},

@@ -1,6 +1,6 @@
-//! What the scenes of a suite contain, measured from the reference's run: kinds of contacts, zones and steps.
+//! The contents of a suite's scenes, measured from the reference's run: kinds of contacts, zones and steps.
 //!
-//! What happens in a step is an event with properties ([`FAMILIES`]): a contact, a pair that does not collide, a zone
+//! An event in a step has properties ([`FAMILIES`]): it is a contact, a pair that does not collide, a zone
 //! that the failsafe moves, the step as a whole. A suite covers two values of two properties when one event of one of
 //! its scenes has both. A mistake that shows with one or two properties together therefore meets a scene where it can
 //! show; the mutants of `crates/lab` tell whether it does.

@@ -26,7 +26,7 @@ fn key() -> Key {
     Key::of(&blake3::hash(b"program"), b"scene", &[])
 }
 
-/// What comes back of a result.
+/// A result that was written and read again.
 fn again(result: &SceneResult) -> SceneResult {
     let entry = read(&write(&key(), "submission", result)).expect("our own form is sound");
     assert_eq!((&entry.key, entry.submission.as_str()), (&key(), "submission"));
@@ -87,6 +87,7 @@ fn findings() -> Vec<Finding> {
         FindingDetail::TrimmedTime { place: last, expected: 0.5, actual: 2.0 },
         FindingDetail::BeyondReach { particle: 0, position: [1e300, 0.0], velocity: [0.0, f64::NEG_INFINITY] },
         FindingDetail::MixedForms { place: last },
+        FindingDetail::PairForce { pair: last.pair, is_doubled: true },
     ];
     details.into_iter().map(|detail| Finding { step: 7, frame: 14, detail }).collect()
 }

@@ -1,6 +1,6 @@
 //! Suites and scenes that are files.
-use super::{Found, Plan, built_in, built_in_names, load_by, resolve_by};
-use crate::config::{Suite, SuiteError};
+use super::{Found, Plan, built_in, built_in_names, load_by};
+use crate::config::SuiteError;
 use fosssim_files::{open_file, read_limited, read_text};
 use fosssim_model::scene;
 use std::{io, path::Path};
@@ -73,31 +73,22 @@ pub fn find(name: &str) -> Result<Plan, FindError> {
     loaded.map_err(|error| FindError::Unsound { name: name.to_owned(), error })
 }
 
-/// Looks up the scenes of a suite; files are relative to `folder`.
+/// Reads, validates and looks up a suite in one go; files are relative to `folder`.
 ///
 /// # Errors
-/// Patterns that match nothing, scenes that can't be read or are not sound, each at the pattern's position.
-pub fn resolve(suite: &Suite, folder: &Path) -> Result<Plan, SuiteError> {
-    let mut room = Room { scenes: MOST_SCENES, bytes: MOST_SCENE_BYTES };
-    resolve_by(suite, &mut |pattern| files(pattern, folder, &mut room))
-}
-
-/// Reads, validates and looks up a suite in one go.
-///
-/// # Errors
-/// As [`config::read`](crate::config::read) and [`resolve`].
+/// As [`config::read`](crate::config::read) and [`resolve_by`](super::resolve_by).
 pub fn load(text: &str, folder: &Path) -> Result<Plan, SuiteError> {
-    let mut room = Room { scenes: MOST_SCENES, bytes: MOST_SCENE_BYTES };
+    let mut room = FileBudget { scenes: MOST_SCENES, bytes: MOST_SCENE_BYTES };
     load_by(text, &mut |pattern| files(pattern, folder, &mut room))
 }
 
 /// The room that is left for a suite's files.
-struct Room {
+struct FileBudget {
     scenes: usize,
     bytes: u64,
 }
 
-fn files(pattern: &str, folder: &Path, room: &mut Room) -> Result<Found, String> {
+fn files(pattern: &str, folder: &Path, room: &mut FileBudget) -> Result<Found, String> {
     let path = folder.join(pattern);
     let text = path.to_str().ok_or_else(|| format!("{}: the folder's name is not UTF-8", folder.display()))?;
     let paths = glob::glob(text).map_err(|error| format!("pattern {pattern}: {error}"))?;
@@ -143,7 +134,7 @@ mod tests {
             std::fs::write(folder.path().join(name), "<scene/>").expect("written");
         }
         let found = |pattern: &str, scenes, bytes| {
-            let found = files(pattern, folder.path(), &mut Room { scenes, bytes });
+            let found = files(pattern, folder.path(), &mut FileBudget { scenes, bytes });
             found.map(|found| found.len())
         };
         assert_eq!(found("*.xml", 3, 24), Ok(3));

@@ -95,7 +95,7 @@ impl FolderResults {
             // A backup, or a student who linked another's file here: the other names keep their file.
             file = copy(&file, sound, &opened).map_err(at(JOURNAL))?;
         }
-        // What a crash left behind the last whole line goes away.
+        // The bytes that a crash left behind the last whole line go away.
         file.set_len(sound).map_err(at(JOURNAL))?;
         file.seek(io::SeekFrom::Start(sound)).map_err(at(JOURNAL))?;
         let path = folder.join(JOURNAL);
@@ -307,7 +307,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("folder");
         let journal = FolderResults::open(folder.path(), false).expect("journal");
         journal.keep(&key("a"), "sub", &result(Verdict::Accepted)).expect("kept");
-        // Whatever is written here finds no room.
+        // Nothing that is written here finds room.
         journal.journal().file = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("a full device");
         let error = journal.keep(&key("b"), "sub", &result(Verdict::Accepted)).expect_err("full").to_string();
         assert!(error.contains("journal.jsonl") && error.contains("No space left"), "{error}");

@@ -21,7 +21,7 @@ impl SubmissionGrading<'_> {
             Some(Ok(staged)) => staged.build.clone(),
             _ => None,
         };
-        // What ran beside the scene that was the end does not count, or the number of jobs would.
+        // A run beside the scene that was the end does not count, or the number of jobs would.
         let known: Vec<_> = results
             .iter()
             .map(|(result, _)| Some((result.verdict, result.measured.wall + result.measured.judging)))

@@ -1,4 +1,4 @@
-//! What all scenes together say.
+//! Explanations that all scenes together make.
 use crate::{
     Grade, SceneResult, Verdict,
     config::{Credit, Marking, Visibility},
@@ -53,7 +53,8 @@ fn grade(scenes: Vec<Vec<Explanation>>) -> Grade {
     grade
 }
 
-/// What all scenes together say stands with each that it explains; where numbers end is told of each by itself.
+/// An explanation that all scenes together make stands with each that it explains; where numbers end is told of each by
+/// itself.
 #[test]
 fn each_scene_says_what_all_together_say() {
     let end = |step, stage| {

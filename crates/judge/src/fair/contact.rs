@@ -172,31 +172,48 @@ fn overlap_normal(context: &Context<'_>, pair: Pair, positions: &[f64]) -> Vec2 
     (x2 + alpha * along) - x1
 }
 
+/// How far the state at the end of a step may be off.
+pub(super) struct Tolerances<'a> {
+    position: f64,
+    velocity: f64,
+    sensitivity: Option<&'a Deviation>,
+}
+
+impl<'a> Tolerances<'a> {
+    /// Around this state of the reference.
+    pub fn of(context: &Context<'_>, own: &State, sensitivity: Option<&'a Deviation>) -> Self {
+        let roundings = FAIR_UNITS * UNIT_ROUNDOFF;
+        let size = context.size(own);
+        let speed = largest(&own.velocities);
+        // Where contacts are answered, velocities come from displacements over the time step.
+        let from_positions = match context.scene.collision {
+            Collision::ContinuousTime { .. } | Collision::Hybrid { .. } => size / context.scene.time_step,
+            Collision::None | Collision::Penalty { .. } | Collision::Simple { .. } => 0.0,
+        };
+        Self { position: roundings * size, velocity: roundings * (speed + from_positions), sensitivity }
+    }
+
+    /// Of a particle's position.
+    pub fn position(&self, particle: usize) -> f64 {
+        self.with(self.position, particle, |known| &known.positions)
+    }
+
+    /// Of a particle's velocity.
+    pub fn velocity(&self, particle: usize) -> f64 {
+        self.with(self.velocity, particle, |known| &known.velocities)
+    }
+
+    fn with(&self, floor: f64, particle: usize, of: fn(&Deviation) -> &Vec<f64>) -> f64 {
+        let known = self.sensitivity.map_or(0.0, |known| length(at(of(known), particle)));
+        floor + FAIR_SENSITIVITY * known
+    }
+}
+
 /// Compares a logged state with the reference's. A velocity is not charged where the position is wrong: they have the
 /// same cause.
-pub(super) fn states(
-    context: &Context<'_>,
-    judged: &mut StepJudgement,
-    frame: u64,
-    own: &State,
-    logged: &State,
-    sensitivity: Option<&Deviation>,
-) {
-    let roundings = FAIR_UNITS * UNIT_ROUNDOFF;
-    let size = context.size(own);
-    let speed = largest(&own.velocities);
-    // Where contacts are answered, velocities come from displacements over the time step.
-    let from_positions = match context.scene.collision {
-        Collision::ContinuousTime { .. } | Collision::Hybrid { .. } => size / context.scene.time_step,
-        Collision::None | Collision::Penalty { .. } | Collision::Simple { .. } => 0.0,
-    };
-    let (position_floor, velocity_floor) = (roundings * size, roundings * (speed + from_positions));
+pub(super) fn states(judged: &mut StepJudgement, frame: u64, own: &State, logged: &State, tolerances: &Tolerances<'_>) {
     for particle in 0..own.positions.len() / 2 {
-        let tolerance = |floor: f64, of: fn(&Deviation) -> &Vec<f64>| {
-            let known = sensitivity.map_or(0.0, |known| length(at(of(known), particle)));
-            floor + FAIR_SENSITIVITY * known
-        };
-        let position_tolerance = tolerance(position_floor, |known| &known.positions);
+        let position_tolerance = tolerances.position(particle);
         let (expected, actual) = (at(&own.positions, particle), at(&logged.positions, particle));
         let residual = distance(expected, actual);
         if !(residual <= position_tolerance) {
@@ -205,7 +222,7 @@ pub(super) fn states(
             judged.charge(Finding { step: judged.step, frame, detail });
             continue;
         }
-        let velocity_tolerance = tolerance(velocity_floor, |known| &known.velocities);
+        let velocity_tolerance = tolerances.velocity(particle);
         let (expected, actual) = (at(&own.velocities, particle), at(&logged.velocities, particle));
         let velocity_residual = distance(expected, actual);
         if !(velocity_residual <= velocity_tolerance) {

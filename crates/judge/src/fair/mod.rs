@@ -47,6 +47,7 @@ mod step;
 mod step_judgement;
 #[cfg(test)]
 mod tests;
+mod unapplied;
 
 pub use borderline::borderline;
 pub use cause::cause;

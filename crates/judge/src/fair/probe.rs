@@ -2,7 +2,8 @@
 //!
 //! The step is repeated from perturbed states, each component off by a few roundings in a fixed random pattern. The
 //! deviations are a condition estimate by small samples (Kenney and Laub, SIAM J. Sci. Comput. 15, 1994), so contacts
-//! that graze, stiff springs and zones of nearly no extent get the room that they need, and nothing else gets any.
+//! that graze, stiff springs, systems of bad condition and zones of nearly no extent get the room that they need, and
+//! nothing else gets any.
 use super::{
     context::{Context, Followed, Records},
     formulas::BoundedPairMotion,
@@ -104,14 +105,27 @@ fn perturb(state: &mut State, seed: u64) {
     if seed == 0 {
         return;
     }
-    let mut bits = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let mut signs = Signs::of(seed);
     for value in state.positions.iter_mut().chain(&mut state.velocities) {
+        *value += signs.next() * FAIR_UNITS * UNIT_ROUNDOFF * *value;
+    }
+}
+
+/// Random signs, the same for the same seed.
+struct Signs(u64);
+
+impl Signs {
+    fn of(seed: u64) -> Self {
+        Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15))
+    }
+
+    /// 1 or -1.
+    fn next(&mut self) -> f64 {
         // Xorshift (Marsaglia, J. Stat. Softw. 8(14), 2003): only the signs matter.
-        bits ^= bits << 13;
-        bits ^= bits >> 7;
-        bits ^= bits << 17;
-        let sign = if bits & 0x100 == 0 { 1.0 } else { -1.0 };
-        *value += sign * FAIR_UNITS * UNIT_ROUNDOFF * *value;
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        if self.0 & 0x100 == 0 { 1.0 } else { -1.0 }
     }
 }
 
@@ -167,6 +181,17 @@ impl Observer for PerturbedRun<'_> {
 impl Steer for PerturbedRun<'_> {
     fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], _polynomials: &mut [Polynomial]) {
         self.motion = Some(BoundedPairMotion::of(self.context.scene, pair, q_start, q_end));
+    }
+
+    /// A solver leaves the solution for a matrix that is off by roundings of its largest entries, wherever it
+    /// has an entry: the matrix's condition says what becomes of them (Wilkinson, J. ACM 8(3), 1961).
+    fn system(&mut self, matrix: &mut [f64]) {
+        let squares: f64 = matrix.iter().map(|entry| entry * entry).sum();
+        let size = (squares / (matrix.len() as f64).sqrt()).sqrt();
+        let mut signs = Signs::of(self.seed);
+        for entry in matrix.iter_mut().filter(|entry| self.seed > 0 && **entry != 0.0) {
+            *entry += signs.next() * FAIR_UNITS * UNIT_ROUNDOFF * size;
+        }
     }
 
     fn decide(&mut self, pair: Pair, decision: Decision) -> Decision {

@@ -1,7 +1,7 @@
 //! Judges one step by the fair rules: follows it, looks at its sensitivity where something differs, and tries
 //! borderline decisions the other way where they can't be seen.
 use super::{
-    contact,
+    contact::{self, Tolerances},
     context::{Context, Records},
     follow::Follower,
     probe::probe,
@@ -53,7 +53,7 @@ pub(crate) fn judge_initial(context: &Context<'_>, frame: &LenientFrame) -> Step
         state.positions.extend([particle.position.x, particle.position.y]);
         state.velocities.extend([particle.velocity.x, particle.velocity.y]);
     }
-    contact::states(context, &mut judged, 0, &state, &frame.state, None);
+    contact::states(&mut judged, 0, &state, &frame.state, &Tolerances::of(context, &state, None));
     if !frame.impulses.is_empty() || !frame.polynomials.is_empty() {
         let part = if frame.impulses.is_empty() { RecordPart::Polynomials } else { RecordPart::Impulses };
         judged.charge(Finding { step: 0, frame: 0, detail: FindingDetail::RecordsDiffer { part } });

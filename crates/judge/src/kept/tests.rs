@@ -1,4 +1,4 @@
-//! What was kept of a trace is the trace again, and of a right one next to nothing is kept.
+//! A trace that was kept is the trace again, and of a right one next to nothing is kept.
 use super::*;
 use crate::samples::{BOUNCE, ZONES, changed, relog, run, scene, written};
 use fosssim_model::trace::Frame;
@@ -115,7 +115,7 @@ fn nothing_is_kept_of_a_record_that_is_too_large() {
     assert_eq!((store.end(), store.tail.capacity(), store.is_closed), (100 + 2 * LATE as u64, 0, true));
     let (begin, end) = (100, store.end());
     store.pass(&StepPlace { step: 2, before: 60, begin, last: begin, end, is_own: false });
-    // What comes behind it may be a wrong step again.
+    // The record behind it may be a wrong step again.
     store.keep(&[3; 50], true);
     store.wrong = 4;
     store.pass(&StepPlace { step: 4, before: end, begin: end + 10, last: end + 20, end: end + 30, is_own: false });

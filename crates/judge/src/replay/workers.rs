@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 /// More threads than this only cost memory: reading is sequential.
 const MOST_THREADS: usize = 8;
 
-/// What one thread needs to judge a step.
+/// The parts that one thread needs to judge a step.
 struct Worker {
     simulation: Simulation,
     buffers: Buffers,

@@ -1,4 +1,4 @@
-//! What the original finds about polynomials (oracle-behaviour.md 6.2).
+//! The original's findings about polynomials (oracle-behaviour.md 6.2).
 use super::{StepResult, sum_of_moduli};
 use crate::{
     differing::{differing, factor},
@@ -95,7 +95,7 @@ fn wrong_coefficient(
 ) -> FindingDetail {
     let (own, logged) = (expected.coefficients(), actual.coefficients());
     let factor = factor(own, logged);
-    // What the original's bound alone rejects is named as the original does.
+    // A coefficient that the original's bound alone rejects is named as the original does.
     let power = differing(own, logged, factor).first().copied().unwrap_or(rescaled.power);
     let of = |coefficients: &[f64]| coefficients.iter().rev().nth(power).copied().unwrap_or(0.0);
     let (right, wrong) = (factor * of(own), of(logged));

@@ -359,7 +359,7 @@ pub fn forge(stage: &Stage, random: &mut Random) -> Option<String> {
     let same = |one: &[f64], other: &[f64]| {
         one.len() == other.len() && one.iter().zip(other).all(|(one, other)| one.to_bits() == other.to_bits())
     };
-    // What has a factor is right, and the course's library has dropped what it drops.
+    // A polynomial that has a factor is right, and the course's library has dropped what it drops.
     let is_of_program = matches!(change, Change::Factor(_));
     let without_reason = (1..=stage.steps.len())
         .flat_map(|step| (0..stage.steps[step - 1].len()).map(move |index| (step, index)))
@@ -451,7 +451,7 @@ pub fn multiply(stage: &Stage, random: &mut Random) -> Option<String> {
     if largest > OVERFLOWS {
         return None;
     }
-    // Who misses a collision may end where two balls are one.
+    // A program that misses a collision may end where two balls are one.
     let beyond = counts.get(FindingKind::Position).min(lost);
     let is_explained = lost + gone + beyond == counts.total();
     let is_documented = judged.refusal.is_none() && is_explained;
@@ -486,7 +486,7 @@ pub fn misprint(stage: &Stage, random: &mut Random) -> Option<String> {
         Err(fault) => Some(format!("{}: {fault}", what())),
         Ok(judged) => {
             let first = judged.findings.first_divergence;
-            // What the wrong polynomial decides may lead to other positions behind it.
+            // The decision of a wrong polynomial may lead to other positions behind it.
             let is_formula =
                 |finding: &Finding| matches!(finding.kind(), FindingKind::Coefficient | FindingKind::PolynomialDegree);
             (!first.as_ref().is_some_and(is_formula))

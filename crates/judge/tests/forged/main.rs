@@ -1,4 +1,4 @@
-//! What passes the fair rules has a reason to, and programs with factors pass.
+//! A trace that passes the fair rules has a reason to, and programs with factors pass.
 #![forbid(unsafe_code)]
 mod forge;
 

@@ -165,13 +165,13 @@ fn is_tidy(scene: &Scene) -> bool {
 
 /// The properties that the scenes lack.
 #[derive(Clone, Default)]
-struct Wanted {
+struct WantedEvents {
     pairings: Vec<Pairing>,
     /// Wrong programs, by their numbers, and how many more scenes have to refuse each.
     programs: Vec<(usize, usize)>,
 }
 
-impl Wanted {
+impl WantedEvents {
     /// The wanted properties that a scene has; without the programs where only `pairings` are asked for.
     fn of(&self, scene: &Scene, programs: &[WrongProgram]) -> Self {
         let pairings = gain(scene, &self.pairings);
@@ -248,7 +248,7 @@ fn work(scene: &Scene) -> f64 {
 }
 
 /// The scene without what it does not need for what it is kept for.
-fn smaller(mut scene: Scene, kept: &Wanted, programs: &[WrongProgram]) -> Scene {
+fn smaller(mut scene: Scene, kept: &WantedEvents, programs: &[WrongProgram]) -> Scene {
     loop {
         let mut tries = Vec::new();
         for index in 0..scene.particles.len() {
@@ -315,7 +315,7 @@ fn main() -> anyhow::Result<()> {
         (refusing < WITNESSES).then_some((number, WITNESSES - refusing))
     };
     let lacking = (0..programs.len()).into_par_iter().filter_map(lacking).collect();
-    let mut wanted = Wanted { pairings: coverage.missing().collect(), programs: lacking };
+    let mut wanted = WantedEvents { pairings: coverage.missing().collect(), programs: lacking };
     for number in 0..scenes as u64 {
         let Some((scene, kept)) = round(&wanted, &programs, tries, seed + number) else { break };
         wanted.pairings.retain(|one| !kept.pairings.contains(one));
@@ -352,7 +352,7 @@ fn main() -> anyhow::Result<()> {
 const WITNESSES: usize = 3;
 
 /// The best of many random scenes, made small, with what it has of what is wanted.
-fn round(wanted: &Wanted, programs: &[WrongProgram], tries: u64, seed: u64) -> Option<(Scene, Wanted)> {
+fn round(wanted: &WantedEvents, programs: &[WrongProgram], tries: u64, seed: u64) -> Option<(Scene, WantedEvents)> {
     let of = |run: u64| draw(&mut Dice::of(seed, run));
     let mut found: Vec<(f64, u64)> = (0..tries)
         .into_par_iter()
@@ -366,7 +366,7 @@ fn round(wanted: &Wanted, programs: &[WrongProgram], tries: u64, seed: u64) -> O
     let (best, others) = found.split_at(SHOWN.min(found.len()));
     let shown: Vec<u64> =
         best.iter().chain(others.iter().filter(|(_, run)| run % 16 == 0).take(SHOWN)).map(|one| one.1).collect();
-    let mut worth: Vec<(f64, u64, Wanted)> = shown
+    let mut worth: Vec<(f64, u64, WantedEvents)> = shown
         .into_par_iter()
         .map(|run| {
             let scene = of(run);
@@ -376,6 +376,6 @@ fn round(wanted: &Wanted, programs: &[WrongProgram], tries: u64, seed: u64) -> O
         .filter(|(worth, ..)| *worth > 0.0)
         .collect();
     worth.sort_by(|one, other| by_worth(&(one.0, one.1), &(other.0, other.1)));
-    let small = |(_, run, has): &(f64, u64, Wanted)| (smaller(of(*run), has, programs), has.clone());
+    let small = |(_, run, has): &(f64, u64, WantedEvents)| (smaller(of(*run), has, programs), has.clone());
     worth.iter().map(small).find(|(scene, _)| is_fair(scene))
 }

@@ -1,4 +1,4 @@
-//! What is said of programs with several mistakes, and with mistakes that the catalogue does not have.
+//! Explanations of programs with several mistakes, and with mistakes that the catalogue does not have.
 use super::{Rated, Rating, rated, rating, told_of};
 use crate::mutants::{Mutant, mutants};
 use fosssim_oracle::{
@@ -56,7 +56,7 @@ fn said_of(program: &[&Row]) -> (Said, String) {
     told.retain(|one| !one.is_not_finite());
     let keys: Vec<String> =
         told.iter().flat_map(|one| std::iter::once(&one.key).chain(&one.same_as)).cloned().collect();
-    // What is said of polynomials and stages in general.
+    // The sentences about polynomials and stages in general.
     let is_of = |one: &Explanation, row: &Row| {
         let is_of_kind = |kinds: &[PairKind]| row.kind_of_pair().is_some_and(|kind| kinds.contains(&kind));
         let is_there = match &one.about {
@@ -79,7 +79,7 @@ fn said_of(program: &[&Row]) -> (Said, String) {
     let named = program.iter().filter(is_named).count();
     let said = match () {
         () if told.is_empty() => Said::Nothing,
-        // What does the same everywhere can't be told apart.
+        // Rows that do the same everywhere can't be told apart.
         () if !told.iter().all(is_made) => {
             if does_the_same(program, &told) {
                 Said::Some

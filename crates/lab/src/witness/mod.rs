@@ -15,7 +15,7 @@ pub fn is_true(scene: &Scene, trace: &[u8], told: &Explanation) -> bool {
     let About::Stage(fault) = &told.about else { return true };
     let steps = step::steps(scene, trace);
     let is_denied = |step: &step::Step| {
-        // What is said of all steps.
+        // Faults that are said of all steps.
         let is_always = matches!(fault, StageFault::Geometric(WrongGeometric::Left { always: true }));
         is_always && step.has_right_middle() && step.right_passes().1 > 0 && step.passes().1 > 0
     };

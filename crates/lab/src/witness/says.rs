@@ -1,4 +1,4 @@
-//! What a sentence about a stage says of a step, as a question to its records.
+//! The sentences about a stage of a step, as questions to its records.
 use super::step::{Step, same, same_list};
 use fosssim_model::{
     scene::{Collision, Scene},

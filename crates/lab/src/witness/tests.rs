@@ -115,7 +115,7 @@ fn what_is_said_of_stages_is_true() {
     assert!(unseen.is_empty(), "{unseen:?}; seen: {seen:#?}");
 }
 
-/// What a report says first and what it calls the likely mistake are of one story: where the judge finds the first
+/// The first sentence of a report and its likely mistake are of one story: where the judge finds the first
 /// difference before the middle of a step, no zone is accused, and no zone that grows where it finds one behind the
 /// first failsafe.
 #[test]

@@ -5,6 +5,7 @@
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
 mod explain;
+mod fitted;
 mod heads;
 mod known;
 mod naming;
@@ -17,12 +18,12 @@ mod stages;
 pub use crate::{assignments::probe_scenes, plain::formula_in};
 pub use explain::{explain, explain_kept, explain_stages};
 pub use fosssim_findings::explanation::{
-    About, Amount, Changed, CoefficientGuess, Detail, Example, ExamplePlace, ExampleValue, Explanation, Guess,
-    ListGuess, LoopEnd, NanStage, NotFinite, OfPolynomials, PolynomialDetail, Quantity, QuantityGuess, Ratios,
+    About, Amount, Changed, CoefficientGuess, Detail, Example, ExamplePlace, ExampleValue, Explanation, ForceTerm,
+    Guess, ListGuess, LoopEnd, NanStage, NotFinite, OfPolynomials, PolynomialDetail, Quantity, QuantityGuess, Ratios,
     StageDetail, StageFault, Stand, StepRecord, StepStage, Weight, WrongDecisions, WrongGeometric, WrongMotion,
-    WrongNumber, WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
+    WrongNumber, WrongPositions, WrongResponses, WrongVectors, WrongWeight, WrongZoneRounds, WrongZones,
 };
-use fosssim_findings::explanation::{about, fault, guess};
+use fosssim_findings::explanation::{about, fault, force, guess};
 pub use heads::{common, refuted, several};
 pub use known::{known, shows};
 pub use naming::is_named_in;

@@ -1,6 +1,6 @@
 //! Who wrote a program: the mistakes that are made in it.
 use super::{
-    catalogue::{Area, Mistake},
+    Area, Mistake,
     hooks::{Change, Mutation},
 };
 
@@ -37,8 +37,14 @@ impl Student {
     }
 
     /// Whether the student makes this mistake.
-    pub fn makes(self, mistake: Mistake) -> bool {
+    pub fn makes(self, mistake: impl Into<Mistake>) -> bool {
+        let mistake = mistake.into();
         self.mistakes().any(|made| made == mistake)
+    }
+
+    /// Whether the student makes no mistake of the catalogue.
+    pub(super) fn makes_none(self) -> bool {
+        self.mistakes[0].is_none()
     }
 
     /// The mistake of these parts of the assignment, where many are told apart in one place; the first part that has

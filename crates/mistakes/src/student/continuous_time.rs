@@ -1,7 +1,6 @@
 //! Collision type `continuous-time`: one pass, each contact resolved as soon as it is found (collisions.md 4).
 use super::{
-    catalogue::Mistake,
-    detection,
+    Mistake, detection,
     hooks::Place,
     objects::State,
     response::respond,

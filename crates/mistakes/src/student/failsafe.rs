@@ -5,7 +5,7 @@ use fosssim_num::{
 };
 
 use super::{
-    catalogue::{Area, Mistake},
+    Area, Mistake,
     hooks::{Change, Place, ZoneTurn},
     objects::State,
     objects::Zone,

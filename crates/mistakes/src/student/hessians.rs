@@ -2,7 +2,7 @@
 use fosssim_model::scene::Force;
 use fosssim_num::vector::{at, length, over};
 
-use super::{step_failure::StepFailure, world::World};
+use super::{ForceMistake, StepMistake, author::Student, step_failure::StepFailure, world::World};
 
 /// A 2 x 2 block, `block[row][column]`.
 type Matrix2 = [[f64; 2]; 2];
@@ -12,21 +12,42 @@ const IDENTITY: Matrix2 = [[1.0, 0.0], [0.0, 1.0]];
 /// The system matrix `M + h Hv + h^2 Hx`, column by column, with the rows and columns of fixed particles replaced by
 /// those of the identity.
 pub fn system_matrix(world: &World, x: &[f64], v: &[f64]) -> Result<Vec<f64>, StepFailure> {
-    let size = x.len();
-    let h = world.scene.time_step;
+    let (size, h) = (x.len(), world.scene.time_step);
+    let makes = |mistake: StepMistake| world.student.makes(mistake);
     let mut a = vec![0.0; size * size];
+    let scale = |a: &mut [f64], by: f64| a.iter_mut().for_each(|entry| *entry *= by);
+    let add_velocities = |a: &mut [f64]| {
+        world.scene.forces.iter().for_each(|force| add_velocity_hessian(world, force, x, a));
+    };
     for force in &world.scene.forces {
         add_position_hessian(world, force, x, v, &mut a)?;
     }
-    a.iter_mut().for_each(|entry| *entry *= h);
-    for force in &world.scene.forces {
-        add_velocity_hessian(world, force, x, &mut a);
+    if makes(StepMistake::MatrixNoPositions) {
+        a.fill(0.0);
     }
-    a.iter_mut().for_each(|entry| *entry *= h);
-    for k in 0..size {
-        a[k * size + k] += world.masses[k];
+    if makes(StepMistake::MatrixVelocitiesSquared) {
+        add_velocities(&mut a);
     }
-    for k in (0..size).filter(|k| world.fixed(k / 2)) {
+    if !makes(StepMistake::MatrixPositionsOnce) {
+        scale(&mut a, h);
+    }
+    let is_elsewhere =
+        [StepMistake::MatrixNoVelocities, StepMistake::MatrixVelocitiesSquared, StepMistake::MatrixVelocitiesUnscaled];
+    if !is_elsewhere.into_iter().any(makes) {
+        add_velocities(&mut a);
+    }
+    scale(&mut a, h);
+    if makes(StepMistake::MatrixVelocitiesUnscaled) {
+        add_velocities(&mut a);
+    }
+    if makes(StepMistake::MatrixSigns) {
+        scale(&mut a, -1.0);
+    }
+    if !makes(StepMistake::MatrixNoMass) {
+        (0..size).for_each(|k| a[k * size + k] += world.masses[k]);
+    }
+    let keeps_rows = makes(StepMistake::MatrixRowsOfFixed) || makes(StepMistake::IntegratorFixedForgotten);
+    for k in (0..size).filter(|k| world.fixed(k / 2) && !keeps_rows) {
         for other in 0..size {
             a[k * size + other] = 0.0;
             a[other * size + k] = 0.0;
@@ -37,8 +58,15 @@ pub fn system_matrix(world: &World, x: &[f64], v: &[f64]) -> Result<Vec<f64>, St
 }
 
 /// Adds `block` on the diagonal blocks of particles `a` and `b`, and subtracts it beside the diagonal.
-fn add_pair(matrix: &mut [f64], size: usize, (a, b): (usize, usize), block: &Matrix2) {
-    for (row_particle, column_particle, sign) in [(a, a, 1.0), (b, b, 1.0), (a, b, -1.0), (b, a, -1.0)] {
+fn add_pair(student: Student, matrix: &mut [f64], size: usize, (a, b): (usize, usize), block: &Matrix2) {
+    let beside = match () {
+        () if student.makes(ForceMistake::JacobianDiagonalOnly) => [0.0, 0.0],
+        () if student.makes(ForceMistake::JacobianOffDiagonalSign) => [1.0, 1.0],
+        () if student.makes(ForceMistake::JacobianOneHalf) => [-1.0, 0.0],
+        () => [-1.0, -1.0],
+    };
+    let second = if student.makes(ForceMistake::JacobianFirstOnly) { 0.0 } else { 1.0 };
+    for (row_particle, column_particle, sign) in [(a, a, 1.0), (b, b, second), (a, b, beside[0]), (b, a, beside[1])] {
         for (row, entries) in block.iter().enumerate() {
             for (column, entry) in entries.iter().enumerate() {
                 matrix[(2 * column_particle + column) * size + 2 * row_particle + row] += sign * entry;
@@ -51,6 +79,19 @@ fn block(entry: impl Fn(usize, usize) -> f64) -> Matrix2 {
     [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]]
 }
 
+impl Student {
+    /// The weight of the first of these mistakes that the student makes, else 1.
+    fn weight(self, weights: &[(ForceMistake, f64)]) -> f64 {
+        weights.iter().find(|(mistake, _)| self.makes(*mistake)).map_or(1.0, |(_, weight)| *weight)
+    }
+
+    /// The block with such a weight.
+    fn weighted_block(self, value: Matrix2, weights: &[(ForceMistake, f64)]) -> Matrix2 {
+        let weight = self.weight(weights);
+        if weight == 1.0 { value } else { block(|r, c| weight * value[r][c]) }
+    }
+}
+
 fn add_position_hessian(
     world: &World,
     force: &Force,
@@ -58,34 +99,28 @@ fn add_position_hessian(
     v: &[f64],
     matrix: &mut [f64],
 ) -> Result<(), StepFailure> {
+    let student = world.student;
     match *force {
-        Force::Spring { edge, stiffness, rest_length, damping } => {
+        Force::Spring { edge, .. } => {
             let edge = world.scene.edges[edge];
-            let (a, b) = (edge.first, edge.second);
-            let d = at(x, b) - at(x, a);
-            let l = length(d);
-            let n = over(d, l);
-            let outer = block(|r, c| n[r] * n[c]);
-            let stretch = l - rest_length;
-            let elastic =
-                block(|r, c| (outer[r][c] + stretch * (IDENTITY[r][c] - outer[r][c]) * (1.0 / l)) * stiffness);
-            add_pair(matrix, x.len(), (a, b), &elastic);
-            let w = at(v, b) - at(v, a);
-            let mut damped = block(|r, c| n[r] * w[c]);
-            damped[0][0] += n.dot(&w);
-            damped[1][1] += n.dot(&w);
-            let factor = -damping / l;
-            let damped =
-                block(|r, c| (damped[r][c] - (damped[r][0] * outer[0][c] + damped[r][1] * outer[1][c])) * factor);
-            add_pair(matrix, x.len(), (a, b), &block(|r, c| -damped[r][c]));
+            let ends = (edge.first, edge.second);
+            add_pair(student, matrix, x.len(), ends, &elastic_block(world, force, x));
+            add_pair(student, matrix, x.len(), ends, &damping_block(world, force, x, v));
         }
         Force::Gravitation { first, second, constant } => {
             let d = at(x, second) - at(x, first);
             let r = length(d);
-            let n = over(d, r);
-            let scale = constant * world.masses[2 * second] * world.masses[2 * first] / (r * r * r);
-            let pull = block(|row, column| (IDENTITY[row][column] - 3.0 * n[row] * n[column]) * scale);
-            add_pair(matrix, x.len(), (first, second), &pull);
+            let n = if student.makes(ForceMistake::JacobianGravitationDirection) { d } else { over(d, r) };
+            let cube = if student.makes(ForceMistake::JacobianGravitationDistance) { r * r } else { r * r * r };
+            let scale = constant * world.masses[2 * second] * world.masses[2 * first] / cube;
+            let weights =
+                [(ForceMistake::JacobianGravitationNoThree, 1.0), (ForceMistake::JacobianGravitationNoOuter, 0.0)];
+            let three = weights.iter().find(|(mistake, _)| student.makes(*mistake)).map_or(3.0, |(_, weight)| *weight);
+            let pull = block(|row, column| (IDENTITY[row][column] - three * n[row] * n[column]) * scale);
+            let weights =
+                [(ForceMistake::JacobianGravitationMissing, 0.0), (ForceMistake::JacobianGravitationSign, -1.0)];
+            let pull = student.weighted_block(pull, &weights);
+            add_pair(student, matrix, x.len(), (first, second), &pull);
         }
         Force::Vortex { .. } => return Err(StepFailure::VortexHessian),
         Force::SimpleGravity { .. } | Force::Constant { .. } | Force::Drag { .. } => {}
@@ -93,15 +128,82 @@ fn add_position_hessian(
     Ok(())
 }
 
+/// The second derivatives of a spring's elastic part.
+fn elastic_block(world: &World, force: &Force, x: &[f64]) -> Matrix2 {
+    let Force::Spring { edge, stiffness, rest_length, .. } = *force else { return Matrix2::default() };
+    let student = world.student;
+    let makes = |mistake: ForceMistake| student.makes(mistake);
+    let edge = world.scene.edges[edge];
+    let d = at(x, edge.second) - at(x, edge.first);
+    let l = length(d);
+    let is_long = makes(ForceMistake::JacobianElasticDirection) || makes(ForceMistake::SpringDirectionEverywhere);
+    let n = if is_long { d } else { over(d, l) };
+    let outer = block(|r, c| n[r] * n[c]);
+    let stretch = if makes(ForceMistake::JacobianElasticNoRestLength) { l } else { l - rest_length };
+    let inverse = if makes(ForceMistake::JacobianElasticNoLength) { 1.0 } else { 1.0 / l };
+    let removed = if makes(ForceMistake::JacobianElasticNoProjection) { Matrix2::default() } else { outer };
+    let tangent = student
+        .weight(&[(ForceMistake::JacobianElasticNoTangent, 0.0), (ForceMistake::JacobianElasticTangentSign, -1.0)]);
+    let along = student.weight(&[(ForceMistake::JacobianElasticNoOuter, 0.0)]);
+    let elastic = block(|r, c| {
+        (along * outer[r][c] + tangent * (stretch * (IDENTITY[r][c] - removed[r][c]) * inverse)) * stiffness
+    });
+    let weights = [
+        (ForceMistake::JacobianElasticMissing, 0.0),
+        (ForceMistake::JacobianElasticSign, -1.0),
+        (ForceMistake::JacobianElasticDoubled, 2.0),
+    ];
+    student.weighted_block(elastic, &weights)
+}
+
+/// The derivatives of a spring's damping by positions.
+fn damping_block(world: &World, force: &Force, x: &[f64], v: &[f64]) -> Matrix2 {
+    let Force::Spring { edge, damping, .. } = *force else { return Matrix2::default() };
+    let student = world.student;
+    let makes = |mistake: ForceMistake| student.makes(mistake);
+    let edge = world.scene.edges[edge];
+    let (a, b) = (edge.first, edge.second);
+    let d = at(x, b) - at(x, a);
+    let l = length(d);
+    let is_long = makes(ForceMistake::JacobianDampingDirection) || makes(ForceMistake::SpringDirectionEverywhere);
+    let n = if is_long { d } else { over(d, l) };
+    let outer = block(|r, c| n[r] * n[c]);
+    let w = at(v, b) - at(v, a);
+    let mut damped =
+        if makes(ForceMistake::JacobianDampingNoOuter) { Matrix2::default() } else { block(|r, c| n[r] * w[c]) };
+    if !makes(ForceMistake::JacobianDampingNoScalar) {
+        damped[0][0] += n.dot(&w);
+        damped[1][1] += n.dot(&w);
+    }
+    let factor = if makes(ForceMistake::JacobianDampingNoLength) { -damping } else { -damping / l };
+    let removed = if makes(ForceMistake::JacobianDampingNoProjection) { Matrix2::default() } else { outer };
+    let damped = block(|r, c| (damped[r][c] - (damped[r][0] * removed[0][c] + damped[r][1] * removed[1][c])) * factor);
+    let weights = [(ForceMistake::JacobianDampingMissing, 0.0), (ForceMistake::JacobianDampingSign, -1.0)];
+    student.weighted_block(block(|r, c| -damped[r][c]), &weights)
+}
+
 fn add_velocity_hessian(world: &World, force: &Force, x: &[f64], matrix: &mut [f64]) {
+    let student = world.student;
+    let makes = |mistake: ForceMistake| student.makes(mistake);
     match *force {
         Force::Spring { edge, damping, .. } => {
             let edge = world.scene.edges[edge];
             let d = at(x, edge.second) - at(x, edge.first);
-            let n = over(d, length(d));
-            add_pair(matrix, x.len(), (edge.first, edge.second), &block(|r, c| damping * n[r] * n[c]));
+            let is_long =
+                makes(ForceMistake::JacobianVelocityDirection) || makes(ForceMistake::SpringDirectionEverywhere);
+            let n = if is_long { d } else { over(d, length(d)) };
+            let along = if makes(ForceMistake::JacobianVelocityIdentity) {
+                block(|r, c| damping * IDENTITY[r][c])
+            } else {
+                block(|r, c| damping * n[r] * n[c])
+            };
+            let weights = [(ForceMistake::JacobianVelocityMissing, 0.0), (ForceMistake::JacobianVelocitySign, -1.0)];
+            let along = student.weighted_block(along, &weights);
+            add_pair(student, matrix, x.len(), (edge.first, edge.second), &along);
         }
         Force::Drag { coefficient } => {
+            let weights = [(ForceMistake::JacobianDragMissing, 0.0), (ForceMistake::JacobianDragSign, -1.0)];
+            let coefficient = coefficient * student.weight(&weights);
             for k in 0..x.len() {
                 matrix[k * x.len() + k] += coefficient;
             }

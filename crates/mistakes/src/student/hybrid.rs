@@ -1,7 +1,6 @@
 //! Collision type `hybrid`: impulses first, and rigid impact zones where they do not suffice (collisions.md 5).
 use super::{
-    catalogue::{Area, Mistake},
-    detection, failsafe,
+    Area, Mistake, detection, failsafe,
     hooks::{Change, Place},
     impulses,
     objects::State,

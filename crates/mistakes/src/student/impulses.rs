@@ -2,8 +2,7 @@
 use fosssim_num::vector::{at, length, put};
 
 use super::{
-    catalogue::{Area, Mistake},
-    detection,
+    Area, Mistake, detection,
     hooks::{Change, Place},
     objects::{Contact, State},
     response::respond,

@@ -21,6 +21,7 @@ pub mod hooks;
 mod hybrid;
 mod impulses;
 mod integrators;
+mod near_pairs;
 mod objects;
 mod penalty;
 mod record;
@@ -33,14 +34,18 @@ mod step_failure;
 mod world;
 mod zones;
 
-pub use crate::assignments::t2m2::{Area, CATALOGUE, Mistake, Row, RowKind, find};
+pub use crate::assignments::{
+    all::{all_rows, find},
+    rows::{Area, RowKind},
+    states::{ForceMistake, StepMistake},
+    t2m2::{CATALOGUE, Mistake, Row},
+};
 pub use author::Student;
 pub use detection::polynomials_of;
+pub use forces::gradient as force_gradient;
 pub use objects::{Contact, Object, Pair, State};
 pub use record::{Record, trace, trace_within};
 pub use refused::{KNOWN_ACCUSED, KNOWN_REFUSED};
 pub use step::step;
 pub use step_failure::StepFailure;
 pub use world::{Guard, StepLog, World};
-
-use crate::assignments::t2m2::catalogue;

@@ -1,8 +1,8 @@
 //! What a program writes of a state and its log: the contents of one record, not yet as bytes (trace-format.md).
 
 use super::{
+    Area, Mistake,
     author::Student,
-    catalogue::{Area, Mistake},
     hooks::Place,
     objects::{Contact, Object, State},
     rounding::single,

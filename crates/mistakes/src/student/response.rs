@@ -3,8 +3,8 @@ use fosssim_model::scene::Collision;
 use fosssim_num::vector::{Vec2, at, over, unit};
 
 use super::{
+    Area, Mistake,
     author::Student,
-    catalogue::{Area, Mistake},
     hooks::{Change, Place, Share},
     objects::{Contact, Object, State},
     rounding::single,
@@ -14,8 +14,20 @@ use super::{
 /// The parts of the assignment whose mistakes are made here.
 const HERE: &[Area] = &[Area::Response];
 
+/// Twice `(1 + COR) / 2`.
+pub fn bounce(world: &World) -> f64 {
+    let student = world.student;
+    let f = match student.mistake_in(HERE) {
+        Some(Mistake::ResponseNoRestitution) => 1.0,
+        Some(Mistake::ResponseInelastic) => 0.5,
+        Some(Mistake::ResponseRestitutionOnly) => restitution(world) / 2.0,
+        _ => (1.0 + student.number(Place::Restitution, restitution(world))) / 2.0,
+    };
+    if student.makes(Mistake::ResponseHalved) { f } else { 2.0 * f }
+}
+
 /// The coefficient of restitution of the scene; 1 where it has none.
-pub fn restitution(world: &World) -> f64 {
+fn restitution(world: &World) -> f64 {
     match world.scene.collision {
         Collision::Simple { restitution }
         | Collision::ContinuousTime { restitution }
@@ -71,14 +83,7 @@ impl<'a> PairResponse<'a> {
         };
         let u = if student.makes(Mistake::ResponseNotNormalised) { contact.n } else { unit(contact.n) };
         let u = student.vector(Place::UnitVector { kind }, u);
-        let f = match student.mistake_in(HERE) {
-            Some(Mistake::ResponseNoRestitution) => 1.0,
-            Some(Mistake::ResponseInelastic) => 0.5,
-            Some(Mistake::ResponseRestitutionOnly) => restitution(world) / 2.0,
-            _ => (1.0 + student.number(Place::Restitution, restitution(world))) / 2.0,
-        };
-        let bounce = if student.makes(Mistake::ResponseHalved) { f } else { 2.0 * f };
-        Self { world, contact, q_start, predicted, result, u, bounce, kind }
+        Self { world, contact, q_start, predicted, result, u, bounce: bounce(world), kind }
     }
 
     /// The particle's mean velocity over the step.

@@ -1,7 +1,7 @@
 //! Sums of products outside detection, as this student's compiler evaluates them: operation by operation, or fused.
 use fosssim_num::vector::{Vec2, at, put};
 
-use super::{author::Student, catalogue::Mistake};
+use super::{Mistake, author::Student};
 
 /// A number as a `float` holds it.
 pub fn single(value: f64) -> f64 {

@@ -2,19 +2,33 @@
 use fosssim_num::vector::{Vec2, at, length, put, unit};
 
 use super::{
+    Area, Mistake, StepMistake,
     objects::{Contact, Object, Pair, State},
-    response::{clamped, restitution},
+    response::{bounce, clamped},
     world::{StepLog, World, add},
 };
 
+/// The parts of the assignment whose mistakes are made here.
+const HERE: &[Area] = &[Area::Response];
+
 /// Handles all pairs in order; each sees the velocities that the pairs before it left.
 pub fn handle(world: &World, state: &mut State, log: &mut StepLog) {
-    let bounce = 2.0 * ((1.0 + restitution(world)) / 2.0);
+    let student = world.student;
+    let start = student.makes(StepMistake::SimpleAllFromStart).then(|| state.v.clone());
+    let pass = SimplePass { world, bounce: bounce(world), start };
     for pair in world.pairs() {
+        let left_out = match pair.object {
+            Object::Particle(_) => StepMistake::SimpleNoParticles,
+            Object::Edge(_) => StepMistake::SimpleNoEdges,
+            Object::HalfPlane(_) => StepMistake::SimpleNoHalfPlanes,
+        };
+        if student.makes(left_out) {
+            continue;
+        }
         let n = match pair.object {
-            Object::Particle(other) => particle_particle(world, state, bounce, pair.particle, other),
-            Object::Edge(edge) => particle_edge(world, state, bounce, pair.particle, edge),
-            Object::HalfPlane(plane) => particle_half_plane(world, state, bounce, pair.particle, plane),
+            Object::Particle(other) => pass.particle_particle(state, pair.particle, other),
+            Object::Edge(edge) => pass.particle_edge(state, pair.particle, edge),
+            Object::HalfPlane(plane) => pass.particle_half_plane(state, pair.particle, plane),
         };
         log.impulses.extend(n.map(|n| contact(pair, n)));
     }
@@ -24,57 +38,129 @@ fn contact(pair: Pair, n: Vec2) -> Contact {
     Contact { pair, n, time: 0.0 }
 }
 
-fn push(world: &World, state: &mut State, particle: usize, change: Vec2) {
-    if !world.fixed(particle) {
-        add(&mut state.v, particle, change);
-    }
+struct SimplePass<'a> {
+    world: &'a World,
+    bounce: f64,
+    /// The velocities before the pass, of a student who computes all impulses from them.
+    start: Option<Vec<f64>>,
 }
 
-fn particle_particle(world: &World, state: &mut State, bounce: f64, one: usize, two: usize) -> Option<Vec2> {
-    let n = at(&state.x, two) - at(&state.x, one);
-    let (v1, v2) = (at(&state.v, one), at(&state.v, two));
-    let reach = world.scene.particles[one].radius + world.scene.particles[two].radius;
-    if !(length(n) < reach && (v1 - v2).dot(&n) > 0.0) {
-        return None;
+impl SimplePass<'_> {
+    fn makes(&self, mistake: impl Into<Mistake>) -> bool {
+        self.world.student.makes(mistake)
     }
-    let u = unit(n);
-    let impulse = bounce * (v2 - v1).dot(&u);
-    let (m1, m2) = (world.collision_mass(0, 0, one), world.collision_mass(0, 1, two));
-    push(world, state, one, impulse / (1.0 + m1 / m2) * u);
-    push(world, state, two, -(impulse / (m2 / m1 + 1.0) * u));
-    Some(n)
-}
 
-fn particle_edge(world: &World, state: &mut State, bounce: f64, one: usize, index: usize) -> Option<Vec2> {
-    let edge = world.scene.edges[index];
-    let (two, three) = (edge.first, edge.second);
-    let [x1, x2, x3] = [one, two, three].map(|particle| at(&state.x, particle));
-    let [v1, v2, v3] = [one, two, three].map(|particle| at(&state.v, particle));
-    let alpha = clamped((x1 - x2).dot(&(x3 - x2)) / (x3 - x2).dot(&(x3 - x2)));
-    let n = x2 + alpha * (x3 - x2) - x1;
-    let reach = world.scene.particles[one].radius + edge.radius;
-    if !(length(n) < reach && (v1 - v2 - alpha * (v3 - v2)).dot(&n) > 0.0) {
-        return None;
+    fn velocity(&self, state: &State, particle: usize) -> Vec2 {
+        at(self.start.as_ref().unwrap_or(&state.v), particle)
     }
-    let u = unit(n);
-    let impulse = bounce * (v2 + alpha * (v3 - v2) - v1).dot(&u);
-    let beta = 1.0 - alpha;
-    let [m1, m2, m3] = [(0, one), (1, two), (2, three)].map(|(role, one)| world.collision_mass(1, role, one));
-    push(world, state, one, impulse / (1.0 + beta * beta * m1 / m2 + alpha * alpha * m1 / m3) * u);
-    push(world, state, two, -(beta * impulse / (m2 / m1 + beta * beta + alpha * alpha * m2 / m3) * u));
-    push(world, state, three, -(alpha * impulse / (m3 / m1 + beta * beta * m3 / m2 + alpha * alpha) * u));
-    Some(n)
-}
 
-fn particle_half_plane(world: &World, state: &mut State, bounce: f64, one: usize, index: usize) -> Option<Vec2> {
-    let plane = world.scene.half_planes[index];
-    let q = unit(plane.normal);
-    let n = (plane.point - at(&state.x, one)).dot(&q) * q;
-    let v = at(&state.v, one);
-    if !(length(n) < world.scene.particles[one].radius && v.dot(&n) > 0.0) {
-        return None;
+    /// Whether bodies at this distance that approach at this speed collide.
+    fn collides(&self, n: Vec2, reach: f64, approach: f64) -> bool {
+        let is_near = match () {
+            () if self.makes(StepMistake::SimpleAlways) => true,
+            () if self.makes(StepMistake::SimpleTouching) => length(n) <= reach,
+            () => length(n) < reach,
+        };
+        let approaches = match () {
+            () if self.makes(StepMistake::SimpleSeparating) => true,
+            () if self.makes(StepMistake::SimpleApproachSign) => approach < 0.0,
+            () => approach > 0.0,
+        };
+        is_near && approaches
     }
-    let u = unit(n);
-    put(&mut state.v, one, v - bounce * v.dot(&u) * u);
-    Some(n)
+
+    /// The distance at which a particle and a body of this radius touch.
+    fn reach(&self, particle: usize, other: f64) -> f64 {
+        let radius = self.world.scene.particles[particle].radius;
+        if self.makes(StepMistake::SimpleFirstRadiusOnly) { radius } else { radius + other }
+    }
+
+    fn unit(&self, n: Vec2) -> Vec2 {
+        if self.makes(Mistake::ResponseNotNormalised) { n } else { unit(n) }
+    }
+
+    fn push(&self, state: &mut State, particle: usize, change: Vec2) {
+        if !self.world.fixed(particle) || self.makes(Mistake::ResponseMovesFixed) {
+            let change = if self.makes(Mistake::ResponseSign) { -change } else { change };
+            add(&mut state.v, particle, change);
+        }
+    }
+
+    fn particle_particle(&self, state: &mut State, one: usize, two: usize) -> Option<Vec2> {
+        let n = at(&state.x, two) - at(&state.x, one);
+        let (v1, v2) = (self.velocity(state, one), self.velocity(state, two));
+        if !self.collides(n, self.reach(one, self.world.scene.particles[two].radius), (v1 - v2).dot(&n)) {
+            return None;
+        }
+        let u = self.unit(n);
+        let impulse = self.bounce * (v2 - v1).dot(&u);
+        let (mut m1, mut m2) = (self.world.collision_mass(0, 0, one), self.world.collision_mass(0, 1, two));
+        match self.world.student.mistake_in(HERE) {
+            Some(Mistake::ResponseMassesSwapped) => std::mem::swap(&mut m1, &mut m2),
+            Some(Mistake::ResponseEqualMasses) => (m1, m2) = (1.0, 1.0),
+            _ => {}
+        }
+        self.push(state, one, impulse / (1.0 + m1 / m2) * u);
+        if !self.makes(Mistake::ResponseFirstOnly) {
+            self.push(state, two, -(impulse / (m2 / m1 + 1.0) * u));
+        }
+        Some(n)
+    }
+
+    fn particle_edge(&self, state: &mut State, one: usize, index: usize) -> Option<Vec2> {
+        let edge = self.world.scene.edges[index];
+        let (two, three) = (edge.first, edge.second);
+        let [x1, x2, x3] = [one, two, three].map(|particle| at(&state.x, particle));
+        let [v1, v2, v3] = [one, two, three].map(|particle| self.velocity(state, particle));
+        let alpha = (x1 - x2).dot(&(x3 - x2)) / (x3 - x2).dot(&(x3 - x2));
+        let mut alpha = if self.makes(StepMistake::SimpleEdgeUnclamped) { alpha } else { clamped(alpha) };
+        let n = x2 + alpha * (x3 - x2) - x1;
+        if !self.collides(n, self.reach(one, edge.radius), (v1 - v2 - alpha * (v3 - v2)).dot(&n)) {
+            return None;
+        }
+        match self.world.student.mistake_in(HERE) {
+            Some(Mistake::ResponseEdgeMiddle) => alpha = 0.5,
+            Some(Mistake::ResponseEdgeSwapped) => alpha = 1.0 - alpha,
+            _ => {}
+        }
+        let u = self.unit(n);
+        let of_edge = if self.makes(Mistake::ResponseEdgeStill) { Vec2::zeros() } else { v2 + alpha * (v3 - v2) };
+        let impulse = self.bounce * (of_edge - v1).dot(&u);
+        let beta = 1.0 - alpha;
+        let [m1, m2, m3] = [(0, one), (1, two), (2, three)].map(|(role, one)| self.world.collision_mass(1, role, one));
+        let (low, high) =
+            if self.makes(StepMistake::SimpleEdgeWeights) { (beta, alpha) } else { (beta * beta, alpha * alpha) };
+        self.push(state, one, impulse / (1.0 + low * m1 / m2 + high * m1 / m3) * u);
+        if self.makes(Mistake::ResponseFirstOnly) {
+            return Some(n);
+        }
+        self.push(state, two, -(beta * impulse / (m2 / m1 + low + high * m2 / m3) * u));
+        if !self.makes(Mistake::ResponseOneEndpoint) {
+            self.push(state, three, -(alpha * impulse / (m3 / m1 + low * m3 / m2 + high) * u));
+        }
+        Some(n)
+    }
+
+    fn particle_half_plane(&self, state: &mut State, one: usize, index: usize) -> Option<Vec2> {
+        let plane = self.world.scene.half_planes[index];
+        let q = if self.makes(StepMistake::SimpleNormalLength) { plane.normal } else { unit(plane.normal) };
+        let n = (plane.point - at(&state.x, one)).dot(&q) * q;
+        let v = self.velocity(state, one);
+        if !self.collides(n, self.world.scene.particles[one].radius, v.dot(&n)) {
+            return None;
+        }
+        if self.world.fixed(one) && self.makes(Mistake::ResponseHalfPlaneSparesFixed) {
+            return Some(n);
+        }
+        let u = self.unit(n);
+        let change = self.bounce * v.dot(&u) * u;
+        let sign = match () {
+            () if self.makes(Mistake::ResponseSign) => -1.0,
+            () if self.makes(Mistake::ResponseHalfPlaneHalved) => 0.5,
+            () => 1.0,
+        };
+        let before = at(&state.v, one);
+        put(&mut state.v, one, before - sign * change);
+        Some(n)
+    }
 }

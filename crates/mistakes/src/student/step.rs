@@ -1,7 +1,6 @@
 //! One step with its records.
 use super::{
-    catalogue::{Area, Mistake},
-    continuous_time,
+    Area, Mistake, continuous_time,
     hooks::Place,
     hybrid, integrators,
     objects::State,
@@ -29,7 +28,10 @@ pub fn step(
 ) -> Result<(), StepFailure> {
     let student = world.student;
     let q_start = state.x.clone();
-    integrators::advance(world, state)?;
+    let mut solves = 0;
+    let advanced = integrators::advance(world, state, &mut solves);
+    log.long_searches += u64::from(solves) * solve_work(world);
+    advanced?;
     let q_start = if student.is_stale(Place::StepStart) { state.x.clone() } else { q_start };
     if !student.makes(Mistake::LogImpulsesKept) {
         log.impulses.clear();
@@ -59,4 +61,9 @@ pub fn step(
     }
     write(state, log);
     Ok(())
+}
+
+/// The cost of one solve of an implicit integrator's system, in polynomials: some thousand operations each.
+fn solve_work(world: &World) -> u64 {
+    (2 * world.scene.particles.len() as u64).pow(3) / 1500
 }

@@ -8,8 +8,8 @@ use fosssim_num::{
 use std::sync::Arc;
 
 use super::{
+    Mistake,
     author::Student,
-    catalogue::Mistake,
     hooks::{Change, Place},
     objects::{Contact, Object, Pair, State},
 };

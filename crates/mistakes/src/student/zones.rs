@@ -2,8 +2,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{
+    Area, Mistake,
     author::Student,
-    catalogue::{Area, Mistake},
     hooks::{Change, Place},
     objects::{Contact, Object, Zone},
     world::World,

@@ -75,7 +75,7 @@ impl Assignment {
     }
 }
 
-/// What an assignment asks for.
+/// The rules of an assignment.
 #[derive(Debug)]
 pub struct Definition {
     /// Its key, a word for command lines and folders.
@@ -87,7 +87,7 @@ pub struct Definition {
     /// The kinds of pairs whose polynomials its detections log, in the order in which a pass looks at a particle's
     /// pairs; [`PairKind::polynomials`] says how many each logs.
     pub pairs: &'static [PairKind],
-    /// What is dropped of polynomials.
+    /// The coefficients that are dropped of polynomials.
     pub dropping: Dropping,
     /// The version that the original program shows above a run.
     pub version: &'static str,
@@ -112,18 +112,18 @@ impl Definition {
     }
 }
 
-/// What a program does for a collision type.
+/// The work of a program for a collision type.
 #[derive(Debug)]
 pub struct Handling {
     /// The collision type.
     pub collision: CollisionType,
-    /// What its records hold.
+    /// The lists in its records.
     pub records: RecordLists,
     /// How the original calls it above a run (oracle-behaviour.md 3).
     pub heading: &'static str,
 }
 
-/// What the records of a step hold besides positions and velocities (trace-format.md 1, 2).
+/// The lists in the records of a step besides positions and velocities (trace-format.md 1, 2).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RecordLists {
     /// The list of impulses.
@@ -132,7 +132,7 @@ pub struct RecordLists {
     pub polynomials: bool,
 }
 
-/// What a record's list of impulses holds.
+/// The content of a record's list of impulses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ImpulseList {
     /// There is no such list.
@@ -143,7 +143,7 @@ pub enum ImpulseList {
     Responses,
 }
 
-/// What is dropped of a polynomial before its zeros are searched, and when one is read from a trace.
+/// The coefficients that are dropped of a polynomial before its zeros are searched, and when one is read from a trace.
 ///
 /// Code that takes a rule for granted says so ([`drops_leading`](crate::drops_leading)).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

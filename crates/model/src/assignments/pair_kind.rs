@@ -81,7 +81,7 @@ impl PairKind {
         }
     }
 
-    /// What the second object is: `edge`.
+    /// The kind of the second object: `edge`.
     #[must_use]
     pub const fn second(self) -> &'static str {
         match self {
@@ -91,7 +91,7 @@ impl PairKind {
         }
     }
 
-    /// What the original calls the second object (oracle-behaviour.md 6.1).
+    /// The original's name for the second object (oracle-behaviour.md 6.1).
     #[must_use]
     pub const fn second_of_original(self) -> &'static str {
         match self {

@@ -1,4 +1,4 @@
-//! What only the elements of a scene together can get wrong (scene-format.md 6, collisions.md 7).
+//! The errors that only the elements of a scene together can make (scene-format.md 6, collisions.md 7).
 //!
 //! Coincidence is exact: two points are in one place when their coordinates compare equal, `-0` and `0` included, and
 //! a particle is on an edge or a half-plane when the formula of simulation.md 3 gives the zero vector. Only the start

@@ -105,7 +105,7 @@ impl<'t> DocumentReader<'t, '_> {
         self.document
     }
 
-    /// Whatever is still open at the end. Only the innermost is reported; the others may follow from it.
+    /// Reports an element that is still open at the end. Only the innermost is reported; the others may follow from it.
     fn finish(&mut self) {
         if let Some(open) = self.open.last() {
             if !self.document.broken {

@@ -1,4 +1,4 @@
-//! What is wrong with a scene, where, and what would be right.
+//! Problems of a scene: what is wrong, where, and what would be right.
 use std::fmt;
 use std::ops::Range;
 

@@ -1,8 +1,8 @@
 //! The strict reader: a whole scene or all its problems at once.
 //!
-//! What the original accepts silently and then simulates differently from what was written, or dies of, is an error
-//! here (scene-format.md 6). A scene without errors means the same to both readers; that is checked at the end, so that
-//! no oddity of the original's parser can slip through.
+//! A scene that the original accepts silently and then simulates differently from what was written, or dies of, is an
+//! error here (scene-format.md 6). A scene without errors means the same to both readers; that is checked at the end,
+//! so that no oddity of the original's parser can slip through.
 use std::borrow::Cow;
 
 use super::model::Scene;

@@ -1,4 +1,4 @@
-//! What the grammar knows of an element.
+//! The grammar's knowledge of an element.
 
 /// The rules for one element.
 #[derive(Debug)]

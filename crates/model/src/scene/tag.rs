@@ -54,7 +54,7 @@ pub(super) fn read<'t>(
                 tag.add(text, name, value, report);
             }
             Err(error) => {
-                // What stands behind it may belong to another element.
+                // The text behind it may belong to another element.
                 tag.broken = true;
                 report.error(|| broken(rule, inner, start, &error));
                 break;

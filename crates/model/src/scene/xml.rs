@@ -1,6 +1,6 @@
 //! From elements to a scene: which attributes each element has, and which values make sense (scene-format.md 4, 5).
 //!
-//! What only several elements together can get wrong is judged in `checks`.
+//! Errors that only several elements together can make are judged in `checks`.
 use super::document::Document;
 use super::fields::{Count, Fields};
 use super::forces::{ForceKind, Source};

@@ -1,4 +1,5 @@
-//! What the simulator tells while it computes: every detection call, pass, impulse and zone. And how a step is steered.
+//! Observers hear of every detection call, pass, impulse and zone while the simulator computes. And how a step is
+//! steered.
 use super::{pair::Pair, polynomial_bytes::PolynomialBytes, state::State};
 use fosssim_num::{polynomial::Polynomial, vector::Vec2};
 use serde::{Deserialize, Serialize};
@@ -19,7 +20,7 @@ pub trait Observer {
     fn begin_pass(&mut self, _pass: Pass) {}
     /// Where particles start and end (2N each) as the pass begins to see them, right after `begin_pass`.
     fn pass_positions(&mut self, _q_start: &[f64], _q_end: &[f64]) {}
-    /// What this observer wants to know of the pass's pairs; asked once or more in each pass. Unless it wants
+    /// The wishes of this observer about the pass's pairs; asked once or more in each pass. Unless it wants
     /// [`Wanted::Calls`], `detection` is not called, nobody steers calls, and pairs are computed many at a time.
     #[inline]
     fn wanted(&mut self) -> Wanted<'_> {
@@ -51,6 +52,9 @@ pub trait Steer {
     /// The polynomials of a pair, trimmed, are about to be searched for a time of impact. Others may be put in their
     /// place; search, decision and [`Observer::detection`] then go by those. Not called by `simple`, which has none.
     fn solve(&mut self, _pair: Pair, _q_start: &[f64], _q_end: &[f64], _polynomials: &mut [Polynomial]) {}
+    /// The system matrix of an implicit integrator, column by column, is about to be solved; as often in a step as
+    /// the method solves one. The step goes on with the entries that are left.
+    fn system(&mut self, _matrix: &mut [f64]) {}
     /// The decision about a pair. The step goes on with the one that is returned.
     fn decide(&mut self, _pair: Pair, decision: Decision) -> Decision {
         decision
@@ -78,7 +82,7 @@ pub(super) fn synchronise<O: Observer>(observer: &mut O, state: &mut State) -> R
     observer.steers().map_or(Resume::Own, |steer| steer.synchronise(state))
 }
 
-/// What an observer wants to know of the pairs of a detection pass.
+/// The wishes of an observer about the pairs of a detection pass.
 #[derive(Debug)]
 pub enum Wanted<'a> {
     /// Every call, one by one.
@@ -186,8 +190,8 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
     }
 }
 
-/// What the first one puts in place the second one sees. The geometric part starts from the synchronised state if one
-/// of them says so.
+/// A state that the first one puts in place is seen by the second one. The geometric part starts from the synchronised
+/// state if one of them says so.
 impl<A: Observer, B: Observer> Steer for (A, B) {
     fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
         let both = [self.0.steers(), self.1.steers()].into_iter().flatten();
@@ -206,7 +210,7 @@ impl<A: Observer, B: Observer> Steer for (A, B) {
     }
 }
 
-/// What the geometric part of `hybrid` starts from, after the synchronisation point.
+/// The state from which the geometric part of `hybrid` starts, after the synchronisation point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Resume {
     /// The simulator's own values, as the original grades (collisions.md 5.4).
@@ -285,7 +289,7 @@ impl From<PassForm> for Pass {
     }
 }
 
-/// What one detection call saw and decided.
+/// The inputs and the decision of one detection call.
 #[derive(Debug, Clone, Copy)]
 pub struct Detection<'a> {
     /// The pair.
@@ -312,12 +316,12 @@ pub enum Decision {
     },
     /// They do not collide within the step.
     Miss {
-        /// What is known of the time.
+        /// Its knowledge of the time.
         time: Time,
     },
 }
 
-/// What is known of the time of a pair that does not collide.
+/// The knowledge of the time of a pair that does not collide.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Time {
     /// Nothing was searched: a certificate proves that it is not within the step.

@@ -6,7 +6,7 @@ use std::ops::{Index, IndexMut};
 /// Two objects that detection looks at: a particle, and a particle, edge or half-plane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Pair {
-    /// What the second object is.
+    /// The kind of the second object.
     pub kind: PairKind,
     /// Index of the particle.
     pub first: u32,

@@ -194,7 +194,7 @@ mod tests {
         original::read(xml.as_bytes()).expect("a scene").scene
     }
 
-    /// What each pass looked at.
+    /// The pairs that each pass looked at.
     #[derive(Default)]
     struct Looked(Vec<Vec<(Pair, usize)>>);
 

@@ -109,7 +109,7 @@ impl PolynomialBytes {
         &mut self.bytes[self.used..]
     }
 
-    /// What was written into the [room](Self::room) belongs to the list now.
+    /// Makes the bytes that were written into the [room](Self::room) a part of the list.
     #[inline]
     pub(super) fn added(&mut self, bytes: usize, polynomials: usize) {
         self.used += bytes;

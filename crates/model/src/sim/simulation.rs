@@ -88,7 +88,9 @@ impl Simulation {
         }
         self.q_start.clone_from(&self.state.positions);
         self.stepper.limit_work(self.most_work.saturating_sub(self.handler.counts().work()));
-        if let Err(DoesNotConverge) = self.stepper.advance(&self.bodies, &mut self.forces, &mut self.state) {
+        if let Err(DoesNotConverge) =
+            self.stepper.advance(&self.bodies, &mut self.forces, &mut self.state, observer.steers())
+        {
             let is_beyond = self.stepper.is_beyond_limit();
             return Err(if is_beyond { StepError::Work { step } } else { StepError::Newton { step } });
         }
@@ -299,7 +301,7 @@ mod tests {
         );
     }
 
-    /// What the observer writes at the synchronisation point is what the step ends with, but for the geometric part.
+    /// The step ends with the state that the observer writes at the synchronisation point, but for the geometric part.
     #[test]
     fn the_synchronised_state_counts_unless_zones_are_moved() {
         let replacement = State { positions: vec![7.0, 8.0], velocities: vec![9.0, 10.0] };

@@ -275,7 +275,7 @@ mod tests {
         compare(Reader::of_slice(left, LAYOUT), Reader::of_slice(right, LAYOUT))
     }
 
-    /// What is said when the right trace's mid record is changed so.
+    /// The message when the right trace's mid record is changed so.
     fn said(change: impl FnOnce(&mut Frame)) -> String {
         let mut changed = frame();
         change(&mut changed);

@@ -201,7 +201,7 @@ mod tests {
     fn the_whole_digest_is_that_of_the_file() {
         let digests = Digests::of(&[0; 100][..], LAYOUT);
         assert_eq!(digests.trailing, 4);
-        // What `head -c 100 /dev/zero | sha256sum` says.
+        // The answer of `head -c 100 /dev/zero | sha256sum`.
         let expected = "cd00e292c5970d3c5e2f0ffa5171e555bc46bfc4faddfb4a418b6840b86e79a3";
         assert_eq!(digests.sha256.to_string(), expected);
         let cut = Digests::of(&[0; 50][..], LAYOUT);

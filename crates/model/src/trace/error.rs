@@ -1,4 +1,4 @@
-//! What can be wrong with a trace's bytes, and where.
+//! Faults of a trace's bytes, and where they are.
 //!
 //! One type for all readers: the strict [`Reader`](super::Reader) stops at it, the [`Lenient`](super::Lenient) one
 //! notes it and goes on as the original does.

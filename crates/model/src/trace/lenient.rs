@@ -115,7 +115,7 @@ impl LenientFrame {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{at}")]
 pub struct ReadStop {
-    /// What could not be read.
+    /// The part that could not be read.
     pub cause: Unreadable,
     /// The damage.
     pub at: TraceError,
@@ -401,7 +401,7 @@ impl<R: Read> Lenient<R> {
         let start = log.coefficients.len();
         let most = start + if keeps { LONGEST_POLYNOMIAL } else { 0 };
         let mut is_leading = true;
-        // What was read so far and not dropped, as the original keeps it, coefficient by coefficient.
+        // The bytes that were read so far and not dropped, as the original keeps them, coefficient by coefficient.
         let mut value = [0; 8];
         for read in 0..size {
             self.bytes(&mut value);

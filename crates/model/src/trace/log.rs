@@ -1,4 +1,4 @@
-//! What a step writes to the trace: its lists, and when which of them is part of a record (trace-format.md 2).
+//! The part of a trace that a step writes: its lists, and when which of them is part of a record (trace-format.md 2).
 use super::{
     encode::{self, Encoded},
     frame::LoggedImpulse,

@@ -2,7 +2,8 @@
 use super::{decode, encode, layout::Layout, log::Log};
 use crate::sim::{Detection, Impulse, Observer, Pass, State, Wanted};
 
-/// What [`Recorder`](super::Recorder) would write of a step, in pieces that are not copied: the observer of that step.
+/// The records that [`Recorder`](super::Recorder) would write of a step, in pieces that are not copied: the observer of
+/// that step.
 #[derive(Debug, Clone)]
 pub struct StepBytes {
     layout: Layout,

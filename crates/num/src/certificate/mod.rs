@@ -5,8 +5,9 @@
 //! where the polynomials *are* positive but where the original's root finder *says* so: it samples each gap between
 //! the zeros once, and rounding may decide a sample.
 //!
-//! What suffices: the answer exceeds 1 if the computed positive set of *one* polynomial has no interval with `hi > 0`
-//! and `lo <= 1`, and if no search hangs. Combining several polynomials would decide next to nothing more in scenes.
+//! One condition suffices: the answer exceeds 1 if the computed positive set of *one* polynomial has no interval with
+//! `hi > 0` and `lo <= 1`, and if no search hangs. Combining several polynomials would decide next to nothing more in
+//! scenes.
 //!
 //! Proofs and measurements:
 //!

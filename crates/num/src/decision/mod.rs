@@ -20,7 +20,7 @@
 //! section 3.3; Farouki, *The Bernstein polynomial basis: a centennial retrospective*, CAGD 29, 2012), and what is left
 //! goes to integer arithmetic ([`exact`]), which always decides.
 //!
-//! What counts (and where it differs from the original): zeros at which a polynomial only touches zero from above do
+//! The rules (and where they differ from the original): zeros at which a polynomial only touches zero from above do
 //! not interrupt its positive set (root-finder.md 15.4); sets that meet in one time only do meet (17.11); a time of
 //! exactly 1 counts, sets that end at exactly 0 do not (16.2); an empty list, an empty polynomial and one that vanishes
 //! are nowhere positive (17.2). Coefficients are taken as they are: small leading ones are not dropped, and `c t^m` is

@@ -1,4 +1,4 @@
-//! What changed from one picture to the next: films store that alone.
+//! The changes from one picture to the next: films store them alone.
 use crate::size::Size;
 
 /// A rectangle of pixels, never empty.

@@ -1,4 +1,4 @@
-//! What to look at: the part of the program that the likely mistake is in; where none is named, what the first
+//! The place to look at: the part of the program that the likely mistake is in; where none is named, what the first
 //! finding's kind suggests.
 use super::{Check, first};
 use crate::words::explanation;
@@ -15,8 +15,8 @@ pub(crate) fn lines(check: &Check<'_>) -> Vec<&'static str> {
     }
 }
 
-/// What the fair rules charge first, where a polynomial of a later pass differs first: they know a wrong formula from
-/// wrong positions.
+/// The finding that the fair rules charge first, where a polynomial of a later pass differs first: they know a wrong
+/// formula from wrong positions.
 fn charged<'a>(check: &Check<'a>, first: &'a Finding) -> &'a Finding {
     let is_later = match &first.detail {
         FindingDetail::PolynomialDegree { place, .. }
@@ -97,6 +97,13 @@ fn of_finding(finding: &Finding) -> &'static [&'static str] {
             "the factor of your polynomials: the course's library drops leading coefficients below 1e-12",
             "polynomials in the units of the assignment's formulas are not affected",
         ],
+        FindingDetail::PairForce { is_doubled: false, .. } => &[
+            "the search for near pairs: it leaves this pair out",
+            "its bounds have to hold the radii and the thickness, and each body is in every cell that it reaches",
+        ],
+        FindingDetail::PairForce { is_doubled: true, .. } => {
+            &["the search for near pairs: it finds this pair twice, and the force is applied each time"]
+        }
         FindingDetail::MixedForms { .. } => &[
             "the approach polynomial: here it has one of its two accepted forms, elsewhere in this trace the other one",
         ],

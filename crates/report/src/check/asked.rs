@@ -1,4 +1,4 @@
-//! What commands ask of an outcome before they report it.
+//! Questions of commands about an outcome before they report it.
 use fosssim_findings::{Outcome, Overall, Stop};
 use fosssim_judge::fair::FairVerdict;
 use fosssim_model::sim::StepError;

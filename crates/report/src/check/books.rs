@@ -1,4 +1,4 @@
-//! What the rule books say, a line each; the tables behind them are shown on request.
+//! The verdicts of the rule books, a line each; the tables behind them are shown on request.
 use super::{Check, fair, follows};
 use crate::{
     number::counted,

@@ -1,6 +1,6 @@
 //! The first divergence: expected and actual values side by side.
 use super::super::{
-    number::exact,
+    number::{exact, general},
     style::{Look, Style},
     table::{Align, Cell, Table},
 };
@@ -54,7 +54,7 @@ impl Value {
 /// Two values that a finding compares.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Row {
-    /// What they are.
+    /// Their name.
     pub(crate) name: &'static str,
     /// The reference's.
     pub(crate) expected: Value,
@@ -64,12 +64,15 @@ pub(crate) struct Row {
     pub(crate) differs: bool,
 }
 
-/// The values of a finding side by side, with remarks in front of them and behind.
+/// The values of a finding side by side, with remarks behind them.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct SideBySide {
-    pub(crate) before: Vec<String>,
+    /// Where the trace has them, for a reader who looks into its bytes.
+    before: Vec<String>,
     pub(crate) rows: Vec<Row>,
     pub(crate) after: Vec<String>,
+    /// The values that the original compares, where these are others.
+    original: Option<String>,
 }
 
 impl SideBySide {
@@ -84,7 +87,7 @@ impl SideBySide {
             let word = if *differs { "<- differs" } else { "" };
             table.row([(*name).into(), expected.exact().into(), mark(actual.exact()), mark(word.to_owned())]);
         }
-        lines(&self.before) + &table.render(style) + &lines(&self.after)
+        lines(&self.before) + &table.render(style) + &lines(&self.after) + &lines(self.original.as_slice())
     }
 }
 
@@ -127,14 +130,10 @@ pub(crate) fn side_by_side(detail: &FindingDetail) -> SideBySide {
             // The factor that the finding was made with.
             let factor = if own == 0.0 { factor(reference, trace) } else { expected / own };
             let mut sides = polynomials_with(place, reference, trace, factor, Some(*power));
-            if let Some(Rescaled { power, expected, actual, .. }) = rescaled {
-                sides.after.push(format!(
-                    "(the original rescales by sums of moduli before it compares: {} {}, {})",
-                    Power(*power),
-                    exact(*actual),
-                    exact(*expected)
-                ));
-            }
+            sides.original = rescaled.as_ref().map(|Rescaled { power, expected, actual, .. }| {
+                let (power, actual, expected) = (Power(*power), exact(*actual), exact(*expected));
+                format!("(the original rescales by sums of moduli before it compares: {power} {actual}, {expected})")
+            });
             sides
         }
         FindingDetail::Position { expected, actual, .. } | FindingDetail::Velocity { expected, actual, .. } => {
@@ -191,11 +190,12 @@ fn polynomials_with(
             differs: is_missing || differing.contains(&power) || wrong == Some(power),
         }
     };
-    let carried = format!("expected values carry the trace's factor {}; any positive one is right", exact(factor));
+    let carried = format!("expected values carry the trace's factor {}; any positive one is right", general(factor));
     SideBySide {
         before: vec![logged_by(place)],
         rows: (0..powers).rev().map(row).collect(),
         after: if is_one { Vec::new() } else { vec![carried] },
+        original: None,
     }
 }
 

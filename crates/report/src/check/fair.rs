@@ -82,7 +82,7 @@ pub(super) const fn verdict(fair: &Judgement) -> (Look, &'static str) {
     }
 }
 
-/// What the fair verdict rests on, in one line.
+/// The grounds of the fair verdict, in one line.
 pub(super) fn summary(fair: &Judgement, outcome: &Outcome) -> String {
     let refusal = match fair.refusal {
         Some(FairRefusal::Stopped) => Some("the trace can't be followed to its end"),

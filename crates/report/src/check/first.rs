@@ -1,4 +1,4 @@
-//! What a check looks at first.
+//! The finding that a check looks at first.
 use super::Check;
 use fosssim_judge::Finding;
 use fosssim_mistakes::diagnose::Explanation;

@@ -74,7 +74,7 @@ pub(crate) fn head(grades: &[Grade]) -> String {
 }
 
 /// The scenes that are not accepted for everybody, those that fewest have right first, and how many others there are.
-/// What was not run and what the grader failed on does not count.
+/// A scene that was not run, or on which the grader failed, does not count.
 pub(crate) fn hardest(grades: &[Grade]) -> (Vec<(&str, SceneShare)>, usize) {
     let mut shares: BTreeMap<&str, SceneShare> = BTreeMap::new();
     let mut order = Vec::new();

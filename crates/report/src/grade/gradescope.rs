@@ -57,7 +57,7 @@ pub(super) fn render(grade: &Grade) -> String {
                 number: format!("{}.{}", g + 1, s + 1),
                 output: match grade.unfit() {
                     Some(_) => format!("{}: {}", scene.verdict, see_above(scene)),
-                    // What only staff sees may say all.
+                    // A test that only staff sees may say all.
                     None if tells_all || group.visibility == Visibility::Hidden => output(scene),
                     None => {
                         let mut scene = scene.clone();
@@ -92,7 +92,7 @@ pub(super) fn render(grade: &Grade) -> String {
 }
 
 fn overall(grade: &Grade) -> String {
-    // What everybody reads at once says nothing about groups that not everybody sees.
+    // Text that everybody reads at once says nothing about groups that not everybody sees.
     let all_visible = grade.is_visible();
     let mut lines = vec![match grade.points {
         Some(_) if !all_visible => "Graded.".to_owned(),
@@ -105,7 +105,7 @@ fn overall(grade: &Grade) -> String {
     if let Some(build) = grade.build.as_ref().filter(|build| !build.end.is_success()) {
         lines.push(format!("{}\n{}", plain(&words::build(&build.end)), printed(&build.output)));
     }
-    // What is wrong with the upload itself tells of no scene.
+    // A fault of the upload itself tells of no scene.
     let told = grade.build.as_ref().is_some_and(|build| !build.end.is_success());
     if !told {
         let shown = if grade.unfit().is_some() { Cow::Borrowed(grade) } else { for_students(grade) };

@@ -1,4 +1,4 @@
-//! What several formats say of a grade in the same words.
+//! The sentences about a grade that several formats have in common.
 use crate::{number::counted, words};
 use fosssim_findings::{Grade, GroupGrade, SceneGrade, Verdict};
 use fosssim_mistakes::diagnose::Explanation;
@@ -87,7 +87,7 @@ pub fn plain(text: &str) -> String {
 /// The text in place of a verdict where an entry is no submission.
 pub(super) const NOT_GRADED: &str = "not graded";
 
-/// What stands above all scenes in a report for one reader: what is wrong with the submission itself, or where it
+/// The lines above all scenes in a report for one reader: what is wrong with the submission itself, or where it
 /// fails and what its likely mistakes are.
 #[must_use]
 pub fn head_lines(grade: &Grade) -> Vec<String> {

@@ -44,7 +44,7 @@ pub(super) fn render(grade: &Grade) -> String {
         })
         .collect();
     let build = grade.build.as_ref().filter(|build| !build.end.is_success());
-    // What is wrong with the upload itself is the same in all groups.
+    // A fault of the upload itself is the same in all groups.
     let head = match build {
         Some(_) => Vec::new(),
         None if grade.unfit().is_some() => head_lines(grade),

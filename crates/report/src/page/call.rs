@@ -3,7 +3,7 @@ use super::{
     data::key,
     markup::{compared, number, text},
 };
-use crate::detect::Detect;
+use crate::{detect::Detect, number::general};
 use fosssim_evidence::{InspectedCall, Logged};
 use fosssim_judge::{
     PairWords, PassWords, differing, factor,
@@ -33,7 +33,7 @@ pub(super) fn html(step: u32, call: &InspectedCall, depth: usize, open: bool) ->
             return out;
         }
     };
-    let _ = writeln!(out, "<p>{}</p>", text(&Detect { study, place: None }.decision()));
+    let _ = writeln!(out, "<p>{}</p>", text(&Detect { study, place: None }.decision(general)));
     // Curves without a zero are flat lines: words say it better.
     if study.curves.iter().any(|curve| curve.real_zeros().iter().any(|zero| (0.0..=1.0).contains(zero))) {
         let title = format!("Expected in step {step}: {}", PairWords(call.pair));
@@ -164,14 +164,14 @@ fn both(step: u32, role: &str, expected: &[f64], set: &[Interval], logged: &[f64
 fn coefficients(study: &Study, logged: &[Vec<f64>], nothing: bool) -> String {
     let mut out = String::from(
         "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Coefficients\"><table>\
-         <caption>Coefficients; what differs by more than a common factor is marked</caption><thead><tr>\
+         <caption>Coefficients, the expected ones with the factor of yours; what differs is marked</caption><thead><tr>\
          <th scope=\"col\">polynomial</th><th scope=\"col\">power</th><th scope=\"col\" class=\"num\">expected</th>\
          <th scope=\"col\" class=\"num\">yours</th><th scope=\"col\">result</th></tr></thead><tbody>\n",
     );
     for (place, curve) in study.curves.iter().enumerate() {
         let expected = curve.logged.coefficients();
         let own = logged.get(place).map_or(&[][..], Vec::as_slice);
-        let marks = marks(expected, own);
+        let (marks, factor) = (marks(expected, own), factor(expected, own));
         let powers = expected.len().max(own.len()).min(12);
         for power in (0..powers).rev() {
             let at = |list: &[f64]| (power < list.len()).then(|| list[list.len() - 1 - power]);
@@ -184,7 +184,7 @@ fn coefficients(study: &Study, logged: &[Vec<f64>], nothing: bool) -> String {
                 false => ("", ""),
             };
             let (right, yours) = match (at(expected), at(own)) {
-                (Some(expected), Some(own)) => compared(expected, own, differs),
+                (Some(expected), Some(own)) => compared(factor * expected, own, differs),
                 (expected, _) if logged.is_empty() && !nothing => (cell(expected), "not known".to_owned()),
                 (expected, own) => (cell(expected), cell(own)),
             };

@@ -71,11 +71,14 @@ impl Case<'_> {
         if !cause.is_empty() {
             let _ = writeln!(out, "<div class=\"mistakes\">\n{cause}</div>");
         }
-        out += &evidence.map(stage).unwrap_or_default();
+        let full = evidence.filter(|_| self.hints == Hints::Full);
+        if let Some(evidence) = evidence {
+            let charts = full.map(|evidence| plots(evidence, key, self.first().map(|first| first.step)));
+            let _ = writeln!(out, "<div class=\"seen\">\n{}{}</div>", stage(evidence), charts.unwrap_or_default());
+        }
         out += &self.side(depth);
         out += "</div>\n";
-        if let (Some(evidence), Hints::Full) = (evidence, self.hints) {
-            out += &plots(evidence, key, self.first().map(|first| first.step));
+        if let Some(evidence) = full {
             out += &self.calls(evidence, depth);
         }
         let account = self.check.outcome.findings_by(self.check.rules.official());
@@ -106,7 +109,7 @@ impl Case<'_> {
                 out,
                 "<section class=\"card\">{}<p class=\"hint\">{}</p><p>{}</p>{}</section>",
                 heading(FIRST),
-                text(&divergence::place(first, outcome.steps)),
+                text(&step_of(first.step, outcome.steps)),
                 text(&subject(first)),
                 values(&divergence::side_by_side(&first.detail))
             );
@@ -163,6 +166,14 @@ fn stage(evidence: &Evidence) -> String {
     out + "</div>\n"
 }
 
+/// The step of a finding in words.
+fn step_of(step: u32, steps: u32) -> String {
+    match step {
+        0 => "the first record".to_owned(),
+        step => format!("step {step} of {steps}"),
+    }
+}
+
 /// What a finding is about, where a table beside it has its values.
 fn subject(finding: &Finding) -> String {
     match &finding.detail {
@@ -183,10 +194,7 @@ fn subject(finding: &Finding) -> String {
 
 /// Values side by side: in one notation, and marked from the first digit that differs.
 fn values(sides: &SideBySide) -> String {
-    let lines = |lines: &[String]| {
-        lines.iter().map(|line| format!("<p class=\"hint\">{}</p>\n", text(line))).collect::<String>()
-    };
-    let mut out = lines(&sides.before);
+    let mut out = String::new();
     if !sides.rows.is_empty() {
         out += "<table class=\"values\"><thead><tr><th scope=\"col\">value</th><th scope=\"col\" class=\"num\">expected</th>\
                 <th scope=\"col\" class=\"num\">yours</th></tr></thead><tbody>\n";
@@ -205,7 +213,8 @@ fn values(sides: &SideBySide) -> String {
         }
         out += "</tbody></table>\n";
     }
-    out + &lines(&sides.after)
+    out.extend(sides.after.iter().map(|line| format!("<p class=\"hint\">{}</p>\n", text(line))));
+    out
 }
 
 /// The first ones of some calls, each with its step; the first one is open.

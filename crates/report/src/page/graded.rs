@@ -217,7 +217,8 @@ fn is_told(scene: &SceneGrade) -> bool {
 }
 
 fn groups(groups: &[GroupGrade], told: &[(&SceneGrade, Option<Card>)], reader: Audience) -> String {
-    let who = if reader == Audience::Staff { "<th scope=\"col\">who sees it</th>" } else { "" };
+    let tells_who = reader == Audience::Staff && groups.iter().any(|group| group.visibility != Visibility::Visible);
+    let who = if tells_who { "<th scope=\"col\">who sees it</th>" } else { "" };
     let mut out = format!(
         "<section>\n<h2>Groups</h2>\n<div class=\"card scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Groups\"><table><thead><tr><th scope=\"col\">group</th><th scope=\"col\">verdict</th>\
          <th scope=\"col\" class=\"num\">points</th><th scope=\"col\" class=\"num\">scenes accepted</th><th scope=\"col\">to look at</th>{who}</tr></thead>\
@@ -227,7 +228,7 @@ fn groups(groups: &[GroupGrade], told: &[(&SceneGrade, Option<Card>)], reader: A
         let is_here = |scene: &SceneGrade| group.scenes.iter().any(|one| one.scene == scene.scene);
         let first = told.iter().find(|(scene, _)| is_here(scene)).map_or_else(String::new, |(scene, _)| link(scene));
         let who = match group.visibility {
-            _ if reader == Audience::Student => String::new(),
+            _ if !tells_who => String::new(),
             Visibility::Visible => "<td>everybody</td>".to_owned(),
             Visibility::Hidden => "<td>staff</td>".to_owned(),
             Visibility::AfterDueDate => "<td>students after the due date</td>".to_owned(),
@@ -237,7 +238,7 @@ fn groups(groups: &[GroupGrade], told: &[(&SceneGrade, Option<Card>)], reader: A
         let _ = writeln!(
             out,
             "<tr><th scope=\"row\">{}</th><td><span class=\"chip {}\">{}</span></td><td class=\"num\">{} of {}</td>\
-             <td class=\"num\">{accepted} of {}</td><td>{first}</td>{who}</tr>",
+             <td class=\"num\">{accepted} of {}</td><td class=\"to\">{first}</td>{who}</tr>",
             text(&one_line(&group.name)),
             if group.verdict.is_accepted() { "good" } else { "bad" },
             group.verdict.words(),

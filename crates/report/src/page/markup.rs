@@ -48,10 +48,14 @@ pub(super) fn number(value: f64) -> String {
     text(&general(value))
 }
 
-/// Two numbers as markup; the digits of the second that are not those of the first are marked.
+/// Two numbers as markup; the digits of the second that are not those of the first are marked. Of numbers that count as
+/// the same no digits are shown that only rounding has made.
 pub(super) fn compared(expected: f64, actual: f64, differs: bool) -> (String, String) {
+    if !differs {
+        return (number(expected), number(actual));
+    }
     let (expected, actual, place) = beside(expected, actual);
-    let marked = match place.filter(|_| differs) {
+    let marked = match place {
         Some(place) => format!("{}<mark>{}</mark>", text(&actual[..place]), text(&actual[place..])),
         None => text(&actual),
     };
@@ -61,6 +65,13 @@ pub(super) fn compared(expected: f64, actual: f64, differs: bool) -> (String, St
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn digits_of_rounding_are_shown_of_nothing_that_counts_as_the_same() {
+        let (one, other) = (8.926_142_429_220e-5, 8.926_142_429_196e-5);
+        assert_eq!(compared(one, other, false), ("8.92614e-05".to_owned(), "8.92614e-05".to_owned()));
+        assert_eq!(compared(-0.017_034, -0.2725, true), ("-0.017034".to_owned(), "-0.<mark>272500</mark>".to_owned()));
+    }
 
     #[test]
     fn hostile_text_stays_text() {

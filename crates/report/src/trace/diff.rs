@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 
 /// The names under which people know what is compared.
 #[derive(Debug, Clone, Copy)]
-pub struct Names<'a> {
+pub struct TraceNames<'a> {
     /// The scene.
     pub scene: &'a str,
     /// One trace.
@@ -30,7 +30,7 @@ pub fn same(comparison: &Comparison) -> bool {
 
 /// For people.
 #[must_use]
-pub fn diff_text(names: &Names<'_>, comparison: &Comparison, style: Style) -> String {
+pub fn diff_text(names: &TraceNames<'_>, comparison: &Comparison, style: Style) -> String {
     let records = counted(comparison.frames, "record");
     let verb = if comparison.frames == 1 { "is" } else { "are" };
     if same(comparison) {
@@ -74,7 +74,7 @@ pub fn diff_text(names: &Names<'_>, comparison: &Comparison, style: Style) -> St
 
 /// For programs: one JSON object, indented, with a line feed at its end.
 #[must_use]
-pub fn diff_json(names: &Names<'_>, comparison: &Comparison) -> String {
+pub fn diff_json(names: &TraceNames<'_>, comparison: &Comparison) -> String {
     let end = |end: &Result<u64, TraceError>| match end {
         Ok(trailing) => json!({ "trailing_bytes": trailing, "damage": null }),
         Err(error) => json!({ "trailing_bytes": null, "damage": place(error) }),

@@ -1,4 +1,4 @@
-//! What a trace holds, for programs. For people the summary's own text is the report.
+//! The contents of a trace, for programs. For people the summary's own text is the report.
 use super::super::view::SCHEMA;
 use fosssim_model::trace::{Summary, TraceError};
 use serde_json::{Value, json};

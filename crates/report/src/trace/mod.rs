@@ -4,6 +4,6 @@ mod diff;
 mod info;
 mod show;
 
-pub use diff::{Names, diff_json, diff_text, same};
+pub use diff::{TraceNames, diff_json, diff_text, same};
 pub use info::info_json;
 pub use show::{ShownRecord, ShownStep};

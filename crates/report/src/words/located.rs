@@ -1,4 +1,4 @@
-//! What the scenes have in common in which a program crashes or runs into a limit.
+//! Sentences about the common properties of scenes in which a program crashes or runs into a limit.
 use fosssim_findings::located::{Content, Failing, Located};
 
 /// The greatest number of other contents named that the scenes can't tell from the first one.

@@ -69,7 +69,7 @@ fn details_are_what_is_told_and_nothing_else() {
     let mut counts = FindingCounts::default();
     counts.add(FindingKind::Position, 7);
     counts.add(FindingKind::SuperfluousCollision, 2);
-    // What is found in damaged records alone has no example.
+    // A kind that is found in damaged records alone has no example.
     counts.add(FindingKind::Velocity, 1);
     let told = Disclosure {
         official: Book::Fair,

@@ -37,12 +37,12 @@ impl AttackNeed {
 
 /// One way in which the run may end.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Expected {
+pub(super) struct ExpectedEnd {
     kind: String,
     detail: Option<String>,
 }
 
-impl Expected {
+impl ExpectedEnd {
     /// Whether the run ended in this way.
     pub(super) fn matches(&self, ended: &Ended) -> bool {
         let detail = match ended {
@@ -65,7 +65,7 @@ impl Expected {
 pub(super) struct Attack {
     pub(super) name: String,
     pub(super) promise: String,
-    pub(super) expected: Vec<Expected>,
+    pub(super) expected: Vec<ExpectedEnd>,
     pub(super) policy: Policy,
     pub(super) wall: Option<Duration>,
     pub(super) needs: Vec<AttackNeed>,
@@ -125,10 +125,10 @@ impl Attack {
     }
 }
 
-fn expected(text: &str) -> Expected {
+fn expected(text: &str) -> ExpectedEnd {
     match text.split_once(' ') {
-        Some((kind, detail)) => Expected { kind: kind.into(), detail: Some(detail.into()) },
-        None => Expected { kind: text.into(), detail: None },
+        Some((kind, detail)) => ExpectedEnd { kind: kind.into(), detail: Some(detail.into()) },
+        None => ExpectedEnd { kind: text.into(), detail: None },
     }
 }
 

@@ -1,4 +1,4 @@
-//! What a hostile program would like to reach: secrets, a scene, another submission, a process.
+//! Decoys that a hostile program would like to reach: secrets, a scene, another submission, a process.
 //!
 //! The state of all of it is recorded before and after a run, to the permission bits and the times of change.
 

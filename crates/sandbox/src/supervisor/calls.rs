@@ -74,7 +74,7 @@ pub(super) const TIMES_OLD: &[Call] = calls![SYS_utime SYS_utimes SYS_futimesat]
 #[cfg(not(target_arch = "x86_64"))]
 pub(super) const TIMES_OLD: &[Call] = &[];
 
-/// What libraries try and can do without; refused with `EPERM` or `EACCES` rather than taken for an attack. The C
+/// Calls that libraries try and can do without; refused with `EPERM` or `EACCES` rather than taken for an attack. The C
 /// library asks the name service by a socket, for one. Counters of page faults and of free blocks are among them:
 /// they tell what others did.
 pub(super) const REFUSED: &[Call] = calls![

@@ -124,7 +124,7 @@ fn prepare(plan: &mut Plan) -> Result<(Strings, Strings), Failure> {
 
 /// The resource limits; they are the second line behind the supervisor's own watch, except for file sizes.
 fn limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
-    // What Linux gives by default, so that a deep recursion ends alike on every grading host.
+    // The default of Linux, so that a deep recursion ends alike on every grading host.
     const STACK: u64 = 8 << 20;
     const SPARE_MEMORY: u64 = 512 << 20;
     const SPARE_SECONDS: u64 = 2;

@@ -144,7 +144,7 @@ pub(super) fn filters(purpose: Purpose) -> io::Result<Vec<BpfProgram>> {
     } else {
         layers.insert(0, (forbidden, SeccompAction::KillProcess));
     }
-    // Whatever is in some group exists, and the layers decide. All else does not.
+    // A call that is in some group exists, and the layers decide. All else does not.
     let known = calls::GROUPS.into_iter().flatten().map(|(_, call)| *call);
     filters.push(search::filter(&joined(known, &layers)?, SeccompAction::Errno(libc::ENOSYS as u32).into(), frame()?)?);
     for instruction in filters.iter_mut().flatten() {

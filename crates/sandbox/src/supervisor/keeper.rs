@@ -1,11 +1,11 @@
 //! A supervisor for all runs of one submission, one after the other.
 //!
-//! What does not differ between them is made once: the start of this program, a user and a control group, a root folder
-//! with the files that every run may see, the network namespace that has no network, Landlock's places and the filters.
-//! For each run the keeper forks into new namespaces of processes, mounts and messages; that child is the run's
-//! supervisor and the first process of its world, with a copy of the prepared mounts, a working folder in memory and a
-//! `/proc` of its own. All that a run could leave goes away with these; the prepared root it sees read-only, and no
-//! filter lets it make a socket. The next run begins when the kernel has ended the last process of the one before. A
+//! Parts that do not differ between them are made once: the start of this program, a user and a control group, a root
+//! folder with the files that every run may see, the network namespace that has no network, Landlock's places and the
+//! filters. For each run the keeper forks into new namespaces of processes, mounts and messages; that child is the
+//! run's supervisor and the first process of its world, with a copy of the prepared mounts, a working folder in memory
+//! and a `/proc` of its own. All that a run could leave goes away with these; the prepared root it sees read-only, and
+//! no filter lets it make a socket. The next run begins when the kernel has ended the last process of the one before. A
 //! keeper whose run did anything but end by itself serves no other (the grader sees to that).
 //!
 //! The guardian outside holds user and control group until the keeper has ended; the keeper dies with it, and every run
@@ -42,10 +42,10 @@ const PROGRAM: i32 = 2;
 /// Serves the requests that come on standard input, a socket.
 pub(super) fn main() -> ExitCode {
     let Ok(socket) = io::stdin().as_fd().try_clone_to_owned().map(UnixStream::from) else { return ExitCode::from(2) };
-    let Ok(Some(mut first)) = Request::next(&socket) else { return ExitCode::from(2) };
+    let Ok(Some(mut first)) = RunRequest::next(&socket) else { return ExitCode::from(2) };
     ExitCode::from(match settle(&first.order) {
         Ok(Side::Guardian { keeper, held }) => {
-            // What the grader listens to must end with the run.
+            // The pipe that the grader listens to must end with the run.
             drop((first, socket));
             let code = sys::wait_for(keeper).unwrap_or(1);
             drop(held);
@@ -61,7 +61,7 @@ pub(super) fn main() -> ExitCode {
 }
 
 /// One run: what to do, the way to and from the grader, the working folder on the disk, and what else shall lie there.
-struct Request {
+struct RunRequest {
     order: RunOrder,
     control: File,
     answers: File,
@@ -69,7 +69,7 @@ struct Request {
     files: Vec<(Raw, Vec<u8>)>,
 }
 
-impl Request {
+impl RunRequest {
     /// The next one; `None` when the grader has no more.
     fn next(socket: &UnixStream) -> io::Result<Option<Self>> {
         let mut byte = [0];
@@ -119,7 +119,7 @@ struct Keeper {
 
 impl Keeper {
     /// Serves one request after the other, until there are no more or one ends otherwise than it should.
-    fn serve(mut self, first: Request, socket: &UnixStream) -> u8 {
+    fn serve(mut self, first: RunRequest, socket: &UnixStream) -> u8 {
         let mut next = Some(first);
         while let Some(request) = next {
             match self.run(request) {
@@ -127,14 +127,14 @@ impl Keeper {
                 code => return code,
             }
             next = match sys::poll([Some(socket.as_fd())], IDLE) {
-                Ok([Readiness::Ready]) => Request::next(socket).ok().flatten(),
+                Ok([Readiness::Ready]) => RunRequest::next(socket).ok().flatten(),
                 _ => None,
             };
         }
         0
     }
 
-    fn run(&mut self, mut request: Request) -> u8 {
+    fn run(&mut self, mut request: RunRequest) -> u8 {
         let folder = wire::path(&request.order.folder);
         let namespaces = libc::CLONE_NEWPID | libc::CLONE_NEWNS | libc::CLONE_NEWIPC | libc::CLONE_NEWUTS;
         // The place for the folder is there only as long as its run.
@@ -153,8 +153,8 @@ impl Keeper {
     }
 
     /// Serves one run; the answer is the run's exit code.
-    fn supervise(&mut self, request: Request) -> u8 {
-        let Request { order, control, mut answers, folder, files } = request;
+    fn supervise(&mut self, request: RunRequest) -> u8 {
+        let RunRequest { order, control, mut answers, folder, files } = request;
         let Some(held) = self.held.take() else { return 1 };
         let bound =
             sys::die_with_parent().map_err(|error| Failure::new("bind the supervisor's life to its keeper's", &error));

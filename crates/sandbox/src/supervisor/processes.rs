@@ -1,4 +1,4 @@
-//! What `/proc` says about the processes below us, and how they are ended.
+//! The processes below us as `/proc` tells of them, and how they are ended.
 
 use std::{
     collections::BTreeSet,

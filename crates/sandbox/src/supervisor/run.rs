@@ -27,8 +27,9 @@ use super::{
 };
 use crate::{
     job::Limits,
+    outcome::{Ended, Stream},
     sys::{self, Fork, Readiness},
-    wire::{self, Event, Failure, Report, RunOrder, StopCause},
+    wire::{self, Event, Failure, Report, RunOrder},
 };
 
 /// How often clocks and counters are looked at. A look costs some ten microseconds.
@@ -46,9 +47,9 @@ pub(super) fn main() -> ExitCode {
         .map_err(|error| Failure::new("read the order", &error))
         .and_then(|order| settle(order, control));
     ExitCode::from(match settled {
-        Ok(Settled::Here(run)) => tell(run.finish(&mut answers), &mut answers),
-        // What was inside has told everything.
-        Ok(Settled::Elsewhere(code)) => code,
+        Ok(SettledRun::Here(run)) => tell(run.finish(&mut answers), &mut answers),
+        // The process inside has told everything.
+        Ok(SettledRun::Elsewhere(code)) => code,
         Err(failure) => tell(Err(failure), &mut answers),
     })
 }
@@ -66,14 +67,14 @@ pub(super) fn tell(finished: Result<Option<FinishedRun>, Failure>, answers: &mut
 }
 
 /// A run that has begun, or the word that all is over.
-enum Settled {
+enum SettledRun {
     Here(Box<Run>),
     /// It was another process's business, which ended with this code.
     Elsewhere(u8),
 }
 
 /// Finds a user and a world for the run, and starts it there.
-fn settle(order: RunOrder, control: File) -> Result<Settled, Failure> {
+fn settle(order: RunOrder, control: File) -> Result<SettledRun, Failure> {
     let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
     // Alone in its session, the supervisor does not get the terminal's Ctrl-C; the grader tells it to stop.
     sys::new_session().map_err(stage("start the supervisor's session"))?;
@@ -81,9 +82,9 @@ fn settle(order: RunOrder, control: File) -> Result<Settled, Failure> {
     if order.walls.namespaces
         && let Side::Outside(code) = namespaces::enter(&order)?
     {
-        return Ok(Settled::Elsewhere(code));
+        return Ok(SettledRun::Elsewhere(code));
     }
-    Run::start(order, control, held, &Prepared::default()).map(|run| Settled::Here(Box::new(run)))
+    Run::start(order, control, held, &Prepared::default()).map(|run| SettledRun::Here(Box::new(run)))
 }
 
 /// The report, standard output and standard error.
@@ -112,7 +113,7 @@ pub(super) struct Run {
     stalled: Stalled,
     folder_before: FolderUsage,
     main_status: Option<i32>,
-    cause: Option<StopCause>,
+    cause: Option<Ended>,
     peak_memory: u64,
     /// Memory that the last look at mappings found and that is resident for nobody.
     unseen_memory: u64,
@@ -126,7 +127,7 @@ impl Run {
         let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
         sys::become_reaper().map_err(stage("become the reaper"))?;
         let folder: OwnedFd = File::open(wire::path(&order.folder)).map_err(stage("open the working folder"))?.into();
-        // What was just laid out in memory, the kernel has counted.
+        // The kernel has counted the files that were just laid out in memory.
         let folder_before = match order.volatile {
             true => folder::in_use(folder.as_fd()),
             false => contents(&order, folder.as_fd()),
@@ -172,7 +173,7 @@ impl Run {
             Fork::Child => child::become_program(plan),
             Fork::Parent(pid) => pid,
         };
-        // What was prepared for the child is closed here, so that the ends of pipes and sockets can be seen.
+        // The child's parts are closed here, so that the ends of pipes and sockets can be seen.
         drop(plan);
         Ok(Self {
             stdout: CapturedStream::new(stdout, order.output_bytes).map_err(stage("read standard output"))?,
@@ -211,7 +212,7 @@ impl Run {
         let wall = self.wall();
         let (child, mut main_status) = (self.child, self.main_status);
         if let Some(group) = &self.group {
-            // What it leaves over, if anything, is ended one by one.
+            // Processes that are left over, if any, are ended one by one.
             let _ = group.kill();
         }
         if main_status.is_none() {
@@ -236,7 +237,7 @@ impl Run {
             }
             false => true,
         };
-        // What a submission leaves in memory nobody looks at but root.
+        // Files that a submission leaves in memory nobody looks at but root.
         if let Some((_, (owner, group))) = self.slot.as_ref().filter(|_| !self.order.volatile || self.order.tools) {
             folder::give(self.folder.as_fd(), *owner, *group)
                 .map_err(|error| Failure::new("take the working folder back", &error))?;
@@ -256,10 +257,10 @@ impl Run {
         // A process that the kernel holds is the host's matter; any other that did not end has caused this itself.
         self.blame_if(
             left.count > 0 && !left.held,
-            StopCause::Call("none, but it left processes that do not end".into()),
+            Ended::Violation { call: "none, but it left processes that do not end".into() },
         );
         let out_of_memory = self.group.as_ref().is_some_and(Group::was_out_of_memory);
-        self.blame_if(out_of_memory, StopCause::Memory);
+        self.blame_if(out_of_memory, Ended::MemoryLimit);
         let (cpu, largest) = sys::children_usage().map_err(|error| Failure::new("ask for the usage", &error))?;
         let report = Report {
             cause: self.cause.take(),
@@ -317,8 +318,8 @@ impl Run {
                 // reaped.
                 Readiness::HungUp => self.listener = None,
             }
-            self.blame_if(self.stdout.truncated, StopCause::Stdout);
-            self.blame_if(self.stderr.truncated, StopCause::Stderr);
+            self.blame_if(self.stdout.truncated, Ended::OutputLimit(Stream::Stdout));
+            self.blame_if(self.stderr.truncated, Ended::OutputLimit(Stream::Stderr));
             let now = Instant::now();
             if let Some(listener) = &self.listener {
                 self.waits.answer(listener.as_fd(), now);
@@ -337,7 +338,7 @@ impl Run {
     }
 
     /// Notes the first cause.
-    fn blame_if(&mut self, condition: bool, cause: StopCause) {
+    fn blame_if(&mut self, condition: bool, cause: Ended) {
         if condition && self.cause.is_none() {
             self.cause = Some(cause);
         }
@@ -347,8 +348,8 @@ impl Run {
     fn obey(&mut self) {
         let mut command = [0];
         match self.control.read(&mut command) {
-            Ok(1) if command[0] == wire::COMMAND_TRACE_LIMIT => self.blame_if(true, StopCause::Trace),
-            Ok(1) => self.blame_if(true, StopCause::Cancelled),
+            Ok(1) if command[0] == wire::COMMAND_TRACE_LIMIT => self.blame_if(true, Ended::OutputLimit(Stream::Trace)),
+            Ok(1) => self.blame_if(true, Ended::Cancelled),
             _ => self.orphaned = true,
         }
     }
@@ -439,7 +440,7 @@ impl Run {
         } else if executes {
             call.push_str(" (it started another program)");
         }
-        self.blame_if(true, StopCause::Call(call));
+        self.blame_if(true, Ended::Violation { call });
         Ok(())
     }
 
@@ -461,13 +462,13 @@ impl Run {
         let reaped = sys::children_usage().map_or(Duration::ZERO, |(cpu, _)| cpu);
         let memory = usage.memory + self.unseen_memory;
         self.peak_memory = self.peak_memory.max(memory);
-        self.blame_if(memory > self.order.memory, StopCause::Memory);
-        self.blame_if(usage.threads > u64::from(self.order.processes), StopCause::Processes);
+        self.blame_if(memory > self.order.memory, Ended::MemoryLimit);
+        self.blame_if(usage.threads > u64::from(self.order.processes), Ended::ProcessLimit);
         let cpu = (usage.cpu + reaped).max(self.uncounted_cpu());
-        self.blame_if(micros(cpu) > self.order.cpu_micros, StopCause::Cpu);
+        self.blame_if(micros(cpu) > self.order.cpu_micros, Ended::CpuLimit);
         let full = self.pipe.as_ref().is_some_and(|pipe| sys::is_full(pipe.as_fd()));
         self.stalled.look(full, Instant::now());
-        self.blame_if(micros(self.wall()) > self.order.wall_micros, StopCause::Wall);
+        self.blame_if(micros(self.wall()) > self.order.wall_micros, Ended::WallLimit);
     }
 
     /// Time on the clock that is the program's own: without that in which it waited for the reader of its trace.
@@ -489,7 +490,7 @@ impl Run {
             contents = contents.at_least(folder::in_use(self.folder.as_fd()));
         }
         let over = self.over(&contents);
-        self.blame_if(over, StopCause::Folder);
+        self.blame_if(over, Ended::FolderLimit);
         if self.order.volatile && !self.can_hide_memory() {
             return;
         }
@@ -503,7 +504,7 @@ impl Run {
         }
         self.unseen_memory = held.memory;
         let over = self.over(&contents);
-        self.blame_if(over, StopCause::Folder);
+        self.blame_if(over, Ended::FolderLimit);
     }
 
     /// Whether there may be memory that is resident for nobody: files that are neither in the folder nor refused by

@@ -1,4 +1,4 @@
-//! What the program writes to its standard streams, kept up to a limit and counted to the byte.
+//! The program's standard streams, kept up to a limit and counted to the byte.
 
 use std::{
     io::{self, PipeReader, Read},

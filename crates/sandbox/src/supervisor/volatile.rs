@@ -1,6 +1,6 @@
 //! A working folder in memory: a file system of its own whose size and number of files the kernel limits.
 //!
-//! What lies there is gone with the run, unless the grader holds it open. Its pages belong to no process, so that they
+//! Files there are gone with the run, unless the grader holds them open. Their pages belong to no process, so that they
 //! are not part of a program's resident memory but where it maps them; a control group's limit has room for all of
 //! them.
 

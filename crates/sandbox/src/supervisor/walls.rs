@@ -40,8 +40,8 @@ const MACHINE: [&str; 4] = [
 ];
 /// The folder of most of that.
 const PROCESSORS: &str = "/sys/devices/system/cpu";
-/// What runtimes ask about their own process. Left out are its counters (`stat`, `statm`, `status` and others): they
-/// tell which pages of a file were in memory already, because these are mapped together and need no wait.
+/// Files that runtimes ask about their own process. Left out are its counters (`stat`, `statm`, `status` and others):
+/// they tell which pages of a file were in memory already, because these are mapped together and need no wait.
 const OWN_FILES: [&CStr; 6] = [c"auxv", c"cmdline", c"comm", c"environ", c"limits", c"maps"];
 /// Folders there that it may list: the threads' own numbers, which some runtimes count, and its descriptors.
 const OWN_FOLDERS: [&CStr; 2] = [c"task", c"fd"];
@@ -92,7 +92,7 @@ impl Places {
             places.add_around(&wire::path(raw), read, own);
         }
         for path in DEVICES {
-            // What is written to shared mappings of /dev/zero would be memory that no counter shows.
+            // Bytes that are written to shared mappings of /dev/zero would be memory that no counter shows.
             let access = if path == "/dev/zero" { BitFlags::EMPTY } else { AccessFs::WriteFile.into() };
             places.add(Path::new(path), access | AccessFs::ReadFile);
         }

@@ -9,7 +9,7 @@ pub struct Account {
     /// Its number.
     #[serde(skip)]
     pub(crate) id: i64,
-    /// What it is called in addresses and tables.
+    /// The name in addresses and tables.
     pub login: String,
     /// The name of its owner.
     pub name: String,

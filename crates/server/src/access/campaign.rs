@@ -40,7 +40,7 @@ pub async fn run(database: Database, notifier: Notifier, stop: CancellationToken
 }
 
 /// Works on one regrade while somebody waits for the answer, and not for longer than that: a small one is done then.
-/// What was wished is written by now: a fault here is the background's, which tries again, and no refusal.
+/// The wish is written by now: a fault here is the background's, which tries again, and no refusal.
 pub(super) async fn hurry(database: &Database, campaign: i64, at_most: Duration) {
     let start = Instant::now();
     while start.elapsed() < at_most {
@@ -56,7 +56,7 @@ pub(super) async fn hurry(database: &Database, campaign: i64, at_most: Duration)
     }
 }
 
-/// What became of a wish to do a batch.
+/// The result of a try to do a batch.
 enum Step {
     Done,
     /// Somebody else is at it.

@@ -1,4 +1,4 @@
-//! What staff who came from a platform chooses: which course theirs is here, and which assignment a link leads to.
+//! The choices of staff who came from a platform: which course theirs is here, and which assignment a link leads to.
 use super::{
     Member, Person, identity,
     launch::{self, Pending},
@@ -36,7 +36,7 @@ pub enum Choice {
     },
 }
 
-/// What is to be done after an assignment was chosen.
+/// The next step after an assignment was chosen.
 #[derive(Debug, Clone)]
 pub enum Chosen {
     /// Go to the assignment.
@@ -47,7 +47,7 @@ pub enum Chosen {
         address: String,
         /// The platform's origins: a page may send forms there, and they may lead on among them.
         origins: String,
-        /// What.
+        /// The signed answer.
         token: String,
     },
 }

@@ -13,7 +13,7 @@ use tokio::sync::Mutex;
 /// For so long an answer counts.
 const FRESH: Duration = Duration::from_secs(1);
 
-/// What is older than this, in milliseconds, is committed or never will be, and can be summed up.
+/// Rows that are older than this, in milliseconds, are committed or never will be, and can be summed up.
 const SETTLED: i64 = 300_000;
 
 /// With this many new rows a sum is brought up to date.
@@ -45,7 +45,8 @@ impl Counts {
     }
 }
 
-/// What only grows: its name among the sums, how its rows after one are counted, and the last of them that is settled.
+/// A number that only grows: its name among the sums, how its rows after one are counted, and the last of them that is
+/// settled.
 struct Growing {
     name: &'static str,
     newer: &'static str,

@@ -5,7 +5,7 @@ use super::{
 };
 use crate::{problem::Problem, values};
 
-/// What is made; a course of this name is taken for it.
+/// The course that is made; one of this name is taken for it.
 const COURSE: (&str, &str) = ("example", "Example");
 const ASSIGNMENT: (&str, &str) = ("m1", "Milestone one");
 const STUDENT: (&str, &str) = ("student", "A student");

@@ -22,7 +22,7 @@ const RECENT: i64 = 12 * 3600 * 1000;
 /// A session that was not seen for so long is noted again.
 const SEEN_EVERY: i64 = 3600 * 1000;
 
-/// What tokens of people and of workers begin with: anybody who finds one knows what it is, and so do scanners.
+/// Tokens of people and of workers begin with these: anybody who finds one knows its kind, and so do scanners.
 pub(super) const PERSON: &str = "fso_";
 pub(super) const WORKER: &str = "fsw_";
 
@@ -88,7 +88,7 @@ pub(super) struct Seen {
     pub(super) is_stale: bool,
 }
 
-/// What the database keeps of a secret. Random as it is, nobody finds it by trying.
+/// The digest of a secret, which the database keeps. Random as the secret is, nobody finds it by trying.
 pub(super) fn digest(secret: &str) -> String {
     hex(&Sha256::digest(secret))
 }
@@ -186,7 +186,7 @@ pub(super) async fn use_link(transaction: &mut Transaction, link: &str) -> Resul
     let row = transaction.row(statement, values![digest(link)]).await?;
     let Some(row) = row else { return Ok(None) };
     let (account, way) = (row.int("account")?, if row.flag("vouched")? { Way::Vouched } else { Way::Own });
-    // Who needs a link has forgotten the password: the next one is set without it.
+    // Anybody who needs a link has forgotten the password: the next one is set without it.
     let statement = "UPDATE account SET password = NULL WHERE id = ? AND disabled_at IS NULL RETURNING id";
     let able = transaction.row(statement, values![account]).await?;
     Ok(able.map(|_| (account, way)))

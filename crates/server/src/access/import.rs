@@ -16,7 +16,7 @@ pub struct Imported {
     pub line: u64,
     /// Their name.
     pub name: String,
-    /// What their account is to be called.
+    /// The name of their account.
     pub login: String,
     /// Where to send the link; not kept.
     pub email: String,

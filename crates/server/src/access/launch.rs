@@ -22,12 +22,12 @@ const CHOICE: i64 = 3600 * 1000;
 /// Sign-ins that one platform may begin in a minute: everybody can say that they come from it.
 const LOGINS: u32 = 3000;
 
-/// What a platform sends of somebody who wants to come (LTI 4.1, SEC 5.1.1.1).
+/// The words of a platform about somebody who wants to come (LTI 4.1, SEC 5.1.1.1).
 #[derive(Debug, Clone)]
 pub struct LoginRequest {
     /// Its issuer.
     pub issuer: String,
-    /// What it calls this service, where it says so.
+    /// Its name for this service, where it says so.
     pub client: Option<String>,
     /// Sent back as they are.
     pub hint: String,
@@ -35,12 +35,12 @@ pub struct LoginRequest {
     pub message_hint: Option<String>,
 }
 
-/// What a browser is to do next.
+/// The next step of a browser.
 #[derive(Debug, Clone)]
 pub struct LoginAnswer {
     /// Where to ask.
     pub address: String,
-    /// What the browser is to show when it comes back.
+    /// The word that the browser shows when it comes back.
     pub browser: String,
 }
 
@@ -296,7 +296,7 @@ async fn choose(
     let statement =
         "INSERT INTO platform_choice (digest, account, platform, arrival, expires_at) VALUES (?, ?, ?, ?, {now} + ?)";
     transaction.execute(statement, values![secret.digest(), account, platform.id, text, CHOICE]).await?;
-    // What is chosen may make a student's account that of staff.
+    // The choice may make a student's account that of staff.
     if !identity::is_trusted(transaction, account).await? {
         identity::end_all(transaction, account).await?;
     }
@@ -416,13 +416,13 @@ pub(super) async fn enrol(
     Ok(())
 }
 
-/// What staff has to choose, and for whom it is.
+/// The choice that staff has to make, and for whom it is.
 pub(super) struct Pending {
     pub(super) platform: Platform,
     pub(super) arrival: Arrival,
 }
 
-/// What an account has to choose by this secret.
+/// The choice that an account has to make by this secret.
 pub(super) async fn pending(transaction: &mut Transaction, account: i64, secret: &str) -> Result<Pending, Problem> {
     let statement = "SELECT platform.id, platform.name, platform.settings, platform_choice.arrival FROM platform_choice
         JOIN platform ON platform.id = platform_choice.platform AND platform.disabled_at IS NULL

@@ -1,4 +1,4 @@
-//! What one account, one course, and all together may use of the server: transfers at one time, and bytes that are
+//! The shares of one account, one course, and all together in the server: transfers at one time, and bytes that are
 //! kept.
 use super::Member;
 use crate::{

@@ -1,4 +1,4 @@
-//! What staff decides by hand about a student's work: other points, a comment, more time; and what students ask for.
+//! Decisions of staff about a student's work: other points, a comment, more time; and requests of students.
 use super::{
     Member, Staff, identity,
     view::{self, Assignment, Submission},
@@ -43,7 +43,7 @@ pub struct Request {
 pub struct Overview {
     /// Students who handed something in.
     pub students: i64,
-    /// What they handed in.
+    /// The number of their submissions.
     pub submissions: i64,
     /// Requests of students that nobody has answered.
     pub requests: i64,
@@ -101,7 +101,7 @@ impl Staff {
         self.submission(id).await
     }
 
-    /// What students ask about an assignment and nobody has answered, oldest first.
+    /// The requests of students about an assignment that nobody has answered, oldest first.
     ///
     /// # Errors
     /// When there is no such assignment.

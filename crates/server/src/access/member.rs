@@ -98,7 +98,7 @@ impl Member {
         // Of what older versions graded nobody has looked yet.
         let kept = match grade.outcome.shown.take() {
             Some(kept) => kept,
-            None => shown::of_outcome(&self.app.0.store, &grade.outcome.files).await?,
+            None => shown::of_outcome(&self.app.0.store, &grade.outcome.files).await?.shown,
         };
         if let Some(shown) = Shown::read(&kept) {
             shown.cover(&mut grade.outcome, SHOWN);
@@ -151,7 +151,7 @@ impl Member {
             .ok_or_else(|| Problem::not_found("report"))
     }
 
-    /// What was handed in, to be opened.
+    /// The upload, to be opened.
     ///
     /// # Errors
     /// When they may see none of this number.

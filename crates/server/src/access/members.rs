@@ -1,4 +1,4 @@
-//! Who is in a course: members, and who is invited.
+//! The people in a course: members, and those who are invited.
 use super::{
     NewSecret, Staff,
     identity::{self, Way},
@@ -25,7 +25,7 @@ pub struct MemberInfo {
     pub is_invited: bool,
 }
 
-/// What the person who added a member hands on to them.
+/// The secrets that the person who added a member hands on to them.
 #[derive(Debug, Clone, Default)]
 pub struct Added {
     /// A link that signs in once: where the account is new, or has to be entered anew.

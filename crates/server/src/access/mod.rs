@@ -1,5 +1,5 @@
-//! Who may do what. Requests get their hands on the database through one of these only, and each offers what its role
-//! allows and nothing else: a [`Visitor`] who is not signed in, a [`Person`] who is, a [`Member`] of a course with
+//! Roles and their rights. Requests get their hands on the database through one of these only, and each offers what its
+//! role allows and nothing else: a [`Visitor`] who is not signed in, a [`Person`] who is, a [`Member`] of a course with
 //! their own submissions, its [`Staff`], an [`Admin`], and a [`Remote`] worker with the jobs that it holds. A handler
 //! says whom it serves by the type it takes, and one that forgets to has nothing to read from.
 
@@ -11,6 +11,7 @@ mod campaign;
 mod choice;
 mod counts;
 mod example;
+mod failed;
 mod file_name;
 mod identity;
 mod import;
@@ -41,6 +42,7 @@ pub use admin::Admin;
 pub use campaign::run as work_on_regrades;
 pub use choice::{Choice, Chosen};
 pub use counts::Counts;
+pub use failed::{AttemptChange, FailedScenes};
 pub use file_name::is_file_name;
 pub use identity::{NewSecret, Session};
 pub use import::Imported;
@@ -76,7 +78,7 @@ use crate::{
 use std::{ops::Deref, path::PathBuf, sync::Arc, time::Duration};
 use tokio_util::sync::CancellationToken;
 
-/// What the service stands on. What holds data is for this room alone; the rest everybody may read.
+/// The parts of the service. Those that hold data are for this room alone; the rest everybody may read.
 #[derive(Debug, Clone)]
 pub struct App(Arc<Parts>);
 
@@ -118,7 +120,7 @@ pub struct Options {
     pub requests_per_minute: u32,
     /// Transfers at one time, and bytes that are kept.
     pub limits: TransferLimits,
-    /// What signing in with passwords needs; nothing where that is not allowed.
+    /// The parts that signing in with passwords needs; nothing where that is not allowed.
     pub passwords: Option<Passwords>,
     /// Speaks with learning platforms.
     pub lti: Arc<Lti>,
@@ -151,7 +153,7 @@ impl App {
         Self(Arc::new(Parts { database, store, notifier, policy, counts, storage, throttle, instruments, options }))
     }
 
-    /// What the server counts about itself.
+    /// The server's counts about itself.
     pub fn instruments(&self) -> &Instruments {
         &self.0.instruments
     }

@@ -40,7 +40,7 @@ const TRIES_OF_ADDRESS: u32 = 60;
 /// How long a password may be.
 const LENGTH: std::ops::RangeInclusive<usize> = 10..=200;
 
-/// What passwords need: nothing of it is there on a server that does not allow them.
+/// The parts that passwords need: none of them is there on a server that does not allow passwords.
 #[derive(Debug)]
 pub struct Passwords {
     room: Arc<Semaphore>,
@@ -125,7 +125,7 @@ impl Try<'_> {
     }
 }
 
-/// What belongs to one customer: of the newer addresses everybody has 2^64.
+/// The part of an address that belongs to one customer: of the newer addresses everybody has 2^64.
 fn network(address: IpAddr) -> IpAddr {
     match address.to_canonical() {
         IpAddr::V6(address) => Ipv6Addr::from_bits(address.to_bits() >> 64 << 64).into(),
@@ -134,7 +134,7 @@ fn network(address: IpAddr) -> IpAddr {
 }
 
 impl App {
-    /// What passwords need, where they are allowed.
+    /// The parts that passwords need, where passwords are allowed.
     fn passwords(&self) -> Result<&Passwords, Problem> {
         self.passwords.as_ref().ok_or_else(|| Problem::not_allowed("this server takes no passwords"))
     }

@@ -4,7 +4,7 @@ use super::{
     launch::{Newcomer, enrol, find_or_make},
 };
 use crate::{
-    db::{DbError, Row, Transaction},
+    db::{DbError, Row, Transaction, read_row},
     lti::{self, Platform, PlatformWish, score},
     problem::Problem,
     values,
@@ -14,7 +14,7 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use utoipa::ToSchema;
 
-/// What came of reading a roster.
+/// The result of reading a roster.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, ToSchema)]
 pub struct RosterRead {
     /// Members that the platforms told of.
@@ -23,14 +23,14 @@ pub struct RosterRead {
     pub left: usize,
 }
 
-/// What a platform was told of somebody's work.
+/// A score that a platform was told of somebody's work.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct ScoreInfo {
     /// The platform.
     pub platform: String,
     /// The student.
     pub login: String,
-    /// What it is to know.
+    /// The score that it is to know.
     #[schema(value_type = Object)]
     pub score: Value,
     /// When that became so, in milliseconds since 1970.
@@ -242,14 +242,8 @@ impl Staff {
             WHERE platform_link.assignment = ? ORDER BY platform.name, account.login, platform_link.id";
         let rows = transaction.rows(statement, values![assignment.id]).await?;
         let read = |row: &Row| {
-            Ok(ScoreInfo {
-                platform: row.text("platform")?,
-                login: row.text("login")?,
-                score: serde_json::from_str(&row.text("content")?).unwrap_or_default(),
-                stamp: row.int("stamp")?,
-                sent_at: row.maybe_int("sent_at")?,
-                fault: row.maybe_text("fault")?,
-            })
+            let score = serde_json::from_str(&row.text("content")?).unwrap_or_default();
+            Ok(read_row!(row => ScoreInfo { platform, login, stamp, sent_at, fault; score }))
         };
         Ok(rows.iter().map(read).collect::<Result<_, DbError>>()?)
     }

@@ -3,7 +3,7 @@
 //! for an answer.
 use super::{Settings, Staff, campaign, view::Assignment};
 use crate::{
-    db::{DbError, Row, Transaction},
+    db::{DbError, Row, Transaction, read_row},
     problem::Problem,
     task::{JUDGE_ERROR, Task},
     values,
@@ -39,7 +39,7 @@ pub struct Regrade {
     pub state: RegradeState,
     /// Why it is done, as students read it when it is applied.
     pub reason: String,
-    /// What submissions are graded by this time.
+    /// The settings by which submissions are graded this time.
     pub settings: Settings,
     /// The one who began it.
     pub by: String,
@@ -51,12 +51,12 @@ pub struct Regrade {
     pub left: usize,
     /// How many the grader failed on: their grades stay.
     pub failed: usize,
-    /// What is being done for it in the background; nothing when there is nothing.
+    /// The work that goes on for it in the background; nothing when there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub doing: Option<Doing>,
     /// How many grades change.
     pub changed: usize,
-    /// What changes: as many as were asked for, by submission.
+    /// The changes, by submission: as many as were asked for.
     pub changes: Vec<Change>,
     /// The submission after which there are more changes.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -253,17 +253,14 @@ impl Staff {
 }
 
 fn read_regrade(row: &Row) -> Result<Regrade, Problem> {
-    Ok(Regrade {
-        id: row.int("id")?,
+    Ok(read_row!(row => Regrade {
+        id, reason, by = "login", created_at;
         state: match row.text("state")?.as_str() {
             "applied" => RegradeState::Applied,
             "discarded" => RegradeState::Discarded,
             _ => RegradeState::Open,
         },
-        reason: row.text("reason")?,
         settings: Settings::read(&row.text("settings")?)?,
-        by: row.text("login")?,
-        created_at: row.int("created_at")?,
         submissions: 0,
         left: 0,
         failed: 0,
@@ -271,7 +268,7 @@ fn read_regrade(row: &Row) -> Result<Regrade, Problem> {
         changed: 0,
         changes: Vec::new(),
         next: None,
-    })
+    }))
 }
 
 fn doing(row: &Row, what: String) -> Result<Doing, DbError> {
@@ -332,17 +329,10 @@ async fn find(transaction: &mut Transaction, assignment: &Assignment, id: i64, a
         )
         .await?;
     for row in &rows {
-        regrade.changes.push(Change {
-            submission: row.int("submission")?,
-            login: row.text("login")?,
-            old_code: row.maybe_text("old_code")?,
-            old_points: row.maybe_text("old_points")?,
-            old_summary: row.maybe_text("old_summary")?,
-            new_code: row.text("new_code")?,
-            new_points: row.maybe_text("new_points")?,
-            new_summary: row.text("new_summary")?,
+        regrade.changes.push(read_row!(row => Change {
+            submission, login, old_code, old_points, old_summary, new_code, new_points, new_summary;
             why: why(row)?,
-        });
+        }));
     }
     let is_full = i64::try_from(rows.len()).is_ok_and(|rows| rows == CHANGES);
     regrade.next = regrade.changes.last().filter(|_| is_full).map(|change| change.submission);

@@ -162,7 +162,7 @@ impl Remote {
         let mut transaction = self.app.0.database.first().read().await?;
         let mut names = std::collections::BTreeSet::new();
         for file in &mut outcome.files {
-            // What a report may be called, and what it holds, is not the worker's to say.
+            // A report's name and media type are not the worker's to choose.
             let Some((_, _, media_type)) = REPORTS.iter().find(|(_, name, _)| *name == file.name) else {
                 return Err(Problem::invalid(format!("no report is called {}", plain(&file.name, 60))));
             };

@@ -12,7 +12,7 @@ use crate::{
     values,
 };
 
-/// What is kept of submissions, in the order in which it goes.
+/// The rows that are kept of submissions, in the order in which they go.
 const PARTS: [&str; 11] = [
     "DELETE FROM wrong_scene WHERE result IN (SELECT result.id FROM result JOIN {each}
         ON result.submission = CAST(wanted.value AS {int}))",

@@ -1,13 +1,13 @@
-//! Who asks, told from the secrets that a request shows.
+//! The asker of a request, told from the secrets that it shows.
 use super::{
     Admin, App, Member, Person, Remote, Staff, Visitor,
     account::Account,
     identity::{self, Seen},
 };
-use crate::{problem::Problem, values};
+use crate::{db::read_row, problem::Problem, values};
 use std::{net::IpAddr, time::Instant};
 
-/// What a request shows of who asks.
+/// The secrets that a request shows of its asker.
 #[derive(Clone, Default)]
 pub struct Secrets {
     /// A token.
@@ -98,15 +98,14 @@ impl Person {
         if role.is_none() && !self.account.is_admin {
             return Err(Problem::not_found("course"));
         }
-        Ok(Member {
+        let row = &row;
+        Ok(read_row!(row => Member {
+            course = "id", slug, title;
             is_staff: self.account.is_admin || role.as_deref() == Some("staff"),
             is_archived: row.maybe_int("archived_at")?.is_some(),
-            course: row.int("id")?,
-            slug: row.text("slug")?,
-            title: row.text("title")?,
             account: self.account,
             app: self.app,
-        })
+        }))
     }
 
     /// The same person as an administrator.

@@ -34,7 +34,7 @@ pub struct Settings {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(pattern = "^(none|where|what|full)$")]
     pub hints: Option<String>,
-    /// What may be handed in: `program`, `sources`, `traces`.
+    /// The forms of submissions that are taken: `program`, `sources`, `traces`.
     #[schema(value_type = Vec<Form>, min_items = 1)]
     pub forms: Vec<String>,
     /// The program's name in a folder of sources.
@@ -133,7 +133,7 @@ impl Settings {
     /// The same with the suite's name filled in, where they make sense.
     ///
     /// # Errors
-    /// What does not.
+    /// The first setting that makes no sense.
     pub fn checked(&self, suites: &Suites) -> Result<Self, Problem> {
         let settings = Self { suite: suites.or_default(&self.suite), ..self.clone() };
         settings.check(suites)?;
@@ -179,7 +179,7 @@ impl Settings {
         Ok(())
     }
 
-    /// What they say about being late.
+    /// Their part about being late.
     pub(super) fn late_policy(&self) -> LatePolicy {
         let Self { due_at, late_days, late_percent, .. } = *self;
         LatePolicy { due_at, late_days, late_percent }
@@ -195,7 +195,7 @@ impl Settings {
         self.has_form(form.name())
     }
 
-    /// What a worker is to do about an input.
+    /// A worker's task for an input.
     pub(super) fn task(&self, submission: Input) -> Task {
         Task {
             submission,

@@ -88,12 +88,12 @@ impl Staff {
             RETURNING id, slug, title, visible, settings, published_at";
         let row = transaction.one(statement, values![self.course, slug, title, visible, settings.text()]).await?;
         let assignment = view::read_assignment(&row)?;
-        // What late submissions are worth may be something else now.
+        // Late submissions may be worth something else now.
         let before = before.and_then(|text| Settings::read(&text).ok());
         if before.is_some_and(|before| before.late_policy() != settings.late_policy()) {
             score::send_all(&mut transaction, assignment.id, false).await?;
         }
-        // What waits because nothing could be graded is tried by the new settings.
+        // A job that waits because nothing could be graded is tried by the new settings.
         bulk::resume(&mut transaction, &assignment).await?;
         let text = format!("{slug} ({title}), {}: {}", if visible { "visible" } else { "hidden" }, settings.text());
         self.note(&mut transaction, "assignment", Some(assignment.id), &text).await?;
@@ -179,7 +179,7 @@ impl Staff {
         Ok(view::submissions_after(&mut transaction, assignment, after).await?)
     }
 
-    /// What happened in the course before the event of this number, latest first; with `None` up to now.
+    /// The events of the course before the one of this number, latest first; with `None` up to now.
     ///
     /// # Errors
     /// When the database does not answer.

@@ -21,11 +21,11 @@ const HOUR: i64 = 3600 * 1000;
 pub struct Upload<'a> {
     /// Its kind.
     pub form: Form,
-    /// What it is called: a plain file name.
+    /// Its name: a plain file name.
     pub name: &'a str,
     /// Where its bytes lie.
     pub file: &'a Path,
-    /// What the sender calls this upload: sent twice, it is one submission.
+    /// The sender's name for this upload: sent twice, it is one submission.
     pub key: Option<&'a str>,
 }
 
@@ -138,7 +138,7 @@ impl Member {
 
     async fn check_limits(&self, transaction: &mut Transaction, assignment: &Assignment) -> Result<(), Problem> {
         let settings = &assignment.settings;
-        // What the grader failed on costs nobody a try.
+        // A failure of the grader costs nobody a try.
         let statement = "SELECT {now} AS now, count(*) AS n,
                count(CASE WHEN submission.created_at > {now} - ? AND submission.created_at <= {now} THEN 1 END) AS recent
             FROM submission

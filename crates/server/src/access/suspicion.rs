@@ -1,7 +1,7 @@
 //! Where the reference may be wrong: what staff is told, and decides.
 use super::{Member, Staff};
 use crate::{
-    db::{DbError, Row},
+    db::{DbError, Row, read_row},
     problem::Problem,
     shown::Shown,
     values,
@@ -50,15 +50,8 @@ impl Staff {
                 WHERE wrong_scene.scene = ? AND wrong_scene.answer = ? ORDER BY account.login";
             let logins = transaction.rows(statement, values![assignment.id, self.course, &scene, &answer]).await?;
             let read = |row: &Row| row.text("login");
-            suspicions.push(Suspicion {
-                id: row.int("id")?,
-                scene,
-                agreeing: row.int("agreeing")?,
-                nearly_right: row.int("nearly_right")?,
-                state: row.text("state")?,
-                found_at: row.int("found_at")?,
-                logins: logins.iter().map(read).collect::<Result<_, DbError>>()?,
-            });
+            let logins = logins.iter().map(read).collect::<Result<_, DbError>>()?;
+            suspicions.push(read_row!(row => Suspicion { id, agreeing, nearly_right, state, found_at; scene, logins }));
         }
         Ok(suspicions)
     }

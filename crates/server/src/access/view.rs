@@ -1,7 +1,7 @@
-//! What the service shows: the same to the API, to pages and to exports.
+//! The values that the service shows: the same to the API, to pages and to exports.
 use super::{App, Settings};
 use crate::{
-    db::{DbError, FromRow, Row, Transaction, Value, from_row},
+    db::{DbError, FromRow, Row, Transaction, from_row, read_row},
     health,
     late::Late,
     problem::Problem,
@@ -42,7 +42,7 @@ pub struct Assignment {
     pub published_at: Option<i64>,
 }
 
-/// What was handed in, and what became of it.
+/// A submission, and its result.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Submission {
     /// Its number on this server.
@@ -59,7 +59,7 @@ pub struct Submission {
     pub name: String,
     /// `program`, `sources` or `traces`.
     pub form: String,
-    /// What the file was called.
+    /// The file's name.
     pub file_name: String,
     /// Its SHA-256.
     pub digest: String,
@@ -70,7 +70,7 @@ pub struct Submission {
     /// When its bytes and reports were given up; the grade and its history stay.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub removed_at: Option<i64>,
-    /// What becomes of it: `waiting`, `running`, `done`, `buried` (the grader failed too often) or `cancelled`.
+    /// Its state: `waiting`, `running`, `done`, `buried` (the grader failed too often) or `cancelled`.
     pub state: String,
     /// How many jobs are graded before it, while it waits.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -87,7 +87,7 @@ pub struct Submission {
     /// How late it came, where that costs points; staff's points cost nothing.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub late: Option<Late>,
-    /// What staff says of it by hand.
+    /// The words of staff about it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mark: Option<Mark>,
     /// Whether groups that the suite hides are left out of the grade, its history and its reports until staff publishes
@@ -108,7 +108,7 @@ pub struct Submission {
     pub(super) account: i64,
 }
 
-/// What staff says of a submission by hand, and what its owner asks.
+/// The words of staff about a submission, and the request of its owner.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Mark {
     /// Points that count instead of the grader's.
@@ -277,59 +277,36 @@ macro_rules! submissions {
     };
 }
 
-fn read_submission(row: &Row) -> Result<Submission, DbError> {
-    let grade = match row.maybe_int("result")? {
-        None => None,
-        Some(result) => Some(Graded {
-            result,
-            outcome: Outcome {
-                verdict: row.text("verdict")?,
-                code: row.text("code")?,
-                points: row.maybe_text("points")?,
-                max_points: row.maybe_text("max_points")?,
-                summary: row.text("summary")?,
-                version: row.text("version")?,
-                grader: row.text("grader")?,
-                essence: row.text("essence")?,
-                // Some of these scenes may be hidden.
-                wrong: Vec::new(),
-                seconds: row.text("seconds")?,
-                files: Vec::new(),
-                shown: row.maybe_text("shown")?,
-            },
-            created_at: row.int("graded_at")?,
-        }),
-    };
-    let mark = row.maybe_text("comment")?.map(|_| Mark::from_row(row)).transpose()?;
-    let mut submission = Submission {
-        id: row.int("id")?,
-        number: row.int("number")?,
-        assignment: row.text("assignment")?,
-        title: row.text("title")?,
-        login: row.text("login")?,
-        name: row.text("name")?,
-        form: row.text("form")?,
-        file_name: row.text("file_name")?,
-        digest: row.text("digest")?,
-        size: row.int("size")?,
-        created_at: row.int("created_at")?,
-        removed_at: row.maybe_int("removed_at")?,
-        state: row.maybe_text("state")?.unwrap_or_else(|| "cancelled".to_owned()),
-        ahead: None,
-        expected_seconds: None,
-        progress: progress(row)?,
-        grade,
-        is_withheld: false,
-        is_published: row.maybe_int("published_at")?.is_some(),
-        is_paused: row.maybe_text("lane")?.as_deref() == Some("paused"),
-        fault: row.maybe_text("last_fault")?,
-        job: row.maybe_int("job")?,
-        account: row.int("account")?,
-        late: Late::of(row)?,
-        mark,
-    };
-    submission.overrule();
-    Ok(submission)
+fn read_grade(row: &Row, result: i64) -> Result<Graded, DbError> {
+    let outcome = read_row!(row => Outcome {
+        verdict, code, points, max_points, summary, version, grader, essence, seconds, shown;
+        // Some of these scenes may be hidden.
+        wrong: Vec::new(),
+        files: Vec::new(),
+        failed: None,
+    });
+    Ok(Graded { result, outcome, created_at: row.int("graded_at")? })
+}
+
+impl FromRow for Submission {
+    fn from_row(row: &Row) -> Result<Self, DbError> {
+        let mut submission = read_row!(row => Self {
+            id, number, assignment, title, login, name, form, file_name, digest, size, created_at, removed_at, job,
+            account, fault = "last_fault";
+            state: row.maybe_text("state")?.unwrap_or_else(|| "cancelled".to_owned()),
+            ahead: None,
+            expected_seconds: None,
+            progress: progress(row)?,
+            grade: row.maybe_int("result")?.map(|result| read_grade(row, result)).transpose()?,
+            is_withheld: false,
+            is_published: row.maybe_int("published_at")?.is_some(),
+            is_paused: row.maybe_text("lane")?.as_deref() == Some("paused"),
+            late: Late::of(row)?,
+            mark: row.maybe_text("comment")?.map(|_| Mark::from_row(row)).transpose()?,
+        });
+        submission.overrule();
+        Ok(submission)
+    }
 }
 
 /// How far a job is, while it runs and its worker says so.
@@ -350,14 +327,6 @@ impl Submission {
     }
 }
 
-async fn read_all(
-    transaction: &mut Transaction,
-    statement: &'static str,
-    values: &[Value],
-) -> Result<Vec<Submission>, DbError> {
-    transaction.rows(statement, values).await?.iter().map(read_submission).collect()
-}
-
 /// An account's submissions to an assignment, newest first.
 pub(super) async fn submissions_of(
     transaction: &mut Transaction,
@@ -365,7 +334,7 @@ pub(super) async fn submissions_of(
     account: i64,
 ) -> Result<Vec<Submission>, DbError> {
     let statement = submissions!("submission.assignment = ? AND submission.account = ? ORDER BY submission.id DESC");
-    read_all(transaction, statement, values![assignment, account]).await
+    transaction.all(statement, values![assignment, account]).await
 }
 
 /// How many submissions are read at a time.
@@ -378,7 +347,7 @@ pub(super) async fn submissions_after(
     after: i64,
 ) -> Result<Vec<Submission>, DbError> {
     let statement = submissions!("submission.assignment = ? AND submission.id > ? ORDER BY submission.id LIMIT ?");
-    read_all(transaction, statement, values![assignment, after, PAGE]).await
+    transaction.all(statement, values![assignment, after, PAGE]).await
 }
 
 /// A submission of a course with its place in the queue and its reports.
@@ -389,7 +358,7 @@ pub(super) async fn submission(
     id: i64,
 ) -> Result<Option<Submission>, DbError> {
     let statement = submissions!("submission.id = ? AND assignment.course = ?");
-    let found = read_all(transaction, statement, values![id, course]).await?.into_iter().next();
+    let found: Option<Submission> = transaction.all(statement, values![id, course]).await?.into_iter().next();
     let Some(mut submission) = found else { return Ok(None) };
     if let Some(job) = submission.job.filter(|_| !submission.is_paused)
         && let Some(place) = queue::place(transaction, &app.0.policy, Lane::Grading, job).await?
@@ -402,14 +371,9 @@ pub(super) async fn submission(
         let rows = transaction.rows(statement, values![grade.result]).await?;
         let read = |row: &Row| {
             let wrong = |what: &str| DbError::Other(format!("a report's {what} is none"));
-            Ok(OutputFile {
-                name: row.text("name")?,
-                media_type: row.text("media_type")?,
-                artefact: Artefact {
-                    digest: row.text("digest")?.parse().map_err(|_| wrong("digest"))?,
-                    size: u64::try_from(row.int("size")?).map_err(|_| wrong("size"))?,
-                },
-            })
+            let digest = row.text("digest")?.parse().map_err(|_| wrong("digest"))?;
+            let size = u64::try_from(row.int("size")?).map_err(|_| wrong("size"))?;
+            Ok(read_row!(row => OutputFile { name, media_type; artefact: Artefact { digest, size } }))
         };
         if submission.removed_at.is_none() {
             grade.outcome.files = rows.iter().map(read).collect::<Result<_, DbError>>()?;
@@ -446,21 +410,16 @@ pub(super) async fn history(
             Some(line) => line,
             None => (row.text("new_code")?, row.maybe_text("new_points")?),
         };
-        Ok(History {
-            changed_at: row.int("changed_at")?,
-            reason: row.text("reason")?,
-            by: row.maybe_text("login")?,
-            old_code: old.0,
-            old_points: old.1,
-            new_code: new.0,
-            new_points: new.1,
-            result: row.int("result")?,
-            version: row.text("version")?,
-            grader: row.text("grader")?,
+        let ((old_code, old_points), (new_code, new_points)) = (old, new);
+        Ok(read_row!(row => History {
+            changed_at, reason, by = "login", result, version, grader, task;
+            old_code,
+            old_points,
+            new_code,
+            new_points,
             essence: if withheld { String::new() } else { row.text("essence")? },
             by_what: by_what(&row.text("task")?),
-            task: row.text("task")?,
-        })
+        }))
     };
     rows.iter().map(read).collect()
 }
@@ -477,14 +436,8 @@ fn by_what(task: &str) -> String {
 }
 
 pub(super) fn read_assignment(row: &Row) -> Result<Assignment, Problem> {
-    Ok(Assignment {
-        id: row.int("id")?,
-        slug: row.text("slug")?,
-        title: row.text("title")?,
-        visible: row.flag("visible")?,
-        settings: Settings::read(&row.text("settings")?)?,
-        published_at: row.maybe_int("published_at")?,
-    })
+    let settings = Settings::read(&row.text("settings")?)?;
+    Ok(read_row!(row => Assignment { id, slug, title, visible, published_at; settings }))
 }
 
 /// An entry of the audit log.

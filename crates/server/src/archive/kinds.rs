@@ -1,4 +1,4 @@
-//! What kinds of archives there are, told by how they begin, and those of 7-Zip.
+//! The kinds of archives, told by how they begin, and those of 7-Zip.
 use super::{ArchiveError, Walk, damaged, shown};
 use bzip2::read::MultiBzDecoder;
 use flate2::read::GzDecoder;
@@ -27,7 +27,7 @@ pub(super) fn start_of(file: &mut File) -> io::Result<Vec<u8>> {
     Ok(start)
 }
 
-/// What a file is that is none of what can be handed in, by how it begins.
+/// The kind of a file that is no submission, by how it begins.
 pub fn described(start: &[u8]) -> String {
     let known: [(&[u8], &str); 12] = [
         (b"MZ", "a program for Windows"),
@@ -74,7 +74,7 @@ impl Walk<'_> {
     fn seven_zip(&mut self, file: File) -> Result<(), ArchiveError> {
         let (mut file, password) = (BufReader::new(file), Password::empty());
         let archive = Archive::read_with_memory_limit(&mut file, &password, HEADER).map_err(damaged)?;
-        // What has no bytes is in no block.
+        // An entry without bytes is in no block.
         for entry in archive.files.iter().filter(|entry| !entry.has_stream) {
             self.seven_zip_entry(entry, &mut io::empty())?;
         }
@@ -87,7 +87,7 @@ impl Walk<'_> {
                 }
                 Ok(refused.is_none())
             });
-            // What the walk refused goes before what the decoder says of the rest.
+            // An error of the walk goes before one of the decoder, which concerns the rest.
             match refused.take() {
                 Some(refused) => return Err(refused),
                 None => walked.map(drop).map_err(damaged)?,

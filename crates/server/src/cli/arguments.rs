@@ -29,14 +29,13 @@ pub(super) enum LogFormat {
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
     Serve(Serve),
-    Worker(Worker),
+    Worker(WorkerArguments),
     AdminLink(AdminLink),
-    Replay(Replay),
+    Replay(ReplayArguments),
     Backup(Backup),
     Restore(Restore),
     Upgrade(Upgrade),
     Health(Health),
-    Bench(Bench),
     /// Prints the description of the API (OpenAPI).
     Openapi,
 }
@@ -168,7 +167,7 @@ pub(super) struct AdminLink {
 /// Grades a submission once more by what it was graded by, and says whether the same comes out: nothing changes by it.
 /// The exit code is 0 when all results are the same, 1 when one is not.
 #[derive(Debug, Args)]
-pub(super) struct Replay {
+pub(super) struct ReplayArguments {
     #[command(flatten)]
     pub(super) place: Place,
     #[command(flatten)]
@@ -197,7 +196,7 @@ pub(super) struct Backup {
 pub(super) struct Restore {
     #[command(flatten)]
     pub(super) place: Place,
-    /// What `backup` made.
+    /// The folder that `backup` made.
     #[arg(value_name = "FOLDER")]
     pub(super) backup: PathBuf,
 }
@@ -223,52 +222,9 @@ pub(super) struct Health {
     pub(super) data: PathBuf,
 }
 
-/// Measures a server of its own on this machine, in a folder that goes away again, and prints a table.
-#[derive(Debug, Args)]
-pub(super) struct Bench {
-    /// What to measure.
-    #[arg(value_enum, default_value_t = What::Ladder)]
-    pub(super) what: What,
-    /// The rungs of the ladder: simulated students.
-    #[arg(long, value_name = "N,N,...", value_delimiter = ',', default_value = "50,100,200,500,1000,2000")]
-    pub(super) students: Vec<usize>,
-    /// How long each notify is, and how long others are watched.
-    #[arg(long, value_name = "SECONDS", default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=3600))]
-    pub(super) seconds: u64,
-    /// Submissions of `million`.
-    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = clap::value_parser!(i64).range(1000..))]
-    pub(super) count: i64,
-    /// An empty database for it: postgres://USER:PASSWORD@HOST/NAME. A SQLite file by default.
-    #[arg(long, value_name = "ADDRESS")]
-    pub(super) database: Option<String>,
-    /// The grader; by default a script that answers at once, so that the service is what is measured.
-    #[arg(long, value_name = "PROGRAM")]
-    pub(super) grader: Option<PathBuf>,
-    /// What students hand in; a script that does nothing by default.
-    #[arg(long, value_name = "FILE")]
-    pub(super) program: Option<PathBuf>,
-    /// Gradings at one time.
-    #[arg(long, value_name = "N", default_value_t = 2)]
-    pub(super) workers: usize,
-}
-
-/// What `bench` measures.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum What {
-    /// 50 to 2,000 students who sign in, look at the course, hand in, wait for the grade and read the report, without
-    /// a pause between.
-    Ladder,
-    /// 40 connections that read an upload of 120 MiB slowly.
-    SlowReaders,
-    /// 4,000 requests that never end.
-    HalfOpen,
-    /// A million submissions, exported and given up.
-    Million,
-}
-
 /// Grades what waits in the queue.
 #[derive(Debug, Args)]
-pub(super) struct Worker {
+pub(super) struct WorkerArguments {
     #[command(flatten)]
     pub(super) place: Place,
     #[command(flatten)]
@@ -282,7 +238,7 @@ pub(super) struct Worker {
     /// The file with the worker's token, which an administrator makes on the page "Administration".
     #[arg(long, value_name = "FILE")]
     pub(super) token_file: Option<PathBuf>,
-    /// What this worker is called. Host and process by default.
+    /// The name of this worker. Host and process by default.
     #[arg(long)]
     pub(super) name: Option<String>,
 }

@@ -14,7 +14,7 @@ const NEVER: [&str; 3] = ["config", "help", "version"];
 /// Reads what was typed, and the file that it names.
 ///
 /// # Errors
-/// What is wrong with either, or what `--help` and `--version` print.
+/// The first error in either, or the text that `--help` and `--version` print.
 pub(super) fn parse(words: &[OsString]) -> Result<Arguments, clap::Error> {
     let mut command = Arguments::command();
     if let Some(file) = named(words) {

@@ -1,4 +1,4 @@
-//! What lies where in the data folder.
+//! The places in the data folder.
 use super::arguments::Place;
 use crate::{
     db::{Address, Database},
@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 use std::{
     fs,
     os::unix::fs::{DirBuilderExt, PermissionsExt},
-    path::{Path, PathBuf},
+    path::PathBuf,
 };
 
 /// The data folder's parts.
@@ -63,11 +63,6 @@ impl Folders {
         self.data.join("work").join(worker)
     }
 
-    /// The database of a data folder.
-    pub(super) fn database_in(data: &Path) -> PathBuf {
-        data.join("fosssim.db")
-    }
-
     /// Opens the database that was asked for, or the one in the data folder.
     pub(super) async fn open_database(&self, place: &Place) -> Result<(Database, Address)> {
         let address = self.database(place);
@@ -77,6 +72,6 @@ impl Folders {
 
     /// The database that was asked for, or the one in the data folder.
     pub(super) fn database(&self, place: &Place) -> Address {
-        place.database.clone().unwrap_or_else(|| Address::Sqlite(Self::database_in(&self.data)))
+        place.database.clone().unwrap_or_else(|| Address::Sqlite(self.data.join("fosssim.db")))
     }
 }

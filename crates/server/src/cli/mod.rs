@@ -2,7 +2,6 @@
 
 mod arguments;
 mod backup;
-mod bench;
 mod config;
 mod folders;
 mod health;
@@ -52,7 +51,6 @@ fn run(arguments: &Arguments) -> Result<u8> {
             Command::Restore(arguments) => return Ok(u8::from(!backup::restore(arguments).await?)),
             Command::Upgrade(arguments) => return Ok(u8::from(!upgrade::run(arguments).await?)),
             Command::Health(arguments) => return Ok(u8::from(!health::run(arguments))),
-            Command::Bench(arguments) => bench::run(arguments).await?,
             Command::Openapi => print!("{}", crate::web::openapi()),
         }
         Ok(0)

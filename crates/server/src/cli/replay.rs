@@ -1,7 +1,7 @@
 //! `replay`: grades once more by a past result's own task, and compares what the grade says, byte for byte.
-use super::{arguments::Replay, folders::Folders, until_signalled, worker::grader};
+use super::{arguments::ReplayArguments, folders::Folders, until_signalled, worker::grader};
 use crate::{
-    db::{self, Row},
+    db::{self, Row, read_row},
     store::{Digest, Store},
     task::{JUDGE_ERROR, Suite, Task},
     values,
@@ -23,27 +23,22 @@ struct Past {
     grader: String,
     essence: String,
     task: Task,
-    /// What it said, where that is still kept.
+    /// Its report, where that is still kept.
     report: Option<Digest>,
 }
 
 impl Past {
     fn read(row: &Row) -> Result<Self> {
-        Ok(Self {
-            number: row.int("id")?,
-            code: row.text("code")?,
-            points: row.maybe_text("points")?,
-            version: row.text("version")?,
-            grader: row.text("grader")?,
-            essence: row.text("essence")?,
+        Ok(read_row!(row => Self {
+            number = "id", code, points, version, grader, essence;
             task: serde_json::from_str(&row.text("task")?).context("the task was written by another version")?,
             report: row.maybe_text("report")?.and_then(|digest| digest.parse().ok()),
-        })
+        }))
     }
 }
 
 /// Whether all results are the same.
-pub(super) async fn run(arguments: &Replay) -> Result<bool> {
+pub(super) async fn run(arguments: &ReplayArguments) -> Result<bool> {
     let stop = until_signalled()?;
     let folders = Folders::open(&arguments.place)?;
     let (database, address) = folders.open_database(&arguments.place).await?;

@@ -1,6 +1,6 @@
 //! `worker`: grades what waits in the queue.
 use super::{
-    arguments::{Work, Worker},
+    arguments::{Work, WorkerArguments},
     folders::Folders,
     heartbeat, until_signalled,
 };
@@ -20,7 +20,7 @@ use std::{
 };
 use tokio_util::sync::CancellationToken;
 
-pub(super) async fn run(arguments: &Worker) -> Result<()> {
+pub(super) async fn run(arguments: &WorkerArguments) -> Result<()> {
     let stop = until_signalled()?;
     if let Some(server) = &arguments.server {
         let Some(file) = &arguments.token_file else {
@@ -55,7 +55,7 @@ pub(super) async fn run(arguments: &Worker) -> Result<()> {
 }
 
 /// Works for a server on another machine.
-async fn work_for(server: &str, token_file: &Path, arguments: &Worker, stop: CancellationToken) -> Result<()> {
+async fn work_for(server: &str, token_file: &Path, arguments: &WorkerArguments, stop: CancellationToken) -> Result<()> {
     let token = std::fs::read_to_string(token_file)
         .with_context(|| format!("cannot read the token in {}", token_file.display()))?;
     let token = token.trim();

@@ -1,4 +1,4 @@
-//! What can go wrong with a database, as far as callers act on it.
+//! The errors of a database, as far as callers act on them.
 use thiserror::Error;
 
 /// Why a statement failed.

@@ -19,8 +19,8 @@ pub use migrate::{LATEST, MigrateError, changes_after, migrate, version};
 pub(crate) use pooler::is_pooled;
 pub use transaction::Transaction;
 use transaction::Turn;
-pub(crate) use value::from_row;
 pub use value::{Column, FromRow, Row, Value};
+pub(crate) use value::{from_row, read_row};
 
 use sqlx::{
     ConnectOptions, Connection,
@@ -76,7 +76,7 @@ pub struct Database {
     goes_first: bool,
 }
 
-/// Who waits for a connection, and how many did so in vain.
+/// The tasks that wait for a connection, and how many did so in vain.
 #[derive(Debug, Default)]
 struct Waits {
     waiting: AtomicI64,
@@ -86,7 +86,7 @@ struct Waits {
 /// How a pool of connections is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Pool {
-    /// What it is for.
+    /// Its purpose.
     pub name: &'static str,
     /// Open connections.
     pub size: u32,

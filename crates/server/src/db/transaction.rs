@@ -81,7 +81,7 @@ impl Transaction {
     /// Runs a statement and reads its rows.
     ///
     /// # Errors
-    /// What the database says, or what is wrong with a row.
+    /// The database's error, or that of a row.
     pub async fn all<T: FromRow>(&mut self, statement: &'static str, values: &[Value]) -> Result<Vec<T>, DbError> {
         self.rows(statement, values).await?.iter().map(T::from_row).collect()
     }
@@ -97,7 +97,7 @@ impl Transaction {
     /// Runs a statement that has exactly one row.
     ///
     /// # Errors
-    /// What the database says, also that there is no row.
+    /// The database's error, also that there is no row.
     pub async fn one(&mut self, statement: &'static str, values: &[Value]) -> Result<Row, DbError> {
         self.row(statement, values).await?.ok_or_else(|| DbError::Other(format!("no row: {statement}")))
     }

@@ -1,4 +1,4 @@
-//! What goes into a statement and what comes out. Two types are enough: integers (numbers, times, yes and no) and text
+//! The values of statements and of their answers. Two types are enough: integers (numbers, times, yes and no) and text
 //! (names, digests, JSON); points are text, too, so that they stay the same to the last digit.
 use super::DbError;
 use sqlx::{Row as _, postgres::PgRow, sqlite::SqliteRow};
@@ -100,7 +100,7 @@ impl Row {
     }
 }
 
-/// What a column may hold.
+/// A type that a column may hold.
 pub trait Column: Sized {
     /// Reads it.
     ///
@@ -127,7 +127,7 @@ columns! {
     bool => flag;
 }
 
-/// What a whole row is read as.
+/// A type as which a whole row is read.
 pub trait FromRow: Sized {
     /// Reads it.
     ///
@@ -141,11 +141,19 @@ macro_rules! from_row {
     ($($type:ty { $($field:ident $(= $column:literal)?),* $(,)? })*) => {
         $(impl $crate::db::FromRow for $type {
             fn from_row(row: &$crate::db::Row) -> Result<Self, $crate::db::DbError> {
-                Ok(Self { $($field: $crate::db::from_row!(@ row $field $($column)?)),* })
+                Ok($crate::db::read_row!(row => Self { $($field $(= $column)?),*; }))
             }
         })*
+    };
+}
+pub(crate) use from_row;
+
+/// A value of whose fields some are called as their columns, or as is said; those behind the semicolon are written out.
+macro_rules! read_row {
+    ($row:ident => $type:ident { $($field:ident $(= $column:literal)?),* $(,)?; $($rest:tt)* }) => {
+        $type { $($field: $crate::db::read_row!(@ $row $field $($column)?),)* $($rest)* }
     };
     (@ $row:ident $field:ident) => { $crate::db::Column::read($row, stringify!($field))? };
     (@ $row:ident $field:ident $column:literal) => { $crate::db::Column::read($row, $column)? };
 }
-pub(crate) use from_row;
+pub(crate) use read_row;

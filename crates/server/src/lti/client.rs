@@ -16,7 +16,7 @@ use thiserror::Error;
 use ureq::Agent;
 use url::Url;
 
-/// What tokens are asked for (AGS 3.1, NRPS 2.1).
+/// The scopes of tokens (AGS 3.1, NRPS 2.1).
 pub(crate) mod scope {
     pub(crate) const SCORE: &str = "https://purl.imsglobal.org/spec/lti-ags/scope/score";
     pub(crate) const LINE_ITEM: &str = "https://purl.imsglobal.org/spec/lti-ags/scope/lineitem";
@@ -44,7 +44,7 @@ pub enum ServiceFault {
     /// It is away, or has too much to do: it may be otherwise later.
     #[error("it does not answer as it should: {why}")]
     Away {
-        /// What it said, or what happened.
+        /// Its message, or what happened.
         why: String,
         /// When it wishes to be asked again.
         after: Option<Duration>,
@@ -66,9 +66,9 @@ impl From<DbError> for ServiceFault {
     }
 }
 
-/// What a platform answered.
+/// The answer of a platform.
 #[derive(Debug)]
-pub(super) struct Told {
+pub(super) struct ServiceAnswer {
     pub(super) status: u16,
     pub(super) body: Vec<u8>,
     /// The header `Link`.
@@ -76,7 +76,7 @@ pub(super) struct Told {
     after: Option<Duration>,
 }
 
-impl Told {
+impl ServiceAnswer {
     /// The answer, if it is one of success.
     pub(super) fn successful(self) -> Result<Self, ServiceFault> {
         // The beginning of what it says, for people: one line.
@@ -149,11 +149,11 @@ impl Client {
         address: &str,
         token: Option<&str>,
         accept: &'static str,
-    ) -> Result<Told, ServiceFault> {
+    ) -> Result<ServiceAnswer, ServiceFault> {
         self.send(platform, &Ask { address: address.to_owned(), accept, body: None }, token).await
     }
 
-    async fn send(&self, platform: &Platform, ask: &Ask, token: Option<&str>) -> Result<Told, ServiceFault> {
+    async fn send(&self, platform: &Platform, ask: &Ask, token: Option<&str>) -> Result<ServiceAnswer, ServiceFault> {
         let Some(url) = platform.service(&ask.address, self.over_http) else {
             let host = Url::parse(&ask.address).ok().and_then(|url| url.host_str().map(str::to_owned));
             let host = host.unwrap_or_else(|| "somewhere else".to_owned());
@@ -175,7 +175,7 @@ impl Client {
         platform: &Platform,
         scope: &str,
         ask: &Ask,
-    ) -> Result<Told, ServiceFault> {
+    ) -> Result<ServiceAnswer, ServiceFault> {
         let token = self.token(database, platform, scope).await?;
         let told = self.send(platform, ask, Some(&token)).await?;
         if told.status != 401 {
@@ -233,7 +233,7 @@ pub(super) fn now() -> u64 {
     SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |now| now.as_secs())
 }
 
-fn blocking(agent: &Agent, url: &Url, ask: &Ask, authorization: Option<&str>) -> Result<Told, ServiceFault> {
+fn blocking(agent: &Agent, url: &Url, ask: &Ask, authorization: Option<&str>) -> Result<ServiceAnswer, ServiceFault> {
     let answer = match &ask.body {
         None => {
             let mut request = agent.get(url.as_str()).header("Accept", ask.accept);
@@ -257,5 +257,5 @@ fn blocking(agent: &Agent, url: &Url, ask: &Ask, authorization: Option<&str>) ->
     let after = header("retry-after").and_then(|text| text.trim().parse().ok()).map(Duration::from_secs);
     let status = answer.status().as_u16();
     let body = answer.body_mut().with_config().limit(ANSWER).read_to_vec().map_err(ServiceFault::away)?;
-    Ok(Told { status, body, link, after: after.map(|after| after.min(LONGEST_WAIT)) })
+    Ok(ServiceAnswer { status, body, link, after: after.map(|after| after.min(LONGEST_WAIT)) })
 }

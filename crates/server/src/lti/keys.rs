@@ -89,7 +89,7 @@ pub(super) async fn signing(database: &Database) -> Result<Key, DbError> {
     Ok(Key { kid: row.text("kid")?, der })
 }
 
-/// What the world may know of the keys: a JSON Web Key Set (RFC 7517).
+/// The public part of the keys: a JSON Web Key Set (RFC 7517).
 ///
 /// # Errors
 /// An error of the database.

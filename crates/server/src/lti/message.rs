@@ -1,4 +1,4 @@
-//! What a platform says about somebody who comes from it (LTI 5), and what of it is believed.
+//! A platform's message about somebody who comes from it (LTI 5), and the part of it that is believed.
 use super::{
     Platform,
     client::{now, scope},
@@ -43,7 +43,7 @@ pub enum Refused {
     Content(String),
 }
 
-/// What somebody is in a platform's course.
+/// The role of somebody in a platform's course.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum LtiRole {
     /// A learner.
@@ -62,12 +62,12 @@ impl LtiRole {
     }
 }
 
-/// Who it is and where they come from.
+/// A person and where they come from.
 #[derive(Debug, Clone)]
 pub struct Message {
     /// The platform's name for the person, which never changes.
     pub subject: String,
-    /// What they are in the course there; nothing for parents, guests and others.
+    /// Their role in the course there; nothing for parents, guests and others.
     pub role: Option<LtiRole>,
     /// Their name, where the platform tells.
     pub name: Option<String>,
@@ -121,12 +121,12 @@ pub struct Resource {
     pub title: Option<String>,
 }
 
-/// What a platform wants to know when a link is to be chosen (DL 4.4.1).
+/// The wishes of a platform when a link is to be chosen (DL 4.4.1).
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DeepLinking {
     /// Where the answer goes.
     pub deep_link_return_url: String,
-    /// What may be chosen.
+    /// The types of items that may be chosen.
     #[serde(default)]
     pub accept_types: Vec<String>,
     /// Sent back as it is.
@@ -136,7 +136,7 @@ pub struct DeepLinking {
 
 #[derive(Debug, Clone, Deserialize)]
 #[serde(untagged)]
-enum Audience {
+enum TokenAudience {
     One(String),
     Many(Vec<String>),
 }
@@ -157,7 +157,7 @@ struct Names {
 #[derive(Debug, Clone, Deserialize)]
 struct Claims {
     sub: String,
-    aud: Audience,
+    aud: TokenAudience,
     azp: Option<String>,
     iat: u64,
     nonce: String,
@@ -196,7 +196,7 @@ pub(super) fn key_of(token: &str) -> Result<String, Refused> {
     header.kid.filter(|kid| !kid.is_empty() && kid.len() <= 500).ok_or(Refused::Form)
 }
 
-/// What a message says that this key signed; `nonce` is the digest of the one that was sent.
+/// The content of a message that this key signed; `nonce` is the digest of the one that was sent.
 pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &str) -> Result<Message, Refused> {
     let settings = &platform.settings;
     let claims: Claims =
@@ -210,8 +210,8 @@ pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &st
             _ => Refused::Content(error.to_string()),
         })?;
     // SEC 5.1.3, 3 to 5: of several audiences, and where it is said at all, the authorized party is this service.
-    let several = matches!(&claims.aud, Audience::Many(all) if all.len() > 1);
-    if let Audience::One(audience) = &claims.aud
+    let several = matches!(&claims.aud, TokenAudience::Many(all) if all.len() > 1);
+    if let TokenAudience::One(audience) = &claims.aud
         && *audience != settings.client_id
     {
         return Err(Refused::Foreign("the audience"));
@@ -275,7 +275,7 @@ pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &st
     })
 }
 
-/// What somebody is in the course by the platform's roles (LTI A.2.3). What they are in the institution or system says
+/// The role of somebody in the course by the platform's roles (LTI A.2.3). Their roles in the institution or system say
 /// nothing of the course, unless they administer all of it and nothing else is said.
 pub(crate) fn role_of(roles: &[String]) -> Option<LtiRole> {
     const COURSE: &str = "http://purl.imsglobal.org/vocab/lis/v2/membership";

@@ -26,7 +26,7 @@ pub(crate) use client::scope;
 
 use trust::Trust;
 
-/// What speaking with platforms takes.
+/// The parts that speaking with platforms takes.
 #[derive(Debug)]
 pub struct Lti {
     /// Asks platforms for tokens and services.

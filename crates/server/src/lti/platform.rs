@@ -8,14 +8,14 @@ use serde::{Deserialize, Serialize};
 use url::Url;
 use utoipa::ToSchema;
 
-/// What a platform says about itself: all of it stands on its page for tools.
+/// A platform's words about itself: all of them stand on its page for tools.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlatformWish {
     /// The issuer of its messages ("platform ID").
     #[schema(value_type = Word)]
     pub issuer: String,
-    /// What it calls this service ("client ID").
+    /// Its name for this service ("client ID").
     #[schema(value_type = Word)]
     pub client_id: String,
     /// Where it signs people in ("authentication request URL").
@@ -46,9 +46,9 @@ pub struct Platform {
     /// Its number here.
     #[serde(skip)]
     pub(crate) id: i64,
-    /// What it is called here.
+    /// Its name here.
     pub name: String,
-    /// What it says about itself.
+    /// Its words about itself.
     #[serde(flatten)]
     pub settings: PlatformWish,
 }
@@ -73,7 +73,7 @@ impl PlatformWish {
     /// Whether it makes sense.
     ///
     /// # Errors
-    /// What does not.
+    /// The first value that makes no sense.
     pub fn check(&self, over_http: bool) -> Result<(), Problem> {
         let is_word = |text: &str| (1..=255).contains(&text.chars().count()) && !text.chars().any(char::is_control);
         for (name, text) in [("issuer", &self.issuer), ("client_id", &self.client_id)] {

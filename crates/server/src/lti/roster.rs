@@ -1,4 +1,4 @@
-//! Who is in a platform's course, as the platform tells (NRPS 2).
+//! The people in a platform's course, as the platform tells (NRPS 2).
 use super::{
     Client, LtiRole, Platform, ServiceFault,
     client::{Ask, scope},
@@ -11,7 +11,7 @@ use serde::Deserialize;
 const PAGES: usize = 500;
 const MEMBERS: usize = 50_000;
 
-/// What a page of members is.
+/// The media type of a page of members.
 const KIND: &str = "application/vnd.ims.lti-nrps.v2.membershipcontainer+json";
 
 /// Somebody in a platform's course.
@@ -23,7 +23,7 @@ pub struct RosterMember {
     pub name: Option<String>,
     /// Their address, where the platform tells.
     pub email: Option<String>,
-    /// What they are; nothing for those who are none of ours, or not any more.
+    /// Their role; nothing for those who are none of ours, or not any more.
     pub role: Option<LtiRole>,
 }
 
@@ -47,7 +47,7 @@ struct Member {
 /// Reads all pages of the members of a course.
 ///
 /// # Errors
-/// What the platform says, or what is wrong with it; nothing of it is told then.
+/// The platform's error, or what is wrong with its answer; nothing of it is told then.
 pub async fn fetch(
     client: &Client,
     database: &Database,

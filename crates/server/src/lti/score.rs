@@ -1,4 +1,4 @@
-//! What a platform is to know of somebody's work on an assignment (AGS 3.4), and when it is to be told.
+//! The score that a platform is to know of somebody's work on an assignment (AGS 3.4), and when it is to be told.
 //!
 //! Anybody who changes a grade puts a job into the queue, in the same transaction. The job holds no score: what is sent
 //! is read when it is sent, so that many changes are one message. Each content has a time of its own, which only grows
@@ -6,7 +6,7 @@
 //! changes nothing.
 use super::Platform;
 use crate::{
-    db::{DbError, Row, Transaction},
+    db::{DbError, Row, Transaction, read_row},
     late::Late,
     queue::{self, Lane, NewJob, Notifier, Turn},
     shown::Shown,
@@ -16,7 +16,7 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-/// What a job is to do.
+/// The work of a job.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Order {
     /// The platform's link.
@@ -129,7 +129,7 @@ pub(super) struct Parcel {
     pub(super) stamp: i64,
 }
 
-/// What is to be sent for an order; nothing when there is nothing to tell (any more). Gives the content its time.
+/// The score to send for an order; nothing when there is nothing to tell (any more). Gives the content its time.
 pub(super) async fn prepare(transaction: &mut Transaction, order: Order) -> Result<Option<Parcel>, DbError> {
     let statement =
         "SELECT platform.id, platform.name, platform.settings, platform_account.subject, platform_link.line_item,
@@ -166,21 +166,17 @@ pub(super) async fn prepare(transaction: &mut Transaction, order: Order) -> Resu
             .await?
             .int("stamp")?,
     };
-    Ok(Some(Parcel {
+    let row = &row;
+    Ok(Some(read_row!(row => Parcel {
+        subject, line_item, line_items, resource, slug, title;
+        platform: Platform::read(row)?,
         order,
-        subject: row.text("subject")?,
-        line_item: row.maybe_text("line_item")?,
-        line_items: row.maybe_text("line_items")?,
-        resource: row.text("resource")?,
-        slug: row.text("slug")?,
-        title: row.text("title")?,
-        platform: Platform::read(&row)?,
         content,
         stamp,
-    }))
+    })))
 }
 
-/// What somebody's work on an assignment is worth: the most points of all their submissions. While there are none the
+/// The worth of somebody's work on an assignment: the most points of all their submissions. While there are none the
 /// platform is told that they come, and when the grader failed, that somebody has to look: never a zero that nobody
 /// earned. Of groups that are hidden and not published platforms hear nothing: they show what they hear.
 async fn content(transaction: &mut Transaction, assignment: i64, account: i64) -> Result<Option<Value>, DbError> {

@@ -40,7 +40,7 @@ const MAKING: i64 = 90_000;
 const LOOKS: u32 = 100;
 const LOOK_AGAIN: Duration = Duration::from_millis(250);
 
-/// Who holds the jobs.
+/// The holder of the jobs.
 const CLAIMANT: Claimant<'static> = Claimant { worker: "scores", is_idle: true, token: None };
 
 /// Sends scores until `stop` is cancelled. What was sent and not noted then is sent once more, and changes nothing.

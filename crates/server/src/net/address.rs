@@ -31,7 +31,7 @@ impl Networks {
         self.0.iter().any(|network| network.contains(&address))
     }
 
-    /// Who asks, by a request's headers: the last address that none of these networks speaks for. What stands before it
+    /// The asker, by a request's headers: the last address that none of these networks speaks for. An address before it
     /// may be anybody's invention.
     pub(super) fn client(&self, peer: IpAddr, headers: &HeaderMap) -> IpAddr {
         let mut client = peer;

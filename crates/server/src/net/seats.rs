@@ -145,7 +145,7 @@ impl Drop for Seat {
     fn drop(&mut self) {
         self.asked();
         let mut plan = self.seats.plan();
-        // Who was cut gave the place up then.
+        // A connection that was cut gave the place up then.
         let left = !self.cut.is_cancelled();
         plan.taken -= usize::from(left);
         if let Some(guests) = plan.addresses.get_mut(&self.address) {

@@ -1,14 +1,14 @@
 //! Claiming.
 use super::{Claim, Lane, Lease, QueuePolicy, SUSPECTED_AFTER, millis};
 use crate::{
-    db::{DbError, Transaction},
+    db::{DbError, Transaction, read_row},
     secret, values,
 };
 
 /// The one who claims.
 #[derive(Debug, Clone, Copy)]
 pub struct Claimant<'a> {
-    /// What the worker is called.
+    /// The worker's name.
     pub worker: &'a str,
     /// Whether it runs nothing else, and would run a suspected job alone. One that is busy leaves these to others,
     /// until their turn has come all the same; then it has to wait until its other jobs have ended.
@@ -51,13 +51,9 @@ pub async fn claim(
     let row = transaction
         .one(statement, values![worker, &key, millis(policy.lease), token, SUSPECTED_AFTER, is_idle, job])
         .await?;
-    Ok(Some(Claim {
-        lease: Lease { job, attempt: row.int("attempt")?, key },
-        submission: row.maybe_int("submission")?,
-        payload: row.text("payload")?,
-        failures: row.int("failures")?,
-        deaths: row.int("deaths")?,
-    }))
+    let lease = Lease { job, attempt: row.int("attempt")?, key };
+    let row = &row;
+    Ok(Some(read_row!(row => Claim { submission, payload, failures, deaths; lease })))
 }
 
 /// Whether something in a lane is to be looked at: a job whose turn has come, or one that somebody holds, and may have

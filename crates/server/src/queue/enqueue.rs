@@ -69,9 +69,9 @@ impl Turn {
 /// A job to be put into the queue.
 #[derive(Debug, Clone)]
 pub struct NewJob<'a> {
-    /// What it is done by.
+    /// The lane that does it.
     pub lane: Lane,
-    /// What it is about.
+    /// The submission that it is about.
     pub submission: Option<i64>,
     /// The regrade that it belongs to.
     pub campaign: Option<i64>,

@@ -1,4 +1,5 @@
-//! What the holder of a lease may say. Everything is fenced: it counts only while the job runs under this very lease.
+//! The words that the holder of a lease may say. Everything is fenced: it counts only while the job runs under this
+//! very lease.
 use super::{A_DAY, Lease, QueuePolicy, SUSPECTED_AFTER, SUSPECTED_LATER, millis};
 use crate::{
     db::{DbError, Row, Transaction},
@@ -8,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use std::time::Duration;
 use utoipa::ToSchema;
 
-/// What became of a wish to finish.
+/// The result of a wish to finish.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Completion {
     /// The job is done; the caller writes its result in the same transaction.
@@ -19,7 +20,7 @@ pub enum Completion {
     Late,
 }
 
-/// What became of a wish to give up.
+/// The result of a wish to give up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Failure {
     /// It waits again.
@@ -62,7 +63,7 @@ pub async fn renew(
     Ok(transaction.execute(statement, values).await? > 0)
 }
 
-/// What the holder of a lease is to do; nothing when the lease was lost.
+/// The task of the holder of a lease; nothing when the lease was lost.
 ///
 /// # Errors
 /// An error of the database.

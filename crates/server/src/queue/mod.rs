@@ -29,7 +29,7 @@ use serde::{Deserialize, Serialize};
 use std::time::Duration;
 use utoipa::ToSchema;
 
-/// What a job is done by.
+/// The kind of work that a job is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Lane {
@@ -125,7 +125,7 @@ impl QueuePolicy {
     }
 }
 
-/// What a worker shows for the job that it holds.
+/// The proof that a worker holds a job.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Lease {
     /// The job.
@@ -151,9 +151,9 @@ const SUSPECTED_LATER: Duration = Duration::from_secs(1800);
 pub struct Claim {
     /// The lease to show from now on.
     pub lease: Lease,
-    /// What the job is about.
+    /// The submission that the job is about.
     pub submission: Option<i64>,
-    /// What to do, as it was enqueued.
+    /// The task, as it was enqueued.
     pub payload: String,
     /// How often it failed before.
     pub failures: i64,

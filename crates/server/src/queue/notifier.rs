@@ -86,7 +86,7 @@ impl Notifier {
         let pool = PgPoolOptions::new().max_connections(1).connect_with(options.clone()).await?;
         let mut listener = PgListener::connect_with(&pool).await?;
         listener.listen(CHANNEL).await?;
-        // Whatever rang before is found by looking.
+        // An event whose message was lost is found by looking.
         self.wake();
         loop {
             listener.try_recv().await?;

@@ -8,7 +8,7 @@ use crate::{
     values,
 };
 
-/// What a tick found.
+/// The findings of a tick.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Tick {
     /// How many jobs wait again.
@@ -27,7 +27,7 @@ pub struct Buried {
     pub job: i64,
     /// The number of its last claim.
     pub attempt: i64,
-    /// What the last worker was called.
+    /// The last worker's name.
     pub worker: String,
     /// Why the last try came to nothing.
     pub fault: String,
@@ -48,7 +48,7 @@ pub async fn tick(transaction: &mut Transaction, policy: &QueuePolicy) -> Result
     }
     transaction.execute("UPDATE pulse SET beat_at = {now} WHERE id = 1", values![]).await?;
     if now < beat {
-        // What came after the last beat goes on before what comes now, too.
+        // Time that passed after the last beat goes on before what comes now, too.
         set_back(transaction, beat - now + millis(policy.tick_every())).await?;
     }
     // A clock that was set back, or far ahead, is an outage, too.

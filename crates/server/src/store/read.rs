@@ -29,7 +29,7 @@ impl Store {
     pub async fn open(&self, digest: &Digest, range: Option<Range<u64>>) -> Result<Opened, StoreError> {
         let options = || GetOptions { range: range.clone().map(GetRange::Bounded), ..GetOptions::default() };
         let mut found = self.objects.get_opts(&digest.key(), options()).await;
-        // What is put aside may be named since, and comes back.
+        // A file that is put aside may be named since, and comes back.
         if matches!(found, Err(object_store::Error::NotFound { .. })) {
             found = self.objects.get_opts(&digest.aside(), options()).await;
         }
@@ -83,7 +83,7 @@ impl Store {
     }
 }
 
-/// What was found, in pieces.
+/// The file that was found, in pieces.
 async fn pieces(found: GetResult) -> Result<BoxStream<'static, Result<Bytes, StoreError>>, StoreError> {
     let range = found.range.clone();
     match found.payload {

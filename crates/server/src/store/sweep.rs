@@ -14,7 +14,7 @@ const BATCH: usize = 500;
 
 /// Which of these artefacts something names.
 pub trait Names: Send {
-    /// What goes wrong when they are asked for.
+    /// The error when they are asked for.
     type Error: From<StoreError>;
 
     /// Those of these digests that are named.

@@ -166,7 +166,7 @@ fn complete_operation(operation: &mut Operation) {
     }
 }
 
-/// What stands in an address or a header, by its name.
+/// The schema of a part of an address or a header, by its name.
 fn complete_parameter(parameter: &mut Parameter) {
     let named = |name: &str| -> RefOr<Schema> { Ref::from_schema_name(name).into() };
     let text = |pattern: &str| -> RefOr<Schema> {

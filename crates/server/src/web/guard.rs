@@ -1,4 +1,4 @@
-//! What holds for every request: where it may come from, what answers say to browsers, and what is logged.
+//! The rules for every request: where it may come from, what answers say to browsers, and what is logged.
 use super::who;
 use crate::{access::App, problem::Problem};
 use axum::{
@@ -10,12 +10,12 @@ use axum::{
 use std::time::Instant;
 use tracing::Instrument;
 
-/// What pages may do: their own files only, in no frame.
+/// The rights of pages: their own files only, in no frame.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; \
                       form-action 'self'; base-uri 'none'; frame-src 'self'; frame-ancestors 'none'";
 
-/// What learning platforms send people to comes from other sites always: it is bound to this browser by a sign-in of
-/// its own.
+/// Requests to which learning platforms send people come from other sites always: each is bound to this browser by a
+/// sign-in of its own.
 const FROM_PLATFORMS: [&str; 2] = ["/lti/login", "/lti/launch"];
 
 /// Refuses what another site made a browser send. A token in a header can't be sent by one, so that requests with a

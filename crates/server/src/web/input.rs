@@ -17,7 +17,7 @@ pub(super) struct Text(pub(super) String);
 /// A body of a form.
 pub(super) struct Fields<T>(pub(super) T);
 
-/// What an address names; a part that it does not have is empty.
+/// The names in an address; a part that it does not have is empty.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct At {

@@ -1,4 +1,4 @@
-//! What is spoken over HTTP: the API, the pages, and what holds for both.
+//! HTTP: the API, the pages, and the rules for both.
 
 pub mod api;
 mod description;

@@ -27,7 +27,7 @@ use tokio::io::AsyncWriteExt;
 /// The longest that an upload may take, in pauses that a body may make.
 const PAUSES: u32 = 20;
 
-/// What a form may hold beside its file: boundaries, names, short fields.
+/// The bytes of a form beside its file: boundaries, names, short fields.
 const BESIDE: u64 = 256 * 1024;
 
 /// Counts what came of a form and was not taken by anybody: that lies in memory, and a form may be nothing else.
@@ -51,7 +51,7 @@ pub(super) struct Received {
     pub(super) file: TempPath,
     /// The sender's name for it.
     pub(super) name: Option<String>,
-    /// What kind of thing it is, where a form said so.
+    /// Its form (a program, sources, traces), where the request said so.
     pub(super) form: Option<String>,
     /// The sender's name for this upload.
     pub(super) key: Option<String>,
@@ -230,7 +230,7 @@ const PROGRAM: &str = "a program for Linux (ELF, or a script that begins with #!
 /// Files that are looked into at one time: an archive may need some 100 MiB to be unpacked, and all of a processor.
 static LOOKING: tokio::sync::Semaphore = tokio::sync::Semaphore::const_new(2);
 
-/// What kind of thing a file is, and whether it can be that.
+/// The form of a file, and whether it can be that.
 pub(super) async fn examine(file: &Path, said: Option<&str>) -> Result<Form, Problem> {
     let said = match said {
         None => None,

@@ -1,4 +1,4 @@
-//! Who asks: a handler says by the type of its argument whom it serves, and is not called for others.
+//! The roles of requests: a handler says by the type of its argument whom it serves, and is not called for others.
 use super::input::{At, SignedIn};
 use crate::{
     access::{Admin, App, Member, Person, Remote, Secrets, Staff, Visitor},
@@ -16,7 +16,7 @@ use std::sync::{Arc, OnceLock};
 pub(super) struct Renewed(Arc<OnceLock<String>>);
 
 impl Renewed {
-    /// What the cookie holds, if it is to be sent again.
+    /// The cookie's content, if it is to be sent again.
     pub(super) fn session(&self) -> Option<&str> {
         self.0.get().map(String::as_str)
     }

@@ -1,4 +1,4 @@
-//! What grades. Today that is the program `fosssim-oracle` as a child ([`super::Program`]); a worker does not care.
+//! The grader. Today that is the program `fosssim-oracle` as a child ([`super::Program`]); a worker does not care.
 use crate::task::{Outcome, Task};
 use std::{
     future::Future,
@@ -7,7 +7,7 @@ use std::{
 use thiserror::Error;
 use tokio_util::sync::CancellationToken;
 
-/// What a grading came to, with its files still in the working folder.
+/// The result of a grading, with its files still in the working folder.
 pub type Graded = Outcome<NewFile>;
 
 /// A file that belongs to a result.

@@ -1,4 +1,4 @@
-//! Who stands between a worker and its grader: a process that does nothing but wait, so that a grader which kills or
+//! The process between a worker and its grader. It does nothing but wait, so that a grader which kills or
 //! stops its parent meets the guard, and not the worker with all its other jobs.
 use std::{
     io,

@@ -4,7 +4,7 @@ use crate::{
     db::{Database, DbError},
     health, ledger,
     queue::{self, Claimant, Completion, Failure, Lane, Lease, Notifier, Progress, QueuePolicy, Subscription},
-    shown,
+    shown::{self, KeptTexts},
     store::{Artefact, Digest, Store, StoreError},
     task::{Outcome, Task},
 };
@@ -14,7 +14,7 @@ use tokio::sync::Mutex;
 /// How often a worker looks although nobody rang.
 const LOOK_EVERY: Duration = Duration::from_secs(1);
 
-/// What a job may take besides its grading, at least.
+/// The time that a job may take besides its grading, at least.
 const LEAST_MARGIN: Duration = Duration::from_secs(60);
 
 /// The database and the store as a source.
@@ -128,8 +128,8 @@ impl JobSource for LocalSource {
                 return Err(SourceError::Refused(format!("{} is not in the store", file.name)));
             }
         }
-        let shown = Some(shown::of_outcome(&self.store, &outcome.files).await?);
-        let outcome = Outcome { shown, ..outcome.clone() };
+        let KeptTexts { shown, failed } = shown::of_outcome(&self.store, &outcome.files).await?;
+        let outcome = Outcome { shown: Some(shown), failed, ..outcome.clone() };
         let mut transaction = self.database.begin().await?;
         let completion = ledger::finish(&mut transaction, lease, &outcome).await?;
         self.notifier.commit(transaction).await?;

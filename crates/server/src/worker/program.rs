@@ -46,7 +46,7 @@ pub struct Program {
     digested: Arc<Mutex<Option<(Stamp, String)>>>,
 }
 
-/// What tells one file at the grader's place from another: number, size and time.
+/// The facts that tell one file at the grader's place from another: number, size and time.
 type Stamp = (u64, u64, i64, i64);
 
 impl Program {

@@ -1,7 +1,10 @@
-//! What the grader wrote about a submission, as far as the service understands it; the rest goes to people.
+//! The grader's words about a submission, as far as the service understands them; the rest goes to people.
 use super::Graded;
-use crate::{store::Digest, task::WrongScene};
-use serde::Deserialize;
+use crate::{
+    grade_file::{GradeFile, GradeInFile, SceneInFile},
+    store::Digest,
+    task::WrongScene,
+};
 use serde_json::Value;
 use std::{fs, path::Path};
 
@@ -9,65 +12,14 @@ use std::{fs, path::Path};
 /// may be older; what is read here was the same in both.
 const SCHEMAS: std::ops::RangeInclusive<u32> = 3..=4;
 
-/// What is measured, or tells of the machine and not of the submission.
+/// The fields that are measured, or tell of the machine and not of the submission.
 const MEASURED: [&str; 5] = ["cpu_seconds", "wall_seconds", "memory_bytes", "cached", "sandbox"];
-
-/// The part of `schemas/grade.schema.json` that is read.
-#[derive(Debug, Deserialize)]
-struct Report {
-    schema: u32,
-    version: String,
-    grades: Vec<ReportedGrade>,
-}
-
-#[derive(Debug, Deserialize)]
-struct ReportedGrade {
-    verdict: String,
-    code: String,
-    points: Option<serde_json::Number>,
-    max_points: Option<serde_json::Number>,
-    #[serde(default)]
-    likely_mistake: Option<Value>,
-    #[serde(default)]
-    groups: Vec<Group>,
-}
-
-#[derive(Debug, Deserialize)]
-struct Group {
-    scenes: Vec<Scene>,
-}
-
-#[derive(Debug, Deserialize)]
-struct Scene {
-    #[serde(default)]
-    scene: String,
-    code: String,
-    #[serde(default)]
-    summary: String,
-    #[serde(default)]
-    right_steps: u32,
-    /// Where it diverges first, and how many findings there are of each kind.
-    #[serde(default)]
-    details: Vec<String>,
-    #[serde(default)]
-    explanations: Vec<Explanation>,
-}
-
-/// A mistake that explains wrong steps.
-#[derive(Debug, Deserialize)]
-struct Explanation {
-    key: String,
-    #[serde(default)]
-    reproduced: u64,
-    #[serde(default)]
-    samples: u64,
-}
 
 /// Numbers keep their digits: the text that the grader wrote is what counts.
 pub(super) fn read_grade(file: &Path) -> Result<Graded, String> {
     let bytes = fs::read(file).map_err(|error| format!("the grader wrote no grade.json: {error}"))?;
     let damaged = |error: serde_json::Error| format!("grade.json can't be read: {error}");
-    let report: Report = serde_json::from_slice(&bytes).map_err(damaged)?;
+    let report: GradeFile = serde_json::from_slice(&bytes).map_err(damaged)?;
     if !SCHEMAS.contains(&report.schema) {
         let (first, last) = SCHEMAS.into_inner();
         return Err(format!("grade.json has schema {}, this server reads {first} to {last}", report.schema));
@@ -78,11 +30,11 @@ pub(super) fn read_grade(file: &Path) -> Result<Graded, String> {
     if grade.code == crate::task::JUDGE_ERROR {
         return Err("the grade is a judge error".to_owned());
     }
-    let scenes: Vec<&Scene> = grade.groups.iter().flat_map(|group| &group.scenes).collect();
+    let scenes = grade.scenes();
     let accepted = scenes.iter().filter(|scene| scene.code == "AC").count();
     let mut summary = format!("{accepted} of {} scenes accepted", scenes.len());
-    if let Some(Value::String(mistake)) = &grade.likely_mistake {
-        summary = format!("{summary}; {mistake}");
+    if let Some(mistake) = grade.likely_mistakes.first() {
+        summary = format!("{summary}; {}", mistake.text);
     }
     Ok(Graded {
         verdict: grade.verdict.clone(),
@@ -97,10 +49,11 @@ pub(super) fn read_grade(file: &Path) -> Result<Graded, String> {
         seconds: "0".to_owned(),
         files: Vec::new(),
         shown: None,
+        failed: None,
     })
 }
 
-/// What `grade.json` says of the submission: without measurements, in one order, as compact text.
+/// The text of a `grade.json` about the submission: without measurements, in one order, and compact.
 ///
 /// # Errors
 /// When it is no JSON.
@@ -125,20 +78,20 @@ fn is_nearly_right(wrong: usize, scenes: usize) -> bool {
     wrong <= 1 || wrong * 10 <= scenes
 }
 
-/// What a submission that is nearly right answers where it is not.
-fn wrong(scenes: &[&Scene]) -> Vec<WrongScene> {
-    let wrong: Vec<&&Scene> = scenes.iter().filter(|scene| scene.code != "AC").collect();
+/// The answers of a submission that is nearly right, where it is not.
+fn wrong(scenes: &[&SceneInFile]) -> Vec<WrongScene> {
+    let wrong: Vec<&&SceneInFile> = scenes.iter().filter(|scene| scene.code != "AC").collect();
     if !is_nearly_right(wrong.len(), scenes.len()) {
         return Vec::new();
     }
     // Of a program that crashed or was too slow nobody knows what it would have answered.
     let answered = wrong.into_iter().filter(|scene| scene.code == "WA");
-    let answer = |scene: &Scene| {
+    let answer = |scene: &SceneInFile| {
         let explained =
             scene.explanations.iter().map(|known| format!("{} {} {}", known.key, known.reproduced, known.samples));
         let first = format!("{} {} {}", scene.code, scene.right_steps, scene.summary);
-        // What hints hide is not told here either: then the steps that are right, and the first that is not, have to
-        // do.
+        // Facts that hints hide are not told here either: then the steps that are right, and the first that is not,
+        // have to do.
         [vec![first], scene.details.clone(), explained.collect()].concat().join("\n")
     };
     answered
@@ -152,6 +105,7 @@ fn wrong(scenes: &[&Scene]) -> Vec<WrongScene> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::grade_file::MistakeInFile;
 
     /// A grader of another schema would make every grading a judge error.
     #[test]
@@ -163,6 +117,21 @@ mod tests {
         for name in MEASURED.iter().chain(&["right_steps", "summary", "scene"]) {
             assert!(text.contains(&format!("\"{name}\"")), "the schema has no {name}");
         }
+    }
+
+    /// As `schemas/grade.schema.json` has it: a list of explanations, whose sentence is their text. One wrong scene is
+    /// enough.
+    #[test]
+    fn the_likely_mistake_is_told_in_its_sentence() {
+        let grade = r#"{"schema": 4, "version": "1", "grades": [{"verdict": "wrong answer", "code": "WA", "points": 0,
+            "max_points": 1, "likely_mistake": null, "likely_mistakes": [
+            {"key": "k", "text": "The impulse lacks a factor."}, {"key": "l", "text": "Another."}],
+            "groups": [{"points": 0, "max_points": 1, "scenes": [{"scene": "a", "code": "WA"}]}]}]}"#;
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("grade.json");
+        std::fs::write(&file, grade).expect("a file");
+        let graded = read_grade(&file).expect("a grade");
+        assert_eq!(graded.summary, "0 of 1 scenes accepted; The impulse lacks a factor.");
     }
 
     #[test]
@@ -181,24 +150,24 @@ mod tests {
 
     #[test]
     fn answers_are_told_of_submissions_that_are_nearly_right() {
-        let scene = |code: &str, right_steps| Scene {
+        let scene = |code: &str, right_steps| SceneInFile {
             scene: "a".to_owned(),
             code: code.to_owned(),
             summary: "at step 3".to_owned(),
             right_steps,
             details: vec!["counts: wrong coefficient (11)".to_owned()],
-            explanations: Vec::new(),
+            ..SceneInFile::default()
         };
         let (right, one, same, other, slow) =
             (scene("AC", 9), scene("WA", 2), scene("WA", 2), scene("WA", 3), scene("TLE", 2));
         assert_eq!(wrong(&[&right, &right]), []);
-        let answer = |scenes: &[&Scene]| wrong(scenes).first().map(|wrong| wrong.answer.clone());
+        let answer = |scenes: &[&SceneInFile]| wrong(scenes).first().map(|wrong| wrong.answer.clone());
         assert_eq!(answer(&[&right, &one]), answer(&[&right, &same]));
         assert_ne!(answer(&[&right, &one]), answer(&[&right, &other]));
         // As far right, and wrong in another way.
-        let other_way = Scene { details: vec!["counts: wrong coefficient (12)".to_owned()], ..scene("WA", 2) };
-        let explanation = Explanation { key: "a-mistake".to_owned(), reproduced: 6, samples: 6 };
-        let explained = Scene { explanations: vec![explanation], ..scene("WA", 2) };
+        let other_way = SceneInFile { details: vec!["counts: wrong coefficient (12)".to_owned()], ..scene("WA", 2) };
+        let explanation = MistakeInFile { key: "a-mistake".to_owned(), reproduced: 6, samples: 6 };
+        let explained = SceneInFile { explanations: vec![explanation], ..scene("WA", 2) };
         assert_ne!(answer(&[&right, &one]), answer(&[&right, &other_way]));
         assert_ne!(answer(&[&right, &one]), answer(&[&right, &explained]));
         assert_eq!(answer(&[&right, &slow]), None);

@@ -4,7 +4,7 @@ use crate::{
     queue::{Lease, Progress},
     store::{Artefact, Digest, digest_of_file},
     task::Outcome,
-    wire::{Alive, Claimed, Fault, Finished, Held, Manners, Renewal},
+    wire::{Alive, Claimed, Finished, JobFault, LeaseAnswer, Manners, Renewal},
 };
 use serde::{Serialize, de::DeserializeOwned};
 use std::{
@@ -51,7 +51,7 @@ impl RemoteSource {
     /// A source at a server's address, for a worker of this name.
     pub fn new(server: &str, token: &str, name: &str) -> Self {
         let agent = Agent::config_builder()
-            // What a server says with a status is looked at here.
+            // A status is looked at here, with the server's words about it.
             .http_status_as_error(false)
             // The token goes to this server and nowhere else.
             .max_redirects(0)
@@ -81,7 +81,7 @@ impl RemoteSource {
     }
 
     async fn held(&self, path: &'static str, body: impl Serialize + Send + 'static) -> Result<Answer, SourceError> {
-        let held: Held = self.call(move |parts| parts.json(path, &body)).await?;
+        let held: LeaseAnswer = self.call(move |parts| parts.json(path, &body)).await?;
         Ok(if held.held { Answer::Held } else { Answer::Lost })
     }
 }
@@ -124,7 +124,7 @@ impl Parts {
     }
 }
 
-/// What a status means: a server that is away for a moment, or one that will never agree.
+/// The meaning of a status: a server that is away for a moment, or one that will never agree.
 fn checked(mut answer: Response<Body>) -> Result<Response<Body>, SourceError> {
     let status = answer.status();
     if status.is_success() {
@@ -181,7 +181,7 @@ impl JobSource for RemoteSource {
     }
 
     async fn fail(&self, lease: &Lease, fault: &str) -> Result<Answer, SourceError> {
-        self.held("fail", Fault { lease: lease.clone(), fault: fault.to_owned() }).await
+        self.held("fail", JobFault { lease: lease.clone(), fault: fault.to_owned() }).await
     }
 
     async fn fetch(&self, lease: &Lease, digest: &Digest, file: &Path) -> Result<(), SourceError> {

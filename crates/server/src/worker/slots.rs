@@ -143,7 +143,7 @@ impl SlotPermit {
         }
     }
 
-    /// What a job needs; one that must run alone waits until the others have ended.
+    /// The permit that a job needs; one that must run alone waits until the others have ended.
     async fn for_job(self, alone: bool, gate: Arc<RwLock<()>>) -> Self {
         match self {
             Self::Alone(guard) if !alone => Self::Shared(guard.downgrade()),
@@ -206,7 +206,7 @@ async fn run<D: JobSource, G: Grader>(
             }
         }
     };
-    // What the grader failed on may be the machine's fault; that costs the submission no try.
+    // A failure of the grader may be the machine's fault; that costs the submission no try.
     let ending = match ending {
         JobEnding::Failed(fault) if !health.survives(&stop).await => {
             tracing::warn!(job = job.lease.job, fault, "the job goes to another worker");

@@ -18,7 +18,7 @@ const MESSAGE: usize = 2000;
 /// Has the grader look at the suite in a folder. A grader that knows no `suite check` has no objections.
 ///
 /// # Errors
-/// What the grader says is wrong with it, without the folders of this machine.
+/// The grader's objections, without the folders of this machine.
 pub async fn check_suite(grader: &Path, folder: &Path) -> Result<(), String> {
     let messages = tempfile::NamedTempFile::new_in(folder).map_err(|error| error.to_string())?;
     let mut command = Command::new(grader);

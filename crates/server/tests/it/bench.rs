@@ -1,14 +1,13 @@
-//! `fosssim-server bench`, on a short ladder: what it measures works, and says so.
+//! The benchmark of the service, on a short ladder: its clients get answers, and its table says so.
 use crate::support::engines::{Fresh, run};
 use fosssim_server::db::Address;
-use std::process::Command;
+
+#[path = "../../benches/students/main.rs"]
+mod students;
 
 fn bench(arguments: &[&str]) -> String {
-    let output = Command::new(env!("CARGO_BIN_EXE_fosssim-server")).arg("bench").args(arguments).output();
-    let output = output.expect("the bench");
-    let (said, log) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
-    assert!(output.status.success(), "{said}\n{log}");
-    said.into_owned()
+    let words = ["bench"].iter().chain(arguments).map(std::ffi::OsString::from);
+    students::run(words).expect("the bench")
 }
 
 fn climbs(database: &[&str]) {
@@ -28,11 +27,9 @@ fn the_ladder_is_climbed_on_sqlite() {
 
 #[test]
 fn the_ladder_is_climbed_on_postgres() {
-    run(async {
-        let Some(fresh) = Fresh::postgres().await else { return };
-        let Address::Postgres(url) = &fresh.address else { panic!("no address of PostgreSQL") };
-        climbs(&["--database", url]);
-    });
+    let Some(fresh) = run(Fresh::postgres()) else { return };
+    let Address::Postgres(url) = &fresh.address else { panic!("no address of PostgreSQL") };
+    climbs(&["--database", url]);
 }
 
 #[test]

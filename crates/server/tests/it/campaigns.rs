@@ -99,7 +99,7 @@ async fn a_class_is_graded_again_in_the_background(fresh: Fresh) {
         serde_json::from_str(&row.and_then(|row| row.text("payload")).expect("text")).expect("a task");
     drop(transaction);
     assert_eq!((task.submission.name.as_str(), task.submission.artefact.size), ("FOSS\"Sim", 12));
-    // What came in while it began is graded, too.
+    // A submission that came in while it began is graded, too.
     let path = format!("{BASE}/{id}");
     grade_all(&fresh).await;
     let start = Instant::now();

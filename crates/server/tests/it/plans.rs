@@ -1,4 +1,4 @@
-//! What is asked all the time goes by indexes, however many rows there are. `FOSSSIM_ROWS=1000000` makes them a
+//! Statements that run all the time go by indexes, however many rows there are. `FOSSSIM_ROWS=1000000` makes them a
 //! million.
 use crate::support::{
     engines::{Fresh, run},

@@ -293,7 +293,7 @@ async fn students_take_turns(fresh: Fresh) {
     let third_first = enqueue(database, third).await;
     let calm_second = enqueue(database, calm).await;
     assert_eq!(claim_all(database).await, [own[0], calm_first, third_first, own[1], calm_second, own[2]]);
-    // Who has nothing in the queue pays for nothing that was.
+    // An account with nothing in the queue pays for nothing that was.
     let again = enqueue(database, busy).await;
     let other = enqueue(database, calm).await;
     assert_eq!(claim_all(database).await, [again, other]);

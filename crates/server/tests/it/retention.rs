@@ -1,4 +1,4 @@
-//! What is too old is not kept any longer, and nothing else goes away.
+//! Files that are too old are not kept any longer, and nothing else goes away.
 use crate::support::{
     engines::{Fresh, on_both_engines, run},
     server::{Server, program},
@@ -12,7 +12,7 @@ use std::{collections::HashSet, time::Duration};
 
 on_both_engines!(old_uploads_go_and_grades_stay);
 
-/// What a test says is named.
+/// The digests that a test says are named.
 struct Named<F>(F);
 
 impl<F: FnMut(&Digest) -> bool + Send> Names for Named<F> {
@@ -94,7 +94,7 @@ fn what_somebody_stores_meanwhile_is_not_lost() {
         // Stored once more it is young again, and its name may be on its way to the database.
         store.put(b"two".to_vec()).await.expect("stored");
         let day = Duration::from_secs(24 * 3600);
-        // What a killed server left of an upload, and what another is just writing.
+        // The parts that a killed server left of an upload, and that another is just writing.
         let part = |end: &str| place("sha256", &two).with_file_name(format!("{}#{end}", &two.as_str()[2..]));
         for (end, hours) in [("1", 48), ("2", 1)] {
             std::fs::write(part(end), b"tw").expect("written");
@@ -102,12 +102,12 @@ fn what_somebody_stores_meanwhile_is_not_lost() {
         }
         assert_eq!(store.give_up(day, &mut Named(|_: &Digest| false)).await.expect("done"), 1, "the old part");
         assert!(!part("1").exists() && part("2").exists());
-        // What is put aside lies there for a day, and is read meanwhile.
+        // A file that is put aside lies there for a day, and is read meanwhile.
         assert_eq!(store.bytes(&one, 10).await.expect("the bytes"), b"one");
         age(&place("aside", &one), 25);
         assert_eq!(store.give_up(day, &mut Named(|_: &Digest| false)).await.expect("done"), 1);
         assert!(!store.has(&one).await.expect("the store") && store.has(&two).await.expect("the store"));
-        // What a server that died had put aside comes back when it is named.
+        // A file that a server had put aside before it died comes back when it is named.
         age(&place("sha256", &two), 48);
         std::fs::create_dir_all(place("aside", &two).parent().expect("a folder")).expect("a folder");
         std::fs::rename(place("sha256", &two), place("aside", &two)).expect("moved");

@@ -66,6 +66,7 @@ impl Grader for Watchful {
             wrong: Vec::new(),
             seconds: "0".to_owned(),
             shown: None,
+            failed: None,
             files: Vec::new(),
         })
     }

@@ -38,8 +38,8 @@ pub(super) fn run(arguments: &Render) -> Result<u8> {
     let scene = input::scene(&arguments.scene)?;
     let picks = picks(arguments, form, &scene.scene)?;
     let Some(rate) = Rate::new(arguments.fps) else { bail!("--fps may be 1 to {}", crate::render::film::FASTEST) };
-    // What can't work is said before the work is done.
-    let target = Target::open(form, arguments)?;
+    // An output that can't work is said before the work is done.
+    let target = RenderTarget::open(form, arguments)?;
     let main = match &arguments.trace {
         Some(trace) => motion::traced(&scene.scene, trace, picks)?,
         None => motion::reference(&scene.scene, picks)?,
@@ -57,7 +57,7 @@ pub(super) fn run(arguments: &Render) -> Result<u8> {
         .collect();
     let options = PictureOptions { size: arguments.size, label: !arguments.no_label };
     let mut reel = Reel::new(&scene.scene, main, overlay, options, picks);
-    let to_stdout = matches!(target, Target::Stream(_)) && arguments.output == Path::new("-");
+    let to_stdout = matches!(target, RenderTarget::Stream(_)) && arguments.output == Path::new("-");
     let place = input::shown(&arguments.output);
     let words = target.draw(form, &mut reel, rate).map_err(|error| match error.is::<std::io::Error>() {
         true => error.context(format!("cannot write {place}")),
@@ -233,12 +233,12 @@ impl Reel {
 }
 
 /// Where pictures go.
-enum Target {
+enum RenderTarget {
     Folder(Folder),
     Stream(Output),
 }
 
-impl Target {
+impl RenderTarget {
     fn open(form: Form, arguments: &Render) -> Result<Self> {
         let inputs: Vec<Identity> = [Some(&arguments.scene), arguments.trace.as_ref(), arguments.overlay.as_ref()]
             .into_iter()
@@ -309,13 +309,13 @@ impl Target {
             }
             (Self::Stream(output), Form::Mp4) => {
                 let mut encoder = Ffmpeg::start(size, rate, output)?;
-                // What ffmpeg says when it ends early explains more than that its pipe is closed.
+                // The words of ffmpeg when it ends early explain more than that its pipe is closed.
                 let drawn = reel.each_raster(|_, raster| encoder.picture(raster.rgba()));
                 encoder.finish(drawn)?;
                 Ok(film(0))
             }
             (Self::Stream(output), form) => {
-                let mut out = Counted { out: BufWriter::new(output), bytes: 0 };
+                let mut out = CountedWriter { out: BufWriter::new(output), bytes: 0 };
                 if form == Form::Gif {
                     let mut film = Gif::new(&mut out, size, rate, &reel.painter.colours())?;
                     reel.each_raster(|_, raster| Ok(film.picture(raster)?))?;
@@ -354,12 +354,12 @@ fn picture(
 }
 
 /// A writer that counts.
-struct Counted<W> {
+struct CountedWriter<W> {
     out: W,
     bytes: u64,
 }
 
-impl<W: Write> Write for Counted<W> {
+impl<W: Write> Write for CountedWriter<W> {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
         let count = self.out.write(bytes)?;
         self.bytes += count as u64;

@@ -8,11 +8,12 @@ mod passes;
 mod polynomials;
 
 use super::{
-    contact,
+    contact::{self, Tolerances},
     context::{Context, Followed, Records},
     formulas::{BoundedPairMotion, Expected},
     sensitivity::Sensitivity,
     step_judgement::StepJudgement,
+    unapplied,
 };
 use crate::{
     contacts::Contacts,
@@ -20,8 +21,9 @@ use crate::{
 };
 use at_once::Floors;
 use decisions::Own;
-use fosssim_model::sim::{
-    ByKind, Decision, Detection, Observer, Pair, PairKind, Pass, Resume, Stage, State, Steer, Zone,
+use fosssim_model::{
+    scene::Collision,
+    sim::{ByKind, Decision, Detection, Observer, Pair, PairKind, Pass, Resume, Stage, State, Steer, Zone},
 };
 use fosssim_num::{certificate::exclusion_of, polynomial::Polynomial};
 
@@ -159,9 +161,22 @@ impl<'a> Follower<'a> {
         self.settle_passes();
         self.settle_impulses();
         if !self.tainted[1] {
-            let frame = self.records.frame;
-            let bounds = self.sensitivity.map(|known| &known.end);
-            contact::states(self.context, &mut self.judged, frame, state, &self.records.end.state, bounds);
+            self.settle_states(state);
+        }
+    }
+
+    /// Compares the states at the end of the step, with pairs left out where these explain the trace's.
+    fn settle_states(&mut self, own: &State) {
+        let Records { frame, before, end, .. } = self.records;
+        let tolerances = Tolerances::of(self.context, own, self.sensitivity.map(|known| &known.end));
+        let known = matches!(self.context.scene.collision, Collision::Penalty { .. }).then(|| self.judged.clone());
+        contact::states(&mut self.judged, frame, own, &end.state, &tolerances);
+        let Some(known) = known.filter(|known| known.total() < self.judged.total()) else { return };
+        let explained = unapplied::explain(self.context, &tolerances, before, own, &end.state);
+        if let Some((pairs, faulty)) = explained {
+            self.judged = known;
+            pairs.into_iter().for_each(|detail| self.charge(detail));
+            contact::states(&mut self.judged, frame, &faulty, &end.state, &tolerances);
         }
     }
 
@@ -294,7 +309,8 @@ impl Steer for Follower<'_> {
         }
         if !self.tainted[0] {
             let bounds = self.sensitivity.map(|known| &known.mid);
-            contact::states(self.context, &mut self.judged, self.records.frame - 1, state, &mid.state, bounds);
+            let tolerances = Tolerances::of(self.context, state, bounds);
+            contact::states(&mut self.judged, self.records.frame - 1, state, &mid.state, &tolerances);
         }
         let is_finite = mid.state.positions.iter().chain(&mid.state.velocities).all(|value| value.is_finite());
         if is_finite {

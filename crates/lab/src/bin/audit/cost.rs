@@ -1,4 +1,4 @@
-//! What judging costs at most: traces whose states make the reference work as long as can be, on all scenes that come
+//! The highest cost of judging: traces whose states make the reference work as long as can be, on all scenes that come
 //! with the program and on those of a corpus.
 //!
 //! A trace chooses the state that each step starts from. Here whole states are drawn: small and subnormal numbers,

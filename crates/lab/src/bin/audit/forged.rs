@@ -58,7 +58,7 @@ pub fn scenes(corpus: Option<&Path>) -> Vec<(String, Vec<u8>)> {
 }
 
 /// All scenes below a folder.
-fn scene_files(folder: &Path) -> Vec<PathBuf> {
+pub(super) fn scene_files(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for path in std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()) {
         if path.is_dir() {

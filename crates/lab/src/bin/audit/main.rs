@@ -16,7 +16,8 @@
 //! `audit judging [CORPUS or part of a sample's id]` judging by the shortcuts with the full way; `audit
 //! drawn [traces] [seed]` does so on random traces. `audit forged [of each scene] [seed] [CORPUS]` looks for wrong
 //! traces that the fair rules accept, and for programs with factors that they refuse. `audit cost [of each scene]
-//! [seed] [CORPUS]` looks for traces that take long to judge.
+//! [seed] [CORPUS]` looks for traces that take long to judge. `audit states [CORPUS]` runs right programs in other
+//! arithmetic where traces hold states.
 #![forbid(unsafe_code)]
 use std::{
     fmt::Write as _,
@@ -39,6 +40,7 @@ mod drawn;
 mod forged;
 mod judging;
 mod lanes;
+mod states;
 
 use decisions::Decisions;
 
@@ -52,6 +54,9 @@ fn main() -> ExitCode {
             eprintln!("{error:#}");
             ExitCode::from(2)
         });
+    }
+    if words.next_if(|word| word == "states").is_some() {
+        return states::run(words.next().as_deref().map(std::path::Path::new));
     }
     let is_cost = words.next_if(|word| word == "cost").is_some();
     if is_cost || words.next_if(|word| word == "forged").is_some() {
@@ -67,7 +72,7 @@ fn main() -> ExitCode {
     let mut arguments = words.map(|argument| argument.parse::<u64>());
     let (Ok(detections), Ok(seed)) = (arguments.next().unwrap_or(Ok(1_000_000)), arguments.next().unwrap_or(Ok(1)))
     else {
-        eprintln!("usage: audit [lanes|drawn|forged|cost] [detections] [seed]");
+        eprintln!("usage: audit [judging|states|lanes|drawn|forged|cost] [detections] [seed]");
         return ExitCode::from(2);
     };
     if of_drawn {

@@ -1,125 +1,27 @@
-//! Everything that a student's program can do differently: one row each.
-//!
-//! Three kinds: `wrong` programs misunderstand something and leave another trace; `variant`s are correct but for
-//! round-off or a positive factor; `hostile` ones try the harness, not the physics. The place in the simulation where
-//! a mistake is made asks [`Student::makes`](crate::student::Student::makes).
-pub use fosssim_findings::explanation::Area;
-use fosssim_model::sim::PairKind;
+//! Mistakes and variants of a student's program in collision handling, in its trace, and as a process.
+use super::super::{
+    rows::{RowOf, rows},
+    states::{ForceMistake, StepMistake},
+};
 
-/// What is to be thought of a row.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum RowKind {
-    /// A mistake: the result is wrong.
-    Wrong,
-    /// No mistake: other arithmetic, the same mathematics.
-    Variant,
-    /// A program that harms itself or others.
-    Hostile,
-}
+/// A row of any table.
+pub type Row = RowOf<Mistake>;
 
-impl RowKind {
-    /// Its name in listings.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Wrong => "wrong",
-            Self::Variant => "variant",
-            Self::Hostile => "hostile",
-        }
+impl From<ForceMistake> for Mistake {
+    fn from(mistake: ForceMistake) -> Self {
+        Self::Force(mistake)
     }
 }
 
-/// One row of the catalogue.
-#[derive(Debug, Clone, Copy)]
-pub struct Row {
-    /// The mistake, for the program.
-    pub mistake: Mistake,
-    /// The mistake, for the user.
-    pub id: &'static str,
-    /// Wrong, correct, or hostile.
-    pub kind: RowKind,
-    /// Where it is made.
-    pub area: Area,
-    /// What is wrong, in one sentence, as a teacher would say it: no formula, no symbol, no number, so that it gives
-    /// nothing away.
-    pub what: &'static str,
-    /// The exact form: what stands there and what belongs there, in the assignment's notation.
-    pub term: &'static str,
-}
-
-impl Row {
-    /// What is wrong, with the part of the program in front.
-    #[must_use]
-    pub fn sentence(&self) -> String {
-        format!("{}: {}", self.place(), self.what)
-    }
-
-    /// The kind of pair for which alone the mistake is made.
-    #[must_use]
-    pub fn kind_of_pair(&self) -> Option<PairKind> {
-        PairKind::ALL.into_iter().find(|kind| kind.name().eq_ignore_ascii_case(self.place()))
-    }
-
-    /// The part of the program in which the mistake is made: the kind of pair where it is made for one kind only, else
-    /// the part of the assignment.
-    #[must_use]
-    pub fn place(&self) -> &'static str {
-        match (self.id.split_once('-'), self.area) {
-            (Some(("pp", _)), _) => "Particle-particle",
-            (Some(("pe", _)), _) => "Particle-edge",
-            (Some(("ph", _)), _) => "Particle-half-plane",
-            (_, Area::ParticleParticle) => "Particle-particle",
-            (_, Area::ParticleEdge) => "Particle-edge",
-            (_, Area::ParticleHalfPlane) => "Particle-half-plane",
-            (_, Area::Handover) => "Hand-over to the root finder",
-            (_, Area::ContactVector) => "Contact vector",
-            (_, Area::Decision) => "Detection",
-            (_, Area::Response) => "Collision response",
-            (_, Area::ContinuousTime) => "Continuous-time pass",
-            (_, Area::ImpulseLoop) => "Impulse loop",
-            (_, Area::ImpactZones) => "Impact zones",
-            (_, Area::Failsafe) => "Rigid failsafe",
-            (_, Area::Trace) => "Trace",
-            (_, Area::Process) => "Program",
-        }
+impl From<StepMistake> for Mistake {
+    fn from(mistake: StepMistake) -> Self {
+        Self::Step(mistake)
     }
 }
 
-/// The row with this id.
-pub fn find(id: &str) -> Option<&'static Row> {
-    CATALOGUE.iter().find(|row| row.id == id)
-}
-
-macro_rules! catalogue {
-    ($($kind:ident $area:ident { $($mistake:ident $id:literal: $what:literal => $term:literal;)* })*) => {
-        /// Something that a program does differently.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-        pub enum Mistake {
-            $($(#[doc = $what] $mistake,)*)*
-        }
-
-        impl Mistake {
-            /// The part of the assignment that it belongs to.
-            pub const fn area(self) -> Area {
-                match self {
-                    $($(Self::$mistake => Area::$area,)*)*
-                }
-            }
-        }
-
-        /// All rows, in the order of the assignment.
-        pub const CATALOGUE: &[Row] = &[$($(Row {
-            mistake: Mistake::$mistake,
-            id: $id,
-            kind: RowKind::$kind,
-            area: Area::$area,
-            what: $what,
-            term: $term,
-        },)*)*];
-    };
-}
-
-catalogue! {
+rows! {
+    /// Something that a program does differently.
+    Mistake CATALOGUE [Force ForceMistake, Step StepMistake]
     Wrong ParticleParticle {
         ParticleParticleEmpty "pp-empty": "The detection is left empty: it never asks the root finder." => "No polynomial reaches the root finder; overlap (quadratic) and approach (linear) are expected for each pair.";
         ParticleParticleZero "pp-zero": "The coefficients are left at zero." => "Every coefficient is 0; expected are -d21.d21, -2 x21.d21, (r1 + r2)^2 - x21.x21 and -d21.d21, -x21.d21.";
@@ -570,5 +472,3 @@ catalogue! {
 
 #[cfg(test)]
 mod families;
-#[cfg(test)]
-mod tests;

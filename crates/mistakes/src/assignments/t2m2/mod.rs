@@ -9,7 +9,7 @@ pub(super) mod probes;
 mod reading;
 pub(crate) mod specials;
 
-pub use catalogue::{Area, CATALOGUE, Mistake, Row, RowKind, find};
+pub use catalogue::{CATALOGUE, Mistake, Row};
 pub use exchanges::{EXCHANGES, Exchange, find_exchange};
 pub use formulas::Letter;
 pub use fosssim_findings::explanation::{Input, Reading, Subject};

@@ -3,7 +3,10 @@ use crate::{
     diagnose::sampling::{Logged, StepRecords},
     student::{Mistake, Record, State, StepLog, Student, World, step},
 };
-use fosssim_model::{scene::Scene, sim::pairs};
+use fosssim_model::{
+    scene::{Collision, Scene},
+    sim::pairs,
+};
 
 /// What a submission does right.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,9 +29,15 @@ impl Correct {
 }
 
 /// What a step costs besides its polynomials, in polynomials: forces between all pairs are many times cheaper than
-/// these.
+/// these, and those of a penalty force look at near pairs only. Solves of implicit integrators are counted as they
+/// come.
 pub(super) fn step_work(scene: &Scene) -> u64 {
-    10 + pairs(scene).count() as u64 / 128
+    let of_pairs = match scene.collision {
+        Collision::None => 0,
+        Collision::Penalty { .. } => scene.particles.len() + scene.edges.len(),
+        _ => pairs(scene).count() / 128,
+    };
+    10 + (of_pairs + scene.forces.len() / 16) as u64
 }
 
 /// The records that a program writes in a step from this state; `None` when it fails or writes another number of them.

@@ -6,11 +6,12 @@
 use super::{plausibility, resimulate::Correct, shown::applicable, trials::Trials};
 use crate::{
     diagnose::sampling::{KeptStep, Reference, Scan},
-    student::{CATALOGUE, Mistake, Row, RowKind},
+    student::{Area, Mistake, Row, RowKind, find},
 };
 use fosssim_model::{
     scene::Scene,
     sim::{PairKind, pairs},
+    trace::Layout,
 };
 use std::collections::BTreeSet;
 
@@ -36,6 +37,9 @@ pub(super) struct Several {
 /// The set of rows that reproduces all kept steps; `None` where none is found with at least two rows.
 pub(super) fn several(reference: &Reference<'_>, scene: &Scene, scan: &Scan, correct: Correct) -> Option<Several> {
     let search = Search::new(reference, scene, scan, correct);
+    if !Layout::of(scene).polynomials {
+        return search.pair();
+    }
     let mut found = search.starts().into_iter().find_map(|start| search.from(start))?;
     // What is not written may look like a mistake in what is.
     if found.rows.iter().any(|row| is_empty_stage(row))
@@ -103,7 +107,7 @@ impl<'a> Search<'a> {
         }
         for (index, others) in alike.iter_mut().enumerate() {
             let with = |other: &Row| -> Vec<&'static Row> {
-                let other = CATALOGUE.iter().find(|row| row.mistake == other.mistake);
+                let other = find(other.id);
                 set.iter().enumerate().filter_map(|(at, row)| if at == index { other } else { Some(*row) }).collect()
             };
             let is_last = index + 1 == set.len();
@@ -111,6 +115,39 @@ impl<'a> Search<'a> {
                 .retain(|other| !is_empty_stage(set[index]) && (is_last || self.progress(&with(other)) >= self.goal()));
         }
         Some(Several { rows: set, same_as: alike, rivals: Vec::new(), samples })
+    }
+
+    /// Two mistakes of a program whose steps log states: neither carries a step further, both together do. None where
+    /// two sets that have nothing in common do.
+    fn pair(&self) -> Option<Several> {
+        let probe = *self.probes.first()?;
+        let is_asked = |row: &&Row| row.kind == RowKind::Wrong && row.area != Area::Trace;
+        let rows: Vec<&'static Row> = applicable(self.scene).filter(is_asked).collect();
+        let mut sets: Vec<[&'static Row; 2]> = Vec::new();
+        for (index, &one) in rows.iter().enumerate() {
+            for &other in &rows[index + 1..] {
+                if self.trials.exceed(WORK) {
+                    return None;
+                }
+                let set = [one, other];
+                if self.trials.reached(&self.trials.program(&set), probe) >= 1.0
+                    && self.progress(&set) >= self.goal()
+                    && self.is_needed(&set)
+                    && self.confirmed(&set).is_some()
+                {
+                    sets.push(set);
+                }
+            }
+        }
+        let &[first, second] = sets.first()?;
+        let samples = self.confirmed(&[first, second])?;
+        let beside = |kept: &Row| -> Vec<&'static Row> {
+            let with = sets[1..].iter().filter(|set| set.iter().any(|row| row.id == kept.id));
+            with.flatten().filter(|row| row.id != kept.id).copied().collect()
+        };
+        let same_as = vec![beside(second), beside(first)];
+        let is_told = sets.len() == 1 + same_as.iter().map(Vec::len).sum::<usize>();
+        is_told.then(|| Several { rows: vec![first, second], same_as, rivals: Vec::new(), samples })
     }
 
     /// Sets of empty stages to begin with: the one that carries furthest, and those detections without which the

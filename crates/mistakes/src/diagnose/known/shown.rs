@@ -1,8 +1,9 @@
 //! Which rows of the catalogue a scene can show at all: no others are tried on it.
-use crate::student::{Area, CATALOGUE, Mistake, Row, RowKind};
+use crate::student::{Area, Mistake, Row, RowKind, StepMistake, all_rows};
 use fosssim_model::{
-    scene::{Collision, Scene},
-    sim::{ByKind, pairs},
+    scene::{Collision, Force, Integrator, Scene},
+    sim::{ByKind, PairKind, pairs},
+    trace::Layout,
 };
 
 /// The rows that may explain a trace of this scene, in the order of the catalogue. Records that are missing are looked
@@ -11,17 +12,20 @@ pub(super) fn applicable(scene: &Scene) -> impl Iterator<Item = &'static Row> {
     let is_tried =
         |row: &&Row| row.kind != RowKind::Hostile && !matches!(row.mistake, Mistake::LogNoInitial | Mistake::LogNoMid);
     let counts = pairs(scene).counts();
-    CATALOGUE.iter().filter(is_tried).filter(move |row| shows(&scene.collision, &counts, row))
+    all_rows().filter(is_tried).filter(move |row| shows(scene, &counts, row))
 }
 
 /// Whether a program with this row may leave another trace than one without. Only what the scene does not have speaks
 /// against it: stages of a step, and kinds of pairs.
 pub(super) fn can_show(scene: &Scene, row: &Row) -> bool {
-    shows(&scene.collision, &pairs(scene).counts(), row)
+    shows(scene, &pairs(scene).counts(), row)
 }
 
-fn shows(collision: &Collision, counts: &ByKind<usize>, row: &Row) -> bool {
-    let has_stage = match (collision, row.area) {
+fn shows(scene: &Scene, counts: &ByKind<usize>, row: &Row) -> bool {
+    if matches!(row.mistake, Mistake::Force(_) | Mistake::Step(_)) {
+        return shows_in_states(scene, counts, row);
+    }
+    let has_stage = match (&scene.collision, row.area) {
         (_, Area::Trace | Area::Process) => true,
         (Collision::None | Collision::Penalty { .. }, _) => false,
         (Collision::Simple { .. }, area) => matches!(area, Area::Decision | Area::Response),
@@ -31,6 +35,64 @@ fn shows(collision: &Collision, counts: &ByKind<usize>, row: &Row) -> bool {
         (Collision::Hybrid { .. }, area) => area != Area::ContinuousTime,
     };
     has_stage && row.kind_of_pair().is_none_or(|kind| counts[kind] > 0)
+}
+
+/// The same of mistakes of forces, integrators and what follows from them: a row's name begins with what it is about.
+/// Where steps log polynomials, forces and integrators are supplied.
+fn shows_in_states(scene: &Scene, counts: &ByKind<usize>, row: &Row) -> bool {
+    let logs_states = !Layout::of(scene).polynomials;
+    let is_linear = scene.integrator == Integrator::LinearizedImplicitEuler;
+    let is_implicit = is_linear || scene.integrator == Integrator::ImplicitEuler;
+    let has = |is_of_sort: fn(&Force) -> bool| scene.forces.iter().any(is_of_sort);
+    let has_force = |name: &str| match name {
+        "gravity" => has(|force| matches!(force, Force::SimpleGravity { .. })),
+        "constant" => has(|force| matches!(force, Force::Constant { .. })),
+        "drag" => has(|force| matches!(force, Force::Drag { .. })),
+        "gravitation" => has(|force| matches!(force, Force::Gravitation { .. })),
+        "vortex" => has(|force| matches!(force, Force::Vortex { .. })),
+        "spring" | "elastic" | "damping" | "velocity" => has(|force| matches!(force, Force::Spring { .. })),
+        _ => has(|force| matches!(force, Force::Spring { .. } | Force::Gravitation { .. })),
+    };
+    let mut words = row.id.split('-');
+    let (first, second) = (words.next().unwrap_or_default(), words.next().unwrap_or_default());
+    let has_kind = |name: &str| match name {
+        "particles" => counts[PairKind::ParticleParticle] > 0,
+        "edge" | "edges" => counts[PairKind::ParticleEdge] > 0,
+        "half" | "normal" => counts[PairKind::ParticleHalfPlane] > 0,
+        _ => true,
+    };
+    logs_states
+        && match row.area {
+            Area::Forces => has_force(first),
+            Area::Jacobians => is_implicit && has_force(second),
+            Area::Integrator => match (first, row.mistake) {
+                ("linear", _) => is_linear,
+                ("matrix" | "right", _) | (_, Mistake::Step(StepMistake::ImplicitPositionWithoutChange)) => is_implicit,
+                ("implicit", _) => scene.integrator == Integrator::ImplicitEuler,
+                (_, Mistake::Step(StepMistake::IntegratorVelocityFirst)) => {
+                    scene.integrator == Integrator::ExplicitEuler
+                }
+                (_, Mistake::Step(StepMistake::IntegratorPositionFirst)) => {
+                    matches!(scene.integrator, Integrator::SymplecticEuler | Integrator::ForwardBackwardEuler)
+                }
+                (_, Mistake::Step(mistake)) if is_of_acceleration(mistake) => !is_implicit,
+                _ => true,
+            },
+            Area::Penalty | Area::NearPairs => matches!(scene.collision, Collision::Penalty { .. }) && has_kind(second),
+            _ => matches!(scene.collision, Collision::Simple { .. }),
+        }
+}
+
+/// Whether a mistake is made where forces become accelerations, which implicit integrators do in their system.
+const fn is_of_acceleration(mistake: StepMistake) -> bool {
+    matches!(
+        mistake,
+        StepMistake::IntegratorForceBehindPositions
+            | StepMistake::IntegratorForceSign
+            | StepMistake::IntegratorNoMass
+            | StepMistake::IntegratorMassMultiplied
+            | StepMistake::IntegratorNoStepForVelocities
+    )
 }
 
 #[cfg(test)]
@@ -61,7 +123,12 @@ mod tests {
         scenes.extend(others);
         for scene in scenes {
             let right = trace(&scene, Student::default()).ok();
-            for row in CATALOGUE.iter().filter(|row| row.kind != RowKind::Hostile && !can_show(&scene, row)) {
+            // Where steps log polynomials, forces and integrators are right.
+            let is_supplied = |row: &Row| {
+                Layout::of(&scene).polynomials && matches!(row.mistake, Mistake::Force(_) | Mistake::Step(_))
+            };
+            let is_left_out = |row: &&Row| row.kind != RowKind::Hostile && !is_supplied(row) && !can_show(&scene, row);
+            for row in all_rows().filter(is_left_out) {
                 left_out += 1;
                 assert!(trace(&scene, Student::new(Some(row.mistake))).ok() == right, "{} on {scene:?}", row.id);
             }

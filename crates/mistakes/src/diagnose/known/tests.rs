@@ -253,3 +253,5 @@ fn a_trace_that_leads_nowhere_is_left() {
     let trace = writer.finish().expect("written").0;
     assert!(explain(&scene, &trace).iter().all(|one| one.samples <= 2), "only the first step has a result");
 }
+
+mod states;

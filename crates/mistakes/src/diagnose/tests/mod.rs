@@ -8,6 +8,7 @@ use fosssim_judge::{
 };
 use fosssim_model::assignments::Assignment;
 
+mod forces;
 mod heads;
 mod not_finite;
 mod probes;

@@ -2,12 +2,7 @@
 use fosssim_num::polynomial::Polynomial;
 
 use super::trimmed;
-use crate::student::{
-    author::Student,
-    catalogue::{Area, Mistake},
-    objects::Object,
-    rounding::single,
-};
+use crate::student::{Area, Mistake, author::Student, objects::Object, rounding::single};
 
 /// The parts of the assignment whose mistakes are made here.
 const HERE: &[Area] = &[Area::Handover];

@@ -9,8 +9,8 @@ use fosssim_num::{
 };
 
 use crate::student::{
+    Area, Mistake,
     author::Student,
-    catalogue::{Area, Mistake},
     encounter::{Encounter, MovingBody, alpha},
     hooks::{Change, Place},
     objects::{Contact, Object, Pair},

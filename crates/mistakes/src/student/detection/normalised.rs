@@ -4,10 +4,7 @@
 use fosssim_num::vector::Vec2;
 
 use crate::student::encounter::Encounter;
-use crate::student::{
-    author::Student,
-    catalogue::{Area, Mistake},
-};
+use crate::student::{Area, Mistake, author::Student};
 
 /// The parts of the assignment whose mistakes are made here.
 const HERE: &[Area] = &[Area::Handover];

@@ -7,8 +7,8 @@ use super::{
     wide::Wide,
 };
 use crate::student::{
+    Area, Mistake,
     author::Student,
-    catalogue::{Area, Mistake},
     encounter::{MovingBody, alpha},
     hooks::Place,
 };

@@ -7,10 +7,7 @@ use super::{
     basis,
     wide::Wide,
 };
-use crate::student::{
-    author::Student,
-    catalogue::{Area, Mistake},
-};
+use crate::student::{Area, Mistake, author::Student};
 
 /// The parts of the assignment whose mistakes are made in the polynomials.
 const FORMULAS: &[Area] = &[Area::ParticleHalfPlane, Area::Handover, Area::ContactVector];

@@ -9,7 +9,7 @@
 //! them, and dies of some things that XML allows. No well-kept XML library behaves like that, hence the small parser
 //! in `markup`. It is iterative and borrows from the text, so that neither depth nor size can hurt it.
 //!
-//! What the original goes on to simulate from memory that is not its own (an index out of range) has no defined
+//! A scene that the original goes on to simulate from memory that is not its own (an index out of range) has no defined
 //! outcome; it is refused as [`RefusalKind::Undefined`] in our own words.
 
 mod item;

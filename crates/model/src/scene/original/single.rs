@@ -102,7 +102,7 @@ impl<'e> Singles<'e> {
         Ok((integrator, time_step))
     }
 
-    /// Whatever is not the contest's detection has no effect.
+    /// Every word but the contest's detection has no effect.
     fn detection(&self) -> CollisionDetection {
         match self.first("collisiondetection").and_then(|element| element.attribute("type")) {
             Some(b"contest") => CollisionDetection::Contest,

@@ -68,7 +68,7 @@ impl Handler {
         Self {
             kind: scene.collision,
             law: Law::new(restitution, scene.time_step),
-            detector: Detector::new(search),
+            detector: Detector::new(search, scene.steps()),
             nearby: is_simple.then(|| Nearby::of_many(scene, 0.0)).flatten(),
             hybrid: HybridScratch::default(),
         }

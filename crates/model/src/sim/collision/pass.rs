@@ -23,7 +23,7 @@ use fosssim_num::{
 
 crate::drops_leading!();
 
-/// What a pass does about a hit, before it looks at the next pair.
+/// The reaction of a pass to a hit, before it looks at the next pair.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Reaction {
     /// The end positions are as before.
@@ -48,8 +48,8 @@ pub(super) struct Detector {
 }
 
 impl Detector {
-    /// A detector that has done nothing yet.
-    pub fn new(search: RootSearch) -> Self {
+    /// A detector that has done nothing yet, for a scene with this many steps.
+    pub fn new(search: RootSearch, steps: u32) -> Self {
         Self {
             search,
             counts: SearchCounts::default(),
@@ -59,7 +59,7 @@ impl Detector {
             displacements: Vec::new(),
             // To search always, or to audit, is a way to check what is done elsewhere.
             has_lanes: search == RootSearch::WhereNeeded,
-            blocks: Blocks::default(),
+            blocks: Blocks::new(steps),
         }
     }
 
@@ -229,7 +229,7 @@ impl Detector {
     }
 }
 
-/// What a pass is about: the scene, where the step starts and ends, the observer, and the answer to hits.
+/// The subject of a pass: the scene, where the step starts and ends, the observer, and the answer to hits.
 struct PassContext<'a, O, R> {
     bodies: &'a Bodies,
     q_start: &'a [f64],

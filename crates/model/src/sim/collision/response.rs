@@ -1,4 +1,4 @@
-//! What a collision changes: the law of impact and the changes that a response makes (collisions.md 3, 6).
+//! The effects of a collision: the law of impact and the changes that a response makes (collisions.md 3, 6).
 use super::super::bodies::Bodies;
 use fosssim_num::vector::{Vec2, at, put};
 

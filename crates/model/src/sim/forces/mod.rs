@@ -15,7 +15,7 @@ use super::{bodies::Bodies, matrix::Matrix};
 use crate::scene::{Collision, CollisionDetection, Force, Scene};
 use fosssim_num::vector::{Vec2, at, put};
 use penalty::Penalty;
-pub use penalty::PenaltyPairs;
+pub use penalty::{PenaltyPairs, PenaltyTerms};
 
 /// All forces of a scene in acting order.
 #[derive(Debug, Clone)]

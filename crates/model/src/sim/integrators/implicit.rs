@@ -2,32 +2,27 @@
 //!
 //! The original iterates without limit and hangs when Newton's method does not converge; here the step ends with
 //! [`DoesNotConverge`] instead.
-use super::{DoesNotConverge, Effort, ImplicitScratch, system::assemble};
-use crate::sim::{bodies::Bodies, forces::Forces, state::State};
-use fosssim_num::{
-    linear,
-    tolerances::{NEWTON_ITERATIONS, NEWTON_UPDATE},
-};
+use super::{DoesNotConverge, Effort, ImplicitScratch, system::System};
+use crate::sim::state::State;
+use fosssim_num::tolerances::{NEWTON_ITERATIONS, NEWTON_UPDATE};
 
 /// Iterates until the update of the velocities is small (or NaN), then advances the state by `dx`, `dv`.
 ///
 /// An iteration depends on `dv` alone, so a `dv` that comes back exactly proves an endless cycle: one is remembered at
 /// each power of two of the count (Brent's method).
 pub(super) fn advance(
-    bodies: &Bodies,
-    forces: &mut Forces,
-    h: f64,
+    system: &mut System<'_>,
     rhs: &mut [f64],
     scratch: &mut ImplicitScratch,
     effort: &mut Effort,
     state: &mut State,
 ) -> Result<(), DoesNotConverge> {
-    let ImplicitScratch { matrix, workspace, x, v, dx, dv, earlier } = scratch;
+    let (bodies, h) = (system.bodies, system.h);
     let entries = rhs.len();
-    for (dx, velocity) in dx.iter_mut().zip(&state.velocities) {
+    for (dx, velocity) in scratch.dx.iter_mut().zip(&state.velocities) {
         *dx = h * velocity;
     }
-    dv.fill(0.0);
+    scratch.dv.fill(0.0);
     // Opaque, because a compiler may turn the product into a sign flip of the product with `h` (see `Stepper::new`).
     let minus_h = std::hint::black_box(-h);
     let mut update = f64::INFINITY;
@@ -36,6 +31,7 @@ pub(super) fn advance(
         if iteration == NEWTON_ITERATIONS || !effort.iterate(entries) {
             return Err(DoesNotConverge);
         }
+        let ImplicitScratch { x, v, dx, dv, earlier, .. } = &mut *scratch;
         if iteration.is_power_of_two() {
             earlier.copy_from_slice(dv);
         } else if iteration > 1 && same_bits(earlier, dv) {
@@ -46,14 +42,14 @@ pub(super) fn advance(
             x[k] = state.positions[k] + dx[k];
             v[k] = state.velocities[k] + dv[k];
         }
-        forces.gradient(bodies, x, v, rhs);
+        system.forces.gradient(bodies, x, v, rhs);
         for k in 0..entries {
             rhs[k] *= minus_h;
             rhs[k] += -(bodies.masses[k / 2] * dv[k]);
         }
         bodies.zero_fixed(rhs);
-        assemble(matrix, bodies, forces, h, x, v);
-        linear::solve(matrix.entries_mut(), rhs, workspace);
+        system.solve(scratch, rhs);
+        let ImplicitScratch { dx, dv, .. } = &mut *scratch;
         for k in 0..entries {
             dv[k] += rhs[k];
             dx[k] = h * (state.velocities[k] + dv[k]);
@@ -61,8 +57,8 @@ pub(super) fn advance(
         update = norm_by_halves(rhs);
     }
     for k in 0..entries {
-        state.positions[k] += dx[k];
-        state.velocities[k] += dv[k];
+        state.positions[k] += scratch.dx[k];
+        state.velocities[k] += scratch.dv[k];
     }
     Ok(())
 }
@@ -90,6 +86,8 @@ mod tests {
         scene::{Collision, CollisionDetection, Force, Integrator},
         sim::{
             RootSearch, Simulation, StepError,
+            bodies::Bodies,
+            forces::Forces,
             samples::{edge, particle, scene},
         },
     };

@@ -1,19 +1,17 @@
 //! linearized-implicit-euler (simulation.md 4): one linear solve per step.
-use super::{ImplicitScratch, add_scaled, system::assemble};
-use crate::sim::{bodies::Bodies, forces::Forces, state::State};
-use fosssim_num::linear;
+use super::{ImplicitScratch, add_scaled, system::System};
+use crate::sim::state::State;
 
 /// Solves `A d = -h g` at `(x + h v, v)`, then `v += d`, `x += h v`. `minus_one` is an opaque -1.
 pub(super) fn advance(
-    bodies: &Bodies,
-    forces: &mut Forces,
-    h: f64,
+    system: &mut System<'_>,
     minus_one: f64,
     rhs: &mut [f64],
     scratch: &mut ImplicitScratch,
     state: &mut State,
 ) {
-    let ImplicitScratch { matrix, workspace, x, v, .. } = scratch;
+    let (bodies, h) = (system.bodies, system.h);
+    let ImplicitScratch { x, v, .. } = scratch;
     for (k, x) in x.iter_mut().enumerate() {
         *x = state.positions[k] + h * state.velocities[k];
     }
@@ -21,14 +19,13 @@ pub(super) fn advance(
         // Adding zero turns a -0 into +0, as the original does.
         *v = velocity + 0.0;
     }
-    forces.gradient(bodies, x, v, rhs);
+    system.forces.gradient(bodies, x, v, rhs);
     for entry in rhs.iter_mut() {
         *entry *= minus_one;
         *entry *= h;
     }
     bodies.zero_fixed(rhs);
-    assemble(matrix, bodies, forces, h, x, v);
-    linear::solve(matrix.entries_mut(), rhs, workspace);
+    system.solve(scratch, rhs);
     for (velocity, d) in state.velocities.iter_mut().zip(rhs.iter()) {
         *velocity += d;
     }

@@ -8,9 +8,10 @@ mod linearized;
 mod symplectic;
 mod system;
 
-use super::{bodies::Bodies, forces::Forces, matrix::Matrix, state::State};
+use super::{bodies::Bodies, forces::Forces, matrix::Matrix, observer::Steer, state::State};
 use crate::scene::{Integrator, Scene};
 use fosssim_num::linear::Workspace;
+use system::System;
 
 /// The update's norm stays above the bound after too many iterations, or the iterates repeat; or the work that is
 /// allowed is used up.
@@ -106,28 +107,35 @@ impl Stepper {
         self.implicit.is_some()
     }
 
-    /// Advances `state` by one time step.
+    /// Advances `state` by one time step. `steer` hears of the systems that are solved.
     ///
     /// # Errors
     /// [`DoesNotConverge`] from Newton's method of implicit-euler, also where the work that is allowed does not suffice
     /// ([`Stepper::is_beyond_limit`]); the state is unchanged then.
-    pub fn advance(&mut self, bodies: &Bodies, forces: &mut Forces, state: &mut State) -> Result<(), DoesNotConverge> {
+    pub fn advance<'a>(
+        &mut self,
+        bodies: &'a Bodies,
+        forces: &'a mut Forces,
+        state: &mut State,
+        steer: Option<&'a mut dyn Steer>,
+    ) -> Result<(), DoesNotConverge> {
+        let h = self.time_step;
         match (self.kind, self.implicit.as_deref_mut()) {
             (Integrator::ImplicitEuler, Some(scratch)) => {
-                let rhs = &mut self.gradient;
-                implicit::advance(bodies, forces, self.time_step, rhs, scratch, &mut self.effort, state)?;
+                let mut system = System { bodies, forces, h, steer };
+                implicit::advance(&mut system, &mut self.gradient, scratch, &mut self.effort, state)?;
             }
             (Integrator::LinearizedImplicitEuler, Some(scratch)) => {
-                let rhs = &mut self.gradient;
-                linearized::advance(bodies, forces, self.time_step, self.minus_one, rhs, scratch, state);
+                let mut system = System { bodies, forces, h, steer };
+                linearized::advance(&mut system, self.minus_one, &mut self.gradient, scratch, state);
             }
             (Integrator::ExplicitEuler, _) => {
                 self.force(bodies, forces, state);
-                explicit::advance(bodies, self.time_step, &self.gradient, state);
+                explicit::advance(bodies, h, &self.gradient, state);
             }
             (Integrator::ForwardBackwardEuler | Integrator::SymplecticEuler, _) => {
                 self.force(bodies, forces, state);
-                symplectic::advance(bodies, self.time_step, &self.gradient, state);
+                symplectic::advance(bodies, h, &self.gradient, state);
             }
             (Integrator::ImplicitEuler | Integrator::LinearizedImplicitEuler, None) => {
                 unreachable!("the implicit methods are set up with their scratch")

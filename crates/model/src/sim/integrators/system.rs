@@ -1,5 +1,31 @@
 //! The system matrix of the implicit integrators (simulation.md 4, system matrix).
-use crate::sim::{bodies::Bodies, forces::Forces, matrix::Matrix};
+use super::ImplicitScratch;
+use crate::sim::{bodies::Bodies, forces::Forces, matrix::Matrix, observer::Steer};
+use fosssim_num::linear;
+
+/// A scene's bodies and forces as an implicit method sees them.
+pub(super) struct System<'a> {
+    /// The bodies.
+    pub bodies: &'a Bodies,
+    /// The forces.
+    pub forces: &'a mut Forces,
+    /// The time step.
+    pub h: f64,
+    /// Hears of the matrices that are solved.
+    pub steer: Option<&'a mut dyn Steer>,
+}
+
+impl System<'_> {
+    /// Solves the system at the scratch's `x` and `v`: `rhs` becomes the solution.
+    pub fn solve(&mut self, scratch: &mut ImplicitScratch, rhs: &mut [f64]) {
+        let ImplicitScratch { matrix, workspace, x, v, .. } = scratch;
+        assemble(matrix, self.bodies, self.forces, self.h, x, v);
+        if let Some(steer) = &mut self.steer {
+            steer.system(matrix.entries_mut());
+        }
+        linear::solve(matrix.entries_mut(), rhs, workspace);
+    }
+}
 
 /// Fills the matrix with `M + h (Hv + h Hx)` at positions `x` and velocities `v`; the rows and columns of fixed
 /// particles become those of the identity.

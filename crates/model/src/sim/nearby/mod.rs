@@ -102,7 +102,7 @@ impl Nearby {
     /// For the particles and edges of a scene.
     pub fn new(scene: &Scene, margin: f64) -> Self {
         let radii: Vec<f64> = scene.particles.iter().map(|particle| particle.radius).collect();
-        // What has no radius reaches nothing.
+        // A particle without a radius reaches nothing.
         let numbered = (0..).zip(&radii).filter(|(_, radius)| !radius.is_nan());
         let mut by_size: Vec<(u32, f64)> = numbered.map(|(particle, &radius)| (particle, radius)).collect();
         by_size.sort_by(|one, other| other.1.total_cmp(&one.1));

@@ -30,7 +30,7 @@ fn polynomials_beyond_the_limit_are_counted_and_not_kept() {
         let mut frame = LenientFrame::default();
         reader.next(&mut frame).unwrap();
         assert!(frame.is_cut() && frame.logged == 60_000 && frame.note.is_none(), "{limit}");
-        // What is in the window is decoded at one go.
+        // The polynomials in the window are decoded at one go.
         assert!(decode::memory(&frame.polynomials) <= limit + 4 * super::super::source::WINDOW);
         let kept: Vec<&[f64]> = frame.polynomials.iter().collect();
         assert_eq!(kept, list[..kept.len()]);

@@ -51,7 +51,7 @@ pub fn exact_first(polynomials: &[&[f64]]) -> ExactAnswer {
     if polynomials.is_empty() || polynomials.iter().any(Integer::never_positive_after_zero) {
         return ExactAnswer::Never;
     }
-    // What is positive throughout (0, infinity) does not matter.
+    // A polynomial that is positive throughout (0, infinity) does not matter.
     let polynomials: Vec<Integer> = polynomials.into_iter().filter(|one| !one.always_positive_after_zero()).collect();
     let zeros = polynomials.iter().fold(Integer::one(), |product, one| product.united(&one.square_free()));
     let mut roots = roots_within_step(&zeros);

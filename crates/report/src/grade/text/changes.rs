@@ -1,4 +1,4 @@
-//! What became right and what became wrong between two gradings of the same submissions.
+//! The changes between two gradings of the same submissions: what became right and what became wrong.
 use crate::{
     grade::one_line,
     number::counted,

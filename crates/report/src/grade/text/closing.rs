@@ -1,4 +1,4 @@
-//! What a submission's grading comes to: short enough for a small terminal, and last, so that it stays in sight.
+//! The result of a submission's grading: short enough for a small terminal, and last, so that it stays in sight.
 use super::{Text, look};
 use crate::{
     grade::{likely_mistakes, one_line, plain, points, reached},
@@ -25,7 +25,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
         let heading = style.paint(Look::Strong, "Where it fails");
         let _ = writeln!(text, "{heading}\n  - {}", one_line(&words::located(located)));
     }
-    // What is wrong with the submission itself says it all.
+    // A fault of the submission itself says it all.
     let mistakes = if grade.unfit().is_some() { Vec::new() } else { likely_mistakes(grade) };
     let wrong = grade.scenes().filter(|scene| is_wrong(scene)).count() as u64;
     for (number, (mistake, explained)) in mistakes.iter().enumerate() {

@@ -17,7 +17,7 @@ const NAMED: usize = 3;
 
 /// The groups that have something to show.
 pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
-    // What is wrong with the submission itself is not said of each scene.
+    // A fault of the submission itself is not said of each scene.
     if options.shown < TextDetail::Wrong || grade.unfit().is_some() {
         return String::new();
     }

@@ -269,8 +269,20 @@ async function visit(articles) {
   }
   if (named) named.scrollIntoView();
 }
+// Many scenes are searched by their names, and by what is said of them.
+function search(articles) {
+  const scenes = articles.filter((article) => article.querySelector("details.scene"));
+  if (scenes.length < 8) return;
+  const count = el("output", { class: "hint" });
+  const wish = el("input", { type: "search", oninput: () => {
+    for (const scene of scenes) scene.hidden = !scene.textContent.toLowerCase().includes(wish.value.trim().toLowerCase());
+    count.textContent = wish.value.trim() && `${scenes.filter((scene) => !scene.hidden).length} of ${scenes.length}`;
+  } });
+  scenes[0].before(el("p", { class: "filter" }, el("label", {}, "Only scenes that hold ", wish), " ", count));
+}
 async function start() {
   const articles = [...document.querySelectorAll("article.case")];
+  search(articles);
   for (const article of articles) {
     if (!article.querySelector(".stage")) continue;
     const card = article.querySelector("details.scene");

@@ -1,4 +1,4 @@
-//! What the letters of a formula mean, said where the formula stands.
+//! The meanings of a formula's letters, said where the formula stands.
 use fosssim_model::sim::PairKind;
 
 /// The sentence that explains the short names of differences, of the sum of the radii, and of a zone's motion, that

@@ -1,7 +1,8 @@
-//! What explanations say, in sentences. They travel as values up to here.
+//! Explanations, in sentences. They travel as values up to here.
 //!
 //! Sentences that belong to an assignment (what its known mistakes are, what its letters mean) stand with its data,
 //! found by their keys; all others are made here.
+mod forces;
 mod letters;
 mod not_finite;
 mod places;
@@ -27,6 +28,7 @@ pub fn what(explanation: &Explanation) -> String {
         }
         About::Polynomials { subjects, found } => polynomials::what(subjects, found),
         About::Stage(fault) => stages::what(fault),
+        About::Forces(wrong) => forces::what(wrong),
         About::NotFinite(found) => not_finite::what(found),
     };
     debug_assert!(formula_in(&sentence).is_none(), "a sentence gives a formula away: {sentence}");
@@ -44,6 +46,7 @@ pub fn details(explanation: &Explanation) -> Vec<String> {
             Detail::Letters(kinds) => letters::of(&lines, kinds),
             Detail::Polynomial(detail) => Some(polynomials::detail(detail)),
             Detail::Stage(detail) => Some(stages::detail(detail)),
+            Detail::Force { term, weight } => Some(forces::detail(*term, *weight)),
         };
         lines.extend(line);
     }
@@ -89,6 +92,11 @@ fn empty_stage(row: &Row) -> &'static str {
 /// One sentence that says where in the program the mistake is made, without the right formula.
 const fn look(area: Area) -> &'static str {
     match area {
+        Area::Forces => "Look at what each force adds to the gradient, for each of its particles.",
+        Area::Jacobians => "Look at what each force adds to the second derivatives, block by block.",
+        Area::Integrator => "Look at the order in which a step changes velocities and positions, and at what it reads.",
+        Area::Penalty => "Look at what the penalty force adds to the gradient, for each kind of pair.",
+        Area::NearPairs => "Look at which pairs the search for near bodies finds, and how often.",
         Area::ParticleParticle => "Look at the coefficients that the particle-particle detection computes.",
         Area::ParticleEdge => "Look at the coefficients that the particle-edge detection computes.",
         Area::ParticleHalfPlane => "Look at the coefficients that the particle-half-plane detection computes.",

@@ -1,4 +1,4 @@
-//! What is said where a trace holds what is no finite number.
+//! Sentences about traces that hold values which are no finite numbers.
 use fosssim_mistakes::diagnose::{NanStage, NotFinite};
 
 /// From which step on, which stage makes it, and what usually does.

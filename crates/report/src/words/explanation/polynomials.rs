@@ -1,11 +1,11 @@
-//! What is said of wrong polynomials.
+//! Sentences about wrong polynomials.
 use super::{capitalised, letters};
 use fosssim_mistakes::{
     assignments::t2m2::{Letter, Reading, Subject, find_exchange, find_special, letter},
     diagnose::{CoefficientGuess, Guess, ListGuess, OfPolynomials, PolynomialDetail, QuantityGuess, Stand, Weight},
 };
 
-/// What is wrong with these polynomials.
+/// The fault of these polynomials.
 pub(super) fn what(subjects: &[Subject], found: &OfPolynomials) -> String {
     let names: Vec<&str> = subjects.iter().map(|subject| subject.name()).collect();
     let names = names.join(", ");
@@ -72,7 +72,7 @@ const fn of_quantity(guess: QuantityGuess) -> &'static str {
     }
 }
 
-/// What is wrong with coefficients, whose names are to be put in.
+/// The fault of coefficients, whose names are to be put in.
 const fn of_coefficients(guess: CoefficientGuess) -> &'static str {
     match guess {
         CoefficientGuess::Several => "Several coefficients are wrong ({})",
@@ -134,7 +134,7 @@ pub(super) fn detail(detail: &PolynomialDetail) -> String {
     }
 }
 
-/// What a letter means; nothing where its name says it.
+/// The meaning of a letter; nothing where its name says it.
 fn meaning(reading: Reading, name: &str) -> Option<&'static str> {
     letter(reading, name).map(|Letter { meaning, .. }| *meaning).filter(|meaning| !meaning.is_empty())
 }

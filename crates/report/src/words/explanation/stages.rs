@@ -1,4 +1,4 @@
-//! What is said of stages of a step that no known mistake explains.
+//! Sentences about stages of a step that no known mistake explains.
 use super::capitalised;
 use fosssim_mistakes::{
     diagnose::{
@@ -255,7 +255,7 @@ pub(super) fn detail(detail: &StageDetail) -> String {
 }
 
 /// Ratios in words: "1.5 times" where they agree, else their range.
-fn times(ratios: Ratios) -> String {
+pub(super) fn times(ratios: Ratios) -> String {
     let short = |value: f64| {
         let digits = if (value - 1.0).abs() < 5e-5 { 10 } else { 4 };
         let text = format!("{value:.digits$}");

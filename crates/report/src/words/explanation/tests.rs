@@ -3,12 +3,12 @@ use super::*;
 use fosssim_mistakes::{
     assignments::t2m2::{EXCHANGES, Reading, SPECIALS, Subject},
     diagnose::{
-        Amount, Changed, CoefficientGuess, Guess, ListGuess, LoopEnd, NanStage, NotFinite, OfPolynomials,
+        Amount, Changed, CoefficientGuess, ForceTerm, Guess, ListGuess, LoopEnd, NanStage, NotFinite, OfPolynomials,
         PolynomialDetail, Quantity, QuantityGuess, Ratios, StageDetail, StageFault, Stand, Weight, WrongDecisions,
-        WrongGeometric, WrongMotion, WrongNumber, WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds,
-        WrongZones,
+        WrongGeometric, WrongMotion, WrongNumber, WrongPositions, WrongResponses, WrongVectors, WrongWeight,
+        WrongZoneRounds, WrongZones,
     },
-    student::CATALOGUE,
+    student::all_rows,
 };
 use fosssim_model::sim::PairKind;
 use std::borrow::Cow;
@@ -191,6 +191,12 @@ fn all() -> Vec<Explanation> {
     let together = NotFinite { step: None, ..ends[7] };
     all.extend(ends.into_iter().chain([together]).map(|end| explanation("k", About::NotFinite(end), Vec::new())));
     all.extend(guesses().into_iter().map(|guess| of(edge[..2].to_vec(), OfPolynomials::Guess(guess))));
+    let terms = [
+        (ForceTerm::SpringDamping, WrongWeight::Zero),
+        (ForceTerm::Gravity, WrongWeight::MinusOne),
+        (ForceTerm::PenaltyEdges, WrongWeight::Other),
+    ];
+    all.push(explanation("k", About::Forces(terms.to_vec()), Vec::new()));
     all.extend(faults().into_iter().map(|fault| explanation("k", About::Stage(fault), Vec::new())));
     all
 }
@@ -257,13 +263,15 @@ fn lines_of_all_sorts() -> Vec<Detail> {
         StageDetail::Velocities(TWO),
     ];
     let polynomials = polynomials.map(Detail::Polynomial).into_iter();
-    polynomials.chain([Detail::Letters(vec![PairKind::ParticleEdge])]).chain(stages.map(Detail::Stage)).collect()
+    let force = Detail::Force { term: ForceTerm::Drag, weight: 0.25 };
+    let others = [Detail::Letters(vec![PairKind::ParticleEdge]), force];
+    polynomials.chain(others).chain(stages.map(Detail::Stage)).collect()
 }
 
-/// What hints below `full` let through: no sentence gives a formula away, whatever is explained.
+/// Hints below `full` let no sentence through that gives a formula away, whatever is explained.
 #[test]
 fn no_sentence_gives_a_formula_away() {
-    let known = CATALOGUE.iter().map(|row| explanation(row.id, About::Mistake, Vec::new()));
+    let known = all_rows().map(|row| explanation(row.id, About::Mistake, Vec::new()));
     for one in all().into_iter().chain(known) {
         let sentence = what(&one);
         assert_eq!(formula_in(&sentence), None, "{sentence}");

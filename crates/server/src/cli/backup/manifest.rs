@@ -1,4 +1,4 @@
-//! What a backup says it holds.
+//! The list of a backup's contents.
 use crate::store::Digest;
 use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
@@ -7,10 +7,10 @@ use std::{fs, path::Path};
 /// The form of backups.
 pub(super) const SCHEMA: u32 = 1;
 
-/// What the file is called; a folder without it is no backup.
+/// The file's name; a folder without it is no backup.
 const FILE: &str = "backup.json";
 
-/// What a backup holds.
+/// The contents of a backup.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(in crate::cli) struct Manifest {
     /// The form of the backup.

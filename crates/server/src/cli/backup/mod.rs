@@ -21,7 +21,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// What the copy of the database is called, by engine.
+/// The name of the database's copy, by engine.
 const SQLITE: &str = "fosssim.db";
 const POSTGRES: &str = "fosssim.dump";
 

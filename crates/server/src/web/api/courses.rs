@@ -34,7 +34,7 @@ pub(super) struct MemberWish {
     role: String,
 }
 
-/// What is to be handed on to a new member.
+/// The links that are to be handed on to a new member.
 #[derive(Serialize, ToSchema)]
 pub(super) struct MemberLinks {
     /// A link that signs in once, good for a week; nothing where the account was there before.
@@ -101,7 +101,7 @@ pub(super) struct MemberLine {
     login: String,
     email: String,
     role: String,
-    /// What is wrong with the line; then nothing was done about any.
+    /// The error in the line; then nothing was done about any.
     error: Option<String>,
     #[serde(flatten)]
     links: MemberLinks,

@@ -32,7 +32,7 @@ pub(super) async fn begin(
     Ok((status(&regrade, StatusCode::CREATED), Json(regrade)))
 }
 
-/// What a regrade would change, or did, and why.
+/// The changes that a regrade would make, or made, and why.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}", tag = "regrades",
     params(("after" = Option<i64>, Query, description = "Only changes of submissions after this one: `next` of the answer before")),
     responses((status = 200, body = Regrade)))]

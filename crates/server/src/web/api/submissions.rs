@@ -17,9 +17,9 @@ use axum::{
 use serde::Deserialize;
 use utoipa::ToSchema;
 
-/// What is said about an upload that is the whole body.
+/// The parameters of an upload that is the whole body.
 #[derive(Deserialize)]
-pub(super) struct About {
+pub(super) struct UploadParameters {
     name: Option<String>,
     form: Option<String>,
 }
@@ -35,7 +35,7 @@ pub(super) struct About {
 pub(super) async fn submit(
     member: Member,
     At { assignment, .. }: At,
-    Asked(about): Asked<About>,
+    Asked(about): Asked<UploadParameters>,
     headers: HeaderMap,
     request: Request,
 ) -> Result<Response, Problem> {

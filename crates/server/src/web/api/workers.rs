@@ -1,5 +1,5 @@
-//! What workers on other machines ask: claim, renew, finish, and the files of the jobs that they hold. A lease is shown
-//! in the header `Fosssim-Lease` as `JOB:ATTEMPT:KEY` where the body is a file.
+//! The requests of workers on other machines: claim, renew, finish, and the files of the jobs that they hold. A lease
+//! is shown in the header `Fosssim-Lease` as `JOB:ATTEMPT:KEY` where the body is a file.
 use super::super::{
     download,
     input::{Asked, At, Body},
@@ -10,7 +10,7 @@ use crate::{
     problem::Problem,
     queue::Lease,
     store::{Artefact, Digest},
-    wire::{Alive, Claimed, Fault, Finished, Held, Manners, Renewal},
+    wire::{Alive, Claimed, Finished, JobFault, LeaseAnswer, Manners, Renewal},
 };
 use axum::{
     Json,
@@ -49,15 +49,16 @@ pub(super) async fn claim(remote: Remote, Asked(claimant): Asked<Claimant>) -> R
 answers! {
     /// Extends a lease, and says how far the grading is.
     post "/api/v1/worker/renew" "workers"
-        renew(remote: Remote, renewal: Renewal) -> Held: remote.renew(&renewal.lease, renewal.progress);
+        renew(remote: Remote, renewal: Renewal) -> LeaseAnswer: remote.renew(&renewal.lease, renewal.progress);
     /// Gives a job back at no cost.
-    post "/api/v1/worker/release" "workers" release(remote: Remote, lease: Lease) -> Held: remote.release(&lease);
+    post "/api/v1/worker/release" "workers" release(remote: Remote, lease: Lease) -> LeaseAnswer:
+        remote.release(&lease);
     /// Says that a try came to nothing.
     post "/api/v1/worker/fail" "workers"
-        fail(remote: Remote, fault: Fault) -> Held: remote.fail(&fault.lease, &fault.fault);
+        fail(remote: Remote, fault: JobFault) -> LeaseAnswer: remote.fail(&fault.lease, &fault.fault);
     /// Brings a result.
     post "/api/v1/worker/finish" "workers"
-        finish(remote: Remote, result: Finished) -> Held: remote.finish(&result.lease, &result.outcome);
+        finish(remote: Remote, result: Finished) -> LeaseAnswer: remote.finish(&result.lease, &result.outcome);
 }
 
 fn lease(headers: &HeaderMap) -> Result<Lease, Problem> {

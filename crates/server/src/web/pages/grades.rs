@@ -1,7 +1,9 @@
 //! The class, and regrades.
 use super::{
     super::input::{Asked, At, Fields},
-    Frame, see,
+    Frame,
+    heat::Heat,
+    see,
     settings::{Grading, GradingFields},
     show,
     statistics::Statistics,
@@ -32,6 +34,7 @@ struct ClassPage {
     scores: Vec<ScoreInfo>,
     requests: Vec<crate::access::Request>,
     statistics: Option<Statistics>,
+    heat: Heat,
     grading: GradingFields,
 }
 
@@ -113,6 +116,9 @@ pub(super) async fn class(
     let scores = staff.scores(&assignment.slug).await?;
     let (requests, statistics) = (staff.requests(&assignment.slug).await?, Statistics::of(&standings));
     let (standings, found, [before, after]) = look.at(standings);
+    let results: Vec<i64> =
+        standings.iter().filter_map(|one| Some(one.counts.as_ref()?.grade.as_ref()?.result)).collect();
+    let heat = Heat::of(&standings, &staff.failed_scenes(&results).await?);
     show(&ClassPage {
         frame,
         slug,
@@ -127,6 +133,7 @@ pub(super) async fn class(
         scores,
         requests,
         statistics,
+        heat,
         grading,
     })
 }

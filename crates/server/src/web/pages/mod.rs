@@ -17,6 +17,7 @@ mod administration;
 mod checker;
 mod course;
 mod grades;
+mod heat;
 mod platform;
 mod removal;
 mod settings;

@@ -13,8 +13,9 @@ pub(super) struct Statistics {
     pub(super) median: String,
     /// Students by percent of the points.
     pub(super) bins: Vec<(String, usize)>,
-    /// Mistakes that several students are likely to have made, the most frequent first.
-    pub(super) mistakes: Vec<(String, Vec<String>)>,
+    /// Mistakes that several students are likely to have made, the most frequent first: their logins, and a submission
+    /// that shows it.
+    pub(super) mistakes: Vec<(String, Vec<String>, i64)>,
 }
 
 impl Statistics {
@@ -22,9 +23,10 @@ impl Statistics {
     pub(super) fn of(standings: &[Standing]) -> Option<Self> {
         let mut parts = Vec::new();
         let mut accepted = 0;
-        let mut mistakes: BTreeMap<String, Vec<String>> = BTreeMap::new();
+        let mut mistakes: BTreeMap<String, (Vec<String>, i64)> = BTreeMap::new();
         for standing in standings {
-            let Some(grade) = standing.counts.as_ref().and_then(|counts| counts.grade.as_ref()) else { continue };
+            let Some(counts) = &standing.counts else { continue };
+            let Some(grade) = &counts.grade else { continue };
             accepted += usize::from(grade.verdict == "accepted");
             let number = |text: &Option<String>| text.as_ref().and_then(|text| text.parse::<f64>().ok());
             if let (Some(points), Some(most)) = (number(&grade.points), number(&grade.max_points))
@@ -33,7 +35,8 @@ impl Statistics {
                 parts.push((100.0 * points / most).clamp(0.0, 100.0));
             }
             if let Some((_, mistake)) = grade.summary.split_once("; ") {
-                mistakes.entry(mistake.to_owned()).or_default().push(standing.login.clone());
+                let (logins, _) = mistakes.entry(mistake.to_owned()).or_insert_with(|| (Vec::new(), counts.id));
+                logins.push(standing.login.clone());
             }
         }
         parts.sort_by(f64::total_cmp);
@@ -46,8 +49,9 @@ impl Statistics {
             let count = parts.iter().filter(|part| (low..high).contains(*part) || is_last && **part >= high).count();
             (format!("{from} to {}", from + BIN), count)
         };
-        let mut mistakes: Vec<_> = mistakes.into_iter().filter(|(_, logins)| logins.len() > 1).collect();
-        mistakes.sort_by_key(|(_, logins)| std::cmp::Reverse(logins.len()));
+        let shared = mistakes.into_iter().filter(|(_, (logins, _))| logins.len() > 1);
+        let mut mistakes: Vec<_> = shared.map(|(mistake, (logins, first))| (mistake, logins, first)).collect();
+        mistakes.sort_by_key(|(_, logins, _)| std::cmp::Reverse(logins.len()));
         Some(Self {
             students,
             accepted,

@@ -4,17 +4,18 @@ use super::{
         api::RequestWish,
         input::{At, Fields},
     },
-    Frame, see,
+    Frame, heat, see,
     settings::moment,
     show, text,
 };
 use crate::{
-    access::{App, Assignment, Imported, Member, Staff, Work},
+    access::{App, Assignment, AttemptChange, Imported, Member, Staff, Submission, Work},
     problem::Problem,
 };
 use askama::Template;
 use axum::response::{Html, Redirect};
 use serde::Deserialize;
+use std::collections::BTreeMap;
 use url::form_urlencoded::byte_serialize;
 
 #[derive(Template)]
@@ -24,6 +25,14 @@ struct StudentPage {
     slug: String,
     assignment: Assignment,
     work: Work,
+    /// The changes that attempts have made, by the numbers of their submissions.
+    changes: BTreeMap<i64, String>,
+}
+
+impl StudentPage {
+    fn change(&self, id: &i64) -> &str {
+        self.changes.get(id).map_or("", String::as_str)
+    }
 }
 
 #[derive(Template)]
@@ -77,7 +86,17 @@ pub(super) async fn page(
     let frame = Frame::assignment(&staff, &assignment.slug, &assignment.title)
         .then(format!("/c/{slug}/a/{}/class", assignment.slug), "Class")
         .then(format!("/c/{slug}/a/{}/students/{login}", assignment.slug), &work.name);
-    show(&StudentPage { frame, slug, assignment, work })
+    let graded: Vec<(&Submission, i64)> =
+        work.submissions.iter().filter_map(|one| Some((one, one.grade.as_ref()?.result))).collect();
+    let failed = staff.failed_scenes(&graded.iter().map(|(_, result)| *result).collect::<Vec<_>>()).await?;
+    // They come latest first.
+    let change = |pair: &[(&Submission, i64)]| {
+        let [(later, new), (earlier, old)] = *pair else { return None };
+        let change = AttemptChange::between(earlier.number, failed.get(&old)?, failed.get(&new)?);
+        Some((later.id, heat::change(&change)))
+    };
+    let changes = graded.windows(2).filter_map(change).collect();
+    show(&StudentPage { frame, slug, assignment, work, changes })
 }
 
 pub(super) async fn extend(

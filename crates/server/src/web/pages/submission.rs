@@ -3,7 +3,7 @@ use super::{
     super::{api, input::At},
     Frame,
     course::OwnWork,
-    see, show, text,
+    heat, see, show, text,
 };
 use crate::{
     access::{Assignment, History, Member, Staff, Submission},
@@ -43,6 +43,8 @@ struct SubmissionPage {
     work: Option<OwnWork>,
     is_moving: bool,
     history: Vec<History>,
+    /// The change that it has made since the one before it.
+    change: Option<String>,
     /// Scenes in which the reference may be wrong, as staff says.
     doubts: Vec<String>,
     report: Option<String>,
@@ -94,6 +96,7 @@ pub(super) async fn submission(member: Member, At { course: slug, id, .. }: At) 
         work,
         is_moving: matches!(submission.state.as_str(), "waiting" | "running"),
         history: member.history(id).await?,
+        change: member.change(&submission).await?.as_ref().map(heat::change),
         doubts: member.doubts(id).await?,
         has_html: has("report.html"),
         report,

@@ -22,7 +22,7 @@ pub(super) const LEASE: u64 = 2;
 /// A job is given up after this many failures. More than the default: here workers die many times a minute.
 pub(super) const TRIES: u32 = 8;
 
-/// What a submission comes to in calm weather.
+/// The result of a submission in calm weather.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Expected {
     pub(super) code: String,
@@ -43,11 +43,11 @@ pub(super) struct Arena {
     address: Address,
     grader: PathBuf,
     assignment: i64,
-    /// What was accepted, by name.
+    /// The submissions that were accepted, by name.
     accepted: BTreeMap<String, Expected>,
 }
 
-/// What was found afterwards.
+/// The findings afterwards.
 pub(super) struct Found {
     pub(super) accepted: usize,
     pub(super) lost: Vec<String>,

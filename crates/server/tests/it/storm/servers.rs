@@ -85,7 +85,7 @@ impl Dice {
     }
 }
 
-/// What became of all uploads.
+/// The results of all uploads.
 struct Grades {
     wrong: Vec<String>,
     buried: usize,

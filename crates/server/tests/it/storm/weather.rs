@@ -1,4 +1,4 @@
-//! What happens during a storm, at random.
+//! Events of a storm, at random.
 use super::arena::{Arena, Expected, signal};
 use fosssim_server::values;
 use std::time::Duration;
@@ -19,7 +19,7 @@ impl Size {
     }
 }
 
-/// What happened.
+/// The number of events of each kind.
 #[derive(Debug, Default)]
 pub(super) struct Seen {
     pub(super) kills: usize,

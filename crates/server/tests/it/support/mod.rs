@@ -1,4 +1,4 @@
-//! What the tests share.
+//! The common parts of the tests.
 pub(crate) mod cluster;
 pub(crate) mod disk;
 pub(crate) mod engines;

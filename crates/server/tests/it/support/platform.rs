@@ -79,7 +79,7 @@ pub(crate) fn unsigned(header: &Value, claims: &Value) -> String {
 pub(crate) static KEYS: LazyLock<[Key; 3]> =
     LazyLock::new(|| [Key::make("first"), Key::make("second"), Key::make("first")]);
 
-/// What becomes of a message to a service.
+/// The fate of a message to a service.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Trouble {
     Status(u16),
@@ -98,11 +98,11 @@ pub(crate) struct Inside {
     pub(crate) key_reads: usize,
     tokens: HashMap<String, String>,
     pub(crate) token_requests: usize,
-    /// What becomes of the next scores.
+    /// The fates of the next scores.
     pub(crate) troubles: VecDeque<Trouble>,
     /// Everything that came to columns: the column, and the score.
     pub(crate) scores: Vec<(String, Value)>,
-    /// What the grade book holds: of each column and person what is newest.
+    /// The grade book: of each column and person the newest score.
     pub(crate) grade_book: BTreeMap<(String, String), Value>,
     pub(crate) line_items: Vec<Value>,
     /// Whether it takes a while to make a column.
@@ -149,7 +149,7 @@ impl Platform {
         self.inside.lock().expect("nobody panicked")
     }
 
-    /// What it says of somebody who opens the link `link` in its course `physics`.
+    /// The message about somebody who opens the link `link` in its course `physics`.
     pub(crate) fn claims(&self, nonce: &str, subject: &str, role: &str) -> Value {
         let now = now();
         json!({

@@ -1,4 +1,4 @@
-//! What the grader fails on: what students read of it, and how staff has it graded again.
+//! Submissions on which the grader fails: what students read of them, and how staff has them graded again.
 use crate::support::{
     engines::{Fresh, on_both_engines, run},
     server::{Client, Server, program},

@@ -1,4 +1,4 @@
-//! What people, workers and the server itself do at the same time, to the same submissions: nobody is refused because
+//! People, workers and the server itself at the same time, at the same submissions: nobody is refused because
 //! another was in the way, and no two wait for each other.
 use crate::support::{
     engines::{Fresh, on_both_engines},

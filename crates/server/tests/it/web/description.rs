@@ -42,7 +42,7 @@ fn every_operation_is_described_to_the_end() {
             let text = response["description"].as_str().unwrap_or_default();
             assert!(!text.is_empty(), "{method} {path}: {status} has no description");
         }
-        // What stands in braces is described, and nothing else is.
+        // Parameters in braces are described, and no others are.
         let parameters: Vec<&Value> = operation["parameters"].as_array().into_iter().flatten().collect();
         for parameter in &parameters {
             assert!(parameter["description"].is_string(), "{method} {path}: {parameter}");

@@ -1,4 +1,4 @@
-//! What students and teachers do, from the first link to a regrade.
+//! The way of students and teachers, from the first link to a regrade.
 use crate::support::{
     engines::{Fresh, on_both_engines},
     server::{Answer, Client, JSON, Server, program},
@@ -214,7 +214,8 @@ async fn a_regrade_changes_nothing_until_it_is_applied(fresh: Fresh) {
     assert_eq!([&changes[0]["old_points"], &changes[0]["new_points"]], ["40", "20"]);
     assert_eq!(changes[0]["why"], serde_json::json!(["rules of the suite before, parity now"]));
     assert_eq!(ada.wait_for_grade("physics", whole)["grade"]["points"], "40");
-    // What comes in meanwhile is graded by the old settings, and is part of the regrade before it can be applied.
+    // A submission that comes in meanwhile is graded by the old settings, and is part of the regrade before it can be
+    // applied.
     let late = ada.submit("physics", &program("WA", 60));
     assert_eq!(ada.wait_for_grade("physics", late)["grade"]["points"], "60");
     let problem = admin.post_json(&format!("{base}/{id}/apply"), "").expect(409).json();
@@ -261,7 +262,7 @@ async fn what_was_accepted_survives_a_kill_of_the_server(fresh: Fresh) {
     let admin = server.admin();
     server.course(&admin, "physics");
     let ada = server.member(&admin, "physics", "ada", "student");
-    // What runs when the server dies is run again; what waited is still there.
+    // A job that runs when the server dies is run again; one that waited is still there.
     let ids: Vec<i64> = (0..12).map(|points| ada.submit("physics", &program("WA", points))).collect();
     for _ in 0..3 {
         server.kill();
@@ -312,7 +313,7 @@ async fn nobody_gains_or_loses_rights_by_an_old_link(fresh: Fresh) {
     colleague.get("/api/v1/me").expect(200);
     link(&teacher, "physics", "admin").expect(404);
     link(&teacher, "physics", "colleague").expect(404);
-    // Who is shut out stays out until somebody opens the account again.
+    // Somebody who is shut out stays out until somebody opens the account again.
     admin.send("DELETE", "/api/v1/accounts/colleague", &[], b"").expect(204);
     colleague.get("/api/v1/me").expect(401);
     admin.send("DELETE", "/api/v1/accounts/admin", &[], b"").expect(409);

@@ -1,4 +1,4 @@
-//! What a suite hides from students, the service does not show them.
+//! Groups that a suite hides from students are not shown to them.
 use crate::support::{
     engines::{Fresh, on_both_engines},
     server::{Client, Server},
@@ -28,6 +28,11 @@ async fn reports_that_tell_of_hidden_groups_are_for_staff(fresh: Fresh) {
             ada.get(&path(open)).expect(200);
         }
     }
+    // Which scenes an attempt has changed is told where nothing of both attempts is hidden.
+    let page = |by: &Client| by.get(&format!("/c/physics/s/{open}")).expect(200).text();
+    assert!(!page(&ada).contains("Since submission") && !page(&ada).contains("Secret"), "{}", page(&ada));
+    let words = "Since submission 1 became right: Secret/scene. No longer right: Group/scene.";
+    assert!(page(&teacher).contains(words), "{}", page(&teacher));
     // Nothing that a student is told changes with what is hidden: not points, counts, verdicts, digests or sizes.
     let other = ada.submit("physics", b"#!grade RTE 7 Secret/scene 1\n");
     ada.wait_for_grade("physics", other);
@@ -64,7 +69,7 @@ async fn reports_that_tell_of_hidden_groups_are_for_staff(fresh: Fresh) {
     ada.get(&format!("/c/physics/s/{hidden}/report/grade.json")).expect(200);
     teacher.send("DELETE", "/api/v1/courses/physics/assignments/m1/published", &[], b"").expect(200);
     assert_eq!(told(&ada, other).0, grade);
-    // What older versions graded is looked at when it is asked for.
+    // A grade of an older version is looked at when it is asked for.
     let mut transaction = fresh.database.begin().await.expect("a transaction");
     transaction.execute("UPDATE result SET shown = NULL", &[]).await.expect("as before");
     transaction.commit().await.expect("a commit");

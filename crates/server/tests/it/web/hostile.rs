@@ -1,4 +1,4 @@
-//! What somebody with bad intentions sends.
+//! Requests of somebody with bad intentions.
 use crate::support::{
     engines::{Fresh, on_both_engines, run},
     server::{Answer, Client, JSON, Server, program},
@@ -154,7 +154,7 @@ fn bodies_that_are_too_large_or_too_slow_are_given_up() {
         // JSON has its own limit.
         let long = format!(r#"{{"name": "{}"}}"#, "x".repeat(2 << 20));
         ada.post_json("/api/v1/tokens", &long).expect(413);
-        // Who stops in the middle of an upload, of JSON, or of the head is not waited for. All at one time.
+        // A client that stops in the middle of an upload, of JSON, or of the head is not waited for. All at one time.
         let stopped: Vec<(&str, TcpStream)> = [
             (SUBMISSIONS, "Content-Length: 1000"),
             ("/api/v1/tokens", "Content-Type: application/json\r\nContent-Length: 1000"),
@@ -260,7 +260,7 @@ fn archives_can_not_leave_their_folder() {
         assert!(bomb.len() < 4 << 20);
         let answer = ada.send("POST", SUBMISSIONS, &[], &bomb).expect(422);
         assert!(answer.text().contains("1073741824 bytes"), "{}", answer.text());
-        // What students really make.
+        // An archive as students really make them.
         let fine = zip(&[("mine/FOSSSim", b"#!grade AC 1\n", 0o755), ("mine/src/main.cpp", b"int main() {}", 0o644)]);
         ada.send("POST", SUBMISSIONS, &[], &fine).expect(201);
         assert_eq!(std::fs::read_dir(server.folder.join("incoming")).expect("a folder").count(), 0);
@@ -288,7 +288,8 @@ fn archives_of_file_managers_are_graded() {
     });
 }
 
-/// What 7-Zip, xz and bzip2 pack, with a build of another machine inside; and what is none of these, by what it is.
+/// Archives that 7-Zip, xz and bzip2 pack, with a build of another machine inside; and files that are none of these, by
+/// their kind.
 #[test]
 fn archives_of_all_kinds_are_graded() {
     run(async {

@@ -1,4 +1,4 @@
-//! What one account, one address, and all together may use of the server.
+//! The shares of one account, one address, and all together in the server.
 use crate::support::{
     disk::stored,
     engines::{Fresh, on_both_engines},
@@ -43,7 +43,7 @@ async fn files_are_sent_in_pieces(fresh: Fresh) {
     assert!(whole.body == bytes);
     assert_eq!(whole.header("content-length"), Some("67108864"));
     let tag = whole.header("etag").expect("a tag").to_owned();
-    // Who has it already, or wants a part of it.
+    // A client that has it already, or wants a part of it.
     ada.send("GET", &path, &[("If-None-Match", &tag)], b"").expect(304);
     let part = ada.send("GET", &path, &[("Range", "bytes=0-4"), ("If-Range", &tag)], b"").expect(206);
     assert_eq!((part.body.as_slice(), part.header("content-range")), (&b"#!gra"[..], Some("bytes 0-4/67108864")));
@@ -121,7 +121,7 @@ async fn quotas_count_what_is_kept(fresh: Fresh) {
     eve.wait_for_grade("physics", of_eve);
     let answer = eve.send("POST", SUBMISSIONS, &[], &large(2, 5)).expect(507).json();
     assert!(answer["detail"].as_str().is_some_and(|detail| detail.contains("in this course")), "{answer}");
-    // What is given up makes room.
+    // An upload that is given up makes room.
     let mut transaction = fresh.database.begin().await.expect("a transaction");
     let given_up = "UPDATE submission SET removed_at = {now} WHERE id IN (?, ?)";
     transaction.execute(given_up, values![first, of_eve]).await.expect("a statement");
@@ -129,7 +129,7 @@ async fn quotas_count_what_is_kept(fresh: Fresh) {
     assert!(kept().await < 3 << 20);
     let third = ada.submit("physics", &large(2, 3));
     ada.wait_for_grade("physics", third);
-    // What is deleted, too.
+    // One that is deleted, too.
     let mut transaction = fresh.database.begin().await.expect("a transaction");
     for deleted in [
         "DELETE FROM grade_change WHERE submission = ?",
@@ -187,7 +187,7 @@ fn half_open_requests_keep_nobody_out() {
                 admin.get("/api/v1/me").expect(200);
             }
         }
-        // Who is being answered keeps its place.
+        // A connection that is being answered keeps its place.
         server.visitor().get("/health").expect(200);
         assert!(server.stop().success());
         let log = server.log();

@@ -172,7 +172,7 @@ fn a_message_is_believed_once_and_in_the_browser_that_asked() {
         // A platform that nobody registered leads nowhere.
         let unknown = server.visitor().get("/lti/login?iss=https%3A%2F%2Fevil.example&login_hint=x").expect(403);
         assert!(unknown.header("location").is_none() && unknown.text().contains("has registered this platform"));
-        // What the platform could not do is said.
+        // A failure of the platform is said.
         let form = "state=x&error=login_required&error_description=%3Cb%3Enot%20signed%20in";
         let answer = server.visitor().post_form("/lti/launch", form).expect(403).text();
         assert!(answer.contains("login_required: &#60;b&#62;not signed in"), "{answer}");

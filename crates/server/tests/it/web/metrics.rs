@@ -1,4 +1,4 @@
-//! What a monitor reads: Prometheus' text format, by its rules.
+//! The page for monitors: Prometheus' text format, by its rules.
 use crate::support::{
     engines::{Fresh, on_both_engines, run},
     server::{Server, program},

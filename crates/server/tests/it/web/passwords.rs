@@ -77,7 +77,7 @@ async fn nobody_signs_in_by_guessing(fresh: Fresh) {
     let kept = transaction.one("SELECT password FROM account WHERE login = 'ada'", &[]).await.expect("a row");
     assert!(kept.text("password").expect("a digest").starts_with("argon2id$"));
     drop(transaction);
-    // Who has no password, and who does not exist, are told alike.
+    // An account without a password, and one that does not exist, are told alike.
     let (nobody, without) = (sign_in(&server, "nobody", "whatever+it"), sign_in(&server, "admin", "whatever+it"));
     assert_eq!((nobody.status, nobody.body), (401, without.body));
     // Right ones are not counted, however many.

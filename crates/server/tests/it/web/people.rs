@@ -142,7 +142,7 @@ async fn an_account_with_a_password_is_its_persons_own(fresh: Fresh) {
     let invitation = add(&teacher, "physics", "ada", "student");
     assert!(invitation["link"].is_null() && invitation["invitation"].is_string(), "{invitation}");
     server.visitor().post_form("/sign-in/password", "login=ada&password=correct+horse").expect(303);
-    // Who is the course's alone is back at once.
+    // An account that is the course's alone is back at once.
     add(&teacher, "physics", "eve", "student");
     teacher.send("DELETE", "/api/v1/courses/physics/members/eve", &[], b"").expect(204);
     assert!(add(&teacher, "physics", "eve", "student")["invitation"].is_null());
@@ -192,7 +192,7 @@ async fn a_session_lasts_from_the_last_visit(fresh: Fresh) {
     let cookie = session.get("/").expect(200).header("set-cookie").expect("a cookie").to_owned();
     let kept = &session.headers[0].1;
     assert!(cookie.starts_with(kept.as_str()) && cookie.contains("Max-Age=1209600"), "{cookie}");
-    // What forgot to say who it is, is told so; what another site sends, that.
+    // A request that forgot to say who asks is told so, and one from another site that.
     let json = [JSON[0]];
     server.visitor().send("POST", "/api/v1/tokens", &json, br#"{"name": "x"}"#).expect(401);
     let headers = [JSON[0], ("Sec-Fetch-Site", "cross-site"), ("Cookie", kept.as_str())];

@@ -83,7 +83,7 @@ async fn a_course_of_a_platform(fresh: Fresh) {
     assert!(score.get("scoreGiven").is_none() && score["activityProgress"] == "Submitted", "{score}");
     let failed = ada.submit("physics", b"#!grade JE 0\n");
     ada.wait_for_grade("physics", failed);
-    // What the teacher hands in is no score.
+    // A submission of the teacher is no score.
     let tried = teacher.submit("physics", &program("AC", 100));
     teacher.wait_for_grade("physics", tried);
 
@@ -226,7 +226,7 @@ async fn rosters_are_read_to_their_end(fresh: Fresh) {
         lines
     };
     assert_eq!(sorted(members()), all);
-    // Who is told of by the roster first is the same when they come.
+    // A student of whom the roster tells first is the same when they come.
     let (bob, _) = arrive(&server, &platform, ("bob", LEARNER), |_| {});
     bob.get("/c/physics").expect(200);
     // Staff made one of them staff here, and somebody of no platform a student: both stay what they are.
@@ -242,7 +242,7 @@ async fn rosters_are_read_to_their_end(fresh: Fresh) {
     assert_eq!(read, json!({"members": 4, "left": 1}));
     let left = ["Given ada student", "Given bob staff", "Given teacher staff", "Given tutor staff", "Local student"];
     assert_eq!(sorted(members()), left);
-    // Who becomes more than a student signs in again: anybody who was signed in for them does not come along.
+    // A student who becomes more signs in again: anybody who was signed in for them does not come along.
     let (now_staff, _) = arrive(&server, &platform, ("ada", INSTRUCTOR), |_| {});
     ada.get("/api/v1/me").expect(401);
     now_staff.get("/api/v1/courses/physics/members").expect(200);

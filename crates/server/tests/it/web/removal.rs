@@ -1,4 +1,4 @@
-//! What is removed is gone, with all that is kept of it, and harms nothing that goes on.
+//! Things that are removed are gone, with all that is kept of them, and harm nothing that goes on.
 use crate::support::{
     engines::{Fresh, on_both_engines},
     server::{Server, program},

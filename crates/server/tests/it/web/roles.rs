@@ -187,7 +187,7 @@ pub(super) const ROUTES: &[(&str, &str, For)] = &[
     ("get", "/static/page.js", All),
 ];
 
-/// Who asks.
+/// The roles of askers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Role {
     Visitor,
@@ -277,7 +277,7 @@ fn every_route_serves_whom_it_should_and_nobody_else() {
                     // A page shows the way in instead.
                     Some(401) if page && *method == "get" => answer.header("location") == Some("/sign-in"),
                     Some(status) => answer.status == status,
-                    // What is not there, and what is not understood, is told to who got in.
+                    // A thing that is not there, and one that is not understood, is told to those who got in.
                     None if *method == "get" => matches!(answer.status, 200 | 400 | 404),
                     None => !matches!(answer.status, 403 | 500..),
                 };

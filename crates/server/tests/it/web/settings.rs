@@ -38,7 +38,7 @@ async fn settings_are_a_form(fresh: Fresh) {
     }
     admin.post_form(path, &form.replace("form_sources=on", "x=y")).expect(400);
     assert_eq!(settings(), utc);
-    // What the form does not show stays: seconds of a date, and a suite that was uploaded.
+    // Settings that the form does not show stay: seconds of a date, and a suite that was uploaded.
     let wish = r#"{"title": "M", "visible": true, "settings": {"due_at": "2026-12-01T23:59:30+01:00"}}"#;
     admin.send("PUT", "/api/v1/courses/physics/assignments/m1", JSON, wish.as_bytes()).expect(200);
     admin.post_form(path, &format!("{form}&due=2026-12-01T22:59&due_zone=0")).expect(303);

@@ -9,7 +9,7 @@ use std::{
     time::Duration,
 };
 
-/// What systemd is told next.
+/// The next word to systemd.
 fn told(socket: &UnixDatagram) -> String {
     let mut text = [0; 4096];
     let length = socket.recv(&mut text).expect("a word");

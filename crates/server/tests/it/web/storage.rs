@@ -55,7 +55,7 @@ fn a_full_disk_heals() {
         let filler = disk.path().join("filler");
         let mut file = std::fs::File::create(&filler).expect("a file");
         while file.write_all(&[1; 4096]).is_ok() {}
-        // Whatever is tried meanwhile is refused, and said to be.
+        // Every upload that is tried meanwhile is refused, and told why.
         for number in 0..4 {
             let course = format!(r#"{{"slug": "full{number}", "title": "{}"}}"#, "x".repeat(150));
             assert!(admin.post_json("/api/v1/courses", &course).status >= 500);

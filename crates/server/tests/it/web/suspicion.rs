@@ -35,7 +35,7 @@ async fn staff_is_told_when_many_agree_on_another_answer(fresh: Fresh) {
     let agreeing = hand_in(&students[5], &answering("Group/hard", 12));
     hand_in(&teacher, &answering("Group/hard", 12));
     assert_eq!(suspicions(), Vec::<serde_json::Value>::new());
-    // Who answers something else, or crashes, does not agree.
+    // A student who answers something else, or whose program crashes, does not agree.
     hand_in(&students[6], &answering("Group/hard", 13));
     hand_in(&students[6], b"#!grade RTE 0 Group/hard 12\n");
     assert!(suspicions().is_empty());

@@ -1,4 +1,4 @@
-//! What teachers do by hand: a class by a table, more time, other points, an answer.
+//! Teaching by hand: a class by a table, more time, other points, an answer.
 use crate::support::{
     engines::{Fresh, on_both_engines},
     server::{JSON, Server, program},
@@ -85,7 +85,16 @@ async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
     );
     let class = teacher.get("/c/physics/a/m1/class?sort=points&page=7").expect(200).text();
     assert!(class.find("students/eve") < class.find("students/ada"), "{class}");
-    // All attempts on one page.
+    // The scenes that students have wrong: in a row for each student, and by scene.
+    let class = teacher.get("/c/physics/a/m1/class").expect(200).text();
+    assert!(class.contains("viewBox=\"0 0 1 1\"") && class.contains("class=\"h-w\" d=\"M0 .5h1\""), "{class}");
+    assert!(class.contains(">Group/hard</th><td class=\"num\">2</td><td class=\"words\">ada, eve</td>"), "{class}");
+    // All attempts on one page, and what each has changed.
+    let mended = eve.submit("physics", &program("AC", 90));
+    eve.wait_for_grade("physics", mended);
+    let words = "Since submission 1 became right: Group/hard.";
+    assert!(eve.get(&format!("/c/physics/s/{mended}")).expect(200).text().contains(words));
+    assert!(teacher.get("/c/physics/a/m1/students/eve").expect(200).text().contains(words));
     let page = teacher.get("/c/physics/a/m1/students/ada").expect(200).text();
     assert!(page.contains(">Submission 1<") && page.contains(">Submission 2<") && page.contains("40 / 100"), "{page}");
     teacher.get("/c/physics/a/m1/students/nobody").expect(404);

@@ -8,8 +8,8 @@ use fosssim_server::{
     values,
 };
 
-/// What takes a database back to the tables of the first version, with an account in it.
-const BACK_TO_THE_FIRST: [&str; 75] = [
+/// Statements that take a database back to the tables of the first version, with an account in it.
+const BACK_TO_THE_FIRST: [&str; 76] = [
     "DROP INDEX job_token",
     "DROP INDEX job_buried",
     "DROP INDEX job_cancelled",
@@ -18,6 +18,7 @@ const BACK_TO_THE_FIRST: [&str; 75] = [
     "DROP INDEX result_campaign",
     "DROP INDEX job_campaign",
     "DROP TABLE tally",
+    "ALTER TABLE result DROP COLUMN failed",
     "ALTER TABLE job DROP COLUMN scenes",
     "ALTER TABLE job DROP COLUMN scenes_done",
     "ALTER TABLE job DROP COLUMN deaths",

@@ -231,7 +231,7 @@ async fn a_worker_reaches_the_jobs_that_it_holds_and_nothing_else(fresh: Fresh) 
     assert_eq!(finish("AC", "100", "report.txt", &report).expect(200).json()["held"], true, "the same lease again");
     let submission = ada.wait_for_grade("physics", mine);
     assert_eq!([&submission["grade"]["code"], &submission["grade"]["points"]], ["WA", "1"], "the first answer counts");
-    // What a report holds is ours to say, not the worker's.
+    // The content of a report is ours to say, not the worker's.
     let told = ada.get(&format!("/api/v1/courses/physics/submissions/{mine}/files/report.txt")).expect(200);
     assert_eq!(told.header("content-type"), Some("text/plain; charset=utf-8"));
     // The lease is over, and so is the token once it is revoked.

@@ -1,6 +1,10 @@
 //! The catalogue is closed under the assignment's symmetries: what can be done wrong with one kind of pair, one end,
 //! one place or one quantity is there for the others, or does not exist for a reason that stands here.
-use super::{Area, CATALOGUE, RowKind, find};
+use super::CATALOGUE;
+use crate::assignments::{
+    all::find,
+    rows::{Area, RowKind},
+};
 use std::collections::BTreeSet;
 
 /// The contents of one place of a family.

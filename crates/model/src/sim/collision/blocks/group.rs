@@ -34,7 +34,7 @@ pub(super) const LINE: usize = 4;
 /// more.
 pub(super) const BEHIND: usize = 8;
 
-/// What is known about a pair, in the bits of a number: the lowest one is this where the certificate has to be asked
+/// Facts about a pair, in the bits of a number: the lowest one is this where the certificate has to be asked
 /// whether there is an impact; the next ones say which of its coefficients are so small that they are dropped when they
 /// lead; the highest ones say nothing.
 pub(super) const OPEN: u64 = 1;
@@ -78,7 +78,8 @@ impl Group {
             let [f0, f1, f2] = pair.beyond_first;
             let [s0, s1, s2] = pair.before_second;
             let [a0, a1, a2, a3, a4, a5] = pair.approach;
-            // What needs all of them comes before what has branches, across which few numbers can be kept at hand.
+            // Code that needs all of them comes before code with branches, across which few numbers can be kept at
+            // hand.
             let all = [o0, o1, o2, o3, o4, f0, f1, f2, s0, s1, s2, a0, a1, a2, a3, a4, a5];
             let small = small(simd, &all);
             for lanes in &all {

@@ -1,4 +1,4 @@
-//! What a pass computes with: one list per number of all particles, for lanes to be loaded from.
+//! The numbers of a pass: one list per number of all particles, for lanes to be loaded from.
 use super::{super::particle_edge::EdgeMotions, Setting};
 use crate::sim::bodies::Bodies;
 use fosssim_num::{

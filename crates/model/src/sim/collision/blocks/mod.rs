@@ -38,11 +38,18 @@ pub(super) struct Setting<'a> {
 pub(super) struct Blocks {
     /// Those that suit the scene, once it is known.
     instructions: Option<Instructions>,
+    /// Steps of the scene.
+    steps: u32,
     lists: Lists,
     group: Group,
 }
 
 impl Blocks {
+    /// For a scene with this many steps.
+    pub fn new(steps: u32) -> Self {
+        Self { steps, ..Self::default() }
+    }
+
     /// Prepares a pass. False where pairs have to be computed one by one.
     pub fn prepare(&mut self, setting: Setting<'_>) -> bool {
         self.group.clear();
@@ -66,8 +73,9 @@ impl Blocks {
         counts: &mut SearchCounts,
         bytes: Option<&mut PolynomialBytes>,
     ) -> Result<Option<Impulse>, StepError> {
-        let Self { instructions, lists, group } = self;
-        let instructions = instructions.get_or_insert_with(|| Instructions::for_pairs(setting.bodies.pairs()));
+        let Self { instructions, steps, lists, group } = self;
+        let pairs = || u64::from(*steps).saturating_mul(setting.bodies.pairs() as u64);
+        let instructions = instructions.get_or_insert_with(|| Instructions::for_pairs(pairs()));
         instructions.run(Pairs { lists, group, setting, place, counts, bytes })
     }
 }

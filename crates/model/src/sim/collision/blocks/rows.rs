@@ -61,8 +61,8 @@ impl Work for Pairs<'_> {
 }
 
 impl Pairs<'_> {
-    /// What is left of the pairs of one particle. Whether something was found, which the output holds; at a hit the
-    /// place is the next pair's.
+    /// Computes the rest of the pairs of one particle. Whether something was found, which the output holds; at a hit
+    /// the place is the next pair's.
     #[inline(always)]
     fn row<S: Simd>(&mut self, simd: S, rows: &mut Rows, output: &mut LoggedRows<'_>) -> bool {
         let first = self.place.first;

@@ -2,7 +2,8 @@
 use fosssim_num::lanes::{Number, Plane};
 use std::ops::Mul;
 
-/// What the polynomials of edges with every particle share: their motion, and the products that hold no particle.
+/// The values that the polynomials of edges with every particle share: their motion, and the products that hold no
+/// particle.
 ///
 /// Every value is computed by the operations that the formulas prescribe, so it does not matter how often it is used.
 /// `x23` is computed and not taken as `-x32`: where they vanish their zeros have the same sign.

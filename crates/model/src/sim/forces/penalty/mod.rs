@@ -5,16 +5,22 @@
 //!
 //! Each detection has an order of its own in which pairs are summed ([`PenaltyPairs`]).
 mod pairs;
+mod terms;
 #[cfg(test)]
 mod tests;
 
 use super::{add, subtract};
 use crate::{
     scene::{CollisionDetection, Scene},
-    sim::{bodies::Bodies, nearby::is_beyond, pair::PairKind},
+    sim::{
+        bodies::Bodies,
+        nearby::is_beyond,
+        pair::{Pair, PairKind},
+    },
 };
 use fosssim_num::vector::{at, length, unit};
 pub use pairs::PenaltyPairs;
+pub use terms::PenaltyTerms;
 
 /// The force of a scene, with the memory to find near pairs.
 #[derive(Debug, Clone)]
@@ -46,18 +52,22 @@ impl Penalty {
     /// Adds the gradient, pair by pair.
     pub fn add_gradient(&mut self, bodies: &Bodies, x: &[f64], gradient: &mut [f64]) {
         let law = self.law;
-        self.pairs.visit(x, |pair| {
-            let (first, second) = (pair.first as usize, pair.second as usize);
-            match pair.kind {
-                PairKind::ParticleParticle => law.particle_particle(bodies, first, second, x, gradient),
-                PairKind::ParticleEdge => law.particle_edge(bodies, first, second, x, gradient),
-                PairKind::ParticleHalfPlane => law.particle_half_plane(bodies, first, second, x, gradient),
-            }
-        });
+        self.pairs.visit(x, |pair| law.add(bodies, pair, x, gradient));
     }
 }
 
 impl Law {
+    /// Adds the gradient of a pair.
+    #[inline]
+    fn add(self, bodies: &Bodies, pair: Pair, x: &[f64], gradient: &mut [f64]) {
+        let (first, second) = (pair.first as usize, pair.second as usize);
+        match pair.kind {
+            PairKind::ParticleParticle => self.particle_particle(bodies, first, second, x, gradient),
+            PairKind::ParticleEdge => self.particle_edge(bodies, first, second, x, gradient),
+            PairKind::ParticleHalfPlane => self.particle_half_plane(bodies, first, second, x, gradient),
+        }
+    }
+
     /// Whether bodies at this distance repel each other.
     #[inline]
     fn repels(self, distance: f64, reach: f64) -> bool {

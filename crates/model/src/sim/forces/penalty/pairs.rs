@@ -104,7 +104,7 @@ impl Begin {
         Self { x: at(x, particle).x - radii[particle], particle: particle as u32 }
     }
 
-    /// Who begins at the same place comes in the order of the scene.
+    /// Particles that begin at the same place come in the order of the scene.
     fn cmp(&self, other: &Self) -> Ordering {
         self.x.partial_cmp(&other.x).unwrap_or(Ordering::Equal).then(self.particle.cmp(&other.particle))
     }
@@ -136,7 +136,7 @@ impl Sweep {
             return;
         }
         order.clear();
-        // What is nowhere reaches nothing, and has no place in an order.
+        // A particle that is nowhere reaches nothing, and has no place in an order.
         order.extend((0..radii.len()).map(|particle| Begin::of(particle, radii, x)).filter(|begin| !begin.x.is_nan()));
         order.sort_unstable_by(Begin::cmp);
         for (index, one) in order.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! What the penalty force adds, pair by pair and in which order.
+//! The summands of the penalty force, pair by pair and in their order.
 use super::*;
 use crate::sim::samples::{edge, half_plane, particle, scene};
 

@@ -1,4 +1,4 @@
-//! What is measured: how long answers took, and what server and machine spent meanwhile (from `/proc`).
+//! The measurements: how long answers took, and what server and machine spent meanwhile (from `/proc`).
 use std::{collections::BTreeMap, fs, time::Duration};
 
 /// How long each kind of request took, and how many failed.
@@ -35,7 +35,7 @@ impl Times {
     }
 }
 
-/// What processes and the machine have spent, in ticks of the clock.
+/// The time that processes and the machine have spent, in ticks of the clock.
 #[derive(Clone, Copy)]
 pub(super) struct Spent {
     server: u64,
@@ -94,7 +94,7 @@ impl Spent {
 }
 
 impl TimeShares {
-    /// What kept it from doing more.
+    /// The bottleneck that kept it from doing more.
     pub(super) fn bound(&self) -> String {
         let busy = self.server + self.graders + self.clients + self.others;
         let who = format!(
@@ -119,11 +119,11 @@ pub(super) fn peak(process: u32) -> u64 {
 /// Has the kernel measure the most memory of a process from now on.
 pub(super) fn forget_peak(process: u32) {
     if let Err(error) = fs::write(format!("/proc/{process}/clear_refs"), "5") {
-        tracing::debug!(%error, "the peak of memory counts from the start");
+        eprintln!("the peak of memory counts from the start: {error}");
     }
 }
 
-/// What others do on this machine, for the record.
+/// The machine's load, for the record.
 pub(super) fn load() -> String {
     fs::read_to_string("/proc/loadavg").unwrap_or_default().split(' ').next().unwrap_or_default().to_owned()
 }

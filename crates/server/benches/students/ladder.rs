@@ -1,6 +1,6 @@
 //! The ladder of Artemis's load tests: more and more students who never stop to think.
 use super::{
-    super::arguments::Bench,
+    Bench,
     client::{Answer, Client},
     measure::{Spent, Times, forget_peak, load, peak},
     stage::Stage,
@@ -18,17 +18,21 @@ const LOOK_EVERY: Duration = Duration::from_millis(500);
 /// How long the queue may take to empty between two rungs.
 const REST: Duration = Duration::from_secs(120);
 
-/// What students do, in this order, again and again.
+/// The steps of students, in this order, again and again.
 const STEPS: [&str; 6] = ["sign in", "course", "upload", "status", "verdict", "report"];
 
-pub(super) async fn climb(arguments: &Bench) -> Result<()> {
+pub(super) async fn climb(arguments: &Bench) -> Result<String> {
     let mut stage = Stage::set(arguments, &[]).await?;
-    println!("load average at the start: {}; each notify {} s; p50 / p95 / p99 in ms\n", load(), arguments.seconds);
-    println!("| students | {} | errors | jobs in a minute | memory | bound by |", STEPS.join(" | "));
-    println!("|---:|{}---:|---:|---:|---|", "---:|".repeat(STEPS.len()));
+    stage.say(&format!(
+        "load average at the start: {}; each rung {} s; p50 / p95 / p99 in ms\n",
+        load(),
+        arguments.seconds
+    ));
+    stage.say(&format!("| students | {} | errors | jobs in a minute | memory | bound by |", STEPS.join(" | ")));
+    stage.say(&format!("|---:|{}---:|---:|---:|---|", "---:|".repeat(STEPS.len())));
     let mut students: Vec<LadderStudent> = Vec::new();
-    for &notify in &arguments.students {
-        for number in students.len() + 1..=notify {
+    for &rung in &arguments.students {
+        for number in students.len() + 1..=rung {
             let secret = stage.enrol(number).await?;
             students.push(LadderStudent {
                 client: Client::new(stage.address, number),
@@ -55,19 +59,19 @@ pub(super) async fn climb(arguments: &Bench) -> Result<()> {
         let per_minute = graded * 60_000 / u64::try_from(took.as_millis()).unwrap_or(1).max(1);
         let cells: Vec<String> = STEPS.iter().map(|step| times.percentiles(step)).collect();
         let errors: usize = times.errors.values().sum();
-        println!(
-            "| {notify} | {} | {errors} | {per_minute} | {} MiB | {} |",
+        stage.say(&format!(
+            "| {rung} | {} | {errors} | {per_minute} | {} MiB | {} |",
             cells.join(" | "),
             peak(stage.process()),
             spent.bound()
-        );
+        ));
         for (error, count) in &times.errors {
-            println!("<!-- {count} x {error} -->");
+            stage.say(&format!("<!-- {count} x {error} -->"));
         }
         empty(&mut stage).await?;
     }
-    println!("\nload average at the end: {}", load());
-    stage.stop().await
+    stage.say(&format!("\nload average at the end: {}", load()));
+    stage.finish().await
 }
 
 /// The upload.
@@ -78,7 +82,7 @@ fn program(arguments: &Bench) -> Result<Bytes> {
     })
 }
 
-/// Waits until the queue is empty: what one notify left behind is not the next one's.
+/// Waits until the queue is empty: what one rung left behind is not the next one's.
 async fn empty(stage: &mut Stage) -> Result<()> {
     let start = Instant::now();
     while start.elapsed() < REST {
@@ -89,7 +93,7 @@ async fn empty(stage: &mut Stage) -> Result<()> {
         }
         tokio::time::sleep(LOOK_EVERY).await;
     }
-    println!("<!-- the queue was not empty before the next notify -->");
+    stage.say("<!-- the queue was not empty before the next rung -->");
     Ok(())
 }
 
@@ -142,7 +146,7 @@ impl LadderStudent {
             if submission["state"] == "done" {
                 break;
             }
-            // Who has no grade by now does not wait for it: the queue is as long as the notify is high.
+            // A student without a grade by now does not wait for it: the queue is as long as the rung is high.
             if Instant::now() > until {
                 return Ok(());
             }

@@ -1,5 +1,5 @@
 //! The server that is measured, as a process of its own in a folder of its own, with a course.
-use super::{super::arguments::Bench, client::Client};
+use super::{Bench, client::Client};
 use anyhow::{Context, Result, bail};
 use axum::{body::Bytes, http::Method};
 use std::{fs, net::SocketAddr, os::unix::fs::PermissionsExt, path::Path, process::Stdio};
@@ -28,6 +28,8 @@ pub(super) struct Stage {
     pub(super) address: SocketAddr,
     pub(super) admin: Client,
     pub(super) folder: tempfile::TempDir,
+    /// All lines that were printed.
+    said: String,
 }
 
 impl Stage {
@@ -35,7 +37,7 @@ impl Stage {
     pub(super) async fn set(arguments: &Bench, options: &[&str]) -> Result<Self> {
         let folder = tempfile::tempdir()?;
         let (server, output, address) = start(arguments, folder.path(), options).await?;
-        let mut stage = Self { server, output, address, admin: Client::new(address, 0), folder };
+        let mut stage = Self { server, output, address, admin: Client::new(address, 0), folder, said: String::new() };
         let line = stage.output.next_line().await?.unwrap_or_default();
         let secret = line.rsplit('/').next().unwrap_or_default();
         stage.admin.welcome(secret).await?;
@@ -88,7 +90,20 @@ impl Stage {
         self.server.id().unwrap_or_default()
     }
 
-    pub(super) async fn stop(&mut self) -> Result<()> {
+    /// Prints a line.
+    pub(super) fn say(&mut self, line: &str) {
+        println!("{line}");
+        self.said.push_str(line);
+        self.said.push('\n');
+    }
+
+    /// Stops the server; all that was said.
+    pub(super) async fn finish(mut self) -> Result<String> {
+        self.stop().await?;
+        Ok(self.said)
+    }
+
+    async fn stop(&mut self) -> Result<()> {
         if let Some(process) = rustix::process::Pid::from_raw(self.process().cast_signed()) {
             rustix::process::kill_process(process, rustix::process::Signal::TERM)?;
         }
@@ -111,7 +126,7 @@ async fn start(
             grader
         }
     };
-    let mut command = Command::new(std::env::current_exe()?);
+    let mut command = Command::new(env!("CARGO_BIN_EXE_fosssim-server"));
     command.args(["serve", "--listen", "127.0.0.1:0", "--requests-per-minute", "100000000", "--workers"]);
     command.arg(arguments.workers.to_string()).arg("--grader").arg(&grader).arg("--data").arg(folder.join("data"));
     command.args(options).env("FOSSSIM_LOG", "error").stdin(Stdio::null()).stdout(Stdio::piped()).kill_on_drop(true);

@@ -1,15 +1,15 @@
 //! A million submissions: what retention, exports and the pages beside them need.
 use super::{
-    super::{arguments::Bench, folders::Folders},
+    Bench,
     attack::report,
     measure::{forget_peak, load, peak},
     stage::Stage,
 };
-use crate::{
+use anyhow::{Context, Result};
+use fosssim_server::{
     db::{Address, Database, Dialect},
     values,
 };
-use anyhow::{Context, Result};
 use std::time::Instant;
 
 /// Accounts; each has handed in as often as it takes.
@@ -18,20 +18,30 @@ const STUDENTS: i64 = 1000;
 /// Ten days, in milliseconds.
 const AGE: i64 = 10 * 24 * 3600 * 1000;
 
-pub(super) async fn run(arguments: &Bench) -> Result<()> {
+pub(super) async fn run(arguments: &Bench) -> Result<String> {
     let mut stage = Stage::set(arguments, &["--keep-of-course", "0"]).await?;
     let address =
         arguments.database.clone().map(|text| text.parse::<Address>()).transpose().map_err(anyhow::Error::msg)?;
-    let address = address.unwrap_or_else(|| Address::Sqlite(Folders::database_in(&stage.folder.path().join("data"))));
+    let address = address.unwrap_or_else(|| Address::Sqlite(stage.folder.path().join("data/fosssim.db")));
     let database = Database::open(&address).await.context("the database")?;
     let start = Instant::now();
     fill(&database, arguments.count).await?;
-    println!("{} submissions written in {} s; load average {}", arguments.count, start.elapsed().as_secs(), load());
+    stage.say(&format!(
+        "{} submissions written in {} s; load average {}",
+        arguments.count,
+        start.elapsed().as_secs(),
+        load()
+    ));
     forget_peak(stage.process());
     let start = Instant::now();
     let path = "/api/v1/courses/bench/assignments/m1/export?format=jsonl";
     let exported = stage.admin.pull(path).await?;
-    println!("export: {} MiB in {} s, memory {} MiB", exported >> 20, start.elapsed().as_secs(), peak(stage.process()));
+    stage.say(&format!(
+        "export: {} MiB in {} s, memory {} MiB",
+        exported >> 20,
+        start.elapsed().as_secs(),
+        peak(stage.process())
+    ));
     // Retention begins with the server.
     stage.again(arguments, &["--keep-days", "1", "--keep-of-course", "0"]).await?;
     let start = Instant::now();
@@ -41,10 +51,10 @@ pub(super) async fn run(arguments: &Bench) -> Result<()> {
         let mut transaction = database.read().await?;
         let row = transaction.one("SELECT count(*) AS n FROM submission WHERE removed_at IS NULL", values![]).await?;
         left = row.int("n")?;
-        println!("{left} left after {} s", start.elapsed().as_secs());
+        stage.say(&format!("{left} left after {} s", start.elapsed().as_secs()));
     }
     database.close().await;
-    stage.stop().await
+    stage.finish().await
 }
 
 /// Writes accounts, submissions, and a result with a report for each.

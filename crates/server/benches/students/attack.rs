@@ -1,6 +1,6 @@
-//! What hostile clients do to memory and connections, and how others fare meanwhile.
+//! The harm of hostile clients to memory and connections, and how others fare meanwhile.
 use super::{
-    super::arguments::Bench,
+    Bench,
     client::{Client, connect},
     measure::{Times, forget_peak, load, peak},
     stage::Stage,
@@ -24,7 +24,7 @@ const HALF_OPEN: usize = 4000;
 const HERE: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
 
 /// Connections that ask for a large upload and read it slowly.
-pub(super) async fn slow_readers(arguments: &Bench) -> Result<()> {
+pub(super) async fn slow_readers(arguments: &Bench) -> Result<String> {
     let mut stage = Stage::set(arguments, &[]).await?;
     let mut file = b"#!/bin/sh\n".to_vec();
     file.resize(UPLOAD, b'#');
@@ -64,13 +64,13 @@ pub(super) async fn slow_readers(arguments: &Bench) -> Result<()> {
     )
     .await?;
     let reading = readers.iter().filter(|reader| !reader.is_finished()).count();
-    println!("{reading} of them still read");
+    stage.say(&format!("{reading} of them still read"));
     readers.iter().for_each(tokio::task::JoinHandle::abort);
-    stage.stop().await
+    stage.finish().await
 }
 
 /// Requests that never end, all from one address: the one that others come from, too.
-pub(super) async fn half_open(arguments: &Bench) -> Result<()> {
+pub(super) async fn half_open(arguments: &Bench) -> Result<String> {
     let mut stage = Stage::set(arguments, &[]).await?;
     let limit = rustix::process::getrlimit(rustix::process::Resource::Nofile);
     let most = rustix::process::Rlimit { current: limit.maximum, maximum: limit.maximum };
@@ -95,7 +95,7 @@ pub(super) async fn half_open(arguments: &Bench) -> Result<()> {
     });
     report(arguments, &mut stage, &format!("{HALF_OPEN} half-open requests, and as many new ones as fit")).await?;
     flood.abort();
-    stage.stop().await
+    stage.finish().await
 }
 
 /// Says how others fared.
@@ -103,14 +103,14 @@ pub(super) async fn report(arguments: &Bench, stage: &mut Stage, what: &str) -> 
     forget_peak(stage.process());
     let mut times = Times::default();
     others(stage, Instant::now() + Duration::from_secs(arguments.seconds), &mut times).await;
-    println!(
+    stage.say(&format!(
         "{what}: memory {} MiB, /health {} ms, course page {} ms (p50 / p95 / p99), errors {:?}, load average {}",
         peak(stage.process()),
         times.percentiles("health"),
         times.percentiles("page"),
         times.errors,
         load()
-    );
+    ));
     Ok(())
 }
 

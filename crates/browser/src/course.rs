@@ -1,0 +1,95 @@
+//! A course's own suite on the page.
+use fosssim_grading::{
+    SceneTask,
+    config::{Credit, Visibility},
+    library,
+    plan::{self, Plan, PlannedGroup},
+};
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+/// A suite and its own scenes, as if somebody had dropped them.
+#[derive(Debug)]
+pub struct CourseSuite(Value);
+
+impl CourseSuite {
+    /// The groups of a plan that readers of the page may see; of the others nothing is in it.
+    ///
+    /// # Errors
+    /// When there is no such group, or when a name can't be written into a suite.
+    pub fn of(plan: &Plan, shows: impl Fn(Visibility) -> bool) -> Result<Self, String> {
+        let groups: Vec<&PlannedGroup> = plan.groups.iter().filter(|group| shows(group.marking.visibility)).collect();
+        if groups.is_empty() {
+            return Err("the suite hides all of its groups from the readers of the page".to_owned());
+        }
+        let scenes = || groups.iter().flat_map(|group| &group.scenes);
+        let own: Vec<&SceneTask> = scenes().filter(|task| !is_inside(task)).collect();
+        let text = text(plan, &groups)?;
+        let read = plan::load_by(&text, &mut |pattern| {
+            let found = own.iter().filter(|task| pattern == glob::Pattern::escape(&file(task)));
+            Ok(found.map(|task| (task.name.clone(), task.xml.clone())).collect())
+        });
+        let names = |plan: &Plan| plan.scenes().map(|task| task.name.clone()).collect::<Vec<_>>();
+        let wanted: Vec<String> = scenes().map(|task| task.name.clone()).collect();
+        if read.is_err() || read.is_ok_and(|plan| names(&plan) != wanted) {
+            return Err("the name of a group or scene can't be written into a suite".to_owned());
+        }
+        let scene = |task: &&SceneTask| -> Result<Value, String> {
+            let xml = std::str::from_utf8(&task.xml).map_err(|_| format!("the scene {} is not UTF-8", task.name))?;
+            Ok(json!({ "name": file(task), "xml": xml }))
+        };
+        let scenes = own.iter().map(scene).collect::<Result<Vec<_>, _>>()?;
+        Ok(Self(json!({ "name": plan.name, "suite": text, "scenes": scenes })))
+    }
+
+    /// As it stands in a data block: nothing in it ends the element.
+    pub(crate) fn data(&self) -> String {
+        self.0.to_string().replace('<', "\\u003c")
+    }
+}
+
+/// Whether every page has this scene inside.
+fn is_inside(task: &SceneTask) -> bool {
+    library::scene(&task.name).is_some_and(|xml| xml == task.xml)
+}
+
+/// The file of a scene, beside the suite.
+fn file(task: &SceneTask) -> String {
+    format!("{}.xml", task.name)
+}
+
+/// The suite without what grading alone needs.
+fn text(plan: &Plan, groups: &[&PlannedGroup]) -> Result<String, String> {
+    // A string of JSON is one of TOML.
+    let string = |text: &str| Value::from(text).to_string();
+    let rules = serde_json::to_string(&plan.rules).map_err(|error| error.to_string())?;
+    let mut out = format!(
+        "schema = 1\nname = {}\nrules = {rules}\nhints = {}\n\n[limits]\ntrace_mib = {}\n",
+        string(&plan.name),
+        string(plan.hints.words().0),
+        (plan.limits.trace >> 20).max(1)
+    );
+    for group in groups {
+        let scenes: Vec<String> = group
+            .scenes
+            .iter()
+            .map(|task| match is_inside(task) {
+                true => string(&format!("asset:{}", task.name)),
+                false => string(&glob::Pattern::escape(&file(task))),
+            })
+            .collect();
+        let credit = match group.marking.credit {
+            Credit::Scenes => "scenes",
+            Credit::Steps => "steps",
+            Credit::All => "all",
+        };
+        let _ = write!(
+            out,
+            "\n[[group]]\nname = {}\nscenes = [{}]\npoints = {}\ncredit = \"{credit}\"\n",
+            string(&group.name),
+            scenes.join(", "),
+            group.marking.points
+        );
+    }
+    Ok(out)
+}

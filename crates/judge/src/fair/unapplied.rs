@@ -1,0 +1,175 @@
+//! Pairs whose penalty force a step leaves out, or applies twice.
+//!
+//! The force of a pair changes the velocities of its particles by known amounts. Where velocities are wrong, those
+//! amounts are fitted to the differences: a pair is named only if no other choice of pairs fits, and the differences of
+//! all its particles are round-off once the pair's force is taken away or added.
+use super::{contact::Tolerances, context::Context};
+use fosssim_findings::FindingDetail;
+use fosssim_model::{
+    scene::Integrator,
+    sim::{Pair, PenaltyTerms, State},
+};
+use fosssim_num::vector::{Vec2, at, length, put};
+
+/// The greatest number of pairs at one particle among which left-out ones are looked for: all choices are tried.
+const MOST_AT_ONE: usize = 6;
+
+/// The greatest number of pairs that are looked at in one step.
+const MOST_PAIRS: usize = 1 << 16;
+
+/// The greatest number of choices that are tried in one step.
+const MOST_CHOICES: usize = 1 << 20;
+
+/// A pair near a particle whose velocity is wrong.
+struct NearPair {
+    pair: Pair,
+    /// The changes of its particles' velocities that its force makes in this step.
+    changes: [(usize, Vec2); 3],
+    count: usize,
+    /// How often it was applied more than once: -1, 0 or 1. Unknown so far: `None`.
+    excess: Option<f64>,
+}
+
+impl NearPair {
+    fn changes(&self) -> &[(usize, Vec2)] {
+        &self.changes[..self.count]
+    }
+
+    fn change_of(&self, particle: usize) -> Vec2 {
+        self.changes().iter().filter(|(index, _)| *index == particle).map(|(_, change)| *change).sum()
+    }
+}
+
+/// The pairs that explain wrong velocities of a step from `before`, and the reference's result with these faults;
+/// `None` where nothing is explained.
+pub(super) fn explain(
+    context: &Context<'_>,
+    tolerances: &Tolerances<'_>,
+    before: &State,
+    own: &State,
+    logged: &State,
+) -> Option<(Vec<FindingDetail>, State)> {
+    let scene = context.scene;
+    let h = scene.time_step;
+    let moves = match scene.integrator {
+        Integrator::ExplicitEuler => false,
+        Integrator::ForwardBackwardEuler | Integrator::SymplecticEuler => true,
+        // There all forces together have one effect.
+        Integrator::LinearizedImplicitEuler | Integrator::ImplicitEuler => return None,
+    };
+    let mut terms = PenaltyTerms::of(scene)?;
+    let particles = scene.particles.len();
+    let mut rest: Vec<Vec2> =
+        (0..particles).map(|index| at(&logged.velocities, index) - at(&own.velocities, index)).collect();
+    let is_settled = |rest: &[Vec2], particle: usize| length(rest[particle]) <= tolerances.velocity(particle);
+    let wrong: Vec<bool> = (0..particles).map(|particle| !is_settled(&rest, particle)).collect();
+    let mut candidates = Vec::new();
+    terms.visit(&before.positions, |pair, forces| {
+        let mut candidate = NearPair { pair, changes: [(0, Vec2::zeros()); 3], count: 0, excess: None };
+        for &(particle, force) in forces.iter().filter(|(particle, _)| !scene.particles[*particle].fixed) {
+            let change = (h / scene.particles[particle].mass) * force;
+            candidate.changes[candidate.count] = (particle, change);
+            candidate.count += 1;
+        }
+        let moved =
+            || candidate.changes().iter().filter(|(particle, change)| length(*change) > tolerances.velocity(*particle));
+        if moved().next().is_some() && moved().all(|(particle, _)| wrong[*particle]) {
+            candidates.push(candidate);
+        }
+    });
+    if candidates.is_empty() || candidates.len() > MOST_PAIRS {
+        return None;
+    }
+    let mut of_particle: Vec<Vec<usize>> = vec![Vec::new(); particles];
+    for (index, candidate) in candidates.iter().enumerate() {
+        candidate.changes().iter().for_each(|(particle, _)| of_particle[*particle].push(index));
+    }
+    settle(&mut candidates, &of_particle, &mut rest, &wrong, tolerances);
+    // A pair stays only if it explains all its particles; taking one away may expose its neighbours.
+    while let Some(index) = candidates.iter().position(|candidate| {
+        let is_named = candidate.excess.is_some_and(|excess| excess != 0.0);
+        is_named && !candidate.changes().iter().all(|(particle, _)| is_settled(&rest, *particle))
+    }) {
+        let excess = candidates[index].excess.take().unwrap_or(0.0);
+        candidates[index].changes().iter().for_each(|&(particle, change)| rest[particle] += excess * change);
+    }
+    let mut faulty = own.clone();
+    let mut found = Vec::new();
+    for candidate in &candidates {
+        let Some(excess) = candidate.excess.filter(|excess| *excess != 0.0) else { continue };
+        found.push(FindingDetail::PairForce { pair: candidate.pair, is_doubled: excess > 0.0 });
+        for &(particle, change) in candidate.changes() {
+            let change = excess * change;
+            let velocity = at(&faulty.velocities, particle) + change;
+            put(&mut faulty.velocities, particle, velocity);
+            if moves {
+                let position = at(&faulty.positions, particle) + h * change;
+                put(&mut faulty.positions, particle, position);
+            }
+        }
+    }
+    (!found.is_empty()).then_some((found, faulty))
+}
+
+/// Finds, particle by particle, the only choice of pairs that explains its velocity. Each particle that is explained
+/// makes the choices of its neighbours fewer.
+fn settle(
+    candidates: &mut [NearPair],
+    of_particle: &[Vec<usize>],
+    rest: &mut [Vec2],
+    wrong: &[bool],
+    tolerances: &Tolerances<'_>,
+) {
+    let (mut goes_on, mut tried) = (true, 0);
+    while goes_on {
+        goes_on = false;
+        for particle in (0..wrong.len()).filter(|particle| wrong[*particle]) {
+            let open: Vec<usize> =
+                of_particle[particle].iter().copied().filter(|index| candidates[*index].excess.is_none()).collect();
+            if open.is_empty() || open.len() > MOST_AT_ONE {
+                continue;
+            }
+            tried += choices(open.len());
+            if tried > MOST_CHOICES {
+                return;
+            }
+            let Some(choice) = only_choice(candidates, &open, particle, rest[particle], tolerances.velocity(particle))
+            else {
+                continue;
+            };
+            for (index, excess) in open.into_iter().zip(choice) {
+                candidates[index].excess = Some(excess);
+                candidates[index].changes().iter().for_each(|&(other, change)| rest[other] += -excess * change);
+            }
+            goes_on = true;
+        }
+    }
+}
+
+/// The number of choices among this number of pairs: each was left out, applied once or twice.
+fn choices(pairs: usize) -> usize {
+    (0..pairs).fold(1, |product, _| 3 * product)
+}
+
+/// How often each of these pairs was applied too often, if one answer alone explains the rest of a particle's velocity.
+fn only_choice(
+    candidates: &[NearPair],
+    open: &[usize],
+    particle: usize,
+    rest: Vec2,
+    tolerance: f64,
+) -> Option<[f64; MOST_AT_ONE]> {
+    let mut found = None;
+    for number in 0..choices(open.len()) {
+        let (mut choice, mut left, mut digits) = ([0.0; MOST_AT_ONE], rest, number);
+        for (excess, index) in choice.iter_mut().zip(open) {
+            *excess = [0.0, -1.0, 1.0][digits % 3];
+            digits /= 3;
+            left -= *excess * candidates[*index].change_of(particle);
+        }
+        if length(left) <= tolerance && found.replace(choice).is_some() {
+            return None;
+        }
+    }
+    found
+}

@@ -1,0 +1,217 @@
+//! Right programs in other arithmetic on scenes whose traces hold states: the share of the fair rules' tolerances that
+//! they use, and the noise that the rules refuse.
+use fosssim_lab::right;
+use fosssim_oracle::{
+    assignments::Assignment,
+    judge::{
+        fair::FairVerdict,
+        replay::{self, Options},
+    },
+    num::vector::at,
+    scene::{Scene, original},
+    sim::{RootSearch, Simulation},
+    student::{Contact, State},
+    suite::library,
+};
+use rayon::prelude::*;
+use std::{collections::BTreeMap, path::Path, process::ExitCode};
+
+/// The sizes of noise that are added to numbers of right traces.
+const NOISES: [f64; 6] = [1e-15, 1e-14, 1e-13, 1e-12, 1e-10, 1e-8];
+
+/// The number of right traces of each scene that get noise.
+const NOISY: u64 = 8;
+
+/// The results on the scenes of one milestone.
+#[derive(Debug, Clone, Copy, Default)]
+struct MilestoneTally {
+    scenes: u32,
+    programs: u32,
+    accepted: u32,
+    borderline: u64,
+    /// The largest share of a tolerance.
+    position: f64,
+    velocity: f64,
+    /// The least factor by which the differences of single steps from the reference have to grow to be refused.
+    room: Option<u32>,
+    /// How many traces get each noise, and how many of these are refused.
+    noisy: u64,
+    refused: [u64; NOISES.len()],
+}
+
+/// Tries all programs on the scenes that come with the program, and on those of a corpus.
+pub fn run(corpus: Option<&Path>) -> ExitCode {
+    let scenes: Vec<(String, Scene)> = scenes(corpus);
+    let results: Vec<(String, MilestoneTally, Vec<String>)> =
+        scenes.par_iter().map(|(name, scene)| try_scene(name, scene)).collect();
+    let mut rows: BTreeMap<String, MilestoneTally> = BTreeMap::new();
+    let mut faults = Vec::new();
+    for (milestone, tally, refused) in results {
+        rows.entry(milestone).or_default().add(&tally);
+        faults.extend(refused);
+    }
+    println!(
+        "milestone  scenes  right programs  accepted  borderline  refused when times  largest share: position  velocity"
+    );
+    for (milestone, row) in &rows {
+        println!(
+            "{milestone:9}  {:6}  {:14}  {:8}  {:10}  {:>18}  {:23.1} %  {:6.1} %",
+            row.scenes,
+            row.programs,
+            row.accepted,
+            row.borderline,
+            row.room.map_or("-".to_owned(), |room| room.to_string()),
+            100.0 * row.position,
+            100.0 * row.velocity
+        );
+    }
+    println!("milestone  traces with noise on three numbers, refused of these with {NOISES:?}");
+    for (milestone, row) in &rows {
+        println!("{milestone:9}  {:6}  {:?}", row.noisy, row.refused);
+    }
+    faults.iter().for_each(|fault| println!("{fault}"));
+    ExitCode::from(u8::from(!faults.is_empty()))
+}
+
+impl MilestoneTally {
+    fn add(&mut self, other: &Self) {
+        self.scenes += other.scenes;
+        self.programs += other.programs;
+        self.accepted += other.accepted;
+        self.borderline += other.borderline;
+        self.position = self.position.max(other.position);
+        self.velocity = self.velocity.max(other.velocity);
+        self.room = [self.room, other.room].into_iter().flatten().min();
+        self.noisy += other.noisy;
+        self.refused.iter_mut().zip(other.refused).for_each(|(own, other)| *own += other);
+    }
+}
+
+/// The milestone, its results on this scene, and the right programs that are refused.
+fn try_scene(name: &str, scene: &Scene) -> (String, MilestoneTally, Vec<String>) {
+    let mut tally = MilestoneTally { scenes: 1, ..MilestoneTally::default() };
+    let mut faults = Vec::new();
+    let milestone = name.split('/').next().unwrap_or_default().to_owned();
+    for (number, arithmetic) in right::ALL.iter().enumerate() {
+        // Programs whose step has no result are not right.
+        let mut single = SingleSteps::new(scene);
+        let Ok(trace) = arithmetic.trace(scene, |state, contacts| single.hear(state, contacts)) else { continue };
+        tally.room = [tally.room, single.room].into_iter().flatten().min();
+        let outcome = judged(scene, &trace);
+        let Some(fair) = outcome.fair else { continue };
+        tally.programs += 1;
+        tally.borderline += fair.borderline;
+        if fair.verdict == FairVerdict::Accepted {
+            tally.accepted += 1;
+            tally.position = tally.position.max(fair.shares.position);
+            tally.velocity = tally.velocity.max(fair.shares.velocity);
+        } else {
+            let first = fair.findings.first_divergence;
+            faults.push(format!("{name}, {}: {first:?}", arithmetic.name));
+        }
+        if number == 0 {
+            add_noise(name, scene, &trace, &mut tally);
+        }
+    }
+    (milestone, tally, faults)
+}
+
+/// Judges single steps of a right program whose differences from the reference were made larger.
+struct SingleSteps<'a> {
+    scene: &'a Scene,
+    /// This step alone.
+    one: Scene,
+    before: State,
+    steps: u32,
+    room: Option<u32>,
+}
+
+impl<'a> SingleSteps<'a> {
+    /// The number of steps of a scene that are tried.
+    const MOST: u32 = 24;
+
+    fn new(scene: &'a Scene) -> Self {
+        let one = Scene { duration: scene.time_step, ..scene.clone() };
+        Self { scene, one, before: right::start(scene), steps: 0, room: None }
+    }
+
+    fn hear(&mut self, after: &State, contacts: &[Contact]) {
+        let before = std::mem::replace(&mut self.before, after.clone());
+        self.steps += 1;
+        let is_tried = self.steps.is_multiple_of(self.scene.steps().div_ceil(Self::MOST).max(1));
+        if !is_tried || self.scene.particles.len() > 200 {
+            return;
+        }
+        for (index, particle) in self.one.particles.iter_mut().enumerate() {
+            (particle.position, particle.velocity) = (at(&before.x, index), at(&before.v, index));
+        }
+        let mut simulation = Simulation::new(&self.one, RootSearch::WhereNeeded);
+        if simulation.step(&mut ()).is_err() {
+            return;
+        }
+        let own = simulation.state();
+        let mut factor = 2;
+        while factor <= 1 << 20 && self.room.is_none_or(|room| factor < room) {
+            let farther = |own: &[f64], other: &[f64]| {
+                own.iter().zip(other).map(|(own, other)| own + f64::from(factor) * (other - own)).collect()
+            };
+            let state = State { x: farther(&own.positions, &after.x), v: farther(&own.velocities, &after.v) };
+            let mut trace = Vec::new();
+            right::record(&self.one, &before, &[], &mut trace);
+            right::record(&self.one, &state, contacts, &mut trace);
+            if judged(&self.one, &trace).fair.is_none_or(|fair| fair.verdict != FairVerdict::Accepted) {
+                self.room = Some(factor);
+            }
+            factor *= 2;
+        }
+    }
+}
+
+fn add_noise(name: &str, scene: &Scene, trace: &[u8], tally: &mut MilestoneTally) {
+    // Integers stand between the numbers of other records.
+    if !matches!(scene.collision.handling().records.impulses, fosssim_oracle::assignments::ImpulseList::Absent) {
+        return;
+    }
+    let mut random = name.bytes().fold(0x9e37_79b9_7f4a_7c15_u64, |seed, byte| seed.rotate_left(7) ^ u64::from(byte));
+    for _ in 0..NOISY {
+        let places: [usize; 3] = std::array::from_fn(|_| {
+            // Xorshift (Marsaglia, J. Stat. Softw. 8(14), 2003).
+            random ^= random << 13;
+            random ^= random >> 7;
+            random ^= random << 17;
+            usize::try_from(random % (trace.len() as u64 / 8)).unwrap_or(0) * 8
+        });
+        tally.noisy += 1;
+        for (noise, refused) in NOISES.iter().zip(&mut tally.refused) {
+            let mut damaged = trace.to_vec();
+            for place in places {
+                let number = &mut damaged[place..place + 8];
+                let value = f64::from_le_bytes(number.try_into().unwrap_or_default());
+                number.copy_from_slice(&(value + noise).to_le_bytes());
+            }
+            let verdict = judged(scene, &damaged).fair.map(|fair| fair.verdict);
+            *refused += u64::from(verdict != Some(FairVerdict::Accepted));
+        }
+    }
+}
+
+fn judged(scene: &Scene, trace: &[u8]) -> fosssim_oracle::judge::Outcome {
+    replay::judge(scene, trace, &Options { threads: 1, fair: true, ..Options::default() }, &mut ())
+}
+
+fn scenes(corpus: Option<&Path>) -> Vec<(String, Scene)> {
+    let own = library::names().filter_map(|name| {
+        let milestone = library::assignment(name).filter(|assignment| *assignment != Assignment::T2M2)?;
+        Some((format!("{}/{name}", milestone.key()), library::scene(name)?.to_vec()))
+    });
+    let mut all: Vec<(String, Vec<u8>)> = own.collect();
+    for folder in ["scenes/t1m1", "scenes/t1m2", "scenes/t1m3", "scenes/t2m1", "t2m3"] {
+        let Some(corpus) = corpus else { continue };
+        for path in super::forged::scene_files(&corpus.join(folder)) {
+            let name = path.strip_prefix(corpus).unwrap_or(&path).display().to_string();
+            let name = name.strip_prefix("scenes/").unwrap_or(&name).to_owned();
+            all.extend(std::fs::read(&path).ok().map(|bytes| (format!("corpus-{name}"), bytes)));
+        }
+    }
+    all.into_iter().filter_map(|(name, bytes)| Some((name, original::read(&bytes).ok()?.scene))).collect()
+}

@@ -1,0 +1,112 @@
+//! Right programs of the milestones whose traces hold states, in other arithmetic than the reference's.
+//!
+//! They compute the same with the formulas of a textbook, in another order and with solvers of nalgebra. The fair rules
+//! have to accept them all, so they measure how much of the tolerances a right program uses.
+mod forces;
+mod integrators;
+mod simple;
+
+use forces::ForceTerms;
+use fosssim_model::scene::{Collision, Scene};
+use fosssim_oracle::student::{Contact, Record, State, StepLog, Student};
+
+/// The way of a program to compute.
+#[derive(Debug, Clone, Copy)]
+pub struct Arithmetic {
+    /// Its name in tables.
+    pub name: &'static str,
+    /// How it adds forces up.
+    pub sum: Sum,
+    /// How it solves linear systems.
+    pub solver: Solver,
+    /// Whether products are fused with the sums that follow.
+    pub fused: bool,
+}
+
+/// How contributions to one vector are added up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sum {
+    /// The last first.
+    Backward,
+    /// In an order that a generator draws anew in each sum.
+    Shuffled,
+    /// In order, with the rounding errors added at the end (Kahan).
+    Compensated,
+}
+
+/// How linear systems are solved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Solver {
+    /// Elimination with pivots of the column.
+    Partial,
+    /// Householder's reflections.
+    Qr,
+    /// L L^T of a symmetric positive definite matrix, and elimination where it is none.
+    Cholesky,
+    /// By singular values.
+    Svd,
+}
+
+/// All programs.
+pub const ALL: [Arithmetic; 5] = [
+    Arithmetic { name: "backward, partial pivots", sum: Sum::Backward, solver: Solver::Partial, fused: false },
+    Arithmetic { name: "shuffled, Householder", sum: Sum::Shuffled, solver: Solver::Qr, fused: false },
+    Arithmetic { name: "compensated, Cholesky", sum: Sum::Compensated, solver: Solver::Cholesky, fused: false },
+    Arithmetic { name: "fused, partial pivots", sum: Sum::Backward, solver: Solver::Partial, fused: true },
+    Arithmetic { name: "fused, singular values", sum: Sum::Shuffled, solver: Solver::Svd, fused: true },
+];
+
+impl Arithmetic {
+    /// `addend + a * b`.
+    fn add_product(self, addend: f64, a: f64, b: f64) -> f64 {
+        if self.fused {
+            #[expect(clippy::disallowed_methods, reason = "a compiler may fuse, and these programs say that it did")]
+            return a.mul_add(b, addend);
+        }
+        addend + a * b
+    }
+
+    /// The whole trace of a scene, whose collision handling logs no polynomials. `hear` is told the state and the
+    /// contacts after every step.
+    ///
+    /// # Errors
+    /// The steps so far, where a step has no result: a vortex force in an implicit step, or Newton's method that does
+    /// not converge.
+    pub fn trace(self, scene: &Scene, mut hear: impl FnMut(&State, &[Contact])) -> Result<Vec<u8>, Vec<u8>> {
+        let mut state = start(scene);
+        let mut forces = ForceTerms::new(scene, self);
+        let mut bytes = Vec::new();
+        record(scene, &state, &[], &mut bytes);
+        for _ in 0..scene.steps() {
+            if integrators::advance(scene, self, &mut forces, &mut state).is_none() {
+                return Err(bytes);
+            }
+            let contacts = match scene.collision {
+                Collision::Simple { restitution } => simple::handle(scene, restitution, &mut state),
+                _ => Vec::new(),
+            };
+            record(scene, &state, &contacts, &mut bytes);
+            hear(&state, &contacts);
+        }
+        Ok(bytes)
+    }
+}
+
+/// The state in which a scene starts.
+#[must_use]
+pub fn start(scene: &Scene) -> State {
+    let particles = &scene.particles;
+    State {
+        x: particles.iter().flat_map(|particle| [particle.position.x, particle.position.y]).collect(),
+        v: particles.iter().flat_map(|particle| [particle.velocity.x, particle.velocity.y]).collect(),
+    }
+}
+
+/// Appends the record of a state.
+pub fn record(scene: &Scene, state: &State, contacts: &[Contact], bytes: &mut Vec<u8>) {
+    let log = StepLog { impulses: contacts.to_vec(), ..StepLog::default() };
+    Record::new(Student::default(), &scene.collision, state, &log).encode(None, bytes);
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,138 @@
+//! Everything that a student's program can do differently: one row each.
+//!
+//! Three kinds: `wrong` programs misunderstand something and leave another trace; `variant`s are correct but for
+//! round-off or a positive factor; `hostile` ones try the harness, not the physics. The place in the simulation where
+//! a mistake is made asks [`Student::makes`](crate::student::Student::makes). The rows of detection, responses, zones
+//! and traces are in [`t2m2`](super::t2m2), those of forces, integrators and what follows from them in
+//! [`states`](super::states).
+pub use fosssim_findings::explanation::Area;
+use fosssim_model::sim::PairKind;
+
+/// Whether a row is a mistake.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RowKind {
+    /// A mistake: the result is wrong.
+    Wrong,
+    /// No mistake: other arithmetic, the same mathematics.
+    Variant,
+    /// A program that harms itself or others.
+    Hostile,
+}
+
+impl RowKind {
+    /// Its name in listings.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Wrong => "wrong",
+            Self::Variant => "variant",
+            Self::Hostile => "hostile",
+        }
+    }
+}
+
+/// One row of a table, whose mistakes are of this type.
+#[derive(Debug, Clone, Copy)]
+pub struct RowOf<M> {
+    /// The mistake, for the program.
+    pub mistake: M,
+    /// The mistake, for the user.
+    pub id: &'static str,
+    /// Wrong, correct, or hostile.
+    pub kind: RowKind,
+    /// Where it is made.
+    pub area: Area,
+    /// The mistake in one sentence, as a teacher would say it: no formula, no symbol, no number, so that it gives
+    /// nothing away.
+    pub what: &'static str,
+    /// The exact form: what stands there and what belongs there, in the assignment's notation.
+    pub term: &'static str,
+}
+
+impl<M> RowOf<M> {
+    /// The same row with this mistake.
+    #[must_use]
+    pub fn of<N>(self, mistake: N) -> RowOf<N> {
+        let Self { id, kind, area, what, term, .. } = self;
+        RowOf { mistake, id, kind, area, what, term }
+    }
+
+    /// The sentence about it, with the part of the program in front.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        format!("{}: {}", self.place(), self.what)
+    }
+
+    /// The kind of pair for which alone the mistake is made.
+    #[must_use]
+    pub fn kind_of_pair(&self) -> Option<PairKind> {
+        PairKind::ALL.into_iter().find(|kind| kind.name().eq_ignore_ascii_case(self.place()))
+    }
+
+    /// The part of the program in which the mistake is made: the kind of pair where it is made for one kind only, else
+    /// the part of the assignment.
+    #[must_use]
+    pub fn place(&self) -> &'static str {
+        match (self.id.split_once('-'), self.area) {
+            (Some(("pp", _)), _) => "Particle-particle",
+            (Some(("pe", _)), _) => "Particle-edge",
+            (Some(("ph", _)), _) => "Particle-half-plane",
+            (_, Area::ParticleParticle) => "Particle-particle",
+            (_, Area::ParticleEdge) => "Particle-edge",
+            (_, Area::ParticleHalfPlane) => "Particle-half-plane",
+            (_, Area::Handover) => "Hand-over to the root finder",
+            (_, Area::ContactVector) => "Contact vector",
+            (_, Area::Decision) => "Detection",
+            (_, Area::Response) => "Collision response",
+            (_, Area::ContinuousTime) => "Continuous-time pass",
+            (_, Area::ImpulseLoop) => "Impulse loop",
+            (_, Area::ImpactZones) => "Impact zones",
+            (_, Area::Failsafe) => "Rigid failsafe",
+            (_, Area::Forces) => "Forces",
+            (_, Area::Jacobians) => "Derivatives of forces",
+            (_, Area::Integrator) => "Integrator",
+            (_, Area::Penalty) => "Penalty force",
+            (_, Area::NearPairs) => "Search for near pairs",
+            (_, Area::Trace) => "Trace",
+            (_, Area::Process) => "Program",
+        }
+    }
+}
+
+/// A table of rows, and the type of its mistakes: name of the type, name of the table, and further variants that hold
+/// mistakes of other tables.
+macro_rules! rows {
+    (
+        $(#[$doc:meta])* $type:ident $table:ident [$($of:ident $other:ident),*]
+        $($kind:ident $area:ident { $($mistake:ident $id:literal: $what:literal => $term:literal;)* })*
+    ) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum $type {
+            $($(#[doc = $what] $mistake,)*)*
+            $(#[doc = "One of another table."] $of($other),)*
+        }
+
+        impl $type {
+            /// The part of the assignment that it belongs to.
+            #[must_use]
+            pub const fn area(self) -> $crate::assignments::rows::Area {
+                match self {
+                    $($(Self::$mistake => $crate::assignments::rows::Area::$area,)*)*
+                    $(Self::$of(one) => one.area(),)*
+                }
+            }
+        }
+
+        /// All rows of this table, in the order of the assignment.
+        pub const $table: &[$crate::assignments::rows::RowOf<$type>] = &[$($($crate::assignments::rows::RowOf {
+            mistake: $type::$mistake,
+            id: $id,
+            kind: $crate::assignments::rows::RowKind::$kind,
+            area: $crate::assignments::rows::Area::$area,
+            what: $what,
+            term: $term,
+        },)*)*];
+    };
+}
+pub(super) use rows;

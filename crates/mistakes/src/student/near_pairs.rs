@@ -1,0 +1,134 @@
+//! A search for near pairs that misses some, or finds some twice.
+use fosssim_model::sim::PairKind;
+use fosssim_num::vector::{Vec2, at};
+
+use super::{StepMistake, world::World};
+
+/// The search at certain positions.
+pub struct NearPairSearch<'a> {
+    world: &'a World,
+    h: f64,
+    /// The positions that are looked at.
+    x: Vec<f64>,
+    /// The place of each particle in the order in which they begin on x; only of a student who needs it.
+    ranks: Vec<usize>,
+}
+
+/// A body's bounding box: its lower and its upper corner.
+type BoundingBox = [Vec2; 2];
+
+impl<'a> NearPairSearch<'a> {
+    /// At positions `x`, which velocities `v` have led to, for layers of thickness `h`.
+    pub fn new(world: &'a World, h: f64, x: &[f64], v: &[f64]) -> Self {
+        let student = world.student;
+        let start = || world.initial_state().x;
+        let x = match () {
+            () if student.makes(StepMistake::NearPairsOfStart) => start(),
+            // In the first step there is no step before.
+            () if student.makes(StepMistake::NearPairsOfLastStep) && x != start() => {
+                x.iter().zip(v).map(|(x, v)| x - world.scene.time_step * v).collect()
+            }
+            () => x.to_vec(),
+        };
+        let mut ranks = Vec::new();
+        if student.makes(StepMistake::NearPairsNeighboursOnly) {
+            let begin = |i: usize| x[2 * i] - world.scene.particles[i].radius;
+            let mut order: Vec<usize> = (0..world.scene.particles.len()).collect();
+            order.sort_by(|&one, &other| begin(one).total_cmp(&begin(other)));
+            ranks = vec![0; order.len()];
+            order.into_iter().enumerate().for_each(|(rank, particle)| ranks[particle] = rank);
+        }
+        Self { world, h, x, ranks }
+    }
+
+    /// How often this pair is found that is near.
+    pub fn times(&self, kind: PairKind, one: usize, other: usize) -> u32 {
+        if !self.is_found(kind, one, other) {
+            return 0;
+        }
+        let makes = |mistake: StepMistake| self.world.student.makes(mistake);
+        let is_doubled = match kind {
+            PairKind::ParticleParticle => false,
+            PairKind::ParticleEdge => makes(StepMistake::NearPairsEdgesDoubled),
+            PairKind::ParticleHalfPlane => makes(StepMistake::NearPairsHalfPlanesDoubled),
+        };
+        if is_doubled || makes(StepMistake::NearPairsDoubled) { 2 } else { 1 }
+    }
+
+    fn is_found(&self, kind: PairKind, one: usize, other: usize) -> bool {
+        let makes = |mistake: StepMistake| self.world.student.makes(mistake);
+        let scene = &self.world.scene;
+        let (last, is_two) = (scene.particles.len() - 1, kind == PairKind::ParticleParticle);
+        let is_either = |particle: usize| one == particle || (is_two && other == particle);
+        if (makes(StepMistake::NearPairsFirstMissing) && is_either(0))
+            || (makes(StepMistake::NearPairsLastMissing) && is_either(last))
+        {
+            return false;
+        }
+        if makes(StepMistake::NearPairsFixedSkipped) {
+            let is_fixed = |particle: usize| self.world.fixed(particle);
+            if is_fixed(one) || (is_two && is_fixed(other)) {
+                return false;
+            }
+        }
+        match kind {
+            PairKind::ParticleParticle => {
+                let are_neighbours = self.ranks.is_empty() || self.ranks[one].abs_diff(self.ranks[other]) == 1;
+                are_neighbours && self.meet(self.particle(one), self.particle(other))
+            }
+            PairKind::ParticleEdge => {
+                !(makes(StepMistake::NearPairsLastEdgeMissing) && other + 1 == scene.edges.len())
+                    && self.edge(other).into_iter().any(|of_edge| self.meet(self.particle(one), of_edge))
+            }
+            PairKind::ParticleHalfPlane => {
+                !(makes(StepMistake::NearPairsLastHalfPlaneMissing) && other + 1 == scene.half_planes.len())
+            }
+        }
+    }
+
+    fn meet(&self, one: BoundingBox, other: BoundingBox) -> bool {
+        let makes = |mistake: StepMistake| self.world.student.makes(mistake);
+        let looks = [
+            StepMistake::NearPairsBoxesWithoutThickness,
+            StepMistake::NearPairsBoxesOfPoints,
+            StepMistake::NearPairsEdgeEnds,
+            StepMistake::NearPairsEdgeFirstEnd,
+            StepMistake::NearPairsOfStart,
+            StepMistake::NearPairsOfLastStep,
+        ];
+        // The box of a pair that is near is met in any case.
+        !looks.into_iter().any(makes)
+            || (0..2).all(|axis| one[0][axis] <= other[1][axis] && other[0][axis] <= one[1][axis])
+    }
+
+    /// How much larger a box is on each side.
+    fn margin(&self) -> f64 {
+        if self.world.student.makes(StepMistake::NearPairsBoxesWithoutThickness) { 0.0 } else { 0.5 * self.h }
+    }
+
+    fn particle(&self, particle: usize) -> BoundingBox {
+        let is_point = self.world.student.makes(StepMistake::NearPairsBoxesOfPoints);
+        let radius = if is_point { 0.0 } else { self.world.scene.particles[particle].radius };
+        let (centre, side) = (at(&self.x, particle), radius + self.margin());
+        [centre - Vec2::new(side, side), centre + Vec2::new(side, side)]
+    }
+
+    /// The boxes by which an edge is looked for.
+    fn edge(&self, edge: usize) -> Vec<BoundingBox> {
+        let edge = self.world.scene.edges[edge];
+        let side = edge.radius + self.margin();
+        let around = |low: Vec2, high: Vec2| [low - Vec2::new(side, side), high + Vec2::new(side, side)];
+        let (first, second) = (at(&self.x, edge.first), at(&self.x, edge.second));
+        match () {
+            () if self.world.student.makes(StepMistake::NearPairsEdgeFirstEnd) => vec![around(first, first)],
+            () if self.world.student.makes(StepMistake::NearPairsEdgeEnds) => {
+                vec![around(first, first), around(second, second)]
+            }
+            () => {
+                let low = Vec2::new(first.x.min(second.x), first.y.min(second.y));
+                let high = Vec2::new(first.x.max(second.x), first.y.max(second.y));
+                vec![around(low, high)]
+            }
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! The force of the penalty layer, pair by pair.
+use super::Penalty;
+use crate::{
+    scene::{Collision, Scene},
+    sim::{
+        bodies::Bodies,
+        pair::{Pair, PairKind},
+    },
+};
+use fosssim_num::vector::{Vec2, at, put};
+
+/// The penalty force of a scene as its terms, which a step sums.
+#[derive(Debug, Clone)]
+pub struct PenaltyTerms {
+    bodies: Bodies,
+    penalty: Penalty,
+    gradient: Vec<f64>,
+}
+
+impl PenaltyTerms {
+    /// Of a scene with `penalty` handling; `None` for all others.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Option<Self> {
+        let Collision::Penalty { stiffness, thickness, detection } = scene.collision else { return None };
+        let gradient = vec![0.0; 2 * scene.particles.len()];
+        Some(Self {
+            bodies: Bodies::new(scene),
+            penalty: Penalty::new(scene, stiffness, thickness, detection),
+            gradient,
+        })
+    }
+
+    /// Hands every pair that repels at positions `x` (2N) to `hear`, with the force on each of its particles.
+    pub fn visit(&mut self, x: &[f64], mut hear: impl FnMut(Pair, &[(usize, Vec2)])) {
+        let Self { bodies, penalty: Penalty { law, pairs }, gradient } = self;
+        pairs.visit(x, |pair| {
+            let first = pair.first as usize;
+            let mut terms = [(first, Vec2::zeros()); 3];
+            let count = match pair.kind {
+                PairKind::ParticleParticle => {
+                    terms[1].0 = pair.second as usize;
+                    2
+                }
+                PairKind::ParticleEdge => {
+                    let [from, to] = bodies.edges[pair.second as usize];
+                    (terms[1].0, terms[2].0) = (from, to);
+                    3
+                }
+                PairKind::ParticleHalfPlane => 1,
+            };
+            let terms = &mut terms[..count];
+            terms.iter().for_each(|(particle, _)| put(gradient, *particle, Vec2::zeros()));
+            law.add(bodies, pair, x, gradient);
+            terms.iter_mut().for_each(|(particle, force)| *force = -1.0 * at(gradient, *particle));
+            if terms.iter().any(|(_, force)| *force != Vec2::zeros()) {
+                hear(pair, terms);
+            }
+        });
+    }
+}

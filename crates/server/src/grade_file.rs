@@ -1,0 +1,71 @@
+//! The part of `schemas/grade.schema.json` that the service reads of a `grade.json`.
+use serde::Deserialize;
+use serde_json::Number;
+
+/// A `grade.json`.
+#[derive(Debug, Deserialize)]
+pub(crate) struct GradeFile {
+    pub(crate) schema: u32,
+    pub(crate) version: String,
+    pub(crate) grades: Vec<GradeInFile>,
+}
+
+/// The grade of a submission.
+#[derive(Debug, Deserialize)]
+pub(crate) struct GradeInFile {
+    pub(crate) verdict: String,
+    pub(crate) code: String,
+    pub(crate) points: Option<Number>,
+    pub(crate) max_points: Option<Number>,
+    /// What explains the wrong scenes together, likeliest first.
+    #[serde(default)]
+    pub(crate) likely_mistakes: Vec<LikelyInFile>,
+    #[serde(default)]
+    pub(crate) groups: Vec<GroupInFile>,
+}
+
+/// A mistake that is likely, in a sentence.
+#[derive(Debug, Deserialize)]
+pub(crate) struct LikelyInFile {
+    pub(crate) text: String,
+}
+
+/// A group of scenes.
+#[derive(Debug, Deserialize)]
+pub(crate) struct GroupInFile {
+    pub(crate) visibility: Option<String>,
+    pub(crate) points: Option<f64>,
+    pub(crate) max_points: Option<f64>,
+    pub(crate) scenes: Vec<SceneInFile>,
+}
+
+/// A scene.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(crate) struct SceneInFile {
+    pub(crate) scene: String,
+    pub(crate) code: String,
+    pub(crate) verdict: String,
+    pub(crate) summary: String,
+    pub(crate) right_steps: u32,
+    /// Where it diverges first, and how many findings there are of each kind.
+    pub(crate) details: Vec<String>,
+    pub(crate) explanations: Vec<MistakeInFile>,
+}
+
+/// A mistake that explains wrong steps.
+#[derive(Debug, Deserialize)]
+pub(crate) struct MistakeInFile {
+    pub(crate) key: String,
+    #[serde(default)]
+    pub(crate) reproduced: u64,
+    #[serde(default)]
+    pub(crate) samples: u64,
+}
+
+impl GradeInFile {
+    /// All scenes.
+    pub(crate) fn scenes(&self) -> Vec<&SceneInFile> {
+        self.groups.iter().flat_map(|group| &group.scenes).collect()
+    }
+}
