@@ -1,7 +1,7 @@
 //! The grader's words about a submission, as far as the service understands them; the rest goes to people.
 use super::Graded;
 use crate::{
-    grade_file::{GradeFile, GradeInFile, SceneInFile},
+    grade_file::{GradeFile, SceneInFile},
     store::Digest,
     task::WrongScene,
 };
