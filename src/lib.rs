@@ -20,7 +20,7 @@ pub use fosssim_original as original;
 
 pub use fosssim_sandbox as sandbox;
 
-pub use fosssim_mistakes::diagnose;
+pub use fosssim_mistakes::{diagnose, together};
 
 pub use fosssim_grading as suite;
 

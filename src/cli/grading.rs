@@ -59,8 +59,9 @@ pub(super) struct Grade {
     pub(super) output: Option<PathBuf>,
     #[arg(long, value_name = "FORMAT[=FILE]", help = help_of_formats(|_| true))]
     pub(super) format: Vec<String>,
-    /// The reader of HTML pages. Pages for students leave out groups that the suite hides, and everything that tells
-    /// of them. The output folder gets both kinds; pages to hand out are in students/.
+    /// The reader of the reports. Staff is told everything; students are told what the suite's hints let them know,
+    /// and their pages leave out groups that it hides. The output folder gets pages of both kinds; those to hand out
+    /// are in students/.
     #[arg(long = "for", value_parser = reader(), value_name = "READER", default_value = "staff")]
     pub(super) reader: Audience,
     /// Number of runs at one time. One per core by default.
@@ -72,7 +73,8 @@ pub(super) struct Grade {
     /// Only scenes that were not accepted when the same submissions were graded last.
     #[arg(long)]
     pub(super) failed: bool,
-    /// How much reports tell; by default the suite's choice. `full` may give a formula away.
+    /// How much reports tell their reader. By default staff is told everything, and students what the suite says.
+    /// `full` may give a formula away.
     #[arg(long, value_parser = hints(), value_name = "LEVEL")]
     pub(super) hints: Option<Hints>,
     /// Keep the traces of scenes that are not accepted, in the output folder.
@@ -82,6 +84,9 @@ pub(super) struct Grade {
     /// see do not count.
     #[arg(long, value_name = "FILE", env = "FOSSSIM_PROGRESS")]
     pub(super) progress: Option<PathBuf>,
+    /// Beside reports for students, write the page that tells staff everything.
+    #[arg(long, value_name = "FILE", env = "FOSSSIM_STAFF_PAGE")]
+    pub(super) staff_page: Option<PathBuf>,
     /// Show a line per submission only.
     #[arg(short, long, conflicts_with = "verbose")]
     pub(super) quiet: bool,

@@ -68,11 +68,7 @@ pub(super) fn explaining() -> impl TypedValueParser<Value = Hints> {
 /// The reader of a page.
 pub(super) fn reader() -> impl TypedValueParser<Value = Audience> {
     one_of(&[
-        (
-            "staff",
-            Audience::Staff,
-            "Staff: every group. The suite's hints, or `--hints`, say how much of each scene is shown",
-        ),
-        ("student", Audience::Student, "The student: the groups that the suite shows students at once"),
+        ("staff", Audience::Staff, "Staff, or a student at their own machine: everything, of every group"),
+        ("student", Audience::Student, "The student: what the suite's hints and its visible groups let them know"),
     ])
 }

@@ -141,20 +141,26 @@ fn the_rules_decide_the_points_and_reports_say_where_they_differ() {
 }
 
 #[test]
-fn hints_decide_how_much_a_report_tells() {
+fn hints_decide_how_much_a_report_tells_students() {
     let Some(workspace) = workspace() else { return };
     submit(&workspace, &["pe-square-no-eh"]);
-    let told = |level: &str| {
+    let told_to = |reader: &str, level: &str| {
         workspace.write("hints.toml", SUITE.replace("hints = \"full\"", &format!("hints = \"{level}\"")));
         let program = "submissions/fosssim-sample.pe-square-no-eh";
-        let run = workspace.run(["grade", program, "--suite", "hints.toml", "--format", "json"]);
+        let run = workspace.run(["grade", program, "--suite", "hints.toml", "--format", "json", "--for", reader]);
         assert_eq!(run.code, Some(1), "{}", run.shown());
         let json: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
         let groups = json["grades"][0]["groups"].as_array().expect("groups").clone();
         let scenes = groups.into_iter().flat_map(|group| group["scenes"].as_array().expect("scenes").clone());
         scenes.into_iter().find(|scene| scene["verdict"] == "wrong answer").expect("a wrong scene")
     };
-    let [none, place, what, full] = ["none", "where", "what", "full"].map(told);
+    let [none, place, what, full] = ["none", "where", "what", "full"].map(|level| told_to("student", level));
+    let staff = told_to("staff", "none");
+    assert_eq!(
+        (&staff["details"], &staff["explanations"]),
+        (&full["details"], &full["explanations"]),
+        "staff sees all"
+    );
     assert_eq!((&none["summary"], &none["details"]), (&"the trace is wrong".into(), &serde_json::json!([])));
     assert_eq!(place["explanations"], serde_json::json!([]));
     assert!(place["details"][0].as_str().expect("a line").contains("edge"), "{place:#}");

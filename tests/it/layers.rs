@@ -23,7 +23,7 @@ const CRATES: [(&str, &[&str]); 19] = [
     ),
     // Grading is there for its tests alone (`browsers_and_reports_know_no_processes`).
     ("report", &["num", "testing", "model", "findings", "judge", "mistakes", "render", "evidence", "grading"]),
-    ("browser", &["num", "model", "judge", "render", "evidence", "grading", "report"]),
+    ("browser", &["num", "model", "judge", "mistakes", "render", "evidence", "grading", "report"]),
     (
         "oracle",
         &[

@@ -1,5 +1,6 @@
 //! HTML pages as a teacher and a student get them.
 use crate::{grading, workspace::Workspace};
+use std::path::Path;
 
 fn text(workspace: &Workspace, file: &str) -> String {
     String::from_utf8(workspace.read(file)).expect("text")
@@ -169,6 +170,47 @@ fn pages_to_hand_out_hold_no_hidden_group() {
         assert_eq!(text(&workspace, "progress"), runs, "a count tells of no hidden scene");
     }
     assert!(!text(&workspace, "student.html").contains("Veiled"));
+}
+
+/// Staff sees the numbers of every scene; students see what the suite says, group by group, and the assignment's own
+/// `--hints` change nothing for staff.
+#[test]
+fn staff_sees_everything_beside_pages_for_students() {
+    let Some(workspace) = grading::workspace() else { return };
+    let group = |name: &str, hints: &str, scene: &str| {
+        format!("[[group]]\nname = \"{name}\"\nhints = \"{hints}\"\nscenes = [\"asset:{scene}\"]\n")
+    };
+    let told = "ContinuousTimeTests/spinning-edge-sweeps-balls";
+    let untold = "ImpulsesTests/off-centre-on-turning-edge";
+    let suite = group("Told", "full", told) + &group("Untold", "none", untold);
+    workspace.write("groups.toml", format!("schema = 1\nname = \"Groups\"\n{suite}"));
+    let submission = grading::submit(&workspace, &["pe-square-no-eh"]).remove(0);
+    let numbers = |page: &str| {
+        let articles = page.split("<article ").skip(1).map(|article| {
+            let scene = article.split_once("data-scene=\"").expect("a name").1.split_once('"').expect("its end").0;
+            (scene.to_owned(), article.contains("id=\"reference-") && article.contains("Coefficients"))
+        });
+        articles.collect::<std::collections::BTreeMap<_, _>>()
+    };
+    let both = |told_is: bool, untold_is: bool| [(told.to_owned(), told_is), (untold.to_owned(), untold_is)].into();
+    let words = ["grade", &submission, "--suite", "groups.toml", "--for", "student", "--quiet"];
+    let files = ["--format", "html=student.html", "--staff-page", "staff.html"];
+    let run = workspace.run([&words[..], &files].concat());
+    assert_eq!(run.code, Some(1), "{}", run.shown());
+    let (student, staff) = (text(&workspace, "student.html"), text(&workspace, "staff.html"));
+    assert_eq!((numbers(&student), numbers(&staff)), (both(true, false), both(true, true)));
+    let run = workspace.run([&words[..], &files, &["--hints", "where"]].concat());
+    assert_eq!(run.code, Some(1), "{}", run.shown());
+    let (student, staff) = (text(&workspace, "student.html"), text(&workspace, "staff.html"));
+    assert_eq!((numbers(&student), numbers(&staff)), (both(false, false), both(true, true)));
+    // Graded for staff first; then the pages to hand out are asked for, too.
+    for reader in ["staff", "student"] {
+        let run = workspace.run(["grade", &submission, "--suite", "groups.toml", "--output", "out", "--for", reader]);
+        assert_eq!(run.code, Some(1), "{}", run.shown());
+        assert_eq!(numbers(&text(&workspace, "out/report.html")), both(true, true), "{reader}");
+    }
+    let name = Path::new(&submission).file_name().expect("a name").to_string_lossy().into_owned();
+    assert_eq!(numbers(&text(&workspace, &format!("out/students/{name}.html"))), both(true, false));
 }
 
 /// A page for browsers that a course makes has the course's suite inside; of what the suite hides nothing.

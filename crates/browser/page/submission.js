@@ -1,6 +1,6 @@
 // A submission's traces: a folder with Group/name.bin, points by a suite, a row per scene, and what became right since the
 // last drop.
-const courseSuite = course && { name: "", text: bytesOf(course.suite), scenes: course.scenes.map(({ name }) => name), xml: course.scenes.map(({ xml }) => bytesOf(xml)) };
+const courseSuite = course && { name: "", isForStudents: course.isForStudents, text: bytesOf(course.suite), scenes: course.scenes.map(({ name }) => name), xml: course.scenes.map(({ xml }) => bytesOf(xml)) };
 const marks = { oracle: new Oracle(), files: new Map(), suite: courseSuite, last: null, json: null };
 
 // All files below what was dropped, by their paths in it.
@@ -65,7 +65,7 @@ async function mark_all() {
   const started = performance.now(), rows = [];
   try {
     const { suite } = marks;
-    const begun = await marks.oracle.ask(suite ? { do: "suite", scenes: suite.scenes } : { do: "suite", suite: $("suite").value }, { blobs: suite ? [suite.text, ...suite.xml] : [] });
+    const begun = await marks.oracle.ask(suite ? { do: "suite", scenes: suite.scenes, is_for_students: suite.isForStudents ?? false } : { do: "suite", suite: $("suite").value }, { blobs: suite ? [suite.text, ...suite.xml] : [] });
     if (!begun) return;
     const names = begun.value.groups.flatMap(({ name, scenes }) => scenes.map((scene) => ({ group: name, scene })));
     const below = beginning(names);

@@ -5,6 +5,7 @@ use fosssim_grading::{
     library,
     plan::{self, Plan, PlannedGroup},
 };
+use fosssim_report::page::Audience;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -17,7 +18,8 @@ impl CourseSuite {
     ///
     /// # Errors
     /// When there is no such group, or when a name can't be written into a suite.
-    pub fn of(plan: &Plan, shows: impl Fn(Visibility) -> bool) -> Result<Self, String> {
+    pub fn of(plan: &Plan, reader: Audience) -> Result<Self, String> {
+        let shows = |visibility| reader == Audience::Staff || visibility == Visibility::Visible;
         let groups: Vec<&PlannedGroup> = plan.groups.iter().filter(|group| shows(group.marking.visibility)).collect();
         if groups.is_empty() {
             return Err("the suite hides all of its groups from the readers of the page".to_owned());
@@ -39,7 +41,8 @@ impl CourseSuite {
             Ok(json!({ "name": file(task), "xml": xml }))
         };
         let scenes = own.iter().map(scene).collect::<Result<Vec<_>, _>>()?;
-        Ok(Self(json!({ "name": plan.name, "suite": text, "scenes": scenes })))
+        let is_for_students = reader == Audience::Student;
+        Ok(Self(json!({ "name": plan.name, "suite": text, "scenes": scenes, "isForStudents": is_for_students })))
     }
 
     /// As it stands in a data block: nothing in it ends the element.
@@ -64,9 +67,8 @@ fn text(plan: &Plan, groups: &[&PlannedGroup]) -> Result<String, String> {
     let string = |text: &str| Value::from(text).to_string();
     let rules = serde_json::to_string(&plan.rules).map_err(|error| error.to_string())?;
     let mut out = format!(
-        "schema = 1\nname = {}\nrules = {rules}\nhints = {}\n\n[limits]\ntrace_mib = {}\n",
+        "schema = 1\nname = {}\nrules = {rules}\n\n[limits]\ntrace_mib = {}\n",
         string(&plan.name),
-        string(plan.hints.words().0),
         (plan.limits.trace >> 20).max(1)
     );
     for group in groups {
@@ -85,10 +87,11 @@ fn text(plan: &Plan, groups: &[&PlannedGroup]) -> Result<String, String> {
         };
         let _ = write!(
             out,
-            "\n[[group]]\nname = {}\nscenes = [{}]\npoints = {}\ncredit = \"{credit}\"\n",
+            "\n[[group]]\nname = {}\nscenes = [{}]\npoints = {}\ncredit = \"{credit}\"\nhints = \"{}\"\n",
             string(&group.name),
             scenes.join(", "),
-            group.marking.points
+            group.marking.points,
+            group.marking.hints.words().0
         );
     }
     Ok(out)

@@ -5,12 +5,12 @@ use crate::{
 };
 use fosssim_grading::{
     SceneResult, Verdict,
-    config::Hints,
     plan::{self, Found, Plan, PlannedGroup},
     result::Reason,
     traces,
 };
 use fosssim_judge::replay::{Progress, Remark};
+use fosssim_mistakes::together::told::cut_result;
 use fosssim_report::{
     grade,
     words::{self, explanation},
@@ -28,6 +28,9 @@ pub(crate) struct SuiteRequest {
     /// The names of dropped scenes.
     #[serde(default)]
     scenes: Vec<String>,
+    /// Whether its hints say how much is told, as in `grade --for student`: a course made the page so.
+    #[serde(default)]
+    is_for_students: bool,
 }
 
 /// One scene to be judged.
@@ -43,6 +46,7 @@ pub(crate) struct SceneRequest {
 #[derive(Debug)]
 pub(crate) struct DroppedSubmission {
     plan: Plan,
+    is_for_students: bool,
     results: Vec<Option<SceneResult>>,
 }
 
@@ -66,7 +70,8 @@ impl DroppedSubmission {
         };
         let groups: Vec<Value> = plan.groups.iter().map(group).collect();
         let results = vec![None; plan.scenes().count()];
-        Ok((json!({ "suite": plan.name, "groups": groups }), Self { plan, results }))
+        let is_for_students = asked.is_for_students;
+        Ok((json!({ "suite": plan.name, "groups": groups }), Self { plan, is_for_students, results }))
     }
 
     /// Judges the trace of one scene.
@@ -80,12 +85,14 @@ impl DroppedSubmission {
             None => Box::new(empty()),
         };
         let mut heard = ToldProgress { host, all: task.scene.steps() };
-        let (result, _) = traces::judged(&self.plan, task, (trace, bytes), &mut heard);
+        let (mut result, _) = traces::judged(&self.plan, task, (trace, bytes), &mut heard);
         if let Some(why) = fault.get() {
             return Err(format!("cannot read the trace of {}: {why}", task.name));
         }
-        let tells = self.plan.hints > Hints::None;
-        let likely = result.explanations.first().filter(|_| tells).map(explanation::what);
+        if self.is_for_students {
+            cut_result(self.plan.student_hints(&task.name), &mut result);
+        }
+        let likely = result.explanations.first().map(explanation::what);
         let value = json!({
             "verdict": result.verdict.words(),
             "accepted": result.verdict == Verdict::Accepted,

@@ -1,7 +1,7 @@
-//! The part of a judged trace that may be told: findings as values, cut to what the suite's hints let through
-//! ([`Hints`](super::Hints)).
+//! The part of a judged trace that may be told: findings as values. [`Hints`](super::Hints) cut it down to what a
+//! reader may know.
 use super::{
-    Book, Damage, FindingCounts, Residuals, Ruling,
+    Book, Damage, FindingCounts, Outcome, Residuals, Rules, Ruling,
     finding::{Finding, FindingKind, FindingPlace},
 };
 use serde::{Deserialize, Serialize};
@@ -24,6 +24,29 @@ pub struct Disclosure {
 }
 
 impl Disclosure {
+    /// All that judging found.
+    #[must_use]
+    pub fn of(judged: &Outcome, rules: Rules) -> Self {
+        let book = |book: Book| {
+            let found = judged.findings_by(book);
+            DisclosedBook {
+                ruling: judged.ruling(book),
+                wrong_steps: found.wrong_steps,
+                counts: found.counts,
+                first_divergence: found.first_divergence.map(DisclosedFinding::Full),
+                examples: found.examples.iter().copied().map(DisclosedFinding::Full).collect(),
+            }
+        };
+        Self {
+            official: rules.official(),
+            parity: book(Book::Parity),
+            fair: judged.fair.is_some().then(|| book(Book::Fair)),
+            residuals: Some(judged.parity.residuals),
+            damage: judged.damage.clone(),
+            trailing_bytes: judged.trailing_bytes,
+        }
+    }
+
     /// The findings of the book whose verdict counts; the original's, if the fair one was not asked.
     #[must_use]
     pub fn official(&self) -> &DisclosedBook {

@@ -1,6 +1,6 @@
 //! The grade: what one submission got, scene by scene.
 use super::{
-    Rules,
+    Hints, Rules,
     explanation::Explanation,
     located::Located,
     result::{BuildEnd, SceneResult},
@@ -112,7 +112,8 @@ impl Grade {
     #[must_use]
     pub fn is_of_the_suite_of(&self, other: &Self) -> bool {
         let alike = |(own, other): (&GroupGrade, &GroupGrade)| {
-            (&own.name, own.visibility, own.max_points) == (&other.name, other.visibility, other.max_points)
+            (&own.name, own.visibility, own.hints, own.max_points)
+                == (&other.name, other.visibility, other.hints, other.max_points)
                 && own.scenes.iter().map(|scene| &scene.scene).eq(other.scenes.iter().map(|scene| &scene.scene))
         };
         (&self.suite, self.rules, self.shows_output) == (&other.suite, other.rules, other.shows_output)
@@ -173,6 +174,8 @@ pub struct GroupGrade {
     pub name: String,
     /// The readers who see it.
     pub visibility: Visibility,
+    /// How much students are told of its scenes.
+    pub hints: Hints,
     /// Points reached; `None` when a scene has none.
     pub points: Option<f64>,
     /// Points that can be reached.

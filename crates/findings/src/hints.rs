@@ -1,13 +1,12 @@
-//! How much a report tells a student, and what of findings that lets through.
+//! How much a report tells its reader, and what of findings that lets through.
 use super::{
-    Book, Outcome, Rules,
     disclosure::{DisclosedBook, DisclosedFinding, Disclosure},
     finding::Finding,
 };
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
-/// How much a report tells a student.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
+/// How much a report tells its reader.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Hints {
     /// The verdict only.
@@ -38,28 +37,31 @@ impl Hints {
         matches!(self, Self::What | Self::Full)
     }
 
-    /// Cuts what judging found down to this level: nothing at [`Hints::None`]; below [`Hints::Full`] where findings
-    /// are, and of what kind; there everything.
+    /// Cuts what is known of a trace down to this level: nothing at [`Hints::None`]; below [`Hints::Full`] where
+    /// findings are, and of what kind; there everything.
     #[must_use]
-    pub fn tell(self, judged: &Outcome, rules: Rules) -> Option<Disclosure> {
-        (self > Self::None).then(|| Disclosure {
-            official: rules.official(),
-            parity: self.tell_book(judged, Book::Parity),
-            fair: judged.fair.is_some().then(|| self.tell_book(judged, Book::Fair)),
-            residuals: (self == Self::Full).then_some(judged.parity.residuals),
-            damage: judged.damage.clone(),
-            trailing_bytes: judged.trailing_bytes,
-        })
+    pub fn disclose(self, all: Disclosure) -> Option<Disclosure> {
+        match self {
+            Self::None => None,
+            Self::Where | Self::What => Some(Disclosure {
+                parity: self.disclose_book(all.parity),
+                fair: all.fair.map(|book| self.disclose_book(book)),
+                residuals: None,
+                ..all
+            }),
+            Self::Full => Some(all),
+        }
     }
 
-    fn tell_book(self, judged: &Outcome, book: Book) -> DisclosedBook {
-        let found = judged.findings_by(book);
+    fn disclose_book(self, book: DisclosedBook) -> DisclosedBook {
+        let cut = |finding: DisclosedFinding| match finding {
+            DisclosedFinding::Full(finding) => self.finding(&finding),
+            DisclosedFinding::Place { .. } => Some(finding),
+        };
         DisclosedBook {
-            ruling: judged.ruling(book),
-            wrong_steps: found.wrong_steps,
-            counts: found.counts,
-            first_divergence: found.first_divergence.as_ref().and_then(|first| self.finding(first)),
-            examples: found.examples.iter().filter_map(|example| self.finding(example)).collect(),
+            first_divergence: book.first_divergence.and_then(cut),
+            examples: book.examples.into_iter().filter_map(cut).collect(),
+            ..book
         }
     }
 

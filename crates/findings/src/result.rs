@@ -15,8 +15,8 @@ use std::{path::PathBuf, time::Duration};
 
 pub use fosssim_ended::{Ended, StartProblem, Stream};
 
-/// The result of one scene: everything but its points, which follow from the suite. It holds no more than the
-/// suite's hints let through, so that nothing that is made of it can give away more.
+/// The result of one scene: everything but its points, which follow from the suite. It holds all that staff may know;
+/// reports for students are made of what `mistakes::together::told_to_students` leaves of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SceneResult {
     /// The scene's name, `Group/name`.
@@ -31,7 +31,7 @@ pub struct SceneResult {
     pub differs: Option<Cause>,
     /// The part of the trace that may be told.
     pub disclosure: Option<Disclosure>,
-    /// Likely mistakes, the likeliest first; no more of them than the suite's hints let through.
+    /// Likely mistakes, the likeliest first.
     pub explanations: Vec<Explanation>,
     /// Steps without a finding, of all steps.
     pub right_steps: u32,
@@ -45,6 +45,8 @@ pub struct SceneResult {
     pub stderr: String,
     /// The name of the card that was drawn of its trace.
     pub card: Option<String>,
+    /// The name of the card that students see instead, where hints let them see less and somebody asked for it.
+    pub card_for_students: Option<String>,
 }
 
 impl SceneResult {
@@ -65,6 +67,7 @@ impl SceneResult {
             stdout: String::new(),
             stderr: String::new(),
             card: None,
+            card_for_students: None,
         }
     }
 

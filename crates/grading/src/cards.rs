@@ -4,6 +4,7 @@ use super::{config::Hints, result::SceneResult, task::SceneTask};
 use fosssim_evidence::StepRuling;
 use fosssim_files::Place;
 use fosssim_judge::{Outcome, Rules};
+use fosssim_mistakes::together::told::cut_result;
 use std::io;
 
 /// Deflating harder gains little: most of a card is packed already.
@@ -17,9 +18,9 @@ const LARGEST: u64 = 64 << 20;
 pub struct Judged<'a> {
     /// The scene.
     pub task: &'a SceneTask,
-    /// The result, cut to what the hints let through.
+    /// The result, with no more than the reader may know.
     pub result: &'a SceneResult,
-    /// The outcome of judging; it tells more than hints may let through.
+    /// The outcome of judging; it tells more than the reader may know.
     pub outcome: &'a Outcome,
     /// The ruling of the rule books on each step.
     pub rulings: &'a [StepRuling],
@@ -29,7 +30,7 @@ pub struct Judged<'a> {
     pub is_cut: bool,
     /// The rule books that were asked.
     pub rules: Rules,
-    /// How much may be told.
+    /// How much the reader is told.
     pub hints: Hints,
 }
 
@@ -43,14 +44,32 @@ pub struct Cards<'a> {
     pub folder: &'a Place,
     /// Draws.
     pub draw: &'a Draw<'a>,
+    /// Whether pages for students are made, too.
+    pub for_students: bool,
 }
 
+/// The names of a trace's cards: for staff, and for students where they are told less.
+pub type CardNames = (Option<String>, Option<String>);
+
 impl Cards<'_> {
-    /// Draws a card and keeps it; its name, if there is one.
+    /// Draws the cards of a trace, and keeps them. `students` is how much they are told of the scene.
     ///
     /// # Errors
-    /// When it can't be written.
-    pub fn keep(&self, judged: &Judged<'_>) -> io::Result<Option<String>> {
+    /// When one can't be written.
+    pub fn keep(&self, judged: &Judged<'_>, students: Hints) -> io::Result<CardNames> {
+        let card = self.keep_one(judged)?;
+        if students >= judged.hints {
+            return Ok((card.clone(), card));
+        }
+        if !self.for_students {
+            return Ok((card, None));
+        }
+        let mut told = judged.result.clone();
+        cut_result(students, &mut told);
+        Ok((card, self.keep_one(&Judged { result: &told, hints: students, ..*judged })?))
+    }
+
+    fn keep_one(&self, judged: &Judged<'_>) -> io::Result<Option<String>> {
         let Some(card) = (self.draw)(judged) else { return Ok(None) };
         let name = blake3::hash(card.as_bytes()).to_hex()[..32].to_owned();
         let path = file(self.folder, &name);
@@ -61,9 +80,13 @@ impl Cards<'_> {
         Ok(Some(name))
     }
 
-    /// Whether the card of an earlier result is missing.
-    pub(super) fn lack(&self, result: &SceneResult) -> bool {
-        result.card.as_ref().is_some_and(|name| !file(self.folder, name).is_file())
+    /// Whether a card of an earlier result is missing; `students` is how much they are told of the scene.
+    pub(super) fn lack(&self, result: &SceneResult, students: Hints) -> bool {
+        let is_missing = |name: &String| !file(self.folder, name).is_file();
+        let shows_students = self.for_students && students > Hints::None;
+        result.card.as_ref().is_some_and(|card| {
+            is_missing(card) || shows_students && result.card_for_students.as_ref().is_none_or(is_missing)
+        })
     }
 }
 
@@ -110,7 +133,8 @@ mod tests {
         let cards = Place::new(folder.path(), "cards");
         let keep = |text: &'static str| {
             let draw = move |_: &Judged<'_>| (!text.is_empty()).then(|| text.to_owned());
-            Cards { folder: &cards, draw: &draw }.keep(&judged).expect("written")
+            let cards = Cards { folder: &cards, draw: &draw, for_students: false };
+            cards.keep(&judged, Hints::Full).expect("written").0
         };
         assert_eq!(keep(""), None);
         assert!(!cards.path().exists(), "no folder for nothing");
@@ -120,12 +144,56 @@ mod tests {
         assert_eq!((read(&cards, &one).as_deref(), read(&cards, &other).as_deref()), (Some("one"), Some("other")));
         let lacks = |card: &str| {
             let result = SceneResult { card: Some(card.to_owned()), ..result.clone() };
-            Cards { folder: &cards, draw: &|_| None }.lack(&result)
+            Cards { folder: &cards, draw: &|_| None, for_students: false }.lack(&result, Hints::What)
         };
         assert!(!lacks(&one));
         file(&cards, &one).write(&zstd::encode_all(&b"another"[..], 1).expect("packed")).expect("written");
         file(&cards, &other).remove().expect("removed");
         assert_eq!((read(&cards, &one), read(&cards, &other), read(&cards, "../x")), (None, None, None));
         assert!(lacks(&other));
+    }
+
+    /// Staff's card never takes the place of the one for students.
+    #[test]
+    fn students_have_a_card_of_their_own_where_they_are_told_less() {
+        let xml = b"<scene><duration time=\"0\"/><integrator type=\"explicit-euler\" dt=\"1\"/></scene>";
+        let scene = original::read(xml).expect("a scene").scene;
+        let task = SceneTask { name: "a/b".to_owned(), xml: xml.to_vec(), scene, recording: None };
+        let outcome = replay::judge(&task.scene, &[][..], &replay::Options::default(), &mut ());
+        let result = SceneResult::without_run("a/b", 0, Verdict::WrongAnswer, Reason::Right);
+        let (rules, hints) = (Rules::Fair, Hints::Full);
+        let judged = Judged {
+            task: &task,
+            result: &result,
+            outcome: &outcome,
+            rulings: &[],
+            trace: &[],
+            is_cut: false,
+            rules,
+            hints,
+        };
+        let folder = tempfile::tempdir().expect("a folder");
+        let place = Place::new(folder.path(), "cards");
+        let draw = |judged: &Judged<'_>| (judged.hints > Hints::None).then(|| format!("{:?}", judged.hints));
+        for (for_students, students, expected) in [
+            (false, Hints::Full, Some("Full")),
+            (false, Hints::Where, None),
+            (true, Hints::Where, Some("Where")),
+            (true, Hints::None, None),
+        ] {
+            let cards = Cards { folder: &place, draw: &draw, for_students };
+            let (card, own) = cards.keep(&judged, students).expect("written");
+            let text = |name: Option<&String>| name.and_then(|name| read(&place, name));
+            assert_eq!(text(card.as_ref()).as_deref(), Some("Full"));
+            assert_eq!(text(own.as_ref()).as_deref(), expected, "{for_students} {students:?}");
+            let mut told = SceneResult { card, card_for_students: own.clone(), ..result.clone() };
+            assert!(!cards.lack(&told, students));
+            cut_result(students, &mut told);
+            assert_eq!(told.card, own);
+            // A result of a grading that made no page for students is graded again for one.
+            let kept = SceneResult { card_for_students: None, ..told };
+            let kept = SceneResult { card: cards.keep(&judged, students).expect("written").0, ..kept };
+            assert_eq!(cards.lack(&kept, students), for_students && students > Hints::None);
+        }
     }
 }

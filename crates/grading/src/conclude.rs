@@ -4,7 +4,7 @@
 //! clean exit does not excuse a wrong trace.
 use super::{
     config::{Hints, RunLimits},
-    hints::cut,
+    disclosure::Disclosure,
     result::{BadTrace, Ended, Limit, Measurements, Reached, Reason, SceneResult, Stream, Wrong},
     verdict::Verdict,
 };
@@ -12,7 +12,7 @@ use fosssim_judge::{
     Outcome, Rules, Ruling, Stop,
     fair::{self, FairRefusal},
 };
-use fosssim_mistakes::diagnose::Explanation;
+use fosssim_mistakes::{diagnose::Explanation, together::told::cut_result};
 use fosssim_model::{scene::Scene, trace::Layout};
 
 /// The bytes that a report keeps of each of the program's streams.
@@ -66,7 +66,7 @@ pub struct Run<'a> {
     pub nothing: Option<u64>,
     /// The rule books; the official one gives verdict, findings and right steps.
     pub rules: Rules,
-    /// How much may be told.
+    /// How much any reader may be told.
     pub hints: Hints,
     /// The limits that it had.
     pub limits: &'a RunLimits,
@@ -81,7 +81,7 @@ pub enum Look {
     Mistakes,
 }
 
-/// The result of one scene, cut to what its hints let through. `explain` says what is likely wrong; it is not asked
+/// The result of one scene, with all that any reader may be told. `explain` says what is likely wrong; it is not asked
 /// where nothing of it may be told, where the fair rules find no fault, or where what the program did besides is its
 /// worse fault.
 #[must_use]
@@ -96,27 +96,28 @@ pub fn conclude(run: &Run<'_>, explain: impl FnOnce(Look) -> Vec<Explanation>) -
         true => (of_program, Reason::Program(reached(&program.ended, judged, run.limits))),
         false => (of_trace, trace_says),
     };
-    let untold = hints == Hints::None && matches!(verdict, Verdict::WrongAnswer | Verdict::Unwritten);
-    let reason = if untold { Reason::Wrong(Wrong::Untold) } else { reason };
     let differs = fair::cause(judged);
     let has_fault = rules == Rules::Fair || differs.is_none();
     let look = if hints.explains() { Look::Mistakes } else { Look::NotFinite };
     let is_explained = hints > Hints::None && has_fault && verdict.is_wrong_trace();
-    SceneResult {
+    let mut result = SceneResult {
         scene: run.scene.to_owned(),
         verdict,
         reason,
         ended: Some(program.ended.clone()),
         differs,
-        disclosure: hints.tell(judged, rules),
-        explanations: if is_explained { cut(hints, explain(look)) } else { Vec::new() },
+        disclosure: Some(Disclosure::of(judged, rules)),
+        explanations: if is_explained { explain(look) } else { Vec::new() },
         right_steps: judged.right_steps(rules.official()),
         steps: judged.steps,
         measured: program.measured,
         stdout: program.stdout.clone(),
         stderr: program.stderr.clone(),
         card: None,
-    }
+        card_for_students: None,
+    };
+    cut_result(hints, &mut result);
+    result
 }
 
 /// The bytes of a complete trace of this scene in which every list is empty; nothing where the reference's are empty,

@@ -21,8 +21,8 @@ pub struct Suite<Scene = Pattern> {
     pub run: Vec<String>,
     /// The rule books to ask; the official one gives verdicts and points.
     pub rules: Rules,
-    /// How much a report tells.
-    pub hints: Hints,
+    /// How much reports for staff tell: everything, unless the one who grades wants less.
+    pub staff_hints: Hints,
     /// Whether students see what their programs print even though some groups are not visible to them.
     pub show_output: bool,
     /// The build step.
@@ -64,6 +64,8 @@ pub struct Marking {
     pub credit: Credit,
     /// The readers who see it.
     pub visibility: Visibility,
+    /// How much students are told of its scenes.
+    pub hints: Hints,
 }
 
 /// How the sources are built.
@@ -202,6 +204,7 @@ struct RawGroup {
     points: Option<Spanned<f64>>,
     credit: Option<Credit>,
     visibility: Option<Visibility>,
+    hints: Option<Hints>,
 }
 
 /// Collects problems with their positions while values are checked.
@@ -270,7 +273,8 @@ pub(super) fn read_all(text: &str) -> (Suite, Vec<(Position, String)>) {
         checker.problem(0..0, "the suite has no [[group]], so there is nothing to grade".to_owned());
     }
     let groups = raw.group.unwrap_or_default().into_iter();
-    let groups: Vec<Group> = groups.map(|group| read_group(&mut checker, group.into_inner())).collect();
+    let hints = raw.hints.unwrap_or(Hints::What);
+    let groups: Vec<Group> = groups.map(|group| read_group(&mut checker, group.into_inner(), hints)).collect();
     for (number, group) in groups.iter().enumerate() {
         if !group.name.is_empty() && groups[..number].iter().any(|other| other.name == group.name) {
             checker.problems.push((
@@ -283,7 +287,7 @@ pub(super) fn read_all(text: &str) -> (Suite, Vec<(Position, String)>) {
         name: raw.name.map(Spanned::into_inner).unwrap_or_default(),
         run,
         rules: raw.rules.as_deref().and_then(Rules::from_name).unwrap_or(Rules::Fair),
-        hints: raw.hints.unwrap_or(Hints::What),
+        staff_hints: Hints::Full,
         show_output: raw.show_output.unwrap_or(false),
         build,
         limits,
@@ -382,7 +386,8 @@ fn read_build(checker: &mut Checker<'_>, build: Spanned<RawBuild>) -> BuildStep 
     }
 }
 
-fn read_group(checker: &mut Checker<'_>, raw: RawGroup) -> Group {
+/// A group; `hints` are those of a group that says nothing of them.
+fn read_group(checker: &mut Checker<'_>, raw: RawGroup, hints: Hints) -> Group {
     let name = raw.name.as_ref().map(|name| name.get_ref().clone()).unwrap_or_default();
     if let Some(empty) = raw.name.filter(|name| name.get_ref().trim().is_empty()) {
         checker.problem(empty.span(), "the group's name is empty".to_owned());
@@ -397,7 +402,8 @@ fn read_group(checker: &mut Checker<'_>, raw: RawGroup) -> Group {
         Pattern { text: pattern.into_inner(), at }
     };
     let (credit, visibility) = (raw.credit.unwrap_or(Credit::Scenes), raw.visibility.unwrap_or(Visibility::Visible));
-    Group { name, scenes: scenes.map(pattern).collect(), marking: Marking { points, credit, visibility } }
+    let marking = Marking { points, credit, visibility, hints: raw.hints.unwrap_or(hints) };
+    Group { name, scenes: scenes.map(pattern).collect(), marking }
 }
 
 #[cfg(test)]

@@ -51,8 +51,10 @@ pub struct Runner<'a> {
     pub limits: &'a RunLimits,
     /// The rule books to ask.
     pub rules: Rules,
-    /// How much the result tells.
+    /// How much the result tells: of all readers, staff is told most.
     pub hints: Hints,
+    /// How much students are told of the scene.
+    pub student_hints: Hints,
     /// Whether traces are judged against the recordings instead of the reference simulator.
     pub recorded: bool,
     /// Where its runs' working folders come from.
@@ -154,9 +156,9 @@ impl Runner<'_> {
                 rules: self.rules,
                 hints: self.hints,
             };
-            let kept = guarded(|| cards.keep(&judged));
-            result.card = match kept {
-                Ok(card) => card.map_err(ExecuteError::Folder)?,
+            let kept = guarded(|| cards.keep(&judged, self.student_hints));
+            (result.card, result.card_for_students) = match kept {
+                Ok(names) => names.map_err(ExecuteError::Folder)?,
                 Err(fault) => return Ok(failed(Activity::Reporting, &fault)),
             };
         }

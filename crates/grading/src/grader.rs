@@ -6,6 +6,7 @@
 use super::{
     cancellation::Cancellation,
     cards::Cards,
+    config::Hints,
     coverage::Coverage,
     execute::Runner,
     guard::guarded,
@@ -99,7 +100,7 @@ impl Grader<'_> {
             self.effective_rules().name().to_owned(),
             self.plan.run.join("\u{1f}"),
             format!("{:?}", self.plan.limits),
-            format!("{:?}", self.plan.hints),
+            format!("{:?}", self.plan.staff_hints),
             format!("recorded={}", self.options.recorded),
         ]
     }
@@ -137,22 +138,22 @@ impl<'a> SharedGrading<'a> {
         self.full.into_inner()
     }
 
-    fn key(&self, digest: &blake3::Hash, scene: &SceneTask, called: &str) -> Key {
+    fn key(&self, digest: &blake3::Hash, scene: &SceneTask, called: &str, students: Hints) -> Key {
         // A program may behave as it is called, so its name belongs to what is graded.
-        let own = [scene.name.as_str(), called];
+        let own = [scene.name.as_str(), called, students.words().0];
         let words: Vec<&str> = self.words.iter().map(String::as_str).chain(own).collect();
         Key::of(digest, &scene.xml, &words)
     }
 
     /// An earlier result. Where traces or cards are wanted, one without them does not count.
-    fn find(&self, key: &Key, trace: Option<&Place>, cards: Option<Cards<'_>>) -> Option<Done> {
+    fn find(&self, key: &Key, trace: Option<&Place>, cards: Option<Cards<'_>>, students: Hints) -> Option<Done> {
         let results = self.results?;
         if lock(&self.kept).contains(key) {
             return None;
         }
         let result = results.find(key)?;
         let lacks_trace = trace.is_some_and(|trace| !result.verdict.is_accepted() && !trace.is_file());
-        let lacks_card = cards.is_some_and(|cards| cards.lack(&result));
+        let lacks_card = cards.is_some_and(|cards| cards.lack(&result, students));
         (!lacks_trace && !lacks_card).then_some(Done { result, cached: true, key: None })
     }
 
@@ -259,10 +260,10 @@ impl<'a> SubmissionGrading<'a> {
         tell(SceneProgress::Begins);
         let (grader, shared, submission) = (self.grader, self.shared, self.submission);
         let trace = grader.traces.map(|path| path(submission, scene));
-        let trace = trace.as_ref();
-        let found = self
-            .digest()
-            .and_then(|digest| shared.find(&shared.key(&digest, scene, &submission.called()), trace, grader.cards));
+        let students = grader.plan.student_hints(&scene.name);
+        let find = |key: &Key| shared.find(key, trace.as_ref(), grader.cards, students);
+        let known = self.digest().map(|digest| shared.key(&digest, scene, &submission.called(), students));
+        let found = known.as_ref().and_then(find);
         if let Some(done) = found {
             return done;
         }
@@ -279,9 +280,9 @@ impl<'a> SubmissionGrading<'a> {
                 }
             }
             Ok(staged) => {
-                let key = shared.key(&staged.digest, scene, &called(&staged.program));
-                shared.find(&key, trace, grader.cards).unwrap_or_else(|| {
-                    let result = self.run(staged, scene, trace, tell);
+                let key = shared.key(&staged.digest, scene, &called(&staged.program), students);
+                find(&key).unwrap_or_else(|| {
+                    let result = self.run(staged, scene, trace.as_ref(), tell);
                     Done { result, cached: false, key: Some(key) }
                 })
             }
@@ -311,7 +312,8 @@ impl<'a> SubmissionGrading<'a> {
             run: &grader.plan.run,
             limits: &grader.plan.limits,
             rules: grader.effective_rules(),
-            hints: grader.plan.hints,
+            hints: grader.plan.staff_hints,
+            student_hints: grader.plan.student_hints(&scene.name),
             recorded: grader.options.recorded,
             folders: &self.shared.folders,
             cancellation: self.shared.cancellation,

@@ -37,7 +37,6 @@ pub mod grader;
 mod guard;
 #[cfg(target_os = "linux")]
 pub mod headroom;
-mod hints;
 #[cfg(target_os = "linux")]
 mod key;
 pub mod library;
@@ -79,7 +78,6 @@ use fosssim_findings::{grade, verdict};
 #[cfg(target_os = "linux")]
 pub use grader::{Grader, Submission};
 pub use guard::{Fault, guarded};
-pub use hints::cut;
 #[cfg(target_os = "linux")]
 pub use key::{Key, this_build};
 #[cfg(target_os = "linux")]

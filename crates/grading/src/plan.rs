@@ -1,7 +1,7 @@
 //! A suite with its scenes looked up: what a grading really runs.
 use super::{
     assignments,
-    config::{self, Group, Pattern, Suite, SuiteError},
+    config::{self, Group, Hints, Pattern, Suite, SuiteError},
     library,
     task::SceneTask,
 };
@@ -46,6 +46,24 @@ impl Plan {
         self
     }
 
+    /// How much students are told of a scene.
+    #[must_use]
+    pub fn student_hints(&self, scene: &str) -> Hints {
+        let group = self.groups.iter().find(|group| group.scenes.iter().any(|task| task.name == scene));
+        group.map_or(Hints::None, |group| group.marking.hints)
+    }
+
+    /// Tells no reader more than this.
+    pub fn tell_at_most(&mut self, hints: Hints) {
+        self.staff_hints = hints;
+        self.tell_students(hints);
+    }
+
+    /// Tells students this much of every group.
+    pub fn tell_students(&mut self, hints: Hints) {
+        self.groups.iter_mut().for_each(|group| group.marking.hints = hints);
+    }
+
     /// Points that can be reached.
     #[must_use]
     pub fn max_points(&self) -> f64 {
@@ -78,7 +96,7 @@ pub type Found = Vec<(String, Vec<u8>)>;
 /// # Errors
 /// Patterns that match nothing, scenes that can't be read or are not sound, each at the pattern's position.
 pub fn resolve_by(suite: Suite, files: &mut dyn FnMut(&str) -> Result<Found, String>) -> Result<Plan, SuiteError> {
-    let Suite { name, run, rules, hints, show_output, build, limits, patience, groups: patterns } = suite;
+    let Suite { name, run, rules, staff_hints, show_output, build, limits, patience, groups: patterns } = suite;
     let mut problems = Vec::new();
     let mut seen = BTreeMap::new();
     let mut groups = Vec::new();
@@ -114,7 +132,7 @@ pub fn resolve_by(suite: Suite, files: &mut dyn FnMut(&str) -> Result<Found, Str
         groups.push(Group { name: group.name, marking: group.marking, scenes });
     }
     if problems.is_empty() {
-        Ok(Suite { name, run, rules, hints, show_output, build, limits, patience, groups })
+        Ok(Suite { name, run, rules, staff_hints, show_output, build, limits, patience, groups })
     } else {
         Err(SuiteError { problems })
     }

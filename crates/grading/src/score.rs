@@ -31,6 +31,7 @@ pub fn group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) ->
     GroupGrade {
         name: name.to_owned(),
         visibility: marking.visibility,
+        hints: marking.hints,
         points,
         max_points: marking.points,
         verdict: scenes.iter().map(|scene| scene.verdict).max().unwrap_or(Verdict::NotRun),
@@ -128,14 +129,17 @@ mod together_tests;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{config::Visibility, result::Reason};
+    use crate::{
+        config::{Hints, Visibility},
+        result::Reason,
+    };
 
     fn scene(verdict: Verdict, right_steps: u32) -> (SceneResult, bool) {
         (SceneResult { right_steps, ..SceneResult::without_run("a/b", 10, verdict, Reason::Right) }, false)
     }
 
     fn points(credit: Credit, scenes: Vec<(SceneResult, bool)>) -> f64 {
-        let marking = Marking { points: 30.0, credit, visibility: Visibility::Visible };
+        let marking = Marking { points: 30.0, credit, visibility: Visibility::Visible, hints: Hints::Full };
         group("g", marking, scenes).points.expect("points")
     }
 
@@ -152,7 +156,8 @@ mod tests {
 
     #[test]
     fn the_worst_scene_names_the_group_and_nothing_run_gives_nothing() {
-        let marking = Marking { points: 5.0, credit: Credit::Scenes, visibility: Visibility::Hidden };
+        let marking =
+            Marking { points: 5.0, credit: Credit::Scenes, visibility: Visibility::Hidden, hints: Hints::Full };
         let graded = group("g", marking, vec![scene(Verdict::Accepted, 10), scene(Verdict::RuntimeError, 0)]);
         assert_eq!(graded.verdict, Verdict::RuntimeError);
         let empty = group("g", marking, Vec::new());
@@ -170,7 +175,7 @@ mod tests {
     fn what_was_not_run_or_not_judged_has_no_points_and_its_group_neither() {
         for missing in [Verdict::NotRun, Verdict::JudgeError] {
             for credit in [Credit::Scenes, Credit::Steps, Credit::All] {
-                let marking = Marking { points: 30.0, credit, visibility: Visibility::Visible };
+                let marking = Marking { points: 30.0, credit, visibility: Visibility::Visible, hints: Hints::Full };
                 let graded = group("g", marking, vec![scene(Verdict::WrongAnswer, 5), scene(missing, 0)]);
                 assert_eq!((graded.points, graded.scenes[1].points), (None, None));
                 assert!(graded.scenes[0].points.is_some());

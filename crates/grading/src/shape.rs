@@ -48,19 +48,22 @@ const LIMITS: &[Key] = &[
     Key("total_seconds", Kind::Number, false),
 ];
 
+const HINTS: &[&str] = &["none", "where", "what", "full"];
+
 const GROUP: &[Key] = &[
     Key("name", Kind::Text, true),
     Key("scenes", Kind::Texts, true),
     Key("points", Kind::Number, false),
     Key("credit", Kind::Choice(&["scenes", "steps", "all"]), false),
     Key("visibility", Kind::Choice(&["visible", "hidden", "after_due_date", "after_published"]), false),
+    Key("hints", Kind::Choice(HINTS), false),
 ];
 
 const SUITE: &[Key] = &[
     Key("schema", Kind::Whole, true),
     Key("name", Kind::Text, true),
     Key("rules", Kind::Choice(&["parity", "fair", "both"]), false),
-    Key("hints", Kind::Choice(&["none", "where", "what", "full"]), false),
+    Key("hints", Kind::Choice(HINTS), false),
     Key("show_output", Kind::Flag, false),
     Key("run", Kind::Texts, false),
     Key("build", Kind::Table(BUILD), false),

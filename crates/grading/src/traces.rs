@@ -32,7 +32,7 @@ pub fn judged<'a, R: Read + Send>(
         trace_bytes: bytes,
         nothing: bytes_of_nothing(&task.scene),
         rules: plan.rules,
-        hints: plan.hints,
+        hints: plan.staff_hints,
         limits: &plan.limits,
     };
     let explained = conclude(&run, |look| match look {

@@ -182,8 +182,8 @@ impl From<&Explanation> for ExplanationView {
 pub(crate) mod tests {
     use super::*;
     use fosssim_findings::Hints;
-    use fosssim_grading::cut;
     use fosssim_judge::Role;
+    use fosssim_mistakes::together::told::cut;
     use fosssim_mistakes::{
         assignments::t2m2::{Input, Reading, Subject},
         diagnose::{Detail, ExamplePlace, OfPolynomials, PolynomialDetail, Weight, explain, formula_in},

@@ -23,7 +23,7 @@ impl Closer<'_> {
         };
         let mut lines = Vec::new();
         let of_trace = scene.verdict.is_wrong_trace();
-        let hints = if self.plan.hints < Hints::Full && of_trace { " --hints full" } else { "" };
+        let hints = if self.plan.staff_hints < Hints::Full && of_trace { " --hints full" } else { "" };
         let alone = self.plan.scenes().count() == 1;
         if !alone || !hints.is_empty() {
             lines.push(format!("$ {} --scene {}{hints}", self.command(submission), quoted(&scene.scene)));

@@ -27,10 +27,10 @@ use crate::{
         Folders, Runner, SceneTask,
         config::{Hints, RunLimits},
         coverage::Coverage,
-        cut,
         located::{ContentIndex, Contents, Failing, Located, Tried, locate},
         plan,
     },
+    together::told::cut,
 };
 use anyhow::{Context, Result, bail};
 use std::{
@@ -158,6 +158,7 @@ fn program_on_probes(
         limits,
         rules: Rules::Fair,
         hints: Hints::Full,
+        student_hints: Hints::Full,
         recorded: false,
         cancellation: &cancellation,
         faults: &nowhere,

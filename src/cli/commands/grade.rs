@@ -31,7 +31,7 @@ use crate::{
     sandbox::{Backend, Supervisor},
     suite::{
         Cancellation, Grade, Grader, PassedOver, SceneTask, Submission, Verdict, batch,
-        cards::{Cards, Judged},
+        cards::Judged,
         config::Visibility,
         grader::Options,
         plan::{self, Plan},
@@ -60,8 +60,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     if arguments.recorded && arguments.rules == Some(Rules::Fair) {
         bail!("the fair rules follow the submission, so they can't judge against recordings: leave --recorded out");
     }
-    if let Some(hints) = arguments.hints {
-        plan.hints = hints;
+    match (arguments.hints, arguments.reader) {
+        (None, _) => {}
+        (Some(hints), Audience::Staff) => plan.tell_at_most(hints),
+        (Some(hints), Audience::Student) => plan.tell_students(hints),
     }
     let reports = reports(&arguments.format)?;
     if arguments.traces {
@@ -115,8 +117,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     }
     let is_part = plan.scenes().count() < whole || arguments.failed;
     let pictures = submissions.len() == 1 && console::pictures().is_some();
-    let draws = pictures || folder.is_some() || reports.iter().any(|report| report.format == Format::Html);
-    let pages = if draws { Some(Pages::new(folder.as_deref())?) } else { None };
+    let draws = pictures
+        || folder.is_some()
+        || arguments.staff_page.is_some()
+        || reports.iter().any(|report| report.format == Format::Html);
+    // A class's pages may be asked for later, and nobody wants to run it again for them.
+    let for_students = arguments.reader == Audience::Student || submissions.len() > 1;
+    let pages = if draws { Some(Pages::new(folder.as_deref(), for_students)?) } else { None };
     let (plan, backend, cancellation) = (&plan, &backend, &cancellation);
     let session =
         GradingSession { arguments, plan, backend, cancellation, folder, pages, is_part, sharding, passed_over };
@@ -236,7 +243,7 @@ impl GradingSession<'_> {
             options,
             faults: &faults,
             traces: if self.arguments.keep_traces { Some(&trace) } else { None },
-            cards: self.pages.as_ref().map(|pages| Cards { folder: pages.cards(), draw: &draw }),
+            cards: self.pages.as_ref().map(|pages| pages.drawing(&draw)),
             rehearse: &grade::rehearse,
         };
         let mut display = LiveDisplay::new(self.plan, submissions);
@@ -292,8 +299,9 @@ impl GradingSession<'_> {
     fn report(&self, grades: &[Grade], submissions: &[Submission], reports: &[Report]) -> Result<()> {
         let (folder, pages, reader) = (self.folder.as_deref(), self.pages.as_ref(), self.arguments.reader);
         let passed_over = self.passed_over();
-        let results = Results { folder, pages, reader, is_part: self.is_part, grades, passed_over };
-        results.write(reports, || self.text(grades, submissions))
+        let (staff_page, is_part) = (self.arguments.staff_page.as_deref(), self.is_part);
+        let results = Results { folder, pages, reader, staff_page, is_part, grades, passed_over };
+        results.write(reports, |grades| self.text(grades, submissions))
     }
 
     /// The report for people who look at it now: of a class a table, and what it comes to.

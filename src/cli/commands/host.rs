@@ -19,12 +19,7 @@ use crate::{
     },
     sandbox::{self, selftest},
     student,
-    suite::{
-        Grader, Submission, Verdict,
-        cards::{Cards, Judged},
-        grader::Options,
-        plan,
-    },
+    suite::{Grader, Submission, Verdict, cards::Judged, grader::Options, plan},
 };
 use anyhow::{Context, Result, bail};
 use std::{
@@ -88,7 +83,7 @@ pub(super) fn demo(arguments: &Demo) -> Result<u8> {
     let backend = backend(false)?;
     let cancellation = cancelled_by_signals();
     let jobs = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
-    let pages = Pages::new(None)?;
+    let pages = Pages::new(None, false)?;
     let draw = |judged: &Judged<'_>| pages::draw(judged, (&format!("asset:{}", judged.task.name), None), false);
     let (mut verdicts, mut last) = (Vec::new(), None);
     for (name, run) in [
@@ -106,7 +101,7 @@ pub(super) fn demo(arguments: &Demo) -> Result<u8> {
             options: Options { jobs, fail_fast: false, recorded: false },
             faults: &Place::new("", "fosssim-faults"),
             traces: None,
-            cards: Some(Cards { folder: pages.cards(), draw: &draw }),
+            cards: Some(pages.drawing(&draw)),
             rehearse: &rehearse,
         };
         let (grade, _) = grader.grade_submission(&submission, None, &cancellation, &mut |_| {});

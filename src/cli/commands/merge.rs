@@ -67,19 +67,20 @@ pub(super) fn run(arguments: &Merge) -> Result<u8> {
     let place = |grade: &Grade| order.iter().position(|name| *name == grade.submission);
     grades.sort_by_key(place);
     grade::warn_of(&mut grades, &passed_over);
-    let pages = Pages::new(Some(&output))?;
+    let pages = Pages::new(Some(&output), false)?;
     LastRun::open(Some(&output), &[], &suite).remember(&grades);
     let reader = arguments.reader;
     let results = Results {
         folder: Some(&output),
         pages: Some(&pages),
         reader,
+        staff_page: None,
         is_part: false,
         grades: &grades,
         passed_over: &passed_over,
     };
-    results.write(&reports, || {
-        text(&grades, arguments.quiet) + &grade::not_graded(&grades, &passed_over, console::style())
+    results.write(&reports, |grades| {
+        text(grades, arguments.quiet) + &grade::not_graded(grades, &passed_over, console::style())
     })?;
     Ok(exit_code(&grades))
 }

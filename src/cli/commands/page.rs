@@ -3,7 +3,7 @@ use crate::{
     cli::{arguments::PageArguments, exit, output::Output},
     files::{Identity, open_for_reading, read_limited},
     report::page::Audience,
-    suite::{config::Visibility, plan},
+    suite::plan,
 };
 use anyhow::{Context, Result, anyhow, bail};
 use fosssim_browser::CourseSuite;
@@ -47,6 +47,5 @@ pub(super) fn run(arguments: &PageArguments) -> Result<u8> {
 /// The part of a suite that the page's readers may see.
 fn course(name: &str, reader: Audience) -> Result<CourseSuite> {
     let plan = plan::find(name)?;
-    let shows = |visibility| reader == Audience::Staff || visibility == Visibility::Visible;
-    CourseSuite::of(&plan, shows).map_err(|why| anyhow!("the suite {name}: {why}"))
+    CourseSuite::of(&plan, reader).map_err(|why| anyhow!("the suite {name}: {why}"))
 }

@@ -13,7 +13,7 @@ use crate::{
     scene::Scene,
     suite::{
         Grade, PassedOver, SceneGrade,
-        cards::{self, Judged},
+        cards::{self, Cards, Draw, Judged},
         config::Hints,
         guarded,
     },
@@ -33,12 +33,14 @@ pub(super) struct Pages {
     cards: Place,
     /// The folder for pages, when there is one.
     folder: Option<PathBuf>,
+    /// Whether pages for students are made, too.
+    for_students: bool,
     _temporary: Option<tempfile::TempDir>,
 }
 
 impl Pages {
     /// Pages in the folder for results; without one, cards that live as long as the grading.
-    pub(super) fn new(folder: Option<&Path>) -> Result<Self> {
+    pub(super) fn new(folder: Option<&Path>, for_students: bool) -> Result<Self> {
         let temporary = match folder {
             Some(_) => None,
             None => Some(tempfile::Builder::new().prefix("fosssim-cards-").tempdir().context("no temporary folder")?),
@@ -48,12 +50,12 @@ impl Pages {
             (None, Some(temporary)) => Place::new(temporary.path(), ""),
             (None, None) => Place::new("", ""),
         };
-        Ok(Self { cards, folder: folder.map(Path::to_owned), _temporary: temporary })
+        Ok(Self { cards, folder: folder.map(Path::to_owned), for_students, _temporary: temporary })
     }
 
-    /// Where cards are kept.
-    pub(super) fn cards(&self) -> &Place {
-        &self.cards
+    /// Draws and keeps cards here.
+    pub(super) fn drawing<'a>(&'a self, draw: &'a Draw<'a>) -> Cards<'a> {
+        Cards { folder: &self.cards, draw, for_students: self.for_students }
     }
 
     /// Forgets the cards of earlier gradings.
@@ -65,7 +67,7 @@ impl Pages {
         }
     }
 
-    /// The card of a scene.
+    /// The card of a scene, of those that its grade names.
     pub(super) fn card(&self, scene: &SceneGrade) -> Option<Card> {
         Card::from_kept(&cards::read(&self.cards, scene.card.as_deref()?)?)
     }

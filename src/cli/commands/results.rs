@@ -10,6 +10,7 @@ use crate::{
         wrap,
     },
     suite::{Grade, PassedOver, guarded},
+    together::told_to_students,
 };
 use anyhow::{Context, Result, bail};
 use std::{
@@ -65,8 +66,10 @@ pub(super) struct Results<'a> {
     /// The folder for results, when there is one.
     pub(super) folder: Option<&'a Path>,
     pub(super) pages: Option<&'a Pages>,
-    /// The reader of the pages.
+    /// The reader of the reports. Files in the folder are for staff, but for pages in students/.
     pub(super) reader: Audience,
+    /// The file for a page that tells staff more than the reader, when one is wanted.
+    pub(super) staff_page: Option<&'a Path>,
     /// Whether scenes of the suite were left out on purpose.
     pub(super) is_part: bool,
     pub(super) grades: &'a [Grade],
@@ -80,7 +83,7 @@ impl Results<'_> {
     ///
     /// # Errors
     /// The first file that can't be written; the others are written all the same.
-    pub(super) fn write(&self, reports: &[Report], text: impl Fn() -> String) -> Result<()> {
+    pub(super) fn write(&self, reports: &[Report], text: impl Fn(&[Grade]) -> String) -> Result<()> {
         let (grades, passed_over) = (self.grades, self.passed_over);
         // One file that can't be written must not cost the others.
         let mut wrong = None;
@@ -114,6 +117,17 @@ impl Results<'_> {
                 );
             }
         }
+        if let (Some(file), Some(pages), [grade]) = (self.staff_page, self.pages, grades) {
+            keep(write(file, || pages.of_one(grade, None, Audience::Staff)));
+        }
+        let told: Vec<Grade>;
+        let grades = match self.reader {
+            Audience::Staff => grades,
+            Audience::Student => {
+                told = grades.iter().map(|grade| told_to_students(grade).into_owned()).collect();
+                &told
+            }
+        };
         for report in reports {
             let render = || match (report.format, self.pages, grades) {
                 (Format::Html, Some(pages), [grade]) => pages.of_one(grade, None, self.reader),
@@ -121,7 +135,7 @@ impl Results<'_> {
             };
             match (&report.file, report.format) {
                 (None, Format::Text) => {
-                    keep(made("the report", &text).and_then(|text| console::report(&text)));
+                    keep(made("the report", || text(grades)).and_then(|text| console::report(&text)));
                 }
                 (None, _) => keep(made("the report", render).and_then(|text| console::print(text.as_bytes()))),
                 (Some(file), Format::Markdown) if is_step_summary(file) => keep(append(file, render)),

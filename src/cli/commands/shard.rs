@@ -189,7 +189,7 @@ fn digest(plan: &Plan, arguments: &Arguments) -> String {
         "{:?} {:?} {:?} {:?} {:?} {:?} {:?} {} {}",
         plan.run,
         plan.rules,
-        plan.hints,
+        plan.staff_hints,
         plan.show_output,
         plan.build,
         plan.limits,

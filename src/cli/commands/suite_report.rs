@@ -9,13 +9,13 @@ use crate::{
     },
     sim::StepError,
     suite::{
-        config::Credit,
+        config::{Credit, Hints},
         coverage::{Coverage, FAMILIES},
         plan::{Plan, PlannedGroup, default_name},
     },
 };
 use serde_json::json;
-use std::fmt::Write;
+use std::{collections::BTreeSet, fmt::Write};
 
 /// A scene and those of the reference's decisions that round-off may flip, or why it has no run.
 pub(super) type Undecided = (String, Result<Vec<Borderline>, StepError>);
@@ -138,8 +138,11 @@ fn head(plan: &Plan, style: Style) -> String {
         limits.trace >> 20,
     );
     let _ = writeln!(text, "rules: {}", rules(plan.rules));
-    let (hints, meaning) = plan.hints.words();
-    let _ = writeln!(text, "hints: {hints}: {meaning}");
+    let levels: BTreeSet<Hints> = plan.groups.iter().map(|group| group.marking.hints).collect();
+    for level in levels {
+        let (hints, meaning) = level.words();
+        let _ = writeln!(text, "hints for students: {hints}: {meaning}");
+    }
     text
 }
 
@@ -147,7 +150,8 @@ fn of_group(group: &PlannedGroup, style: Style) -> String {
     let marking = &group.marking;
     let (points, visibility) = (counted_points(marking.points), marking.visibility.key().replace('_', " "));
     let name = style.paint(Look::Strong, &one_line(&group.name));
-    let mut text = format!("\n{name}: {points}, {}, {visibility}\n", credit(marking.credit));
+    let (credit, hints) = (credit(marking.credit), marking.hints.words().0);
+    let mut text = format!("\n{name}: {points}, {credit}, {visibility}, hints {hints}\n");
     for task in &group.scenes {
         let particles = counted(task.scene.particles.len() as u64, "particle");
         let steps = counted(task.scene.steps().into(), "step");

@@ -9,14 +9,12 @@ use super::{
 use crate::{
     cli::{console, grading::Grade as Arguments, selection::Selection},
     files::{FileError, Folder},
-    report::grade::{Format, Text, rehearse},
+    report::{
+        grade::{Format, Text, rehearse},
+        page::Audience,
+    },
     suite::{
-        Grade, Reason, SceneResult, SceneTask, Verdict,
-        cards::{Cards, Judged},
-        guarded,
-        plan::Plan,
-        result::Failure,
-        traces,
+        Grade, Reason, SceneResult, SceneTask, Verdict, cards::Judged, guarded, plan::Plan, result::Failure, traces,
     },
 };
 use anyhow::{Context, Result, bail};
@@ -49,18 +47,29 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report]) -> Resu
     if let Some(output) = &arguments.output {
         Folder::make(output).with_context(|| format!("cannot make {}", output.display()))?;
     }
-    let draws = arguments.output.is_some() || reports.iter().any(|report| report.format == Format::Html);
-    let pages = if draws { Some(Pages::new(arguments.output.as_deref())?) } else { None };
+    let draws = arguments.output.is_some()
+        || arguments.staff_page.is_some()
+        || reports.iter().any(|report| report.format == Format::Html);
+    let pages = if draws {
+        Some(Pages::new(
+            arguments.output.as_deref(),
+            arguments.reader == Audience::Student || arguments.programs.len() > 1,
+        )?)
+    } else {
+        None
+    };
     let paths: Vec<&Path> = arguments.programs.iter().map(PathBuf::as_path).collect();
     let named = paths.iter().zip(distinct_names(&paths));
     let grades: Vec<Grade> = named.map(|(folder, name)| grade(&plan, folder, name, pages.as_ref())).collect();
     let (folder, reader) = (arguments.output.as_deref(), arguments.reader);
-    let results = Results { folder, pages: pages.as_ref(), reader, is_part, grades: &grades, passed_over: &[] };
-    results.write(reports, || {
+    let staff_page = arguments.staff_page.as_deref();
+    let results =
+        Results { folder, pages: pages.as_ref(), reader, staff_page, is_part, grades: &grades, passed_over: &[] };
+    results.write(reports, |grades| {
         let shown = shown(arguments, grades.len() > 1);
         let (style, width) = (console::style(), console::width());
-        let text = Text { style, shown, width, again: None, closer: None }.render(&grades);
-        with_class(text, &grades, shown, style)
+        let text = Text { style, shown, width, again: None, closer: None }.render(grades);
+        with_class(text, grades, shown, style)
     })?;
     Ok(exit_code(&grades))
 }
@@ -108,11 +117,10 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) 
             trace: &trace,
             is_cut: false,
             rules: plan.rules,
-            hints: plan.hints,
+            hints: plan.staff_hints,
         };
         let draw = |judged: &Judged<'_>| pages::draw(judged, (&judged.task.name, None), false);
-        let card = Cards { folder: pages.cards(), draw: &draw }.keep(&judged)?;
-        result.card = card;
+        (result.card, result.card_for_students) = pages.drawing(&draw).keep(&judged, plan.student_hints(&task.name))?;
     }
     rehearse(&result);
     Ok((result, passed_over))

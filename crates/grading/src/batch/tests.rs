@@ -10,6 +10,7 @@ use crate::{
     verdict::Verdict,
 };
 use fosssim_judge::{FindingDetail, Rules, fair::Cause};
+use fosssim_mistakes::together::told_to_students;
 use fosssim_sandbox::Job;
 use std::{path::Path, time::Duration};
 
@@ -239,7 +240,8 @@ fn a_program_that_crashes_in_the_failsafe_is_told_so() {
     let Reason::Program(reached) = crashed[0].reason else { panic!("{:?}", crashed[0].reason) };
     assert_eq!((&located.first, located.step), (&crashed[0].scene, reached.steps));
     let silent = stage.grade_by(&suite("where"), &["crashes-in-the-failsafe"]).remove(0);
-    assert_eq!(silent.located, None, "hints say less");
+    assert!(silent.located.is_some() && told_to_students(&grade).located.is_some(), "staff is told everything");
+    assert_eq!(told_to_students(&silent).located, None, "hints tell students less");
     assert_eq!(stage.grade_by(&suite("what"), &["right"]).remove(0).located, None);
 }
 

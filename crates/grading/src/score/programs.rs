@@ -60,7 +60,7 @@ impl SubmissionGrading<'_> {
             refuted,
             located: None,
         };
-        if plan.hints.explains() {
+        if plan.staff_hints.explains() {
             grade.located = common(&grade, || self.shared.contents(plan));
         }
         settle(&mut grade);

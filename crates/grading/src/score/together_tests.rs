@@ -1,7 +1,7 @@
 //! Explanations that all scenes together make.
 use crate::{
     Grade, SceneResult, Verdict,
-    config::{Credit, Marking, Visibility},
+    config::{Credit, Hints, Marking, Visibility},
     result::Reason,
     score,
 };
@@ -31,7 +31,7 @@ fn grade(scenes: Vec<Vec<Explanation>>) -> Grade {
         let run = SceneResult::without_run(&format!("a/{number}"), 9, Verdict::WrongAnswer, Reason::Right);
         (SceneResult { explanations, ..run }, false)
     };
-    let marking = Marking { points: 1.0, credit: Credit::Scenes, visibility: Visibility::Visible };
+    let marking = Marking { points: 1.0, credit: Credit::Scenes, visibility: Visibility::Visible, hints: Hints::Full };
     let results = scenes.into_iter().enumerate().map(wrong).collect();
     let mut grade = Grade {
         submission: String::new(),

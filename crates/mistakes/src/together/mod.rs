@@ -3,20 +3,43 @@
 
 use crate::diagnose::{is_named_in, settled, several};
 use fosssim_findings::{
-    Verdict, Visibility,
+    Hints, Verdict, Visibility,
     explanation::Explanation,
     grade::{Grade, GroupGrade},
 };
 use std::{borrow::Cow, time::Duration};
+use told::cut_result;
+
+pub mod told;
+
+/// The grade with no more of its scenes than hints tell students. Groups that students do not see are in it, too.
+#[must_use]
+pub fn told_to_students(grade: &Grade) -> Cow<'_, Grade> {
+    if grade.groups.iter().all(|group| group.hints == Hints::Full) {
+        return Cow::Borrowed(grade);
+    }
+    let mut told = grade.clone();
+    for group in &mut told.groups {
+        for scene in &mut group.scenes {
+            cut_result(group.hints, &mut scene.result);
+        }
+    }
+    if !told.groups.iter().all(|group| group.hints.explains()) {
+        told.located = None;
+    }
+    settle(&mut told);
+    Cow::Owned(told)
+}
 
 /// The grade with nothing in it but what students see at once: points and verdict are those of the groups that are
-/// left. Unless the suite shows all that programs print, scenes tell their verdicts only
-/// ([`withhold`](fosssim_findings::SceneResult::withhold)).
+/// left, and hints say how much is told of their scenes ([`told_to_students`]). Unless the suite shows all that
+/// programs print, scenes tell their verdicts only ([`withhold`](fosssim_findings::SceneResult::withhold)).
 #[must_use]
 pub fn for_students(grade: &Grade) -> Cow<'_, Grade> {
     if grade.is_visible() {
-        return Cow::Borrowed(grade);
+        return told_to_students(grade);
     }
+    let grade = told_to_students(grade);
     let is_visible = |group: &&GroupGrade| group.visibility == Visibility::Visible;
     let groups: Vec<GroupGrade> = grade.groups.iter().filter(is_visible).cloned().collect();
     let mut visible = Grade {
@@ -27,7 +50,7 @@ pub fn for_students(grade: &Grade) -> Cow<'_, Grade> {
         // It counts scenes that are not here.
         located: None,
         wall: Duration::ZERO,
-        ..grade.clone()
+        ..grade.as_ref().clone()
     };
     if grade.shows_output {
         settle(&mut visible);

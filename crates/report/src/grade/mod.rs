@@ -16,7 +16,7 @@ mod prairielearn;
 mod text;
 
 use crate::page::{Audience, GradePage};
-use fosssim_findings::{Grade, GroupGrade, Rules, SceneGrade, SceneResult, Visibility, result::Measurements};
+use fosssim_findings::{Grade, GroupGrade, Hints, Rules, SceneGrade, SceneResult, Visibility, result::Measurements};
 use std::sync::{Mutex, PoisonError};
 
 /// Whether a format's document holds the grades of several submissions, and how it comes about then.
@@ -186,6 +186,7 @@ fn render_in_every_format(result: &SceneResult) {
         agreed: 0,
     };
     let group = GroupGrade {
+        hints: Hints::Full,
         name: "group".to_owned(),
         visibility: Visibility::Visible,
         points: Some(0.0),

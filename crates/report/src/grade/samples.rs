@@ -2,7 +2,7 @@
 use fosssim_findings::FindingPlace;
 use fosssim_grading::{
     Build, Grade, GroupGrade, Reason, SceneResult, Verdict,
-    config::{Credit, Marking, Visibility},
+    config::{Credit, Hints, Marking, Visibility},
     disclosure::{DisclosedBook, DisclosedFinding, Disclosure},
     result::{BuildEnd, Ended, Failure, FolderContents, Measurements, Unusable, Wrong},
     score,
@@ -33,7 +33,7 @@ fn scene(name: &str, verdict: Verdict, summary: &str) -> SceneResult {
 
 fn group(name: &str, visibility: Visibility, scenes: Vec<SceneResult>) -> GroupGrade {
     let scenes = scenes.into_iter().map(|scene| (scene, false)).collect();
-    score::group(name, Marking { points: 10.0, credit: Credit::Scenes, visibility }, scenes)
+    score::group(name, Marking { points: 10.0, credit: Credit::Scenes, visibility, hints: Hints::Full }, scenes)
 }
 
 fn grade(submission: &str, groups: Vec<GroupGrade>) -> Grade {

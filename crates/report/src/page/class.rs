@@ -429,12 +429,13 @@ mod tests {
     use crate::grade::samples;
     use fosssim_grading::{
         GroupGrade, Reason, SceneResult,
-        config::{Credit, Marking, Visibility},
+        config::{Credit, Hints, Marking, Visibility},
         score,
     };
 
     fn grade(name: &str, fails: impl Fn(usize) -> Option<String>) -> Grade {
-        let marking = Marking { points: 20.0, credit: Credit::Scenes, visibility: Visibility::Visible };
+        let marking =
+            Marking { points: 20.0, credit: Credit::Scenes, visibility: Visibility::Visible, hints: Hints::Full };
         let groups: Vec<GroupGrade> = (0..5)
             .map(|group| {
                 let scenes = (0..16).map(|number| {

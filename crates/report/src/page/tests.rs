@@ -3,7 +3,7 @@ use fosssim_evidence::{BUDGET, Focus, StepRulings, gather};
 use fosssim_grading::{
     Grade, Reason, SceneResult, Verdict,
     config::{Credit, Marking, Visibility},
-    cut,
+    disclosure::Disclosure,
     result::Wrong,
     score,
 };
@@ -11,6 +11,7 @@ use fosssim_judge::{Outcome, Rules, replay};
 use fosssim_mistakes::{
     diagnose,
     student::{self, Student},
+    together::told::cut,
 };
 use fosssim_model::scene::{Scene, original};
 
@@ -122,7 +123,7 @@ fn the_motion_is_exact() {
     assert!(trace.windows(state).any(|window| window == last));
 }
 
-/// The card that is drawn of a wrong trace with hints of this level, and what is said in words.
+/// The card that is drawn of a wrong trace for readers of this level, and the whole result.
 fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
     let trace = of_mistake(scene, id);
     let mut nobody = ();
@@ -131,7 +132,8 @@ fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
     let outcome = replay::judge(scene, &trace[..], &options, &mut rulings);
     let focus: Vec<Focus> = outcome.parity.findings.examples.iter().map(Focus::from).collect();
     let evidence = gather(scene, &mut &trace[..], &rulings.into_steps(&outcome), true, &focus, BUDGET);
-    let explanations = cut(hints, diagnose::explain(scene, &trace));
+    let all = diagnose::explain(scene, &trace);
+    let explanations = cut(hints, all.clone());
     let what_if = WhatIf {
         id: id.to_owned(),
         sentence: student::find(id).expect("a mistake").what.to_owned(),
@@ -154,14 +156,14 @@ fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
     let card = Card::of(&case, 3).and_then(|card| Card::from_kept(&card.kept()));
     let why = Reason::Wrong(Wrong::Untold);
     let mut result = SceneResult::without_run("Group/scene", scene.steps(), Verdict::WrongAnswer, why);
-    result.disclosure = hints.tell(&outcome, Rules::Fair);
-    result.explanations = explanations;
+    result.disclosure = Some(Disclosure::of(&outcome, Rules::Fair));
+    result.explanations = all;
     (card, result)
 }
 
 /// The page of a submission with these results, all of which have the same card.
 fn page_of(results: Vec<SceneResult>, card: Option<&Card>) -> String {
-    let marking = Marking { points: 10.0, credit: Credit::Scenes, visibility: Visibility::Visible };
+    let marking = Marking { points: 10.0, credit: Credit::Scenes, visibility: Visibility::Visible, hints: Hints::Full };
     let grade = Grade {
         groups: vec![score::group("Group", marking, results.into_iter().map(|result| (result, false)).collect())],
         verdict: Verdict::WrongAnswer,
@@ -171,9 +173,24 @@ fn page_of(results: Vec<SceneResult>, card: Option<&Card>) -> String {
     GradePage { grade: &grade, card: &|_| card.cloned(), class: None, reader: Audience::Staff }.html()
 }
 
-fn graded(scene: &Scene, id: &str, hints: Hints) -> String {
-    let (card, result) = drawn(scene, id, hints);
-    page_of(vec![result], card.as_ref())
+/// The pages of a submission for staff and for students who are told this much.
+fn graded(scene: &Scene, id: &str, hints: Hints) -> [String; 2] {
+    let ((own, mut result), (full, _)) = (drawn(scene, id, hints), drawn(scene, id, Hints::Full));
+    (result.card, result.card_for_students) = (Some("full".to_owned()), own.is_some().then(|| "own".to_owned()));
+    let marking = Marking { points: 10.0, credit: Credit::Scenes, visibility: Visibility::Visible, hints };
+    let grade = Grade {
+        groups: vec![score::group("Group", marking, vec![(result, false)])],
+        verdict: Verdict::WrongAnswer,
+        shows_output: true,
+        ..crate::grade::samples::good()
+    };
+    let card = |scene: &fosssim_grading::SceneGrade| match scene.card.as_deref() {
+        Some("full") => full.clone(),
+        Some("own") => own.clone(),
+        _ => None,
+    };
+    [Audience::Staff, Audience::Student]
+        .map(|reader| GradePage { grade: &grade, card: &card, class: None, reader }.html())
 }
 
 /// What a level hides is not in the file at all: neither as text, nor in the viewer's data.
@@ -181,8 +198,9 @@ fn graded(scene: &Scene, id: &str, hints: Hints) -> String {
 fn what_the_hints_hide_is_not_in_the_file() {
     let scene = asset("ContinuousTimeTests/spinning-edge-sweeps-balls.xml");
     let id = "pe-linear-one-ab";
-    let [none, place, what, full] =
-        [Hints::None, Hints::Where, Hints::What, Hints::Full].map(|hints| graded(&scene, id, hints));
+    let pages = [Hints::None, Hints::Where, Hints::What, Hints::Full].map(|hints| graded(&scene, id, hints));
+    let [[staff, none], [_, place], [_, what], [_, full]] = pages;
+    assert_eq!(staff, full, "staff sees as much as a student who is told everything");
     let script = |html: &str| html.matches("<script>").count();
     assert!([&none, &place, &what, &full].iter().all(|html| script(html) == 1));
     // The viewer's own text and the style sheet are the same for all.
@@ -270,7 +288,7 @@ fn the_most_telling_scene_is_opened_first_and_links_lead_to_it() {
     let card = |scene: &fosssim_grading::SceneGrade| {
         scenes.iter().find(|(result, _)| result.scene == scene.scene).and_then(|(_, card)| card.clone())
     };
-    let marking = Marking { points: 10.0, credit: Credit::Scenes, visibility: Visibility::Visible };
+    let marking = Marking { points: 10.0, credit: Credit::Scenes, visibility: Visibility::Visible, hints: Hints::Full };
     let grade = Grade {
         groups: vec![with_results(marking, results)],
         verdict: Verdict::RuntimeError,
@@ -308,7 +326,7 @@ fn a_student_s_page_has_no_hidden_group() {
             crate::grade::samples::saying("a secret fall"),
         )
     };
-    let marking = |points, visibility| Marking { points, credit: Credit::Scenes, visibility };
+    let marking = |points, visibility| Marking { points, credit: Credit::Scenes, visibility, hints: Hints::Full };
     let named = |name: &str, group| fosssim_grading::GroupGrade { name: name.to_owned(), ..group };
     let grade = Grade {
         groups: vec![

@@ -11,6 +11,7 @@ use crate::{
     store::{Artefact, Digest, Opened},
     task::OutputFile,
     values,
+    worker::STAFF_PAGE,
 };
 use futures_util::StreamExt;
 use std::ops::Range;
@@ -90,8 +91,11 @@ impl Member {
         Ok(submissions)
     }
 
-    /// Leaves out what students do not see before it is published.
+    /// Leaves out what students do not see: the page for staff, and before it is published what the suite hides.
     async fn withhold(&self, submission: &mut Submission) -> Result<(), Problem> {
+        if let Some(grade) = submission.grade.as_mut().filter(|_| !self.is_staff) {
+            grade.outcome.files.retain(|file| file.name != STAFF_PAGE);
+        }
         let Some(grade) = submission.grade.as_mut().filter(|_| !self.is_staff && !submission.is_published) else {
             return Ok(());
         };

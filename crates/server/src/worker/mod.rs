@@ -18,7 +18,7 @@ pub use grader::{Graded, Grader, GraderFault, NewFile, PROGRESS};
 pub use liveness::{Liveness, dead_workers, forget};
 pub use local::LocalSource;
 use program::GRACE;
-pub use program::{Program, REPORTS};
+pub use program::{Program, REPORTS, STAFF_PAGE};
 pub(crate) use reading::essence;
 pub use remote::RemoteSource;
 pub use slots::{Options, work};

@@ -26,11 +26,15 @@ pub(super) const GRACE: Duration = Duration::from_secs(20);
 /// How much of the grader's messages is kept for the administrator.
 const MESSAGE: usize = 2000;
 
-/// The reports that a grading writes: format, file, media type.
-pub const REPORTS: [(&str, &str, &str); 8] = [
+/// The page that tells staff everything, whatever students may know.
+pub const STAFF_PAGE: &str = "staff.html";
+
+/// The reports that a grading writes: format, file, media type. The page for staff has no format of its own.
+pub const REPORTS: [(&str, &str, &str); 9] = [
     ("json", "grade.json", "application/json"),
     ("text", "report.txt", "text/plain; charset=utf-8"),
     ("html", "report.html", "text/html; charset=utf-8"),
+    ("", STAFF_PAGE, "text/html; charset=utf-8"),
     ("junit", "junit.xml", "application/xml"),
     ("csv", "scenes.csv", "text/csv; charset=utf-8"),
     ("markdown", "report.md", "text/markdown; charset=utf-8"),
@@ -89,14 +93,15 @@ impl Program {
         if let Some(hints) = &task.hints {
             command.arg("--hints").arg(hints);
         }
-        // Students look at the page; what a suite hides from them is in the other reports, for staff.
+        // All reports tell as much as students may know. Those of hidden groups are in all but the page, for staff.
         command.args(["--for", "student"]);
-        for (format, file, _) in REPORTS {
+        for (format, file, _) in REPORTS.into_iter().filter(|(_, file, _)| *file != STAFF_PAGE) {
             command.arg("--format").arg(format!("{format}={}", folder.join(file).display()));
         }
         at_home(&mut command, folder);
-        // Another grader may not know it.
+        // Another grader may not know these.
         command.env("FOSSSIM_PROGRESS", folder.join(PROGRESS));
+        command.env("FOSSSIM_STAFF_PAGE", folder.join(STAFF_PAGE));
         command
     }
 }

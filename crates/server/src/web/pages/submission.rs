@@ -9,6 +9,7 @@ use crate::{
     access::{Assignment, History, Member, Staff, Submission},
     problem::Problem,
     secret,
+    worker::STAFF_PAGE,
 };
 use askama::Template;
 use axum::{
@@ -48,7 +49,8 @@ struct SubmissionPage {
     /// Scenes in which the reference may be wrong, as staff says.
     doubts: Vec<String>,
     report: Option<String>,
-    has_html: bool,
+    /// The page that is shown: staff's own, where there is one.
+    page: Option<&'static str>,
 }
 
 pub(super) async fn assignment(
@@ -98,7 +100,7 @@ pub(super) async fn submission(member: Member, At { course: slug, id, .. }: At) 
         history: member.history(id).await?,
         change: member.change(&submission).await?.as_ref().map(heat::change),
         doubts: member.doubts(id).await?,
-        has_html: has("report.html"),
+        page: [STAFF_PAGE, "report.html"].into_iter().find(|name| has(name)),
         report,
         submission,
     })

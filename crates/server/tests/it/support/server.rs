@@ -74,6 +74,7 @@ fi
 [ "$rules" = parity ] && points=$((points / 2))
 printf '<script>alert(1)</script> %s by %s\n' "$(basename "$program")" "$(basename "$suite")" > "$text"
 echo '<script>document.title = document.cookie</script>' > "$html"
+echo 'everything' > "$FOSSSIM_STAFF_PAGE"
 visibility=visible
 case $scene in Secret/*) visibility=hidden ;; esac
 cat > "$json" <<END

@@ -3,8 +3,9 @@ use crate::support::{
     engines::{Fresh, on_both_engines},
     server::{Client, Server},
 };
+use serde_json::Value;
 
-on_both_engines!(reports_that_tell_of_hidden_groups_are_for_staff);
+on_both_engines!(reports_that_tell_of_hidden_groups_are_for_staff, the_page_for_staff_is_for_staff);
 
 async fn reports_that_tell_of_hidden_groups_are_for_staff(fresh: Fresh) {
     let mut server = Server::start(&fresh, &["--workers", "1"]);
@@ -37,25 +38,24 @@ async fn reports_that_tell_of_hidden_groups_are_for_staff(fresh: Fresh) {
     let other = ada.submit("physics", b"#!grade RTE 7 Secret/scene 1\n");
     ada.wait_for_grade("physics", other);
     let told = |by: &Client, id: i64| {
-        let mut submission = by.get(&format!("/api/v1/courses/physics/submissions/{id}")).expect(200).json();
-        let mut grade = submission["grade"].take();
+        let mut told = by.get(&format!("/api/v1/courses/physics/submissions/{id}")).expect(200).json();
+        let mut grade = told["grade"].take();
         grade["created_at"].take();
-        let mut history =
-            by.get(&format!("/api/v1/courses/physics/submissions/{id}/history")).expect(200).json()[0].take();
+        grade["files"].as_array_mut().expect("a list").retain(|file| file["name"] != "staff.html");
+        let mut history = by.get(&format!("/api/v1/courses/physics/submissions/{id}/history")).expect(200).json();
+        let mut history = history[0].take();
         for own in ["changed_at", "result", "task", "by_what"] {
             history[own].take();
         }
-        (grade, history, submission["is_withheld"].take())
+        (grade, history, told["is_withheld"].take())
     };
     let (grade, history, withheld) = told(&ada, hidden);
     assert_eq!((&grade, &history, &withheld), (&told(&ada, other).0, &told(&ada, other).1, &true.into()));
     assert_eq!([&grade["code"], &grade["points"], &grade["max_points"]], ["AC", "10.0", "10.0"]);
     assert_eq!([&history["new_code"], &history["new_points"]], ["AC", "10.0"]);
     let list = ada.get("/api/v1/courses/physics/assignments/m1/submissions").expect(200).json();
-    assert!(
-        list.as_array().expect("a list").iter().all(|one| one["id"] == open || one["grade"]["code"] == "AC"),
-        "{list}"
-    );
+    let seen = |one: &Value| one["id"] == open || one["grade"]["code"] == "AC";
+    assert!(list.as_array().expect("a list").iter().all(seen), "{list}");
     let events = ada.get(&format!("/api/v1/courses/physics/submissions/{other}/events")).expect(200).text();
     assert!(events.contains("is_withheld") && !events.contains("RTE") && !events.contains("grade.json"), "{events}");
     let page = ada.get(&format!("/c/physics/s/{other}")).expect(200).text();
@@ -85,4 +85,25 @@ async fn reports_that_tell_of_hidden_groups_are_for_staff(fresh: Fresh) {
     assert!(page.contains("report.html") && !page.contains("grade.json") && !page.contains("Report as text"), "{page}");
     let page = teacher.get(&format!("/c/physics/s/{hidden}")).expect(200).text();
     assert!(page.contains("grade.json") && page.contains("Report as text"), "{page}");
+}
+
+/// What hints keep from students is on a page of its own, hidden groups or not.
+async fn the_page_for_staff_is_for_staff(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "1"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let teacher = server.member(&admin, "physics", "teacher", "staff");
+    let ada = server.member(&admin, "physics", "ada", "student");
+    for scene in ["Secret/scene", "Group/scene"] {
+        let id = ada.submit("physics", format!("#!grade WA 40 {scene} 3\n").as_bytes());
+        ada.wait_for_grade("physics", id);
+        for path in [format!("/c/physics/s/{id}/report/"), format!("/api/v1/courses/physics/submissions/{id}/files/")] {
+            ada.get(&format!("{path}staff.html")).expect(404);
+            assert_eq!(teacher.get(&format!("{path}staff.html")).expect(200).text(), "everything\n");
+        }
+        let shown = |by: &Client, page: &str| {
+            by.get(&format!("/c/physics/s/{id}")).expect(200).text().contains(&format!("/s/{id}/report/{page}\""))
+        };
+        assert!(shown(&ada, "report.html") && !shown(&ada, "staff.html") && shown(&teacher, "staff.html"));
+    }
 }

@@ -1,8 +1,25 @@
-//! The part of explanations that hints let through.
-//!
-//! The rest is cut here, before a report or the journal sees it, so that no format can let it out.
-use fosssim_findings::{Hints, explanation::Explanation};
-use fosssim_mistakes::student::find;
+//! The part of a result that hints let a reader know. It is cut here, before a report is made, so that no format can
+//! let the rest out.
+use crate::student::find;
+use fosssim_findings::{
+    Hints, SceneResult, Verdict,
+    explanation::Explanation,
+    result::{Reason, Wrong},
+};
+
+/// Cuts a result down to a level. The verdict, its reason and where the rule books differ stay at all levels, but at
+/// [`Hints::None`] a wrong trace is not told in what it is wrong.
+pub fn cut_result(hints: Hints, result: &mut SceneResult) {
+    if hints == Hints::Full {
+        return;
+    }
+    if hints == Hints::None && matches!(result.verdict, Verdict::WrongAnswer | Verdict::Unwritten) {
+        result.reason = Reason::Wrong(Wrong::Untold);
+    }
+    result.disclosure = result.disclosure.take().and_then(|all| hints.disclose(all));
+    result.explanations = cut(hints, std::mem::take(&mut result.explanations));
+    result.card = result.card_for_students.take();
+}
 
 /// Cuts explanations down to a level: below [`Hints::What`] there is only where numbers end, if they do
 /// ([`Explanation::is_not_finite`]), and at [`Hints::None`] nothing. At that level each says what is wrong, in a
@@ -28,18 +45,18 @@ pub fn cut(hints: Hints, explanations: Vec<Explanation>) -> Vec<Explanation> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fosssim_findings::{
-        Rules,
-        disclosure::DisclosedFinding,
-        finding::{Finding, FindingDetail, FindingPlace},
-    };
-    use fosssim_judge::replay;
-    use fosssim_mistakes::{
+    use crate::{
+        assignments::probe_scenes,
         diagnose::{self, About, Example, ExamplePlace, NanStage, NotFinite},
         student::{self, CATALOGUE, RowKind, Student},
     };
-    use fosssim_model::scene::original;
-    use fosssim_testing::scenes;
+    use fosssim_findings::{
+        Rules,
+        disclosure::{DisclosedFinding, Disclosure},
+        finding::{Finding, FindingDetail, FindingPlace},
+    };
+    use fosssim_judge::replay;
+    use fosssim_model::assignments::Assignment;
 
     fn explanation() -> Explanation {
         let example = Example {
@@ -92,13 +109,15 @@ mod tests {
 
     #[test]
     fn what_is_told_of_a_trace_grows_with_the_hints_and_holds_no_value_below_full() {
-        let scene = original::read(scenes::ALL_KINDS.as_bytes()).expect("a scene").scene;
+        let (_, scene) = probe_scenes(Assignment::DEFAULT).swap_remove(0);
         let row = CATALOGUE.iter().find(|row| row.kind == RowKind::Wrong).expect("a mistake");
         let trace = student::trace(&scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
         let options = replay::Options { fair: true, ..replay::Options::default() };
         let judged = replay::judge(&scene, &trace[..], &options, &mut ());
-        assert_eq!(Hints::None.tell(&judged, Rules::Both), None);
-        let told = |hints: Hints| hints.tell(&judged, Rules::Both).expect("something");
+        let all = |rules| Disclosure::of(&judged, rules);
+        assert_eq!(Hints::None.disclose(all(Rules::Both)), None);
+        let told = |hints: Hints| hints.disclose(all(Rules::Both)).expect("something");
+        assert_eq!(told(Hints::Where), Hints::Where.disclose(told(Hints::What)).expect("something"), "cut twice");
         assert_eq!(told(Hints::Where), told(Hints::What));
         let (part, full) = (told(Hints::Where), told(Hints::Full));
         assert!(part.residuals.is_none() && full.residuals.is_some());
@@ -111,7 +130,6 @@ mod tests {
         }
         // The book whose verdict counts speaks first.
         assert_eq!(told(Hints::Full).official(), &full.parity);
-        let fair = Hints::Full.tell(&judged, Rules::Fair).expect("something");
-        assert_eq!(fair.official(), full.fair.as_ref().expect("asked"));
+        assert_eq!(all(Rules::Fair).official(), full.fair.as_ref().expect("asked"));
     }
 }
