@@ -386,7 +386,7 @@ test("the page of a course has its suite and scenes, and gives the points of wha
   assert.match(await page.locator("#marks-said").innerText(), /0 of 7 points by The course/);
   writeFileSync(join(course, "suite.toml"), groups(""));
   const { bytes } = await saved(page, "Save JSON", page.locator("#save-marks"));
-  assert.equal(bytes.toString(), oracle("grade", "--traces", "handed", "--suite", "of-a-course/suite.toml", "--format", "json").stdout);
+  assert.equal(bytes.toString(), oracle("grade", "--traces", "handed", "--suite", "of-a-course/suite.toml", "--for", "student", "--format", "json").stdout);
   // The scene is found by the trace's name, too.
   await page.getByRole("button", { name: "mine", exact: true }).click();
   await page.waitForFunction(() => document.documentElement.dataset.checked === "1");

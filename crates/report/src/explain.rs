@@ -1,13 +1,14 @@
 //! Explanations of mistakes: lines for people, a view for programs.
 //!
-//! They show what they are given: how much that is, `grading::cut` decides. Words
-//! may come from a submission only as numbers.
+//! They show what they are given: how much that is, `mistakes::together::told` decides. Words of a submission come in as
+//! numbers only.
 use super::{
     number::{counted, exact},
     words::explanation::{details, known, place, what},
 };
 use fosssim_mistakes::diagnose::{About, Example, ExampleValue, Explanation};
 use serde::Serialize;
+use std::collections::BTreeSet;
 
 /// The greatest number of other mistakes listed that can't be told apart.
 const LISTED: usize = 3;
@@ -15,6 +16,17 @@ const LISTED: usize = 3;
 /// The lines about explanations, the likeliest first; nothing without any. Indented by two below each sentence.
 #[must_use]
 pub fn lines(explanations: &[Explanation]) -> Vec<String> {
+    explanations.iter().flat_map(of_one).collect()
+}
+
+/// The same, with no more than the sentence of a mistake whose exact form stands in a text already. `told` holds the
+/// sentences of these.
+pub(crate) fn lines_once(explanations: &[Explanation], told: &mut BTreeSet<String>) -> Vec<String> {
+    let of_one = |explanation| {
+        let all = of_one(explanation);
+        let shown = if told.insert(what(explanation)) { all.len() } else { 1 };
+        all.into_iter().take(shown)
+    };
     explanations.iter().flat_map(of_one).collect()
 }
 
@@ -264,6 +276,32 @@ pub(crate) mod tests {
             sentence(&["pp-no-two", "response-sign"].map(known)),
             Some(format!("likely mistakes: {}", sentences.join(" ")))
         );
+    }
+
+    /// Sixty scenes with one mistake would tell its exact form sixty times.
+    #[test]
+    fn the_exact_form_of_a_mistake_is_told_once() {
+        let mut told = BTreeSet::new();
+        assert_eq!(lines_once(&explanations(), &mut told), lines(&explanations()));
+        let again = lines_once(&explanations(), &mut told);
+        let sentences = lines(&explanations()).into_iter().filter(|line| !line.starts_with(' '));
+        assert_eq!(again, sentences.collect::<Vec<_>>());
+    }
+
+    /// The reference has made the mistake and wrote the same: other weights that fit its polynomials are no news.
+    #[test]
+    fn a_known_mistake_comes_without_other_weights_that_fit() {
+        let weights = |one: Explanation| match one.details.as_slice() {
+            [Detail::Polynomial(PolynomialDetail::Weight(weight))] => vec![weight.clone()],
+            other => panic!("{other:?}"),
+        };
+        let mut one = explanations().swap_remove(0);
+        let other = Detail::Polynomial(PolynomialDetail::Alternative(weights(one.clone())));
+        one.details.push(other);
+        assert!(details(&one)[1].starts_with("can't be told apart"));
+        one.details.insert(0, Detail::Term("pe-radius-not-squared".into()));
+        let row = find("pe-radius-not-squared").expect("a row");
+        assert_eq!(details(&one), [row.term, "t^2: i R^2 has weight 0, expected 1 (i = d32.d32)"]);
     }
 
     #[test]

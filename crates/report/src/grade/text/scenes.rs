@@ -10,7 +10,10 @@ use crate::{
     wrap::columns,
 };
 use fosssim_findings::{Grade, GroupGrade, SceneGrade, Verdict};
-use std::{collections::BTreeMap, fmt::Write};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fmt::Write,
+};
 
 /// The greatest number of scenes named that end the same way.
 const NAMED: usize = 3;
@@ -24,7 +27,8 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
     let shown = |scene: &SceneGrade| options.shown == TextDetail::All || !scene.verdict.is_accepted();
     let names = grade.scenes().filter(|scene| shown(scene)).map(|scene| columns(&one_line(&scene.scene)));
     let width = names.max().unwrap_or(0);
-    let mut scenes = Scenes { options, grade, width, told: BTreeMap::new(), alike: alike(grade) };
+    let mut scenes =
+        Scenes { options, grade, width, told: BTreeMap::new(), mistakes: BTreeSet::new(), alike: alike(grade) };
     let groups = grade.groups.iter().filter(|group| group.scenes.iter().any(shown));
     groups.map(|group| scenes.group(group)).collect()
 }
@@ -58,6 +62,8 @@ struct Scenes<'a, 'b> {
     width: usize,
     /// How often a scene's words have been told.
     told: BTreeMap<Words, usize>,
+    /// Sentences of mistakes that have been told in full.
+    mistakes: BTreeSet<String>,
     alike: BTreeMap<Words, Vec<&'a str>>,
 }
 
@@ -103,7 +109,7 @@ impl<'a> Scenes<'a, '_> {
         format!("  {code} {name}{blanks}  {} of {}\n", reached(scene.points), points(scene.max_points))
     }
 
-    fn details(&self, scene: &SceneGrade) -> String {
+    fn details(&mut self, scene: &SceneGrade) -> String {
         let mut lines = Vec::new();
         if !scene.verdict.is_accepted() {
             lines.push(one_line(&words::summary(scene)));
@@ -112,7 +118,7 @@ impl<'a> Scenes<'a, '_> {
         if scene.verdict != Verdict::Unwritten {
             lines.extend(words::details(scene).iter().map(|line| one_line(line)));
         }
-        lines.extend(explain::lines(&scene.settled).iter().map(|line| one_line(line)));
+        lines.extend(explain::lines_once(&scene.settled, &mut self.mistakes).iter().map(|line| one_line(line)));
         let alike = told(scene).and_then(|words| self.alike.get(&words)).map_or(&[][..], |names| &names[1..]);
         if !alike.is_empty() {
             lines.push(the_same(alike));

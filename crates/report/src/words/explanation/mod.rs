@@ -10,7 +10,7 @@ mod polynomials;
 mod stages;
 
 use fosssim_mistakes::{
-    diagnose::{About, Detail, Explanation, OfPolynomials, formula_in},
+    diagnose::{About, Detail, Explanation, OfPolynomials, PolynomialDetail, formula_in},
     student::{Area, Mistake, Row, find},
 };
 
@@ -35,11 +35,14 @@ pub fn what(explanation: &Explanation) -> String {
     sentence
 }
 
-/// The exact form, a line each: which term of which coefficient has which weight. May give the right formula away.
+/// The exact form, a line each: which term of which coefficient has which weight. May give the right formula away. Of a
+/// known mistake, which the reference has made, it says nothing of other weights that fit as well.
 #[must_use]
 pub fn details(explanation: &Explanation) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
-    for detail in &explanation.details {
+    let is_exact = explanation.details.iter().any(|detail| matches!(detail, Detail::Term(_)));
+    let is_doubt = |detail: &Detail| matches!(detail, Detail::Polynomial(PolynomialDetail::Alternative(_)));
+    for detail in explanation.details.iter().filter(|detail| !(is_exact && is_doubt(detail))) {
         let line = match detail {
             Detail::Term(key) => find(key).map(|row| row.term.to_owned()),
             Detail::Look(area) => Some(look(*area).to_owned()),
