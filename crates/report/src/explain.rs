@@ -1,7 +1,7 @@
 //! Explanations of mistakes: lines for people, a view for programs.
 //!
-//! They show what they are given: how much that is, `mistakes::together::told` decides. Words of a submission come in as
-//! numbers only.
+//! They show what they are given: how much that is, `mistakes::together::told` decides. Words of a submission come in
+//! as numbers only.
 use super::{
     number::{counted, exact},
     words::explanation::{details, known, place, what},
