@@ -26,6 +26,7 @@ pub fn run(folder: &Path, suite: &str, supervisor: Supervisor) -> Result<String,
         faults: &Place::new(folder, "faults"),
         traces: None,
         cards: None,
+        reference: None,
         rehearse: &|_| {},
     };
     let graded = batch::run(&grader, &submissions, None, &Cancellation::default(), &mut |_| {});

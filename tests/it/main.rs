@@ -44,6 +44,7 @@ mod scenes_props;
 mod serve;
 mod shards;
 mod simulate;
+mod speed;
 mod summaries;
 mod terminal;
 mod trace;

@@ -4,6 +4,7 @@ use super::{
     explanation::Explanation,
     located::Located,
     result::{BuildEnd, SceneResult},
+    speed::{SpeedGrade, SpeedSource},
     verdict::Verdict,
 };
 use serde::{Deserialize, Serialize};
@@ -176,10 +177,12 @@ pub struct GroupGrade {
     pub visibility: Visibility,
     /// How much students are told of its scenes.
     pub hints: Hints,
-    /// Points reached; `None` when a scene has none.
+    /// Points reached, those for speed included; `None` when a scene or its speed has none.
     pub points: Option<f64>,
     /// Points that can be reached.
     pub max_points: f64,
+    /// Points for speed, where the suite gives any.
+    pub speed: Option<SpeedGrade>,
     /// The worst verdict of its scenes.
     pub verdict: Verdict,
     /// Its scenes.
@@ -202,6 +205,22 @@ pub struct SceneGrade {
     pub settled: Vec<Explanation>,
     /// The number of explanations, the first of [`settled`](Self::settled), that all scenes together give.
     pub agreed: usize,
+}
+
+impl GroupGrade {
+    /// Points that can be reached in its scenes.
+    #[must_use]
+    pub fn max_points_of_scenes(&self) -> f64 {
+        self.max_points - self.speed.as_ref().map_or(0.0, |speed| speed.marking.points)
+    }
+
+    /// Leaves of its scenes and its speed what students may know where groups are hidden from them.
+    pub fn withhold(&mut self) {
+        self.scenes.iter_mut().for_each(SceneGrade::withhold);
+        if let Some(speed) = &mut self.speed {
+            speed.source = SpeedSource::Withheld;
+        }
+    }
 }
 
 impl SceneGrade {

@@ -33,6 +33,7 @@ pub mod outcome;
 pub mod parity;
 pub mod result;
 pub mod rules;
+pub mod speed;
 pub mod verdict;
 mod words;
 

@@ -4,6 +4,7 @@ use super::{
     disclosure::Disclosure,
     explanation::{About, Explanation},
     finding::FindingKind,
+    speed::Timing,
     verdict::Verdict,
 };
 use fosssim_model::{
@@ -39,6 +40,8 @@ pub struct SceneResult {
     pub steps: u32,
     /// The measurements, which differ from run to run.
     pub measured: Measurements,
+    /// Timed runs, where the suite gives points for speed and all scenes of the group are accepted.
+    pub timing: Option<Timing>,
     /// The program's standard output, capped; raw text that a report has to escape.
     pub stdout: String,
     /// The program's standard error, capped; raw text that a report has to escape.
@@ -64,6 +67,7 @@ impl SceneResult {
             right_steps: 0,
             steps,
             measured: Measurements::default(),
+            timing: None,
             stdout: String::new(),
             stderr: String::new(),
             card: None,

@@ -158,7 +158,17 @@ impl Stage {
     pub(super) fn grader<'a>(&'a self, plan: &'a Plan) -> Grader<'a> {
         let options = Options { jobs: 2, fail_fast: false, recorded: false };
         let faults = &self.faults;
-        Grader { plan, backend: &self.backend, options, faults, traces: None, cards: None, rehearse: &|_| {} }
+        let reference = None;
+        Grader {
+            plan,
+            backend: &self.backend,
+            options,
+            faults,
+            traces: None,
+            cards: None,
+            reference,
+            rehearse: &|_| {},
+        }
     }
 
     pub(super) fn grade_by(&self, plan: &Plan, names: &[&str]) -> Vec<Grade> {

@@ -111,6 +111,7 @@ pub fn conclude(run: &Run<'_>, explain: impl FnOnce(Look) -> Vec<Explanation>) -
         right_steps: judged.right_steps(rules.official()),
         steps: judged.steps,
         measured: program.measured,
+        timing: None,
         stdout: program.stdout.clone(),
         stderr: program.stderr.clone(),
         card: None,

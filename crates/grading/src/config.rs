@@ -4,7 +4,7 @@
 //! that `suite init` writes ([`TEMPLATE`]).
 pub use super::patience::Patience;
 use super::shape;
-pub use fosssim_findings::{Hints, Visibility};
+pub use fosssim_findings::{Hints, Visibility, speed::SpeedMarking};
 use fosssim_judge::Rules;
 use serde::Deserialize;
 use std::{ops::Range, time::Duration};
@@ -66,6 +66,8 @@ pub struct Marking {
     pub visibility: Visibility,
     /// How much students are told of its scenes.
     pub hints: Hints,
+    /// Points for speed, once all scenes are accepted.
+    pub speed: Option<SpeedMarking>,
 }
 
 /// How the sources are built.
@@ -205,6 +207,15 @@ struct RawGroup {
     credit: Option<Credit>,
     visibility: Option<Visibility>,
     hints: Option<Hints>,
+    speed: Option<Spanned<RawSpeed>>,
+}
+
+#[derive(Deserialize)]
+struct RawSpeed {
+    points: Option<Spanned<f64>>,
+    full_at: Option<Spanned<f64>>,
+    none_at: Option<Spanned<f64>>,
+    runs: Option<Spanned<f64>>,
 }
 
 /// Collects problems with their positions while values are checked.
@@ -299,7 +310,7 @@ pub(super) fn read_all(text: &str) -> (Suite, Vec<(Position, String)>) {
 }
 
 /// The course's protocol.
-fn default_run() -> Vec<String> {
+pub(super) fn default_run() -> Vec<String> {
     ["{program}", "-s", "{scene}", "-d", "0", "-o", "{trace}"].map(str::to_owned).into()
 }
 
@@ -402,8 +413,25 @@ fn read_group(checker: &mut Checker<'_>, raw: RawGroup, hints: Hints) -> Group {
         Pattern { text: pattern.into_inner(), at }
     };
     let (credit, visibility) = (raw.credit.unwrap_or(Credit::Scenes), raw.visibility.unwrap_or(Visibility::Visible));
-    let marking = Marking { points, credit, visibility, hints: raw.hints.unwrap_or(hints) };
+    let speed = raw.speed.map(|speed| read_speed(checker, speed));
+    let marking = Marking { points, credit, visibility, hints: raw.hints.unwrap_or(hints), speed };
     Group { name, scenes: scenes.map(pattern).collect(), marking }
+}
+
+fn read_speed(checker: &mut Checker<'_>, raw: Spanned<RawSpeed>) -> SpeedMarking {
+    let span = raw.span();
+    let raw = raw.into_inner();
+    let points = checker.number("speed.points", raw.points.as_ref(), 1.0, MOST_POINTS);
+    let full_at = checker.number("speed.full_at", raw.full_at.as_ref(), 1.0, 0.001..1e6);
+    let none_at = checker.number("speed.none_at", raw.none_at.as_ref(), 10.0, 0.001..1e6);
+    let runs = checker.number("speed.runs", raw.runs.as_ref(), 5.0, 1.0..101.0);
+    if none_at <= full_at {
+        let text = format!("speed.none_at ({none_at}) has to be greater than speed.full_at ({full_at})");
+        checker.problem(span, text);
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the range has been checked")]
+    let runs = runs as u32;
+    SpeedMarking { points, full_at, none_at, runs }
 }
 
 #[cfg(test)]

@@ -40,6 +40,9 @@ const ATTEMPTS: u32 = 2;
 /// from them; if the grader fails, they are put aside. The course's largest trace has 18 MB.
 const KEPT_TRACE: usize = 24 << 20;
 
+/// Where the trace of a scene goes.
+pub type TraceOf<'a> = dyn Fn(&SceneTask) -> Place + Sync + 'a;
+
 /// How scenes are run.
 #[derive(Clone, Copy)]
 pub struct Runner<'a> {
@@ -64,7 +67,7 @@ pub struct Runner<'a> {
     /// The folder for traces on which the grader itself failed; made when it is needed.
     pub faults: &'a Place,
     /// Where the trace of a scene that is not accepted is put, when somebody wants to have it.
-    pub traces: Option<&'a (dyn Fn(&SceneTask) -> Place + Sync)>,
+    pub traces: Option<&'a TraceOf<'a>>,
     /// Draws and keeps cards of traces that are not simply right, when somebody wants to look at them.
     pub cards: Option<Cards<'a>>,
     /// Shows a result in the forms in which it will be reported, for nobody to see: what panics there is a fault of

@@ -8,7 +8,7 @@ use super::{
     cards::Cards,
     config::Hints,
     coverage::Coverage,
-    execute::Runner,
+    execute::{Runner, TraceOf},
     guard::guarded,
     key::Key,
     located::{ContentIndex, Contents},
@@ -82,6 +82,9 @@ pub struct Grader<'a> {
     pub traces: Option<&'a TraceFile<'a>>,
     /// Draws and keeps cards of traces that are not simply right, when somebody wants to look at them.
     pub cards: Option<Cards<'a>>,
+    /// The program whose speed is the measure: the original, or one that does as it does when it is called so. Without
+    /// one no speed is measured.
+    pub reference: Option<&'a Path>,
     /// Shows a result in the forms in which it will be reported, for nobody to see ([`Runner::rehearse`]).
     pub rehearse: &'a (dyn Fn(&SceneResult) + Sync),
 }
@@ -119,12 +122,14 @@ pub(super) struct SharedGrading<'a> {
     full: OnceLock<KeepError>,
     /// The contents of the plan's scenes, once somebody has asked.
     contents: OnceLock<Vec<Contents>>,
+    /// The copy of the reference program, once something is timed.
+    reference: OnceLock<Arc<Result<Staged, String>>>,
 }
 
 impl<'a> SharedGrading<'a> {
     pub(super) fn new(grader: &Grader<'_>, results: Option<&'a dyn Results>, cancellation: &'a Cancellation) -> Self {
         let (folders, kept, full, contents) = (Folders::default(), Mutex::default(), OnceLock::new(), OnceLock::new());
-        Self { cancellation, results, folders, words: grader.words(), kept, full, contents }
+        Self { cancellation, results, folders, words: grader.words(), kept, full, contents, reference: OnceLock::new() }
     }
 
     /// The contents of the reference's run of each scene. A scene without an end has none.
@@ -133,12 +138,18 @@ impl<'a> SharedGrading<'a> {
         self.contents.get_or_init(|| plan.scenes().map(of).collect())
     }
 
+    /// The copy of the reference program.
+    pub(super) fn reference(&self, program: &Path) -> Arc<Result<Staged, String>> {
+        let stage = || Arc::new(staging::reference(program).map_err(|error| error.to_string()));
+        self.reference.get_or_init(stage).clone()
+    }
+
     /// Why results could no longer be kept.
     pub(super) fn into_fault(self) -> Option<KeepError> {
         self.full.into_inner()
     }
 
-    fn key(&self, digest: &blake3::Hash, scene: &SceneTask, called: &str, students: Hints) -> Key {
+    pub(super) fn key(&self, digest: &blake3::Hash, scene: &SceneTask, called: &str, students: Hints) -> Key {
         // A program may behave as it is called, so its name belongs to what is graded.
         let own = [scene.name.as_str(), called, students.words().0];
         let words: Vec<&str> = self.words.iter().map(String::as_str).chain(own).collect();
@@ -159,7 +170,7 @@ impl<'a> SharedGrading<'a> {
 
     /// Keeps a result. When that fails, grading is stopped: what can't be kept would be done in vain. Faults of ours
     /// and scenes that were not run are tried again instead.
-    fn keep(&self, key: Key, submission: &Submission, result: &SceneResult) {
+    pub(super) fn keep(&self, key: Key, submission: &Submission, result: &SceneResult) {
         let Some(results) = self.results else { return };
         if self.full.get().is_some() || matches!(result.verdict, Verdict::JudgeError | Verdict::NotRun) {
             return;
@@ -296,7 +307,6 @@ impl<'a> SubmissionGrading<'a> {
         trace: Option<&Place>,
         tell: &mut dyn FnMut(SceneProgress),
     ) -> SceneResult {
-        let grader = self.grader;
         let mut told = Instant::now();
         let mut on_step = |step| {
             // A display can't show more, and a channel should not hold more.
@@ -306,8 +316,14 @@ impl<'a> SubmissionGrading<'a> {
             }
         };
         let to = trace.map(|trace| move |_: &SceneTask| trace.clone());
-        let traces = to.as_ref().map(|to| to as &(dyn Fn(&SceneTask) -> Place + Sync));
-        let runner = Runner {
+        let traces = to.as_ref().map(|to| to as &TraceOf<'_>);
+        self.runner(scene, traces).grade(staged, scene, &mut on_step)
+    }
+
+    /// Runs programs on a scene, and puts traces that are not accepted where `traces` says.
+    pub(super) fn runner<'b>(&'b self, scene: &SceneTask, traces: Option<&'b TraceOf<'b>>) -> Runner<'b> {
+        let grader = self.grader;
+        Runner {
             backend: grader.backend,
             run: &grader.plan.run,
             limits: &grader.plan.limits,
@@ -321,8 +337,7 @@ impl<'a> SubmissionGrading<'a> {
             traces,
             cards: grader.cards,
             rehearse: grader.rehearse,
-        };
-        runner.grade(staged, scene, &mut on_step)
+        }
     }
 
     /// Why this scene is not to be run.
@@ -356,7 +371,7 @@ impl<'a> SubmissionGrading<'a> {
     }
 
     /// The staged submission; the first job stages it, the others wait.
-    fn staged(&self) -> Arc<Result<Staged, String>> {
+    pub(super) fn staged(&self) -> Arc<Result<Staged, String>> {
         lock(&self.staged).get_or_insert_with(|| Arc::new(self.stage().map_err(|error| error.to_string()))).clone()
     }
 
@@ -377,7 +392,7 @@ pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 /// The name of a program's file.
-fn called(program: &Path) -> String {
+pub(super) fn called(program: &Path) -> String {
     program.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 

@@ -58,6 +58,8 @@ pub mod scene_files;
 pub mod score;
 mod shape;
 #[cfg(target_os = "linux")]
+mod speed;
+#[cfg(target_os = "linux")]
 mod staging;
 mod task;
 #[cfg(target_os = "linux")]

@@ -1,7 +1,7 @@
 //! A suite with its scenes looked up: what a grading really runs.
 use super::{
     assignments,
-    config::{self, Group, Hints, Pattern, Suite, SuiteError},
+    config::{self, Group, Hints, Marking, Pattern, Suite, SuiteError},
     library,
     task::SceneTask,
 };
@@ -35,6 +35,8 @@ impl Plan {
             group.scenes.retain(|task| takes(&task.name));
             #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
             if group.scenes.len() < before {
+                // Speed is marked once all scenes are accepted.
+                group.marking.speed = None;
                 group.marking.points *= group.scenes.len() as f64 / before as f64;
             }
         }
@@ -67,7 +69,8 @@ impl Plan {
     /// Points that can be reached.
     #[must_use]
     pub fn max_points(&self) -> f64 {
-        self.groups.iter().map(|group| group.marking.points).sum()
+        let of_speed = |marking: &Marking| marking.speed.map_or(0.0, |speed| speed.points);
+        self.groups.iter().map(|group| group.marking.points + of_speed(&group.marking)).sum()
     }
 }
 

@@ -6,6 +6,7 @@ use super::{
     result::SceneResult,
     verdict::Verdict,
 };
+use fosssim_findings::speed::SpeedGrade;
 use fosssim_mistakes::diagnose::{self, Explanation};
 use fosssim_model::scene::Scene;
 
@@ -28,15 +29,22 @@ pub fn group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) ->
         })
         .collect();
     let points = sum(marking.points, all_accepted, &scenes);
+    let speed = marking.speed.map(|speed| SpeedGrade::of(speed, &scenes));
     GroupGrade {
         name: name.to_owned(),
         visibility: marking.visibility,
         hints: marking.hints,
-        points,
-        max_points: marking.points,
+        points: with_speed(points, speed.as_ref()),
+        max_points: marking.points + marking.speed.map_or(0.0, |speed| speed.points),
+        speed,
         verdict: scenes.iter().map(|scene| scene.verdict).max().unwrap_or(Verdict::NotRun),
         scenes,
     }
+}
+
+/// The points of the scenes and of their speed.
+fn with_speed(scenes: Option<f64>, speed: Option<&SpeedGrade>) -> Option<f64> {
+    speed.map_or(scenes, |speed| Some(scenes? + speed.points?))
 }
 
 /// The worth of one scene in a group of this number of scenes.
@@ -89,13 +97,15 @@ pub fn contradiction(grade: &Grade) -> Option<&'static str> {
 /// Whether a group's points and verdict are what some credit makes of its scenes' verdicts.
 fn follows(group: &GroupGrade) -> bool {
     let all_accepted = group.scenes.iter().all(|scene| scene.verdict.is_accepted());
-    let each = worth(group.max_points, group.scenes.len());
+    let max_points = group.max_points_of_scenes();
+    let each = worth(max_points, group.scenes.len());
     let has_its_share = |credit, scene: &SceneGrade| {
         scene.max_points == each && scene.points == share(credit, &scene.result, all_accepted).map(|share| each * share)
     };
     let credits = [Credit::Scenes, Credit::Steps, Credit::All];
     credits.into_iter().any(|credit| group.scenes.iter().all(|scene| has_its_share(credit, scene)))
-        && group.points == sum(group.max_points, all_accepted, &group.scenes)
+        && group.speed.as_ref().is_none_or(|speed| *speed == SpeedGrade::of(speed.marking, &group.scenes))
+        && group.points == with_speed(sum(max_points, all_accepted, &group.scenes), group.speed.as_ref())
         && group.verdict == group.scenes.iter().map(|scene| scene.verdict).max().unwrap_or(Verdict::NotRun)
 }
 
@@ -139,7 +149,8 @@ mod tests {
     }
 
     fn points(credit: Credit, scenes: Vec<(SceneResult, bool)>) -> f64 {
-        let marking = Marking { points: 30.0, credit, visibility: Visibility::Visible, hints: Hints::Full };
+        let marking =
+            Marking { points: 30.0, credit, visibility: Visibility::Visible, hints: Hints::Full, speed: None };
         group("g", marking, scenes).points.expect("points")
     }
 
@@ -156,8 +167,13 @@ mod tests {
 
     #[test]
     fn the_worst_scene_names_the_group_and_nothing_run_gives_nothing() {
-        let marking =
-            Marking { points: 5.0, credit: Credit::Scenes, visibility: Visibility::Hidden, hints: Hints::Full };
+        let marking = Marking {
+            points: 5.0,
+            credit: Credit::Scenes,
+            visibility: Visibility::Hidden,
+            hints: Hints::Full,
+            speed: None,
+        };
         let graded = group("g", marking, vec![scene(Verdict::Accepted, 10), scene(Verdict::RuntimeError, 0)]);
         assert_eq!(graded.verdict, Verdict::RuntimeError);
         let empty = group("g", marking, Vec::new());
@@ -175,7 +191,8 @@ mod tests {
     fn what_was_not_run_or_not_judged_has_no_points_and_its_group_neither() {
         for missing in [Verdict::NotRun, Verdict::JudgeError] {
             for credit in [Credit::Scenes, Credit::Steps, Credit::All] {
-                let marking = Marking { points: 30.0, credit, visibility: Visibility::Visible, hints: Hints::Full };
+                let marking =
+                    Marking { points: 30.0, credit, visibility: Visibility::Visible, hints: Hints::Full, speed: None };
                 let graded = group("g", marking, vec![scene(Verdict::WrongAnswer, 5), scene(missing, 0)]);
                 assert_eq!((graded.points, graded.scenes[1].points), (None, None));
                 assert!(graded.scenes[0].points.is_some());

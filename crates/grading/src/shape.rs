@@ -57,6 +57,14 @@ const GROUP: &[Key] = &[
     Key("credit", Kind::Choice(&["scenes", "steps", "all"]), false),
     Key("visibility", Kind::Choice(&["visible", "hidden", "after_due_date", "after_published"]), false),
     Key("hints", Kind::Choice(HINTS), false),
+    Key("speed", Kind::Table(SPEED), false),
+];
+
+const SPEED: &[Key] = &[
+    Key("points", Kind::Number, true),
+    Key("full_at", Kind::Number, true),
+    Key("none_at", Kind::Number, true),
+    Key("runs", Kind::Number, false),
 ];
 
 const SUITE: &[Key] = &[
@@ -72,8 +80,13 @@ const SUITE: &[Key] = &[
 ];
 
 /// The tables in which a key that stands elsewhere may have been meant to be.
-const PLACES: [(&str, &[Key]); 4] =
-    [("[limits]", LIMITS), ("[build]", BUILD), ("a [[group]]", GROUP), ("the top of the file", SUITE)];
+const PLACES: [(&str, &[Key]); 5] = [
+    ("[limits]", LIMITS),
+    ("[build]", BUILD),
+    ("a [[group]]", GROUP),
+    ("[group.speed]", SPEED),
+    ("the top of the file", SUITE),
+];
 
 /// The table without what is wrong with it, all that is, and whether every line could be read.
 pub(super) fn checked(text: &str) -> (Spanned<DeTable<'_>>, Vec<Problem>, bool) {

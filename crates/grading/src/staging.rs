@@ -126,6 +126,23 @@ pub fn program(path: &Path) -> Result<Staged, StagingError> {
     }
 }
 
+/// Copies the program that is the measure of speed. Its copy is called as the course's original, whose role it takes by
+/// that name.
+///
+/// # Errors
+/// When it can't be read or copied.
+pub fn reference(path: &Path) -> Result<Staged, StagingError> {
+    let folder = Temporary::make("reference").map_err(at(&std::env::temp_dir()))?;
+    let copy = folder.path().join("FOSSSimOracle");
+    let (file, _) = collect::open_file(path, true).map_err(|error| at(path)(io::Error::other(error)))?;
+    let copied = copy_file(file, path, &copy, &mut { LARGEST_FOLDER });
+    copied.map_err(|error| match error {
+        CopyError::Submission(why) => at(path)(io::Error::other(why)),
+        CopyError::Ours(error) => error,
+    })?;
+    Ok(Staged { _folder: Some(folder), identity: ProgramIdentity::of(&copy), ..Staged::nothing(&copy) })
+}
+
 /// As [`program`], for a program at `name` in a folder that somebody else filled: a link that leads elsewhere, to
 /// another's submission perhaps, is refused, and so is a file that is `noted` to be another's.
 ///

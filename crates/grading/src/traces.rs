@@ -2,6 +2,7 @@
 //! knows.
 use super::{
     conclude::{Look, Ran, Run, bytes_of_nothing, conclude},
+    config::Marking,
     grade::Grade,
     plan::Plan,
     result::{Measurements, SceneResult},
@@ -51,7 +52,8 @@ pub fn grade(plan: &Plan, submission: String, results: Vec<SceneResult>, warning
         .iter()
         .map(|group| {
             let own = results.by_ref().take(group.scenes.len()).map(|result| (result, false)).collect();
-            score::group(&group.name, group.marking, own)
+            // Nobody knows how long it took to write them.
+            score::group(&group.name, Marking { speed: None, ..group.marking }, own)
         })
         .collect();
     let refuted = score::refuted(plan, &groups);
@@ -61,7 +63,7 @@ pub fn grade(plan: &Plan, submission: String, results: Vec<SceneResult>, warning
         rules: plan.rules,
         verdict: groups.iter().map(|group| group.verdict).max().unwrap_or(Verdict::NotRun),
         points: groups.iter().map(|group| group.points).sum(),
-        max_points: plan.max_points(),
+        max_points: groups.iter().map(|group| group.max_points).sum(),
         // No program was run that could tell of a hidden scene.
         shows_output: true,
         groups,

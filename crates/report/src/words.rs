@@ -1,6 +1,7 @@
 //! Results of scenes, in words. Results travel as values up to here; every report takes its sentences from this
 //! place.
 pub mod explanation;
+
 mod located;
 
 use crate::number::counted;

@@ -45,6 +45,9 @@ struct Typed {
     /// Makes the mistake with this id, or several with commas between them.
     #[arg(long, value_name = "ID[,ID]...")]
     mistake: Option<String>,
+    /// Computes this number of million useless rounds first, as a slow program does.
+    #[arg(long, value_name = "N", default_value = "0")]
+    busy: u32,
     /// Lists the mistakes, with one sentence for each.
     #[arg(long)]
     list: bool,
@@ -72,6 +75,8 @@ pub struct Options {
     pub output: Option<PathBuf>,
     /// The program's author.
     pub student: Student,
+    /// Millions of useless rounds.
+    pub busy: u32,
 }
 
 /// Reads the command line; on a fault of syntax the program ends with status 2.
@@ -85,7 +90,7 @@ pub fn parse() -> Result<Task, String> {
     }
     let student = student(typed.mistake)?;
     let Some(scene) = typed.scene else { return Err("-s is missing: name a scene file".to_owned()) };
-    Ok(Task::Run(Options { scene, output: typed.output, student }))
+    Ok(Task::Run(Options { scene, output: typed.output, student, busy: typed.busy }))
 }
 
 /// The student with the mistakes that the command line, the program's name or the environment asks for.

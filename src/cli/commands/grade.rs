@@ -237,6 +237,8 @@ impl GradingSession<'_> {
             pages.forget();
         }
         let draw = |judged: &Judged<'_>| self.draw(judged);
+        // Called as the original, this program does what that does.
+        let reference = std::env::current_exe().ok();
         let grader = Grader {
             plan: self.plan,
             backend: self.backend,
@@ -244,6 +246,7 @@ impl GradingSession<'_> {
             faults: &faults,
             traces: if self.arguments.keep_traces { Some(&trace) } else { None },
             cards: self.pages.as_ref().map(|pages| pages.drawing(&draw)),
+            reference: reference.as_deref(),
             rehearse: &grade::rehearse,
         };
         let mut display = LiveDisplay::new(self.plan, submissions);

@@ -102,6 +102,7 @@ pub(super) fn demo(arguments: &Demo) -> Result<u8> {
             faults: &Place::new("", "fosssim-faults"),
             traces: None,
             cards: Some(pages.drawing(&draw)),
+            reference: None,
             rehearse: &rehearse,
         };
         let (grade, _) = grader.grade_submission(&submission, None, &cancellation, &mut |_| {});

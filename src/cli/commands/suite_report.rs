@@ -9,7 +9,7 @@ use crate::{
     },
     sim::StepError,
     suite::{
-        config::{Credit, Hints},
+        config::{Credit, Hints, SpeedMarking},
         coverage::{Coverage, FAMILIES},
         plan::{Plan, PlannedGroup, default_name},
     },
@@ -152,6 +152,13 @@ fn of_group(group: &PlannedGroup, style: Style) -> String {
     let name = style.paint(Look::Strong, &one_line(&group.name));
     let (credit, hints) = (credit(marking.credit), marking.hints.words().0);
     let mut text = format!("\n{name}: {points}, {credit}, {visibility}, hints {hints}\n");
+    if let Some(SpeedMarking { points, full_at, none_at, runs }) = marking.speed {
+        let (points, runs) = (counted_points(points), counted(runs.into(), "run"));
+        let _ = writeln!(
+            text,
+            "  speed: {points}, all up to {full_at} times the reference's processor time, none from {none_at}; {runs}"
+        );
+    }
     for task in &group.scenes {
         let particles = counted(task.scene.particles.len() as u64, "particle");
         let steps = counted(task.scene.steps().into(), "step");

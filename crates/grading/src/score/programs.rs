@@ -13,14 +13,10 @@ use crate::{
 use fosssim_mistakes::together::settle;
 
 impl SubmissionGrading<'_> {
-    /// The grade, of the results of all scenes in the plan's order, each with the word whether it was found. The
-    /// submission's copy goes away now.
+    /// The grade, of the results of all scenes in the plan's order, each with the word whether it was found. Where the
+    /// suite gives points for speed, the submission is timed first.
     pub(crate) fn grade(&self, mut results: Vec<(SceneResult, bool)>) -> Grade {
         let (plan, options) = (self.grader.plan, self.grader.options);
-        let build = match lock(&self.staged).take().as_deref() {
-            Some(Ok(staged)) => staged.build.clone(),
-            _ => None,
-        };
         // A run beside the scene that was the end does not count, or the number of jobs would.
         let known: Vec<_> = results
             .iter()
@@ -31,7 +27,13 @@ impl SubmissionGrading<'_> {
                 *result = (patience::left_out(scene, why), false);
             }
         }
+        self.time(&mut results);
         let wall = results.iter().map(|(result, _)| result.measured.wall).sum();
+        // The submission's copy goes away.
+        let build = match lock(&self.staged).take().as_deref() {
+            Some(Ok(staged)) => staged.build.clone(),
+            _ => None,
+        };
         let mut results = results.into_iter();
         let groups: Vec<_> = plan
             .groups

@@ -31,7 +31,13 @@ fn grade(scenes: Vec<Vec<Explanation>>) -> Grade {
         let run = SceneResult::without_run(&format!("a/{number}"), 9, Verdict::WrongAnswer, Reason::Right);
         (SceneResult { explanations, ..run }, false)
     };
-    let marking = Marking { points: 1.0, credit: Credit::Scenes, visibility: Visibility::Visible, hints: Hints::Full };
+    let marking = Marking {
+        points: 1.0,
+        credit: Credit::Scenes,
+        visibility: Visibility::Visible,
+        hints: Hints::Full,
+        speed: None,
+    };
     let results = scenes.into_iter().enumerate().map(wrong).collect();
     let mut grade = Grade {
         submission: String::new(),

@@ -55,9 +55,7 @@ pub fn for_students(grade: &Grade) -> Cow<'_, Grade> {
     if grade.shows_output {
         settle(&mut visible);
     } else {
-        for scene in visible.groups.iter_mut().flat_map(|group| &mut group.scenes) {
-            scene.withhold();
-        }
+        visible.groups.iter_mut().for_each(GroupGrade::withhold);
     }
     Cow::Owned(visible)
 }

@@ -2,6 +2,7 @@
 use super::{likely_mistakes, no_points, one_line, phrases::NOT_GRADED, points};
 use crate::view::key;
 use crate::words;
+use fosssim_findings::speed::SpeedSource;
 use fosssim_findings::{Grade, PassedOver};
 
 /// One row per scene.
@@ -45,6 +46,8 @@ pub fn submissions(grades: &[Grade], passed_over: &[PassedOver]) -> String {
             .collect();
     if let Some(first) = grades.first() {
         head.extend(first.groups.iter().map(|group| safe(&group.name)));
+        let timed = first.groups.iter().filter(|group| group.speed.is_some());
+        head.extend(timed.map(|group| safe(&format!("{}: times the reference", group.name))));
     }
     let rows = grades.iter().map(|grade| {
         let mistakes = likely_mistakes(grade).into_iter().map(|(mistake, _)| words::explanation::what(&mistake));
@@ -62,6 +65,10 @@ pub fn submissions(grades: &[Grade], passed_over: &[PassedOver]) -> String {
             safe(&no_points(grade).or_else(|| words::reason(grade)).unwrap_or_default()),
         ];
         row.extend(grade.groups.iter().map(|group| group.points.map(points).unwrap_or_default()));
+        row.extend(grade.groups.iter().filter_map(|group| group.speed.as_ref()).map(|speed| match &speed.source {
+            SpeedSource::Measured(measured) => format!("{:.3}", measured.ratio),
+            _ => String::new(),
+        }));
         row
     });
     let rest = empty_rows(passed_over, &head, "reason");

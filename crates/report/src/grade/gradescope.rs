@@ -1,6 +1,8 @@
 //! Gradescope's results.json. A fault of ours has no score: the harness exits with an error instead of a zero.
+use super::speed_words;
 use super::{super::explain, difference, head_lines, plain, points, printed, see_above};
 use crate::{number::counted, words};
+use fosssim_findings::speed::{SpeedGrade, SpeedSource};
 use fosssim_findings::{Grade, SceneGrade, Verdict, Visibility};
 use fosssim_mistakes::together::for_students;
 use serde::Serialize;
@@ -66,6 +68,22 @@ pub(super) fn render(grade: &Grade) -> String {
                     }
                 },
                 tags: vec![scene.verdict.code().to_owned()],
+                visibility: group.visibility.key(),
+            });
+        }
+        if let Some(speed) = &group.speed {
+            let words = match tells_all || group.visibility == Visibility::Hidden {
+                true => speed_words(speed),
+                false => speed_words(&SpeedGrade { source: SpeedSource::Withheld, ..speed.clone() }),
+            };
+            tests.push(Test {
+                score: grade.points.and(speed.points).map(rounded),
+                max_score: rounded(speed.marking.points),
+                status: if speed.points == Some(speed.marking.points) { "passed" } else { "failed" },
+                name: format!("speed ({})", plain(&group.name)),
+                number: format!("{}.{}", g + 1, group.scenes.len() + 1),
+                output: plain(&words),
+                tags: vec!["speed".to_owned()],
                 visibility: group.visibility.key(),
             });
         }

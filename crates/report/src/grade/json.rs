@@ -1,6 +1,8 @@
 //! Our own JSON (`schemas/grade.schema.json`): everything a grade holds.
+use super::speed_words;
 use super::{super::explain::ExplanationView, phrases::NOT_GRADED, plain, printed};
 use crate::{check::CauseView, words};
+use fosssim_findings::speed::{SpeedGrade, SpeedSource};
 use fosssim_findings::{Book, Grade, GroupGrade, PassedOver, Rules, SceneGrade, Visibility};
 use fosssim_mistakes::together::{likely_mistake, likely_mistakes};
 use serde::Serialize;
@@ -73,7 +75,20 @@ struct GroupView {
     verdict: &'static str,
     points: Option<f64>,
     max_points: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    speed: Option<SpeedView>,
     scenes: Vec<SceneView>,
+}
+
+#[derive(Serialize)]
+struct SpeedView {
+    points: Option<f64>,
+    max_points: f64,
+    text: String,
+    ratio: Option<f64>,
+    least_ratio: Option<f64>,
+    greatest_ratio: Option<f64>,
+    runs: u32,
 }
 
 #[derive(Serialize)]
@@ -161,7 +176,24 @@ fn group(group: &GroupGrade) -> GroupView {
         verdict: group.verdict.words(),
         points: group.points,
         max_points: group.max_points,
+        speed: group.speed.as_ref().map(speed),
         scenes: group.scenes.iter().map(scene).collect(),
+    }
+}
+
+fn speed(speed: &SpeedGrade) -> SpeedView {
+    let measured = match speed.source {
+        SpeedSource::Measured(measured) => Some(measured),
+        _ => None,
+    };
+    SpeedView {
+        points: speed.points,
+        max_points: speed.marking.points,
+        text: plain(&speed_words(speed)),
+        ratio: measured.map(|measured| measured.ratio),
+        least_ratio: measured.map(|measured| measured.least),
+        greatest_ratio: measured.map(|measured| measured.most),
+        runs: measured.map_or(0, |measured| measured.runs),
     }
 }
 

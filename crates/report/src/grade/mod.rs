@@ -13,6 +13,7 @@ mod junit;
 mod passed_over;
 mod phrases;
 mod prairielearn;
+mod speed;
 mod text;
 
 use crate::page::{Audience, GradePage};
@@ -141,6 +142,7 @@ pub use passed_over::{not_graded, warn_of};
 pub(crate) use phrases::without_codes;
 pub use phrases::{difference, head_lines, likely_mistakes, no_points, one_line, plain, points, printed, reached};
 use phrases::{see_above, wrong_first};
+pub(crate) use speed::speed_words;
 pub use text::{Advice, Text, TextDetail, changes, score, shortened, table as text_table};
 
 /// Renders a result in every format and throws that away: what fails here fails while the result's trace is still at
@@ -187,6 +189,7 @@ fn render_in_every_format(result: &SceneResult) {
     };
     let group = GroupGrade {
         hints: Hints::Full,
+        speed: None,
         name: "group".to_owned(),
         visibility: Visibility::Visible,
         points: Some(0.0),

@@ -164,6 +164,9 @@ pub fn no_points(grade: &Grade) -> Option<String> {
         Some("no points: the grader failed, which is not the submission's fault".to_owned())
     } else {
         let (missing, all) = (grade.count(Verdict::NotRun), grade.scenes().count());
+        if missing == 0 {
+            return Some("no points yet: the time of the program could not be measured".to_owned());
+        }
         Some(format!("no points yet: {missing} of {} not run", counted(all as u64, "scene")))
     }
 }

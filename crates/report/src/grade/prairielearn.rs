@@ -1,4 +1,5 @@
 //! PrairieLearn's results.json: a score in [0, 1]; `gradable: false` for faults of ours, which charge no attempt.
+use super::speed_words;
 use super::{super::explain, difference, head_lines, one_line, plain, printed, see_above, wrong_first};
 use crate::words;
 use fosssim_findings::{Grade, SceneGrade, Verdict};
@@ -42,6 +43,16 @@ pub(super) fn render(grade: &Grade) -> String {
             message: if grade.unfit().is_some() { see_above(scene).to_owned() } else { cut(&words::summary(scene)) },
             output: cut(&output(scene)),
         })
+        .chain(shown.groups.iter().filter_map(|group| Some((group, group.speed.as_ref()?))).map(|(group, speed)| {
+            Test {
+                name: format!("speed ({})", one_line(&group.name)),
+                description: "processor time beside the reference's".to_owned(),
+                points: speed.points,
+                max_points: speed.marking.points,
+                message: cut(&speed_words(speed)),
+                output: String::new(),
+            }
+        }))
         .collect();
     let build = grade.build.as_ref().filter(|build| !build.end.is_success());
     // A fault of the upload itself is the same in all groups.

@@ -33,7 +33,11 @@ fn scene(name: &str, verdict: Verdict, summary: &str) -> SceneResult {
 
 fn group(name: &str, visibility: Visibility, scenes: Vec<SceneResult>) -> GroupGrade {
     let scenes = scenes.into_iter().map(|scene| (scene, false)).collect();
-    score::group(name, Marking { points: 10.0, credit: Credit::Scenes, visibility, hints: Hints::Full }, scenes)
+    score::group(
+        name,
+        Marking { points: 10.0, credit: Credit::Scenes, visibility, hints: Hints::Full, speed: None },
+        scenes,
+    )
 }
 
 fn grade(submission: &str, groups: Vec<GroupGrade>) -> Grade {

@@ -434,8 +434,13 @@ mod tests {
     };
 
     fn grade(name: &str, fails: impl Fn(usize) -> Option<String>) -> Grade {
-        let marking =
-            Marking { points: 20.0, credit: Credit::Scenes, visibility: Visibility::Visible, hints: Hints::Full };
+        let marking = Marking {
+            points: 20.0,
+            credit: Credit::Scenes,
+            visibility: Visibility::Visible,
+            hints: Hints::Full,
+            speed: None,
+        };
         let groups: Vec<GroupGrade> = (0..5)
             .map(|group| {
                 let scenes = (0..16).map(|number| {

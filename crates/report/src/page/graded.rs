@@ -8,7 +8,7 @@ use super::{
     script,
 };
 use crate::{
-    grade::{difference, likely_mistakes, no_points, one_line, points, reached, score, without_codes},
+    grade::{difference, likely_mistakes, no_points, one_line, points, reached, score, speed_words, without_codes},
     number::counted,
     words,
 };
@@ -246,6 +246,10 @@ fn groups(groups: &[GroupGrade], told: &[(&SceneGrade, Option<Card>)], reader: A
             points(group.max_points),
             group.scenes.len(),
         );
+        if let Some(speed) = &group.speed {
+            let columns = 5 + usize::from(tells_who);
+            let _ = writeln!(out, "<tr><td colspan=\"{columns}\">{}</td></tr>", text(&speed_words(speed)));
+        }
     }
     out + "</tbody></table></div></section>\n"
 }

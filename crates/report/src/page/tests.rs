@@ -163,7 +163,13 @@ fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
 
 /// The page of a submission with these results, all of which have the same card.
 fn page_of(results: Vec<SceneResult>, card: Option<&Card>) -> String {
-    let marking = Marking { points: 10.0, credit: Credit::Scenes, visibility: Visibility::Visible, hints: Hints::Full };
+    let marking = Marking {
+        points: 10.0,
+        credit: Credit::Scenes,
+        visibility: Visibility::Visible,
+        hints: Hints::Full,
+        speed: None,
+    };
     let grade = Grade {
         groups: vec![score::group("Group", marking, results.into_iter().map(|result| (result, false)).collect())],
         verdict: Verdict::WrongAnswer,
@@ -177,7 +183,7 @@ fn page_of(results: Vec<SceneResult>, card: Option<&Card>) -> String {
 fn graded(scene: &Scene, id: &str, hints: Hints) -> [String; 2] {
     let ((own, mut result), (full, _)) = (drawn(scene, id, hints), drawn(scene, id, Hints::Full));
     (result.card, result.card_for_students) = (Some("full".to_owned()), own.is_some().then(|| "own".to_owned()));
-    let marking = Marking { points: 10.0, credit: Credit::Scenes, visibility: Visibility::Visible, hints };
+    let marking = Marking { points: 10.0, credit: Credit::Scenes, visibility: Visibility::Visible, hints, speed: None };
     let grade = Grade {
         groups: vec![score::group("Group", marking, vec![(result, false)])],
         verdict: Verdict::WrongAnswer,
@@ -288,7 +294,13 @@ fn the_most_telling_scene_is_opened_first_and_links_lead_to_it() {
     let card = |scene: &fosssim_grading::SceneGrade| {
         scenes.iter().find(|(result, _)| result.scene == scene.scene).and_then(|(_, card)| card.clone())
     };
-    let marking = Marking { points: 10.0, credit: Credit::Scenes, visibility: Visibility::Visible, hints: Hints::Full };
+    let marking = Marking {
+        points: 10.0,
+        credit: Credit::Scenes,
+        visibility: Visibility::Visible,
+        hints: Hints::Full,
+        speed: None,
+    };
     let grade = Grade {
         groups: vec![with_results(marking, results)],
         verdict: Verdict::RuntimeError,
@@ -326,7 +338,8 @@ fn a_student_s_page_has_no_hidden_group() {
             crate::grade::samples::saying("a secret fall"),
         )
     };
-    let marking = |points, visibility| Marking { points, credit: Credit::Scenes, visibility, hints: Hints::Full };
+    let marking =
+        |points, visibility| Marking { points, credit: Credit::Scenes, visibility, hints: Hints::Full, speed: None };
     let named = |name: &str, group| fosssim_grading::GroupGrade { name: name.to_owned(), ..group };
     let grade = Grade {
         groups: vec![

@@ -1,7 +1,7 @@
 //! The result of a submission's grading: short enough for a small terminal, and last, so that it stays in sight.
 use super::{Text, look};
 use crate::{
-    grade::{likely_mistakes, one_line, plain, points, reached},
+    grade::{likely_mistakes, one_line, plain, points, reached, speed_words},
     number::counted,
     style::Look,
     table::{Align, Cell, Table},
@@ -75,6 +75,9 @@ fn groups(options: &Text<'_>, grade: &Grade) -> String {
         ]);
     }
     let mut text = table.render(options.style);
+    for (group, speed) in grade.groups.iter().filter_map(|group| Some((group, group.speed.as_ref()?))) {
+        let _ = writeln!(text, "  {}: {}", one_line(&group.name), speed_words(speed));
+    }
     if listed.len() > GROUPS {
         let _ = writeln!(text, "  and {}", counted((listed.len() - GROUPS) as u64, "more group"));
     }

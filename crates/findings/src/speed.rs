@@ -1,0 +1,201 @@
+//! Points for speed: the processor time of a submission beside that of the reference program. Both run in turn, on one
+//! machine. It is never the time on the clock, which other programs change.
+use super::{grade::SceneGrade, verdict::Verdict};
+use serde::{Deserialize, Serialize};
+use std::time::Duration;
+
+/// How a group of a suite marks speed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct SpeedMarking {
+    /// The greatest number of points, beside those for scenes.
+    pub points: f64,
+    /// The ratio to the reference's time up to which all points are given.
+    pub full_at: f64,
+    /// The ratio from which on there are none; greater than `full_at`. Between them points fall linearly.
+    pub none_at: f64,
+    /// How often each scene is timed.
+    pub runs: u32,
+}
+
+impl SpeedMarking {
+    /// The points for a ratio.
+    #[must_use]
+    pub fn points_at(&self, ratio: f64) -> f64 {
+        self.points * ((self.none_at - ratio) / (self.none_at - self.full_at)).clamp(0.0, 1.0)
+    }
+}
+
+/// The timed runs of one scene.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Timing {
+    /// The machine on which it was measured. Times of two machines are never compared.
+    pub machine: String,
+    /// The runs in their order.
+    pub runs: Vec<TimedRun>,
+    /// The verdict of a timed run that did not end as the graded one did; no further run was timed then.
+    pub failed: Option<Verdict>,
+}
+
+/// Processor times of two runs, one after the other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TimedRun {
+    /// The submission's.
+    pub submission: Duration,
+    /// The reference program's.
+    pub reference: Duration,
+}
+
+/// The points of a group for speed, and where they come from.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SpeedGrade {
+    /// How it is marked.
+    pub marking: SpeedMarking,
+    /// Points reached; `None` when the grader could not measure, which is nobody's zero.
+    pub points: Option<f64>,
+    /// Where they come from.
+    pub source: SpeedSource,
+}
+
+/// Where points for speed come from.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum SpeedSource {
+    /// Not all scenes of the group are accepted: being right counts before being fast.
+    NotAccepted,
+    /// All scenes were timed.
+    Measured(SpeedRatio),
+    /// A timed run of this scene had another verdict than the graded one.
+    Failed {
+        /// The scene.
+        scene: String,
+        /// The verdict of the timed run.
+        verdict: Verdict,
+    },
+    /// Grading was stopped before, or the grader failed.
+    Unmeasured,
+    /// Kept from students: a program could tell of a hidden scene by its time.
+    Withheld,
+}
+
+/// The submission's processor time, divided by the reference program's.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct SpeedRatio {
+    /// Of the least times of all runs, which other programs disturb least.
+    pub ratio: f64,
+    /// The least ratio of a round of runs.
+    pub least: f64,
+    /// The greatest ratio of a round of runs.
+    pub most: f64,
+    /// The number of rounds.
+    pub runs: u32,
+}
+
+impl SpeedGrade {
+    /// The points that the scenes of a group get for speed.
+    #[must_use]
+    pub fn of(marking: SpeedMarking, scenes: &[SceneGrade]) -> Self {
+        let source = source(scenes);
+        let points = match &source {
+            SpeedSource::Measured(measured) => Some(marking.points_at(measured.ratio)),
+            SpeedSource::Unmeasured => None,
+            SpeedSource::NotAccepted | SpeedSource::Failed { .. } | SpeedSource::Withheld => Some(0.0),
+        };
+        Self { marking, points, source }
+    }
+}
+
+fn source(scenes: &[SceneGrade]) -> SpeedSource {
+    if scenes.iter().any(|scene| matches!(scene.verdict, Verdict::JudgeError | Verdict::NotRun)) {
+        return SpeedSource::Unmeasured;
+    }
+    if scenes.is_empty() || !scenes.iter().all(|scene| scene.verdict.is_accepted()) {
+        return SpeedSource::NotAccepted;
+    }
+    let mut timed = Vec::new();
+    for scene in scenes {
+        match &scene.timing {
+            Some(Timing { failed: Some(verdict), .. }) => {
+                return SpeedSource::Failed { scene: scene.scene.clone(), verdict: *verdict };
+            }
+            Some(Timing { runs, .. }) if !runs.is_empty() => timed.push(runs.as_slice()),
+            _ => return SpeedSource::Unmeasured,
+        }
+    }
+    SpeedSource::Measured(ratio(&timed))
+}
+
+/// The ratio of the sums over scenes: of the least times, and round by round.
+fn ratio(scenes: &[&[TimedRun]]) -> SpeedRatio {
+    // A clock that ticks once a microsecond may see nothing at all.
+    let seconds = |time: Duration| time.as_secs_f64().max(1e-6);
+    let sum = |of: &dyn Fn(&[TimedRun]) -> TimedRun| {
+        let (submission, reference) = scenes
+            .iter()
+            .map(|runs| of(runs))
+            .fold((0.0, 0.0), |sum, run| (sum.0 + seconds(run.submission), sum.1 + seconds(run.reference)));
+        submission / reference
+    };
+    let rounds = scenes.iter().map(|runs| runs.len()).min().unwrap_or(0);
+    let each: Vec<f64> = (0..rounds).map(|round| sum(&|runs: &[TimedRun]| runs[round])).collect();
+    let least = |runs: &[TimedRun]| TimedRun {
+        submission: runs.iter().map(|run| run.submission).min().unwrap_or_default(),
+        reference: runs.iter().map(|run| run.reference).min().unwrap_or_default(),
+    };
+    SpeedRatio {
+        ratio: sum(&least),
+        least: each.iter().copied().fold(f64::INFINITY, f64::min),
+        most: each.iter().copied().fold(0.0, f64::max),
+        runs: u32::try_from(rounds).unwrap_or(u32::MAX),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::result::{Reason, SceneResult};
+
+    const MARKING: SpeedMarking = SpeedMarking { points: 40.0, full_at: 2.0, none_at: 10.0, runs: 2 };
+
+    fn scene(verdict: Verdict, runs: &[(u64, u64)], failed: Option<Verdict>) -> SceneGrade {
+        let run = |&(submission, reference): &(u64, u64)| TimedRun {
+            submission: Duration::from_millis(submission),
+            reference: Duration::from_millis(reference),
+        };
+        let timing = Timing { machine: "here".to_owned(), runs: runs.iter().map(run).collect(), failed };
+        let result = SceneResult {
+            timing: (!runs.is_empty()).then_some(timing),
+            ..SceneResult::without_run("a/b", 1, verdict, Reason::Right)
+        };
+        SceneGrade { result, points: None, max_points: 0.0, cached: false, settled: Vec::new(), agreed: 0 }
+    }
+
+    #[test]
+    fn points_fall_linearly_between_two_ratios() {
+        let at = |ratio| MARKING.points_at(ratio);
+        assert_eq!([0.5, 2.0, 4.0, 6.0, 10.0, 99.0].map(at), [40.0, 40.0, 30.0, 20.0, 0.0, 0.0]);
+    }
+
+    /// The second round was disturbed: it widens the spread, and costs nothing.
+    #[test]
+    fn the_least_times_count_and_the_spread_is_told() {
+        let right = Verdict::Accepted;
+        let scenes = [scene(right, &[(30, 10), (90, 10)], None), scene(right, &[(50, 10), (30, 30)], None)];
+        let grade = SpeedGrade::of(MARKING, &scenes);
+        let expected = SpeedRatio { ratio: 3.0, least: 3.0, most: 4.0, runs: 2 };
+        assert_eq!((grade.source, grade.points), (SpeedSource::Measured(expected), Some(35.0)));
+    }
+
+    #[test]
+    fn being_right_counts_before_being_fast_and_faults_of_ours_are_nobodys_zero() {
+        let (right, wrong) = (Verdict::Accepted, Verdict::WrongAnswer);
+        let of = |scenes: &[SceneGrade]| {
+            let grade = SpeedGrade::of(MARKING, scenes);
+            (grade.source, grade.points)
+        };
+        let timed = || scene(right, &[(10, 10)], None);
+        assert_eq!(of(&[timed(), scene(wrong, &[], None)]), (SpeedSource::NotAccepted, Some(0.0)));
+        assert_eq!(of(&[timed(), scene(right, &[], None)]), (SpeedSource::Unmeasured, None));
+        assert_eq!(of(&[timed(), scene(Verdict::JudgeError, &[], None)]), (SpeedSource::Unmeasured, None));
+        let failed = SpeedSource::Failed { scene: "a/b".to_owned(), verdict: wrong };
+        assert_eq!(of(&[timed(), scene(right, &[(10, 10)], Some(wrong))]), (failed, Some(0.0)));
+    }
+}

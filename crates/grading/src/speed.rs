@@ -1,0 +1,106 @@
+//! Times a submission beside the reference program, where a suite gives points for speed.
+//!
+//! Both run in turn in the same sandbox, on the same scene and machine, and both traces are judged: a program that is
+//! fast because it leaves something out in its timed runs has no points. The reference is this very program in its role
+//! as the course's original.
+use super::{
+    config,
+    execute::Runner,
+    grader::{SubmissionGrading, called},
+    result::SceneResult,
+    staging::Staged,
+    task::SceneTask,
+    verdict::Verdict,
+};
+use fosssim_findings::{
+    Hints,
+    speed::{SpeedMarking, TimedRun, Timing},
+};
+use std::fs;
+
+impl SubmissionGrading<'_> {
+    /// Times the scenes of groups that mark speed, if all of the group's are accepted. Times that this machine took
+    /// earlier for the same program stay.
+    pub(super) fn time(&self, results: &mut [(SceneResult, bool)]) {
+        let mut rest = results;
+        for group in &self.grader.plan.groups {
+            let (own, others) = rest.split_at_mut(group.scenes.len());
+            rest = others;
+            let Some(marking) = group.marking.speed else { continue };
+            if !own.iter().all(|(result, _)| result.verdict.is_accepted()) {
+                continue;
+            }
+            for ((result, cached), scene) in own.iter_mut().zip(&group.scenes) {
+                if result.timing.as_ref().is_some_and(|timing| is_of_here(timing, marking)) {
+                    continue;
+                }
+                result.timing = self.timed(scene, marking);
+                *cached = false;
+                self.keep_timed(scene, result);
+            }
+        }
+    }
+
+    /// Keeps a result once more, with its times.
+    fn keep_timed(&self, scene: &SceneTask, result: &SceneResult) {
+        if let (Some(_), Ok(staged)) = (&result.timing, &*self.staged()) {
+            let students = self.grader.plan.student_hints(&scene.name);
+            let key = self.shared.key(&staged.digest, scene, &called(&staged.program), students);
+            self.shared.keep(key, self.submission, result);
+        }
+    }
+
+    /// The timed runs of a scene; nothing if the grader failed or was stopped.
+    fn timed(&self, scene: &SceneTask, marking: SpeedMarking) -> Option<Timing> {
+        let (staged, reference) = (self.staged(), self.shared.reference(self.grader.reference?));
+        let (Ok(staged), Ok(reference)) = (&*staged, &*reference) else { return None };
+        let mut timing = Timing { machine: machine(), runs: Vec::new(), failed: None };
+        let run = |program: &Staged, words: &[String]| {
+            let runner = Runner {
+                run: words,
+                hints: Hints::Where,
+                student_hints: Hints::Where,
+                traces: None,
+                cards: None,
+                ..self.runner(scene, None)
+            };
+            let result = runner.grade(program, scene, &mut |_| {});
+            (result.verdict, result.measured.cpu)
+        };
+        for round in 0..marking.runs {
+            let submission = || run(staged, &self.grader.plan.run);
+            let other = || run(reference, &config::default_run());
+            // Neither always has the caches that the other has left.
+            let ((verdict, submission), (sound, reference)) = match round % 2 {
+                0 => (submission(), other()),
+                _ => {
+                    let other = other();
+                    (submission(), other)
+                }
+            };
+            match (verdict, sound) {
+                (Verdict::JudgeError | Verdict::NotRun, _) => return None,
+                (_, sound) if !sound.is_accepted() => return None,
+                (Verdict::Accepted, _) => timing.runs.push(TimedRun { submission, reference }),
+                (verdict, _) => {
+                    timing.failed = Some(verdict);
+                    return Some(timing);
+                }
+            }
+        }
+        Some(timing)
+    }
+}
+
+/// Whether these times were measured here, often enough.
+fn is_of_here(timing: &Timing, marking: SpeedMarking) -> bool {
+    timing.machine == machine() && (timing.failed.is_some() || timing.runs.len() >= marking.runs as usize)
+}
+
+/// This machine: its name and its processor.
+fn machine() -> String {
+    let name = fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
+    let processor = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = processor.lines().find_map(|line| line.strip_prefix("model name")).unwrap_or_default();
+    format!("{}, {}", name.trim(), model.trim_start_matches([' ', '\t', ':']).trim())
+}

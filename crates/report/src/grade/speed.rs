@@ -1,0 +1,59 @@
+//! Points for speed, in a sentence.
+use super::points;
+use crate::number::counted;
+use fosssim_findings::speed::{SpeedGrade, SpeedMarking, SpeedRatio, SpeedSource};
+
+/// What is said of a group's speed: the points, and where they come from.
+#[must_use]
+pub fn speed_words(speed: &SpeedGrade) -> String {
+    let SpeedGrade { marking, points: reached, source } = speed;
+    let of = format!("of {} points for speed", points(marking.points));
+    let reached = reached.map_or_else(|| "none yet".to_owned(), points);
+    match source {
+        SpeedSource::Measured(measured) => format!("{reached} {of}: {}", of_ratio(marking, measured)),
+        SpeedSource::NotAccepted => format!("{reached} {of}: they begin when all scenes of the group are accepted"),
+        SpeedSource::Failed { scene, verdict } => {
+            format!("{reached} {of}: a timed run of {scene} ended otherwise than the graded one ({verdict})")
+        }
+        SpeedSource::Unmeasured => format!("{reached} {of}: the time could not be measured, which is nobody's fault"),
+        SpeedSource::Withheld => format!("{reached} {of}"),
+    }
+}
+
+/// The ratio, its spread, and how much the points depend on it.
+fn of_ratio(marking: &SpeedMarking, measured: &SpeedRatio) -> String {
+    let SpeedRatio { ratio, least, most, runs } = *measured;
+    let (high, low) = (points(marking.points_at(least)), points(marking.points_at(most)));
+    let sure =
+        if high == low { "which changes no point".to_owned() } else { format!("which is {low} to {high} points") };
+    let rounds = counted(runs.into(), "round");
+    let line = format!("all up to {}, none from {}", marking.full_at, marking.none_at);
+    let spread = format!("{rounds} gave {least:.2} to {most:.2}, {sure}");
+    format!("{ratio:.2} times the reference's processor time; {spread} ({line})")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fosssim_findings::Verdict;
+
+    #[test]
+    fn the_spread_is_told_with_what_it_means() {
+        let marking = SpeedMarking { points: 40.0, full_at: 2.0, none_at: 10.0, runs: 5 };
+        let said = |points, source| speed_words(&SpeedGrade { marking, points, source });
+        let measured = |ratio, least, most| SpeedSource::Measured(SpeedRatio { ratio, least, most, runs: 5 });
+        assert_eq!(
+            said(Some(35.0), measured(3.0, 2.9, 3.4)),
+            "35 of 40 points for speed: 3.00 times the reference's processor time; 5 rounds gave 2.90 to 3.40, \
+             which is 33 to 35.5 points (all up to 2, none from 10)"
+        );
+        assert!(said(Some(40.0), measured(1.0, 0.9, 1.4)).contains("which changes no point"));
+        let failed = SpeedSource::Failed { scene: "a/b".to_owned(), verdict: Verdict::WrongAnswer };
+        assert_eq!(
+            said(Some(0.0), failed),
+            "0 of 40 points for speed: a timed run of a/b ended otherwise than the graded one (wrong answer)"
+        );
+        assert!(said(None, SpeedSource::Unmeasured).starts_with("none yet of 40 points"));
+        assert_eq!(said(Some(7.5), SpeedSource::Withheld), "7.5 of 40 points for speed");
+    }
+}
