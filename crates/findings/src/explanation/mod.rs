@@ -115,6 +115,12 @@ impl Explanation {
         matches!(self.about, About::NotFinite(_))
     }
 
+    /// Whether it is a mistake that reproduces all that was tried of what is wrong.
+    #[must_use]
+    pub fn is_proven(&self) -> bool {
+        matches!(self.about, About::Mistake | About::Forces(_)) && self.reproduced > 0 && self.is_complete()
+    }
+
     /// Whether it names stages that are still empty.
     #[must_use]
     pub fn is_unfinished(&self) -> bool {

@@ -118,12 +118,13 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     }
     known.iter_mut().for_each(explain_letters);
     polynomials.iter_mut().for_each(explain_letters);
-    let mut all: Vec<Explanation> = not_finite.into_iter().chain(known).collect();
+    let mut all = known;
     all.append(&mut polynomials);
     all.extend(forces);
     all.extend(stage);
     // A stable sort: among equals the known mistake stays first.
-    all.sort_by_key(|one| (!one.is_not_finite(), one.is_unexplained(), !one.is_complete()));
+    all.sort_by_key(|one| (one.is_unexplained(), !one.is_complete()));
+    let mut all = not_finite::with_end(not_finite, all, |_| true);
     all.iter_mut().for_each(|one| one.denies.clone_from(&denies));
     all
 }

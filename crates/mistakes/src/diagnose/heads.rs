@@ -140,8 +140,8 @@ fn speaks_against(one: &Explanation, told: &Explanation) -> bool {
 
 /// The likely mistakes of a program that left several traces, at most three: greedily, each the one that explains most
 /// of what those before leave open ([`common`]). Stages that are still empty count as one, which is told first.
-/// `refuted` are keys of mistakes that right traces of the same program speak against. What is no finite number comes
-/// before all others and counts as none.
+/// `refuted` are keys of mistakes that right traces of the same program speak against. Where numbers end counts as
+/// none, and comes first, unless one of the mistakes is the cause.
 #[must_use]
 pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted: &[String]) -> Vec<Explanation> {
     let traces: Vec<&[Explanation]> = traces.into_iter().collect();
@@ -169,7 +169,7 @@ pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted:
         };
         list.iter().filter(|one| one.is_vote() || !one.claims.is_empty()).filter_map(settle).collect()
     };
-    let mut open: Vec<Vec<Explanation>> = traces.into_iter().map(kept).filter(|list| !list.is_empty()).collect();
+    let mut open: Vec<Vec<Explanation>> = traces.iter().copied().map(kept).filter(|list| !list.is_empty()).collect();
     let wrong = open.clone();
     keep_earliest_stage(&mut open);
     let mut covered = vec![false; open.len()];
@@ -202,7 +202,9 @@ pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted:
             one.key = one.same_as.remove(0);
         }
     }
-    not_finite.into_iter().chain(found).collect()
+    let ends = traces.iter().filter(|list| list.iter().any(Explanation::is_not_finite)).count();
+    let is_cause = |first: &Explanation| traces.iter().filter(|list| is_named_in(first, list)).count() >= ends;
+    super::not_finite::with_end(not_finite, found, is_cause)
 }
 
 /// Where numbers end, in the stage in which they end in most traces.

@@ -183,3 +183,16 @@ fn bodies(scene: &Scene, pair: Pair) -> Vec<u32> {
         PairKind::ParticleHalfPlane => vec![pair.first],
     }
 }
+/// Explanations with the one that says where numbers end: first, unless a proven mistake is the cause. What is wrong
+/// before the end was reproduced then, and mending it comes first.
+pub(super) fn with_end(
+    end: Option<Explanation>,
+    mut found: Vec<Explanation>,
+    is_cause: impl Fn(&Explanation) -> bool,
+) -> Vec<Explanation> {
+    if let Some(end) = end {
+        let place = usize::from(found.first().is_some_and(|first| first.is_proven() && is_cause(first)));
+        found.insert(place, end);
+    }
+    found
+}

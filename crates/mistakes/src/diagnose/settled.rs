@@ -1,5 +1,5 @@
 //! What a trace alone says, in the light of what all traces of its program say together.
-use super::{About, Explanation, is_named_in};
+use super::{About, Explanation, is_named_in, not_finite::with_end};
 
 /// What is to be said of one trace, once all traces of its program have been heard.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -21,8 +21,8 @@ pub fn settled(own: &[Explanation], likely: &[Explanation]) -> Settled {
         return Settled { explanations: own.to_vec(), agreed: 0 };
     }
     // Where numbers end each trace says for itself.
-    let end = own.iter().filter(|one| one.is_not_finite()).cloned();
-    let explanations: Vec<Explanation> = end.chain(explanations).collect();
+    let end = own.iter().find(|one| one.is_not_finite()).cloned();
+    let explanations = with_end(end, explanations, |_| true);
     Settled { agreed: explanations.len(), explanations }
 }
 
