@@ -203,13 +203,17 @@ pub(super) struct SuiteInit {
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
-  fosssim-oracle suite check course.toml")]
+  fosssim-oracle suite check course.toml
+  fosssim-oracle suite check t1m3 --mistakes")]
 pub(super) struct SuiteCheck {
     /// The suite: a file, or one that comes with the program.
     pub(super) suite: String,
     /// Also list the pairs of properties that no step of its scenes has.
     #[arg(long)]
     pub(super) missing: bool,
+    /// Also list the known mistakes that no scene shows, part by part. Takes some seconds.
+    #[arg(long)]
+    pub(super) mistakes: bool,
 }
 
 /// Lists the suites that come with the program; the first one is the default.

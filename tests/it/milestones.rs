@@ -98,3 +98,35 @@ fn the_drop_in_speaks_as_the_contests_original() {
     let recorded = workspace.original(["-s", "scene.xml", "-d", "0", "-o", "new.bin"]);
     assert_eq!(recorded.out().matches(steps).count(), scene.steps() as usize);
 }
+
+/// A teacher sees what a suite does not ask for, by what the sample program writes with each known mistake.
+#[test]
+fn a_suite_says_which_known_mistakes_no_scene_of_it_shows() {
+    let workspace = Workspace::new();
+    let check = |suite: &str| {
+        let run = workspace.run(["suite", "check", suite, "--mistakes"]);
+        assert_eq!(run.code, Some(0), "{}", run.shown());
+        run.out()
+    };
+    let part = |text: &str, name: &str| -> (usize, usize) {
+        let line = text.lines().find(|line| line.trim_start().starts_with(name)).unwrap_or_else(|| panic!("{text}"));
+        let numbers: Vec<usize> = line.split(' ').filter_map(|word| word.parse().ok()).collect();
+        (numbers[0], numbers[1])
+    };
+    let contest = check("t2m3");
+    for name in ["penalty", "near-pairs"] {
+        let (seen, all) = part(&contest, name);
+        assert!(seen == all && all > 10, "{contest}");
+    }
+    assert!(!contest.contains("jacobians"), "of what a suite does not ask for it says nothing: {contest}");
+    let implicit = check("t1m3");
+    let (seen, all) = part(&implicit, "jacobians");
+    assert_eq!(seen, all, "{implicit}");
+    // One scene shows less.
+    let scene = "ContestTests/two-balls-of-different-size";
+    let text = format!("schema = 1\nname = \"one\"\n[[group]]\nname = \"one\"\nscenes = [\"asset:t2m3@1/{scene}\"]\n");
+    workspace.write("one.toml", text);
+    let one = check("one.toml");
+    assert!(part(&one, "penalty").0 < part(&contest, "penalty").0 && one.contains("not shown: "), "{one}");
+    assert!(one.contains("penalty-first-half-plane-only"), "{one}");
+}

@@ -24,6 +24,7 @@ mod simulate;
 mod submissions;
 mod suite;
 mod suite_report;
+mod suite_sight;
 mod trace;
 mod traces;
 

@@ -1,5 +1,8 @@
 //! `suite`: writes, checks and explains suites.
-use super::suite_report::{SuiteContents, Undecided, list, list_json, text};
+use super::{
+    suite_report::{SuiteContents, Undecided, list, list_json, text},
+    suite_sight::seen_parts,
+};
 use crate::{
     cli::{
         console, exit,
@@ -25,9 +28,10 @@ pub(super) fn run(suite: &Suite) -> Result<u8> {
                 None => console::print(text.as_bytes())?,
             }
         }
-        Suite::Check(SuiteCheck { suite, missing }) => {
+        Suite::Check(SuiteCheck { suite, missing, mistakes }) => {
             let plan = plan::find(suite)?;
-            let contents = SuiteContents { coverage: coverage(&plan), lists_missing: *missing };
+            let parts = if *mistakes { seen_parts(&plan) } else { Vec::new() };
+            let contents = SuiteContents { coverage: coverage(&plan), lists_missing: *missing, parts };
             console::report(&text(&plan, &contents, &undecided(&plan), console::style()))?;
         }
         Suite::List(SuiteList { format }) => {

@@ -1,5 +1,6 @@
 //! The text of `suite check`: what a suite would grade, and what is worth knowing before it does. And which suites
 //! there are.
+use super::suite_sight::SeenPart;
 use crate::{
     judge::{PairWords, PassWords, Rules, fair::Borderline},
     report::{
@@ -30,6 +31,8 @@ pub(super) struct SuiteContents {
     pub(super) coverage: Coverage,
     /// Whether each missing pair of properties has a line.
     pub(super) lists_missing: bool,
+    /// The mistakes that no scene shows, by parts of a program's work; empty where nobody asks.
+    pub(super) parts: Vec<SeenPart>,
 }
 
 /// The whole report; `undecided` holds the scenes of which there is something to say.
@@ -39,6 +42,7 @@ pub(super) fn text(plan: &Plan, contents: &SuiteContents, undecided: &[Undecided
         text += &of_group(group, style);
     }
     text += &of_contents(contents, style);
+    text += &of_mistakes(&contents.parts, style);
     for (scene, found) in undecided {
         text += &note(scene, found, style);
     }
@@ -187,6 +191,23 @@ fn of_contents(contents: &SuiteContents, style: Style) -> String {
     }
     let hint = if contents.lists_missing || all_seen == all { "" } else { "; --missing lists the others" };
     let _ = writeln!(text, "  {:width$}  {all_seen:4} of {all:4}{hint}", "together");
+    text
+}
+
+/// The known mistakes that no scene shows.
+fn of_mistakes(parts: &[SeenPart], style: Style) -> String {
+    if parts.is_empty() {
+        return String::new();
+    }
+    let title = style.paint(Look::Strong, "Known mistakes that a scene shows, by parts of the work");
+    let mut text = format!("\n{title}\n");
+    let width = parts.iter().map(|part| part.area.name().len()).max().unwrap_or(0);
+    for SeenPart { area, all, unseen } in parts {
+        let _ = writeln!(text, "  {:width$}  {:4} of {all:4}", area.name(), all - unseen.len());
+        if !unseen.is_empty() {
+            let _ = writeln!(text, "    not shown: {}", unseen.join(", "));
+        }
+    }
     text
 }
 

@@ -1,0 +1,54 @@
+//! `suite check --mistakes`: the known mistakes that no scene of a suite shows.
+use crate::{
+    scene::Scene,
+    student::{self, Area, RowKind, Student, all_rows},
+    suite::plan::Plan,
+};
+use rayon::prelude::*;
+
+/// A step of a program that goes on for ever has more polynomials than this.
+const MOST_POLYNOMIALS: usize = 1 << 20;
+
+/// A part of a program's work, of which the scenes show something.
+#[derive(Debug)]
+pub(super) struct SeenPart {
+    /// The part.
+    pub(super) area: Area,
+    /// The number of its mistakes.
+    pub(super) all: usize,
+    /// Those with which the sample program writes the same traces as without, on every scene.
+    pub(super) unseen: Vec<&'static str>,
+}
+
+/// The parts in the order of the catalogue.
+pub(super) fn seen_parts(plan: &Plan) -> Vec<SeenPart> {
+    let written = |scene: &Scene, student: Student| {
+        student::trace_within(scene, student, MOST_POLYNOMIALS).unwrap_or_else(|(bytes, _)| bytes)
+    };
+    let mut scenes: Vec<&Scene> = plan.scenes().map(|task| &task.scene).collect();
+    // Small ones first: most mistakes show in the first scenes.
+    scenes.sort_by_key(|scene| u64::from(scene.steps()) * (scene.particles.len() as u64).pow(2));
+    let right: Vec<Vec<u8>> = scenes.par_iter().map(|scene| written(scene, Student::default())).collect();
+    let rows: Vec<_> = all_rows().filter(|row| row.kind == RowKind::Wrong).collect();
+    let is_seen: Vec<bool> = rows
+        .par_iter()
+        .map(|row| {
+            let student = Student::new(Some(row.mistake));
+            scenes.iter().zip(&right).any(|(scene, right)| written(scene, student) != *right)
+        })
+        .collect();
+    let mut parts: Vec<SeenPart> = Vec::new();
+    for (row, is_seen) in rows.iter().zip(is_seen) {
+        let place = parts.iter().position(|part| part.area == row.area).unwrap_or_else(|| {
+            parts.push(SeenPart { area: row.area, all: 0, unseen: Vec::new() });
+            parts.len() - 1
+        });
+        parts[place].all += 1;
+        if !is_seen {
+            parts[place].unseen.push(row.id);
+        }
+    }
+    // Of the other parts the suite asks nothing.
+    parts.retain(|part| part.unseen.len() < part.all);
+    parts
+}
