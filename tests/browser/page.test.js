@@ -237,10 +237,15 @@ test("a folder of traces gets the points of the suite, as grade --traces gives t
   await marked(2);
   assert.match(await page.locator("#marks-list").innerText(), /Since the last drop became right: GeometricTests\/pair-becomes-rigid/);
   await judgeAccessibility(page);
+  // Packed traces count as others do.
+  const plain = join(traces, `${WRONG[0]}.bin`);
+  writeFileSync(`${plain}.zst`, zstd(readFileSync(plain)));
+  rmSync(plain);
+  await marked(3);
   // A scene leads to its report.
   await page.getByRole("button", { name: "pair-becomes-rigid" }).click();
   await page.waitForFunction(() => document.documentElement.dataset.checked === "1");
-  assert.match(await said(page), /^pair-becomes-rigid\.bin: accepted/);
+  assert.match(await said(page), /^pair-becomes-rigid\.bin.*: accepted/);
   assert.deepEqual(complaints.filter((one) => !one.includes("postMessage")), []);
   await close();
 });

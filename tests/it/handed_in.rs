@@ -69,6 +69,19 @@ fn traces_that_are_there_already_are_graded_without_running_anything() {
     assert!(wrong.out().contains(",WA,") && wrong.out().contains(",pe-square-no-eh"), "{}", wrong.out());
     let page = String::from_utf8(workspace.read("wrong.html")).expect("text");
     assert!(page.contains("data-scene="), "the page has a viewer");
+    // Packed traces are unpacked; a damaged copy is no trace, and the report says why there is none.
+    let plain = grade("right", &["--format", "json"]).out();
+    let name = format!("right/{}.bin", scenes[0]);
+    let bytes = workspace.read(&name);
+    std::fs::remove_file(workspace.path(&name)).expect("removed");
+    let packed = zstd::encode_all(&bytes[..], 3).expect("packed");
+    workspace.write(format!("{name}.zst"), &packed);
+    assert_eq!(grade("right", &["--format", "json"]).out(), plain);
+    workspace.write(format!("{name}.zst"), &packed[..packed.len() / 2]);
+    let damaged = grade("right", &[]);
+    assert!(damaged.code == Some(1) && damaged.out().contains("the zstd data is cut short"), "{}", damaged.shown());
+    std::fs::remove_file(workspace.path(format!("{name}.zst"))).expect("removed");
+    workspace.write(&name, &bytes);
     // A file that is missing, cut or a link is no trace.
     let first = workspace.path(format!("right/{}.bin", scenes[0]));
     let bytes = std::fs::read(&first).expect("a trace");

@@ -31,14 +31,15 @@ async function takeFolder(name, found) {
     marks.suite = { name: suite.file.name, text: bytesOf(await suite.file.text()), scenes: scenes.map(({ path }) => path.slice(beside.length)), xml: await Promise.all(scenes.map(async ({ file }) => new Uint8Array(await file.arrayBuffer()))) };
     $("suite-name").textContent = `${suite.file.name} with ${counted(scenes.length, "scene")} of its own`;
   }
-  const traces = found.filter(({ path }) => /\.bin$/i.test(path));
+  const traces = found.filter(({ path }) => /\.bin(\.(zst|gz))?$/i.test(path));
   if (traces.length) {
     marks.name = name;
-    marks.files = new Map(traces.map(({ path, file }) => [path, file]));
+    // A trace that lies there unpacked, too, is the newer one.
+    marks.files = new Map(traces.sort((a, b) => b.path.length - a.path.length).map(({ path, file }) => [path.replace(/\.(zst|gz)$/i, ""), file]));
     $("folder-name").textContent = `${name}, ${counted(traces.length, "trace")}`;
   }
   if (marks.files.size) return mark_all();
-  $("marks-said").textContent = suite ? "Now drop the folder of traces." : found.some(({ path }) => /\.bin\.(zst|gz)$/i.test(path)) ? "The traces in that folder are packed: unpack them, or check them one by one." : "There is no trace in that folder: they are called Group/name.bin.";
+  $("marks-said").textContent = suite ? "Now drop the folder of traces." : "There is no trace in that folder: they are called Group/name.bin.";
 }
 
 // The trace of a scene, under its whole name or the name behind its group; below a folder of the folder if that is where
@@ -74,7 +75,7 @@ async function mark_all() {
       $("marks-bar").value = number;
       $("marks-said").textContent = `${number + 1} of ${names.length}: ${scene}`;
       const file = traceOf(scene, below);
-      const answer = await marks.oracle.ask({ do: "judge", number, bytes: file?.size ?? null }, { files: file ? [file] : [] });
+      const answer = await marks.oracle.ask({ do: "judge", number, has_trace: file !== null }, { files: file ? [await freshFile({ file })] : [] });
       if (!answer) { $("marks-said").textContent = "Stopped."; return; }
       rows.push({ group, scene, file, ...answer.value });
     }

@@ -38,8 +38,8 @@ pub(crate) struct SuiteRequest {
 pub(crate) struct SceneRequest {
     /// Its place among the suite's scenes.
     number: usize,
-    /// The bytes of its trace, which is the dropped file 0; none where there is no such file.
-    bytes: Option<u64>,
+    /// Whether there is a trace, which is the dropped file 0.
+    has_trace: bool,
 }
 
 /// A submission that is being graded.
@@ -78,14 +78,12 @@ impl DroppedSubmission {
     pub(crate) fn scene(&mut self, asked: &SceneRequest, host: &dyn PageHost) -> PageAnswer {
         let task = self.plan.scenes().nth(asked.number).ok_or("there is no such scene")?;
         let fault = ReadFault::new();
-        let most = self.plan.limits.trace;
-        let bytes = asked.bytes.unwrap_or(0).min(most);
-        let trace: Box<dyn Read + Send> = match asked.bytes {
-            Some(_) => Box::new(opened(host, 0, &fault).take(most)),
-            None => Box::new(empty()),
+        let trace: Box<dyn Read + Send> = match asked.has_trace {
+            true => Box::new(opened(host, 0, &fault).take(self.plan.limits.trace)),
+            false => Box::new(empty()),
         };
         let mut heard = ToldProgress { host, all: task.scene.steps() };
-        let (mut result, _) = traces::judged(&self.plan, task, (trace, bytes), &mut heard);
+        let (mut result, _) = traces::judged(&self.plan, task, trace, &mut heard);
         if let Some(why) = fault.get() {
             return Err(format!("cannot read the trace of {}: {why}", task.name));
         }

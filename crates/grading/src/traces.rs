@@ -13,24 +13,27 @@ use super::{
 use fosssim_evidence::{Examined, Keep, examine};
 use fosssim_judge::replay::{Options, Progress};
 use fosssim_mistakes::{diagnose, together::settle};
-use std::{io::Read, time::Duration};
+use std::{
+    io::{self, Read},
+    time::Duration,
+};
 
-/// The result of one scene by a trace of this number of bytes, as if a program had ended well after it wrote it, and
-/// what judging has seen.
+/// The result of one scene by a trace, as if a program had ended well after it wrote it, and what judging has seen.
 pub fn judged<'a, R: Read + Send>(
     plan: &Plan,
     task: &'a SceneTask,
-    (trace, bytes): (R, u64),
+    trace: R,
     progress: &mut dyn Progress,
 ) -> (SceneResult, Examined<'a>) {
     let options =
         Options { stop_by: plan.rules.official(), threads: 1, fair: plan.rules.ask_fair(), ..Options::default() };
-    let examined = examine(&task.scene, trace, Keep::All, &options, progress);
+    let mut counted = CountedTrace { trace, bytes: 0 };
+    let examined = examine(&task.scene, &mut counted, Keep::All, &options, progress);
     let run = Run {
         scene: &task.name,
         program: &Ran::well(),
         judged: &examined.outcome,
-        trace_bytes: bytes,
+        trace_bytes: counted.bytes,
         nothing: bytes_of_nothing(&task.scene),
         rules: plan.rules,
         hints: plan.staff_hints,
@@ -41,6 +44,20 @@ pub fn judged<'a, R: Read + Send>(
         Look::Mistakes => examined.explain(),
     });
     (SceneResult { ended: None, measured: Measurements::default(), ..explained }, examined)
+}
+
+/// Counts the bytes of a trace, which may come out of a packed file.
+struct CountedTrace<R> {
+    trace: R,
+    bytes: u64,
+}
+
+impl<R: Read> Read for CountedTrace<R> {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        let count = self.trace.read(into)?;
+        self.bytes += count as u64;
+        Ok(count)
+    }
 }
 
 /// The grade of the results of all scenes, in the plan's order.

@@ -7,7 +7,7 @@ use super::{
     submissions::distinct_names,
 };
 use crate::{
-    cli::{console, grading::Grade as Arguments, selection::Selection},
+    cli::{console, grading::Grade as Arguments, input::unpacked, selection::Selection},
     files::{FileError, Folder},
     report::{
         grade::{Format, Text, rehearse},
@@ -21,7 +21,7 @@ use anyhow::{Context, Result, bail};
 use rayon::prelude::*;
 use std::{
     ffi::OsStr,
-    io::{self, Read},
+    io,
     path::{Path, PathBuf},
 };
 
@@ -105,7 +105,7 @@ fn scene(plan: &Plan, task: &SceneTask, folder: &io::Result<Folder>, pages: Opti
 
 fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) -> io::Result<JudgedScene> {
     let (trace, passed_over) = read(folder, &task.name, plan.limits.trace)?;
-    let (mut result, examined) = traces::judged(plan, task, (&trace[..], trace.len() as u64), &mut ());
+    let (mut result, examined) = traces::judged(plan, task, &trace[..], &mut ());
     if let Some(pages) = pages
         && !(result.verdict.is_accepted() && result.differs.is_none())
     {
@@ -126,19 +126,19 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) 
     Ok((result, passed_over))
 }
 
-/// The trace of a scene, under its whole name or the name behind its group; nothing when there is none, and then in
-/// words what lies there that is no file, or is reached by a link: that may be another's. More than `most` bytes are
-/// not read: what is cut there is a bad trace.
+/// The trace of a scene, under its whole name or the name behind its group, plain or packed. Nothing when there is none,
+/// and then in words what lies there that can't be used: what is no file, is damaged, or is reached by a link, as
+/// another's may be. More than `most` bytes are not read: what is cut there is a bad trace.
 fn read(folder: &Folder, scene: &str, most: u64) -> io::Result<(Vec<u8>, Option<String>)> {
     let mut passed_over = None;
     let last = scene.rsplit('/').next().unwrap_or(scene);
-    for name in [scene, last].map(|name| format!("{name}.bin")) {
+    let names = ["bin", "bin.zst"].map(|end| [scene, last].map(|name| format!("{name}.{end}")));
+    for name in names.into_iter().flatten() {
         match folder.file(OsStr::new(&name), u64::MAX) {
-            Ok((file, _)) => {
-                let mut trace = Vec::new();
-                file.take(most).read_to_end(&mut trace)?;
-                return Ok((trace, None));
-            }
+            Ok((file, _)) => match unpacked(file, most)? {
+                Ok(trace) => return Ok((trace, None)),
+                Err(why) => passed_over = passed_over.or_else(|| Some(format!("{name} is passed over: {why}"))),
+            },
             Err(FileError::Missing { .. }) => {}
             Err(FileError::System { source, .. }) => return Err(source),
             Err(error) => passed_over = passed_over.or_else(|| Some(format!("a trace is passed over: {error}"))),

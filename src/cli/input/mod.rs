@@ -8,7 +8,7 @@ mod scene;
 mod trace;
 
 pub(super) use scene::{SceneInput, scene};
-pub(super) use trace::{TraceInput, is_scene, trace};
+pub(super) use trace::{TraceInput, is_scene, trace, unpacked};
 
 use crate::files::open_for_reading;
 use crate::{

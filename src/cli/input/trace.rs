@@ -144,6 +144,23 @@ fn maybe_packed(
     Ok((Box::new(Cursor::new(start).chain(reader)), false))
 }
 
+/// The bytes of a trace that may be packed, at most this number of them, or why its zstd data can't be unpacked.
+///
+/// # Errors
+/// When the file can't be read.
+pub(in crate::cli) fn unpacked(file: impl Read + Send + 'static, most: u64) -> io::Result<Result<Vec<u8>, String>> {
+    let failure = Failure::default();
+    let mut bytes = Vec::new();
+    let read = maybe_packed(Box::new(file), false, &failure)
+        .map_err(io::Error::other)
+        .and_then(|(reader, _)| reader.take(most).read_to_end(&mut bytes));
+    match (read, failure.get()) {
+        (_, Some(why)) => Ok(Err(why)),
+        (Err(error), None) => Err(error),
+        (Ok(_), None) => Ok(Ok(bytes)),
+    }
+}
+
 fn decompressed(reader: Box<dyn Read + Send>, start: &[u8], failure: &Failure) -> Result<Box<dyn Read + Send>> {
     let packed = BufReader::with_capacity(1 << 16, Cursor::new(start.to_vec()).chain(reader));
     let mut decoder = zstd::stream::read::Decoder::with_buffer(packed)?;
