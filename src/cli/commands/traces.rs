@@ -126,9 +126,9 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) 
     Ok((result, passed_over))
 }
 
-/// The trace of a scene, under its whole name or the name behind its group, plain or packed. Nothing when there is none,
-/// and then in words what lies there that can't be used: what is no file, is damaged, or is reached by a link, as
-/// another's may be. More than `most` bytes are not read: what is cut there is a bad trace.
+/// The trace of a scene, under its whole name or the name behind its group, plain or packed. Nothing when there is
+/// none, and then in words what lies there that can't be used: what is no file, is damaged, or is reached by a link,
+/// as another's may be. More than `most` bytes are not read: what is cut there is a bad trace.
 fn read(folder: &Folder, scene: &str, most: u64) -> io::Result<(Vec<u8>, Option<String>)> {
     let mut passed_over = None;
     let last = scene.rsplit('/').next().unwrap_or(scene);
