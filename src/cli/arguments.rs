@@ -3,9 +3,9 @@ use super::{
     grading::{Demo, Doctor, Grade, Merge, Selftest, Suite},
     pictures::{DetectArguments, Render},
     scenes::Scene,
-    values::{TextOrJson, at_least_one, explaining, reader, rules},
+    values::{TextOrJson, assignment, at_least_one, explaining, reader, rules},
 };
-use crate::{judge::Rules, report::page::Audience, suite::config::Hints};
+use crate::{assignments::Assignment, judge::Rules, report::page::Audience, suite::config::Hints};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use std::{ffi::OsString, num::NonZeroUsize, path::PathBuf};
@@ -207,6 +207,7 @@ pub(super) struct CheckArguments {
 Example:
   fosssim-oracle explain scenes/test00.xml submission.bin
   fosssim-oracle explain --program ./FOSSSim
+  fosssim-oracle explain --program ./FOSSSim --assignment t1m3
   fosssim-oracle explain --program ./FOSSSim scenes/test00.xml
 
 With --program, the program runs in the sandbox on small scenes that make every term of every formula visible. \
@@ -218,6 +219,15 @@ pub(super) struct Explain {
     /// The program to run.
     #[arg(long, value_name = "PROGRAM")]
     pub(super) program: Option<PathBuf>,
+    /// The milestone of the program, whose small scenes it runs.
+    #[arg(
+        long,
+        value_parser = assignment(),
+        default_value = Assignment::DEFAULT.key(),
+        value_name = "MILESTONE",
+        requires = "program"
+    )]
+    pub(super) assignment: Assignment,
     /// How much the explanation tells.
     #[arg(long, value_parser = explaining(), default_value = "full")]
     pub(super) hints: Hints,

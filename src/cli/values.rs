@@ -1,5 +1,5 @@
 //! Values that several commands take as arguments.
-use crate::{judge::Rules, report::page::Audience, suite::config::Hints};
+use crate::{assignments::Assignment, judge::Rules, report::page::Audience, suite::config::Hints};
 use clap::{
     ValueEnum,
     builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
@@ -63,6 +63,12 @@ pub(super) fn explaining() -> impl TypedValueParser<Value = Hints> {
         ("what", Hints::What, "The likely mistake, in one sentence"),
         ("full", Hints::Full, "Also the exact terms and an example: this may give the right formula away"),
     ])
+}
+
+/// A milestone of the course.
+pub(super) fn assignment() -> impl TypedValueParser<Value = Assignment> {
+    PossibleValuesParser::new(Assignment::ALL.map(Assignment::key))
+        .try_map(|key| Assignment::named(&key).ok_or("no such milestone"))
 }
 
 /// The reader of a page.

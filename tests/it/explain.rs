@@ -2,6 +2,7 @@
 use super::{
     corpus,
     fair::{assets, rows, simulated},
+    grading,
     workspace::Workspace,
 };
 use fosssim_oracle::{
@@ -274,4 +275,26 @@ fn wrong_usage_is_said() {
     let run = workspace.run(["explain", "--program", "./missing"]);
     assert_eq!(run.code, Some(2), "{}", run.out());
     assert!(run.err().contains("missing"), "{}", run.err());
+}
+
+/// The small scenes are those of the program's milestone.
+#[test]
+fn a_program_of_any_milestone_is_explained() {
+    let Some(workspace) = grading::workspace() else { return };
+    let programs = grading::submit(&workspace, &["", "spring-direction", "drag-sign", "near-pairs-last-missing"]);
+    let explain = |program: &str, milestone: &str| {
+        workspace.run(["explain", "--program", program, "--assignment", milestone, "--format", "json"])
+    };
+    for milestone in ["t1m1", "t1m2", "t1m3", "t2m1", "t2m2", "t2m3"] {
+        let right = explain(&programs[0], milestone);
+        assert_eq!(right.code, Some(0), "{milestone}: {}", right.shown());
+    }
+    for (program, milestone, key) in
+        [(1, "t1m3", "spring-direction"), (2, "t1m2", "drag-sign"), (3, "t2m3", "near-pairs-last-missing")]
+    {
+        let wrong = explain(&programs[program], milestone);
+        assert!(wrong.code == Some(1) && wrong.out().contains(&format!("\"key\": \"{key}\"")), "{}", wrong.shown());
+    }
+    let unknown = explain(&programs[0], "t3m1");
+    assert!(unknown.code == Some(2) && unknown.err().contains("t2m3"), "{}", unknown.shown());
 }

@@ -28,7 +28,7 @@ use crate::{
         config::{Hints, RunLimits},
         coverage::Coverage,
         located::{ContentIndex, Contents, Failing, Located, Tried, locate},
-        plan,
+        plan::{self, Plan},
     },
     together::told::cut,
 };
@@ -144,10 +144,10 @@ fn program_on_probes(
     arguments: &Explain,
 ) -> Result<Option<(Diagnosis, Vec<Option<Card>>)>> {
     let program = placed(program);
-    let tasks = tasks(scenes)?;
     let cancellation = cancelled_by_signals();
     let backend = backend(arguments.unsafe_no_sandbox)?;
-    let plan = plan::find(Assignment::DEFAULT.key())?;
+    let plan = plan::find(arguments.assignment.key())?;
+    let tasks = tasks(arguments.assignment, &plan, scenes)?;
     let folders = Folders::default();
     let short = RunLimits { cpu: plan.limits.cpu.min(LEAST), wall: plan.limits.wall.min(LEAST), ..plan.limits };
     let nowhere = Place::new("", "");
@@ -223,12 +223,17 @@ fn likely(cases: &[Case], tasks: &[SceneTask]) -> Vec<Explanation> {
     diagnose::several(wrong, &refuted)
 }
 
-fn tasks(scenes: &[PathBuf]) -> Result<Vec<SceneTask>> {
+/// The scenes to run: the probe scenes of the milestone, its suite's where these show what the probe scenes do not, and
+/// those that are named.
+fn tasks(assignment: Assignment, plan: &Plan, scenes: &[PathBuf]) -> Result<Vec<SceneTask>> {
     let mut tasks = Vec::new();
-    for (name, scene) in diagnose::probe_scenes(Assignment::DEFAULT) {
+    for (name, scene) in diagnose::probe_scenes(assignment) {
         let xml = scene::write(&scene).into_bytes();
         tasks.push(SceneTask { name: format!("probe {name}"), xml, scene, recording: None });
     }
+    // The default milestone's probe scenes show every term of every formula.
+    let of_suite = plan.scenes().filter(|_| assignment != Assignment::DEFAULT);
+    tasks.extend(of_suite.cloned());
     for path in scenes {
         let scene = input::scene(path)?;
         let xml = scene::write(&scene.scene).into_bytes();
