@@ -4,11 +4,12 @@
 //! worker that the page makes itself; no address is among the sources.
 use crate::CourseSuite;
 use base64::{Engine, engine::general_purpose::STANDARD};
-use fosssim_report::page::{digest, framed, style};
+use fosssim_report::page::{ELEMENTS, digest, framed, style};
 use miniz_oxide::deflate::compress_to_vec;
 
 /// The page's script, in the order in which its parts need each other.
-const SCRIPT: [&str; 5] = [
+const SCRIPT: [&str; 6] = [
+    ELEMENTS,
     include_str!("../page/shell.js"),
     include_str!("../page/check.js"),
     include_str!("../page/submission.js"),

@@ -32,8 +32,12 @@ use fosssim_model::scene::Scene;
 use sha2::{Digest, Sha256};
 use std::sync::LazyLock;
 
+/// The part of the script that makes elements, for a page around reports, too.
+pub const ELEMENTS: &str = include_str!("viewer/elements.js");
+
 /// The viewer's script, in the order in which its parts need each other.
-const PARTS: [&str; 5] = [
+const PARTS: [&str; 6] = [
+    ELEMENTS,
     include_str!("viewer/tools.js"),
     include_str!("viewer/motion.js"),
     include_str!("viewer/drawing.js"),

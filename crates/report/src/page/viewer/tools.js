@@ -1,15 +1,5 @@
-// Elements, words, packed numbers, drawings as SVG: what knows nothing of a case.
+// Words, packed numbers, drawings as SVG: what knows nothing of a case.
 const SVG = "http://www.w3.org/2000/svg";
-const el = (tag, attributes = {}, ...children) => {
-  const node = document.createElement(tag);
-  for (const [name, value] of Object.entries(attributes)) {
-    if (name.startsWith("on")) node.addEventListener(name.slice(2), value);
-    else if (value === true) node.setAttribute(name, "");
-    else if (value !== false && value !== null) node.setAttribute(name, value);
-  }
-  node.append(...children);
-  return node;
-};
 const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const finite = (...values) => values.every(Number.isFinite);
 const short = (value) => (value === null || Number.isNaN(value) ? "nan" : Number(value.toPrecision(6)).toString());
