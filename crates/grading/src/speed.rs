@@ -16,13 +16,15 @@ use fosssim_findings::{
     Hints,
     speed::{SpeedMarking, TimedRun, Timing},
 };
-use std::fs;
+use std::{fs, time::Instant};
 
 impl SubmissionGrading<'_> {
     /// Times the scenes of groups that mark speed, if all of the group's are accepted. Times that this machine took
-    /// earlier for the same program stay.
+    /// earlier for the same program stay. Timed runs have as much time as the graded ones; when it is used up, each
+    /// further scene is timed once.
     pub(super) fn time(&self, results: &mut [(SceneResult, bool)]) {
         let mut rest = results;
+        let begin = Instant::now();
         for group in &self.grader.plan.groups {
             let (own, others) = rest.split_at_mut(group.scenes.len());
             rest = others;
@@ -34,9 +36,13 @@ impl SubmissionGrading<'_> {
                 if result.timing.as_ref().is_some_and(|timing| is_of_here(timing, marking)) {
                     continue;
                 }
-                result.timing = self.timed(scene, marking);
+                result.timing = self.timed(scene, marking, begin + self.grader.plan.patience.total);
                 *cached = false;
                 self.keep_timed(scene, result);
+                // Nothing more is to be had.
+                if result.timing.as_ref().is_none_or(|timing| timing.failed.is_some()) {
+                    break;
+                }
             }
         }
     }
@@ -50,8 +56,9 @@ impl SubmissionGrading<'_> {
         }
     }
 
-    /// The timed runs of a scene; nothing if the grader failed or was stopped.
-    fn timed(&self, scene: &SceneTask, marking: SpeedMarking) -> Option<Timing> {
+    /// The timed runs of a scene, of which the first alone begins after `end`; nothing if the grader failed or was
+    /// stopped.
+    fn timed(&self, scene: &SceneTask, marking: SpeedMarking, end: Instant) -> Option<Timing> {
         let (staged, reference) = (self.staged(), self.shared.reference(self.grader.reference?));
         let (Ok(staged), Ok(reference)) = (&*staged, &*reference) else { return None };
         let mut timing = Timing { machine: machine(), runs: Vec::new(), failed: None };
@@ -68,6 +75,9 @@ impl SubmissionGrading<'_> {
             (result.verdict, result.measured.cpu)
         };
         for round in 0..marking.runs {
+            if round > 0 && Instant::now() > end {
+                break;
+            }
             let submission = || run(staged, &self.grader.plan.run);
             let other = || run(reference, &config::default_run());
             // Neither always has the caches that the other has left.
