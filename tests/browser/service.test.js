@@ -140,7 +140,7 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await accessible(student.page);
   for (const width of [1440, 390]) {
     await student.page.setViewportSize({ width, height: 900 });
-    for (const place of ["", "/a/m1", "/s/1"]) {
+    for (const place of ["", "/a/m1", "/s/1", "/s/1/beside"]) {
       await student.page.goto(`${address}/c/physics${place}`);
       assert.ok((await student.page.evaluate(() => document.documentElement.scrollWidth)) <= width, `${place} at ${width}`);
     }
@@ -170,7 +170,7 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await student.page.goto(`${address}/c/physics/s/1`);
   await student.page.getByText("How the grade came to be").click();
   await student.page.getByText("Nobody should fail this").waitFor();
-  const further = ["members", "members/import", "a/m1/students/ada", "a/m1/settings", "a/m1/remove", "remove", "s/1"].map((place) => `/c/physics/${place}`);
+  const further = ["members", "members/import", "a/m1/students/ada", "a/m1/settings", "a/m1/remove", "remove", "s/1", "s/1/beside?login=ada"].map((place) => `/c/physics/${place}`);
   for (const place of ["/c/physics/queue", "/c/physics/audit", "/account", "/c/physics", "/admin/accounts/ada/remove", ...further]) {
     await page.goto(address + place);
     await accessible(page);

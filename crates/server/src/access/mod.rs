@@ -6,6 +6,7 @@
 mod account;
 mod admin;
 mod again;
+mod beside;
 mod bulk;
 mod campaign;
 mod choice;

@@ -129,6 +129,7 @@ pages! {
     get "/c/{course}/s/{id}/remove" => removal::submission,
     post "/c/{course}/s/{id}/remove" => removal::remove_submission,
     get "/c/{course}/s/{id}/report/{name}" => submission::report,
+    get "/c/{course}/s/{id}/beside" => submission::beside,
     get "/c/{course}/s/{id}/upload" => submission::upload,
     get "/static/style.css" => style,
     get "/static/page.js" => script,

@@ -1,6 +1,9 @@
 //! Handing in, and what came of it.
 use super::{
-    super::{api, input::At},
+    super::{
+        api,
+        input::{Asked, At},
+    },
     Frame,
     course::OwnWork,
     heat, see, show, text,
@@ -17,6 +20,7 @@ use axum::{
     http::HeaderMap,
     response::{Html, Redirect, Response},
 };
+use serde::Deserialize;
 
 /// How much of a report a page shows; the rest is behind its link.
 const SHOWN: u64 = 200_000;
@@ -100,10 +104,63 @@ pub(super) async fn submission(member: Member, At { course: slug, id, .. }: At) 
         history: member.history(id).await?,
         change: member.change(&submission).await?.as_ref().map(heat::change),
         doubts: member.doubts(id).await?,
-        page: [STAFF_PAGE, "report.html"].into_iter().find(|name| has(name)),
+        page: page_of(&submission),
         report,
         submission,
     })
+}
+
+#[derive(Template)]
+#[template(path = "beside.html")]
+struct BesidePage {
+    frame: Frame,
+    slug: String,
+    is_staff: bool,
+    /// Other attempts of the same person: their numbers of submission and attempt.
+    attempts: Vec<(i64, i64)>,
+    /// The submissions, each with its page.
+    shown: Vec<(Submission, Option<&'static str>)>,
+}
+
+/// The submission that is to stand beside another one.
+#[derive(Deserialize)]
+pub(super) struct Beside {
+    #[serde(default)]
+    attempt: String,
+    #[serde(default)]
+    login: String,
+}
+
+pub(super) async fn beside(
+    member: Member,
+    At { course: slug, id, .. }: At,
+    Asked(Beside { attempt, login }): Asked<Beside>,
+) -> Result<Html<String>, Problem> {
+    let one = member.submission(id).await?;
+    let attempts = member.attempts_beside(&one).await?;
+    let other = match (attempt.trim(), login.trim()) {
+        ("", "") => None,
+        ("", login) => Some(member.latest_beside(&one, login).await?),
+        (attempt, _) => Some(attempt.parse().map_err(|_| Problem::not_found("submission"))?),
+    };
+    let other = match other {
+        Some(other) => Some(member.submission(other).await?),
+        None => None,
+    };
+    let frame = Frame::assignment(&member, &one.assignment, &one.title)
+        .then(format!("/c/{slug}/s/{id}"), &format!("Submission {}", one.number));
+    let shown = std::iter::once(one).chain(other).map(|one| {
+        let page = page_of(&one);
+        (one, page)
+    });
+    show(&BesidePage { frame, is_staff: member.is_staff, attempts, shown: shown.collect(), slug })
+}
+
+/// The page that is shown of a submission: staff's own, where there is one that the reader may see.
+fn page_of(submission: &Submission) -> Option<&'static str> {
+    let files = submission.grade.iter().flat_map(|grade| &grade.files);
+    let names: Vec<&str> = files.map(|file| file.name.as_str()).collect();
+    [STAFF_PAGE, "report.html"].into_iter().find(|name| names.contains(name))
 }
 
 pub(super) async fn report(member: Member, At { id, name, .. }: At, headers: HeaderMap) -> Result<Response, Problem> {

@@ -181,6 +181,7 @@ pub(super) const ROUTES: &[(&str, &str, For)] = &[
     ("post", "/c/{course}/a/{assignment}/suspicions/{id}/tell", Staff),
     ("get", "/c/{course}/s/{id}", Owner),
     ("get", "/c/{course}/s/{id}/report/{name}", Owner),
+    ("get", "/c/{course}/s/{id}/beside", Owner),
     ("get", "/c/{course}/s/{id}/upload", Owner),
     ("get", "/check", All),
     ("get", "/static/style.css", All),
