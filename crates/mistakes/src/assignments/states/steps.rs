@@ -6,372 +6,223 @@ rows! {
     /// Something that a program does differently in a step.
     StepMistake STEPS []
     Wrong Integrator {
-        IntegratorEmpty "integrator-empty":
-            "A step changes nothing."
-            =>
-            "x and v stay as they are.";
-        IntegratorPositionsEmpty "integrator-positions-empty":
-            "Positions never change."
-            =>
-            "x += h v is missing.";
-        IntegratorVelocitiesEmpty "integrator-velocities-empty":
-            "Velocities never change."
-            =>
-            "v += h F / m is missing.";
+        IntegratorEmpty "integrator-empty": "A step changes nothing."
+            => "x and v stay as they are.";
+        IntegratorPositionsEmpty "integrator-positions-empty": "Positions never change."
+            => "x += h v is missing.";
+        IntegratorVelocitiesEmpty "integrator-velocities-empty": "Velocities never change."
+            => "v += h F / m is missing.";
         IntegratorVelocityFirst "integrator-velocity-first":
             "Positions are moved by the new velocities, where the old ones belong."
-            =>
-            "v += h F / m stands before x += h v; explicit Euler moves x by the old v.";
+            => "v += h F / m stands before x += h v; explicit Euler moves x by the old v.";
         IntegratorPositionFirst "integrator-position-first":
             "Positions are moved by the old velocities, where the new ones belong."
-            =>
-            "x += h v stands before v += h F / m; symplectic Euler moves x by the new v.";
+            => "x += h v stands before v += h F / m; symplectic Euler moves x by the new v.";
         IntegratorForceBehindPositions "integrator-force-behind-positions":
             "The forces are computed after the positions have moved, where those before belong."
-            =>
-            "F(x + h v, v) stands where F(x, v) belongs.";
-        IntegratorMeanVelocity "integrator-mean-velocity":
-            "Positions are moved by the mean of old and new velocities."
-            =>
-            "x += h (v_old + v_new) / 2 stands where one of the two belongs.";
-        IntegratorNoMass "integrator-no-mass":
-            "Forces are not divided by the mass."
-            =>
-            "F stands where F / m belongs.";
+            => "F(x + h v, v) stands where F(x, v) belongs.";
+        IntegratorMeanVelocity "integrator-mean-velocity": "Positions are moved by the mean of old and new velocities."
+            => "x += h (v_old + v_new) / 2 stands where one of the two belongs.";
+        IntegratorNoMass "integrator-no-mass": "Forces are not divided by the mass."
+            => "F stands where F / m belongs.";
         IntegratorMassMultiplied "integrator-mass-multiplied":
             "Forces are multiplied by the mass, where they are to be divided by it."
-            =>
-            "F m stands where F / m belongs.";
-        IntegratorForceSign "integrator-force-sign":
-            "The gradient of the energy is taken for the force."
-            =>
-            "F = gradient stands where F = -gradient belongs.";
+            => "F m stands where F / m belongs.";
+        IntegratorForceSign "integrator-force-sign": "The gradient of the energy is taken for the force."
+            => "F = gradient stands where F = -gradient belongs.";
         IntegratorNoStepForVelocities "integrator-no-step-for-velocities":
             "The change of velocity is not multiplied by the step size."
-            =>
-            "v += F / m stands where v += h F / m belongs.";
+            => "v += F / m stands where v += h F / m belongs.";
         IntegratorNoStepForPositions "integrator-no-step-for-positions":
             "The change of position is not multiplied by the step size."
-            =>
-            "x += v stands where x += h v belongs.";
+            => "x += v stands where x += h v belongs.";
         IntegratorFixedForgotten "integrator-fixed-forgotten":
             "Forces act on fixed particles, too."
             =>
             "F_i = 0 is missing for fixed particles; of implicit integrators the right-hand side's entries are \
             to be 0 and the rows of the matrix those of the identity.";
-        IntegratorFixedStand "integrator-fixed-stand":
-            "Fixed particles stand still, even those with a velocity."
-            =>
-            "x += h v is left out for fixed particles; only their force is 0.";
-        IntegratorFixedStopped "integrator-fixed-stopped":
-            "Fixed particles lose their velocity."
-            =>
-            "v = 0 stands for fixed particles, whose v stays as it is.";
+        IntegratorFixedStand "integrator-fixed-stand": "Fixed particles stand still, even those with a velocity."
+            => "x += h v is left out for fixed particles; only their force is 0.";
+        IntegratorFixedStopped "integrator-fixed-stopped": "Fixed particles lose their velocity."
+            => "v = 0 stands for fixed particles, whose v stays as it is.";
         LinearForcesAtStart "linear-forces-at-start":
             "The forces are computed at the start of the step, not at the predicted positions."
-            =>
-            "F(x, v) stands where F(x + h v, v) belongs.";
+            => "F(x, v) stands where F(x + h v, v) belongs.";
         LinearMatrixAtStart "linear-matrix-at-start":
             "The matrix is computed at the start of the step, not at the predicted positions."
-            =>
-            "A(x, v) stands where A(x + h v, v) belongs.";
+            => "A(x, v) stands where A(x + h v, v) belongs.";
         LinearAllAtStart "linear-all-at-start":
             "Forces and matrix are computed at the start of the step, not at the predicted positions."
-            =>
-            "x stands where x + h v belongs.";
+            => "x stands where x + h v belongs.";
         LinearIterates "linear-iterates":
             "The linearised step is repeated until nothing changes, where one solve belongs."
-            =>
-            "Newton's loop stands where one solve of A dv = h F belongs.";
+            => "Newton's loop stands where one solve of A dv = h F belongs.";
         LinearOverwrites "linear-overwrites":
             "The solution of the system replaces the velocities, where it is to be added."
-            =>
-            "v = dv stands where v += dv belongs.";
-        ImplicitOneIteration "implicit-one-iteration":
-            "Newton's method ends after one iteration."
-            =>
-            "The loop runs once; it runs until |dv's change| < 1e-9.";
-        ImplicitLoose "implicit-loose":
-            "Newton's method ends too early."
-            =>
-            "A larger bound stands where |dv's change| < 1e-9 belongs.";
-        ImplicitPositionsKept "implicit-positions-kept":
-            "Newton's method never moves its positions."
-            =>
-            "dx = h (v + dv) is missing: dx stays h v.";
+            => "v = dv stands where v += dv belongs.";
+        ImplicitOneIteration "implicit-one-iteration": "Newton's method ends after one iteration."
+            => "The loop runs once; it runs until |dv's change| < 1e-9.";
+        ImplicitLoose "implicit-loose": "Newton's method ends too early."
+            => "A larger bound stands where |dv's change| < 1e-9 belongs.";
+        ImplicitPositionsKept "implicit-positions-kept": "Newton's method never moves its positions."
+            => "dx = h (v + dv) is missing: dx stays h v.";
         ImplicitVelocitiesKept "implicit-velocities-kept":
             "Newton's method computes forces with the velocities at the start of the step."
-            =>
-            "F(x + dx, v) stands where F(x + dx, v + dv) belongs.";
+            => "F(x + dx, v) stands where F(x + dx, v + dv) belongs.";
         ImplicitPositionWithoutChange "implicit-position-without-change":
             "Positions are moved by the velocities from before the system was solved."
-            =>
-            "x += h v stands where x += h (v + dv) belongs.";
-        MatrixNoMass "matrix-no-mass":
-            "The system matrix lacks the masses."
-            =>
-            "A = h Hv + h^2 Hx stands where A = M + h Hv + h^2 Hx belongs.";
-        MatrixNoPositions "matrix-no-positions":
-            "The system matrix lacks the derivatives by positions."
-            =>
-            "h^2 Hx is missing in A = M + h Hv + h^2 Hx.";
-        MatrixNoVelocities "matrix-no-velocities":
-            "The system matrix lacks the derivatives by velocities."
-            =>
-            "h Hv is missing in A = M + h Hv + h^2 Hx.";
+            => "x += h v stands where x += h (v + dv) belongs.";
+        MatrixNoMass "matrix-no-mass": "The system matrix lacks the masses."
+            => "A = h Hv + h^2 Hx stands where A = M + h Hv + h^2 Hx belongs.";
+        MatrixNoPositions "matrix-no-positions": "The system matrix lacks the derivatives by positions."
+            => "h^2 Hx is missing in A = M + h Hv + h^2 Hx.";
+        MatrixNoVelocities "matrix-no-velocities": "The system matrix lacks the derivatives by velocities."
+            => "h Hv is missing in A = M + h Hv + h^2 Hx.";
         MatrixPositionsOnce "matrix-positions-once":
             "In the system matrix the derivatives by positions lack a factor of the step size."
-            =>
-            "h Hx stands where h^2 Hx belongs.";
+            => "h Hx stands where h^2 Hx belongs.";
         MatrixVelocitiesUnscaled "matrix-velocities-unscaled":
             "In the system matrix the derivatives by velocities are not multiplied by the step size."
-            =>
-            "Hv stands where h Hv belongs.";
+            => "Hv stands where h Hv belongs.";
         MatrixVelocitiesSquared "matrix-velocities-squared":
             "In the system matrix the derivatives by velocities are multiplied by the step size once too often."
-            =>
-            "h^2 Hv stands where h Hv belongs.";
-        MatrixSigns "matrix-signs":
-            "The system matrix subtracts the derivatives of the forces."
-            =>
-            "A = M - h Hv - h^2 Hx stands where A = M + h Hv + h^2 Hx belongs.";
-        MatrixRowsOfFixed "matrix-rows-of-fixed":
-            "The rows of fixed particles are left in the system matrix."
-            =>
-            "Rows and columns of fixed particles are to be those of the identity.";
-        RightSideSign "right-side-sign":
-            "The right-hand side of the system has the wrong sign."
-            =>
-            "-h F stands where h F belongs.";
-        RightSideNoStep "right-side-no-step":
-            "The right-hand side of the system is not multiplied by the step size."
-            =>
-            "F stands where h F belongs.";
-        RightSideOfFixed "right-side-of-fixed":
-            "The right-hand side of the system has entries for fixed particles."
-            =>
-            "The entries of fixed particles are to be 0.";
+            => "h^2 Hv stands where h Hv belongs.";
+        MatrixSigns "matrix-signs": "The system matrix subtracts the derivatives of the forces."
+            => "A = M - h Hv - h^2 Hx stands where A = M + h Hv + h^2 Hx belongs.";
+        MatrixRowsOfFixed "matrix-rows-of-fixed": "The rows of fixed particles are left in the system matrix."
+            => "Rows and columns of fixed particles are to be those of the identity.";
+        RightSideSign "right-side-sign": "The right-hand side of the system has the wrong sign."
+            => "-h F stands where h F belongs.";
+        RightSideNoStep "right-side-no-step": "The right-hand side of the system is not multiplied by the step size."
+            => "F stands where h F belongs.";
+        RightSideOfFixed "right-side-of-fixed": "The right-hand side of the system has entries for fixed particles."
+            => "The entries of fixed particles are to be 0.";
     }
     Wrong Penalty {
-        PenaltyMissing "penalty-missing":
-            "The penalty force adds nothing."
-            =>
-            "The whole sum over the pairs is missing.";
-        PenaltySign "penalty-sign":
-            "The penalty force pulls together."
-            =>
-            "The gradient has the other sign: g_i += ... stands where g_i -= k (|n| - r - h) u belongs.";
-        PenaltyNoStiffness "penalty-no-stiffness":
-            "The penalty force ignores its stiffness."
-            =>
-            "(|n| - r - h) stands where k (|n| - r - h) belongs.";
-        PenaltyNoThickness "penalty-no-thickness":
-            "The penalty force ignores the thickness of the layer."
-            =>
-            "r1 + r2 stands where r1 + r2 + h belongs, in the test as in the depth.";
+        PenaltyMissing "penalty-missing": "The penalty force adds nothing."
+            => "The whole sum over the pairs is missing.";
+        PenaltySign "penalty-sign": "The penalty force pulls together."
+            => "The gradient has the other sign: g_i += ... stands where g_i -= k (|n| - r - h) u belongs.";
+        PenaltyNoStiffness "penalty-no-stiffness": "The penalty force ignores its stiffness."
+            => "(|n| - r - h) stands where k (|n| - r - h) belongs.";
+        PenaltyNoThickness "penalty-no-thickness": "The penalty force ignores the thickness of the layer."
+            => "r1 + r2 stands where r1 + r2 + h belongs, in the test as in the depth.";
         PenaltyThicknessInTestOnly "penalty-thickness-in-test-only":
             "The depth of the penalty force ignores the thickness of the layer."
-            =>
-            "k (|n| - r1 - r2) stands where k (|n| - r1 - r2 - h) belongs.";
+            => "k (|n| - r1 - r2) stands where k (|n| - r1 - r2 - h) belongs.";
         PenaltyThicknessInDepthOnly "penalty-thickness-in-depth-only":
             "The penalty force tests without the thickness of the layer whether bodies are near."
-            =>
-            "|n| < r1 + r2 stands where |n| < r1 + r2 + h belongs.";
-        PenaltyNoRadii "penalty-no-radii":
-            "The penalty force ignores the radii."
-            =>
-            "h stands where r1 + r2 + h belongs.";
-        PenaltyFirstRadiusOnly "penalty-first-radius-only":
-            "The penalty force ignores the radius of the second body."
-            =>
-            "r1 + h stands where r1 + r2 + h belongs.";
-        PenaltyAlways "penalty-always":
-            "The penalty force acts on pairs that are apart, too, and pulls these together."
-            =>
-            "The test |n| < r1 + r2 + h is missing.";
-        PenaltyDirection "penalty-direction":
-            "The direction of the penalty force is not normalised."
-            =>
-            "n stands where u = n / |n| belongs; normalized() returns the unit vector and leaves n as it is.";
-        PenaltyFirstOnly "penalty-first-only":
-            "The penalty force acts on the first body of a pair only."
-            =>
-            "The other bodies' g += ... is missing.";
-        PenaltySameSign "penalty-same-sign":
-            "The penalty force pushes both bodies of a pair in the same direction."
-            =>
-            "The same sign stands for all bodies of a pair.";
-        PenaltyDepthSquared "penalty-depth-squared":
-            "The penalty force grows with the square of the depth."
-            =>
-            "k (|n| - r - h)^2 stands where k (|n| - r - h) belongs.";
-        PenaltyNoParticles "penalty-no-particles":
-            "The penalty force leaves pairs of particles out."
-            =>
-            "The particle-particle part is missing.";
-        PenaltyNoEdges "penalty-no-edges":
-            "The penalty force leaves edges out."
-            =>
-            "The particle-edge part is missing.";
-        PenaltyNoHalfPlanes "penalty-no-half-planes":
-            "The penalty force leaves half-planes out."
-            =>
-            "The particle-half-plane part is missing.";
-        PenaltyEdgeMiddle "penalty-edge-middle":
-            "The penalty force of an edge goes to its middle."
-            =>
-            "alpha = 1/2 stands where the closest point's alpha belongs.";
+            => "|n| < r1 + r2 stands where |n| < r1 + r2 + h belongs.";
+        PenaltyNoRadii "penalty-no-radii": "The penalty force ignores the radii."
+            => "h stands where r1 + r2 + h belongs.";
+        PenaltyFirstRadiusOnly "penalty-first-radius-only": "The penalty force ignores the radius of the second body."
+            => "r1 + h stands where r1 + r2 + h belongs.";
+        PenaltyAlways "penalty-always": "The penalty force acts on pairs that are apart, too, and pulls these together."
+            => "The test |n| < r1 + r2 + h is missing.";
+        PenaltyDirection "penalty-direction": "The direction of the penalty force is not normalised."
+            => "n stands where u = n / |n| belongs; normalized() returns the unit vector and leaves n as it is.";
+        PenaltyFirstOnly "penalty-first-only": "The penalty force acts on the first body of a pair only."
+            => "The other bodies' g += ... is missing.";
+        PenaltySameSign "penalty-same-sign": "The penalty force pushes both bodies of a pair in the same direction."
+            => "The same sign stands for all bodies of a pair.";
+        PenaltyDepthSquared "penalty-depth-squared": "The penalty force grows with the square of the depth."
+            => "k (|n| - r - h)^2 stands where k (|n| - r - h) belongs.";
+        PenaltyNoParticles "penalty-no-particles": "The penalty force leaves pairs of particles out."
+            => "The particle-particle part is missing.";
+        PenaltyNoEdges "penalty-no-edges": "The penalty force leaves edges out."
+            => "The particle-edge part is missing.";
+        PenaltyNoHalfPlanes "penalty-no-half-planes": "The penalty force leaves half-planes out."
+            => "The particle-half-plane part is missing.";
+        PenaltyEdgeMiddle "penalty-edge-middle": "The penalty force of an edge goes to its middle."
+            => "alpha = 1/2 stands where the closest point's alpha belongs.";
         PenaltyEdgeUnclamped "penalty-edge-unclamped":
             "The penalty force looks for the closest point of an edge on the whole line."
-            =>
-            "alpha is not clamped to 0 <= alpha <= 1.";
+            => "alpha is not clamped to 0 <= alpha <= 1.";
         PenaltyEdgeSharesSwapped "penalty-edge-shares-swapped":
             "The penalty force exchanges the shares of an edge's ends."
-            =>
-            "alpha and 1 - alpha stand in each other's places in the gradient.";
+            => "alpha and 1 - alpha stand in each other's places in the gradient.";
         PenaltyEdgeEqualShares "penalty-edge-equal-shares":
             "The penalty force is shared equally between the ends of an edge."
-            =>
-            "1/2 stands where 1 - alpha and alpha belong in the gradient.";
+            => "1/2 stands where 1 - alpha and alpha belong in the gradient.";
         PenaltyEdgeFullShares "penalty-edge-full-shares":
             "The penalty force acts on each end of an edge as if it were the only one."
-            =>
-            "1 stands where 1 - alpha and alpha belong in the gradient.";
-        PenaltyEdgeOneEnd "penalty-edge-one-end":
-            "The penalty force forgets the second end of an edge."
-            =>
-            "g_second += k alpha D u is missing.";
-        PenaltyEdgeNoRadius "penalty-edge-no-radius":
-            "The penalty force ignores the radius of edges."
-            =>
-            "r_i + h stands where r_i + r_e + h belongs for a particle and an edge.";
+            => "1 stands where 1 - alpha and alpha belong in the gradient.";
+        PenaltyEdgeOneEnd "penalty-edge-one-end": "The penalty force forgets the second end of an edge."
+            => "g_second += k alpha D u is missing.";
+        PenaltyEdgeNoRadius "penalty-edge-no-radius": "The penalty force ignores the radius of edges."
+            => "r_i + h stands where r_i + r_e + h belongs for a particle and an edge.";
         PenaltyNormalUndivided "penalty-normal-undivided":
             "The penalty force ignores the length of a half-plane's normal, which is right for unit normals only."
-            =>
-            "n = ((p - x) . q) q stands where n = ((p - x) . q) / (q . q) q belongs.";
-        PenaltyHalfPlaneSign "penalty-half-plane-sign":
-            "The penalty force of half-planes pulls."
-            =>
-            "g_i += ... stands where g_i -= k (|n| - r_i - h) u belongs.";
-        PenaltyBothOrders "penalty-both-orders":
-            "The penalty force is added for each pair of particles in both orders."
-            =>
-            "j runs over all particles; it begins at j = i + 1.";
+            => "n = ((p - x) . q) q stands where n = ((p - x) . q) / (q . q) q belongs.";
+        PenaltyHalfPlaneSign "penalty-half-plane-sign": "The penalty force of half-planes pulls."
+            => "g_i += ... stands where g_i -= k (|n| - r_i - h) u belongs.";
+        PenaltyBothOrders "penalty-both-orders": "The penalty force is added for each pair of particles in both orders."
+            => "j runs over all particles; it begins at j = i + 1.";
         PenaltyFirstHalfPlaneOnly "penalty-first-half-plane-only":
             "The penalty force looks at the first half-plane only."
-            =>
-            "The loop over half-planes ends after index 0.";
+            => "The loop over half-planes ends after index 0.";
     }
     Wrong NearPairs {
-        NearPairsFirstMissing "near-pairs-first-missing":
-            "Pairs of the first particle are never found."
-            =>
-            "The loop over the particles begins at i = 1.";
-        NearPairsLastMissing "near-pairs-last-missing":
-            "Pairs of the last particle are never found."
-            =>
-            "The loop over the particles ends at i = N - 2.";
-        NearPairsLastEdgeMissing "near-pairs-last-edge-missing":
-            "Pairs of the last edge are never found."
-            =>
-            "The loop over the edges ends at its number - 2.";
+        NearPairsFirstMissing "near-pairs-first-missing": "Pairs of the first particle are never found."
+            => "The loop over the particles begins at i = 1.";
+        NearPairsLastMissing "near-pairs-last-missing": "Pairs of the last particle are never found."
+            => "The loop over the particles ends at i = N - 2.";
+        NearPairsLastEdgeMissing "near-pairs-last-edge-missing": "Pairs of the last edge are never found."
+            => "The loop over the edges ends at its number - 2.";
         NearPairsLastHalfPlaneMissing "near-pairs-last-half-plane-missing":
             "Pairs of the last half-plane are never found."
-            =>
-            "The loop over the half-planes ends at its number - 2.";
-        NearPairsDoubled "near-pairs-doubled":
-            "Each pair is reported twice."
-            =>
-            "A pair that two cells or two sweeps find counts 1 time.";
-        NearPairsEdgesDoubled "near-pairs-edges-doubled":
-            "Each pair of a particle and an edge is reported twice."
-            =>
-            "A pair that two cells find counts 1 time.";
+            => "The loop over the half-planes ends at its number - 2.";
+        NearPairsDoubled "near-pairs-doubled": "Each pair is reported twice."
+            => "A pair that two cells or two sweeps find counts 1 time.";
+        NearPairsEdgesDoubled "near-pairs-edges-doubled": "Each pair of a particle and an edge is reported twice."
+            => "A pair that two cells find counts 1 time.";
         NearPairsHalfPlanesDoubled "near-pairs-half-planes-doubled":
             "Each pair of a particle and a half-plane is reported twice."
-            =>
-            "A pair counts 1 time.";
-        NearPairsNeighboursOnly "near-pairs-neighbours-only":
-            "The sweep compares a particle with the next one only."
-            =>
-            "The sweep goes on until the next body begins behind this one's end.";
+            => "A pair counts 1 time.";
+        NearPairsNeighboursOnly "near-pairs-neighbours-only": "The sweep compares a particle with the next one only."
+            => "The sweep goes on until the next body begins behind this one's end.";
         NearPairsBoxesWithoutThickness "near-pairs-boxes-without-thickness":
             "The bounding boxes lack the thickness of the layer."
-            =>
-            "Boxes from x - r to x + r are compared, where boxes that are larger by h / 2 on each side belong.";
-        NearPairsBoxesOfPoints "near-pairs-boxes-of-points":
-            "The bounding boxes of particles lack their radius."
-            =>
-            "Boxes from x to x are compared, where boxes from x - r to x + r belong, and h / 2 on each side.";
-        NearPairsEdgeEnds "near-pairs-edge-ends":
-            "An edge is looked for near its ends only."
-            =>
-            "The box around the whole edge belongs there.";
-        NearPairsEdgeFirstEnd "near-pairs-edge-first-end":
-            "An edge is looked for near its first end only."
-            =>
-            "The box around both ends belongs there.";
-        NearPairsOfStart "near-pairs-of-start":
-            "Pairs are looked for at the scene's first positions in every step."
-            =>
-            "The positions at the scene's start stand where x belongs.";
-        NearPairsOfLastStep "near-pairs-of-last-step":
-            "Pairs are looked for at the positions of the step before."
-            =>
-            "x - h v stands where x belongs: the boxes are not brought up to date.";
-        NearPairsFixedSkipped "near-pairs-fixed-skipped":
-            "Pairs with a fixed particle are left out."
-            =>
-            "A fixed particle pushes others, too.";
+            => "Boxes from x - r to x + r are compared, where boxes that are larger by h / 2 on each side belong.";
+        NearPairsBoxesOfPoints "near-pairs-boxes-of-points": "The bounding boxes of particles lack their radius."
+            => "Boxes from x to x are compared, where boxes from x - r to x + r belong, and h / 2 on each side.";
+        NearPairsEdgeEnds "near-pairs-edge-ends": "An edge is looked for near its ends only."
+            => "The box around the whole edge belongs there.";
+        NearPairsEdgeFirstEnd "near-pairs-edge-first-end": "An edge is looked for near its first end only."
+            => "The box around both ends belongs there.";
+        NearPairsOfStart "near-pairs-of-start": "Pairs are looked for at the scene's first positions in every step."
+            => "The positions at the scene's start stand where x belongs.";
+        NearPairsOfLastStep "near-pairs-of-last-step": "Pairs are looked for at the positions of the step before."
+            => "x - h v stands where x belongs: the boxes are not brought up to date.";
+        NearPairsFixedSkipped "near-pairs-fixed-skipped": "Pairs with a fixed particle are left out."
+            => "A fixed particle pushes others, too.";
     }
     Wrong Response {
-        SimpleSeparating "simple-separating":
-            "Bodies that overlap are pushed even when they move apart."
-            =>
-            "The test (v1 - v2) . n > 0 is missing.";
-        SimpleApproachSign "simple-approach-sign":
-            "Only bodies that move apart are pushed."
-            =>
-            "(v1 - v2) . n < 0 stands where (v1 - v2) . n > 0 belongs.";
-        SimpleAlways "simple-always":
-            "All pairs that approach each other are pushed, also distant ones."
-            =>
-            "The test |n| < r1 + r2 is missing.";
-        SimpleTouching "simple-touching":
-            "Bodies that touch without overlap are pushed, too."
-            =>
-            "|n| <= r1 + r2 stands where |n| < r1 + r2 belongs.";
-        SimpleFirstRadiusOnly "simple-first-radius-only":
-            "The radius of the second body is forgotten."
-            =>
-            "r1 stands where r1 + r2 belongs.";
-        SimpleNoParticles "simple-no-particles":
-            "Pairs of particles are not handled."
-            =>
-            "The particle-particle part is missing.";
-        SimpleNoEdges "simple-no-edges":
-            "Pairs of a particle and an edge are not handled."
-            =>
-            "The particle-edge part is missing.";
-        SimpleNoHalfPlanes "simple-no-half-planes":
-            "Pairs of a particle and a half-plane are not handled."
-            =>
-            "The particle-half-plane part is missing.";
-        SimpleEdgeUnclamped "simple-edge-unclamped":
-            "The closest point of an edge is looked for on the whole line."
-            =>
-            "alpha is not clamped to 0 <= alpha <= 1.";
+        SimpleSeparating "simple-separating": "Bodies that overlap are pushed even when they move apart."
+            => "The test (v1 - v2) . n > 0 is missing.";
+        SimpleApproachSign "simple-approach-sign": "Only bodies that move apart are pushed."
+            => "(v1 - v2) . n < 0 stands where (v1 - v2) . n > 0 belongs.";
+        SimpleAlways "simple-always": "All pairs that approach each other are pushed, also distant ones."
+            => "The test |n| < r1 + r2 is missing.";
+        SimpleTouching "simple-touching": "Bodies that touch without overlap are pushed, too."
+            => "|n| <= r1 + r2 stands where |n| < r1 + r2 belongs.";
+        SimpleFirstRadiusOnly "simple-first-radius-only": "The radius of the second body is forgotten."
+            => "r1 stands where r1 + r2 belongs.";
+        SimpleNoParticles "simple-no-particles": "Pairs of particles are not handled."
+            => "The particle-particle part is missing.";
+        SimpleNoEdges "simple-no-edges": "Pairs of a particle and an edge are not handled."
+            => "The particle-edge part is missing.";
+        SimpleNoHalfPlanes "simple-no-half-planes": "Pairs of a particle and a half-plane are not handled."
+            => "The particle-half-plane part is missing.";
+        SimpleEdgeUnclamped "simple-edge-unclamped": "The closest point of an edge is looked for on the whole line."
+            => "alpha is not clamped to 0 <= alpha <= 1.";
         SimpleEdgeWeights "simple-edge-weights":
             "The shares of an edge's ends are not squared where the masses are weighed."
-            =>
-            "1 - alpha and alpha stand where (1 - alpha)^2 and alpha^2 belong in the denominators.";
-        SimpleNormalLength "simple-normal-length":
-            "The half-plane's normal is not normalised."
-            =>
-            "q stands where q / |q| belongs in n = ((p - x) . q) q.";
+            => "1 - alpha and alpha stand where (1 - alpha)^2 and alpha^2 belong in the denominators.";
+        SimpleNormalLength "simple-normal-length": "The half-plane's normal is not normalised."
+            => "q stands where q / |q| belongs in n = ((p - x) . q) q.";
         SimpleAllFromStart "simple-all-from-start":
             "All impulses are computed from the velocities before the pass, where those of earlier pairs count."
-            =>
-            "The velocities before the first pair stand where the current v belongs.";
+            => "The velocities before the first pair stand where the current v belongs.";
     }
 }
