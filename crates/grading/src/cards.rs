@@ -112,13 +112,19 @@ mod tests {
     use fosssim_judge::replay;
     use fosssim_model::scene::original;
 
-    #[test]
-    fn a_card_is_kept_once_and_only_what_was_kept_is_read() {
+    /// A scene, the outcome of judging a trace of it, and the result.
+    fn wrong() -> (SceneTask, Outcome, SceneResult) {
         let xml = b"<scene><duration time=\"0\"/><integrator type=\"explicit-euler\" dt=\"1\"/></scene>";
         let scene = original::read(xml).expect("a scene").scene;
         let task = SceneTask { name: "a/b".to_owned(), xml: xml.to_vec(), scene, recording: None };
         let outcome = replay::judge(&task.scene, &[][..], &replay::Options::default(), &mut ());
         let result = SceneResult::without_run("a/b", 0, Verdict::WrongAnswer, Reason::Right);
+        (task, outcome, result)
+    }
+
+    #[test]
+    fn a_card_is_kept_once_and_only_what_was_kept_is_read() {
+        let (task, outcome, result) = wrong();
         let judged = Judged {
             task: &task,
             result: &result,
@@ -156,11 +162,7 @@ mod tests {
     /// Staff's card never takes the place of the one for students.
     #[test]
     fn students_have_a_card_of_their_own_where_they_are_told_less() {
-        let xml = b"<scene><duration time=\"0\"/><integrator type=\"explicit-euler\" dt=\"1\"/></scene>";
-        let scene = original::read(xml).expect("a scene").scene;
-        let task = SceneTask { name: "a/b".to_owned(), xml: xml.to_vec(), scene, recording: None };
-        let outcome = replay::judge(&task.scene, &[][..], &replay::Options::default(), &mut ());
-        let result = SceneResult::without_run("a/b", 0, Verdict::WrongAnswer, Reason::Right);
+        let (task, outcome, result) = wrong();
         let (rules, hints) = (Rules::Fair, Hints::Full);
         let judged = Judged {
             task: &task,

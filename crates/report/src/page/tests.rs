@@ -161,21 +161,24 @@ fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
     (card, result)
 }
 
-/// The page of a submission with these results, all of which have the same card.
-fn page_of(results: Vec<SceneResult>, card: Option<&Card>) -> String {
-    let marking = Marking {
-        points: 10.0,
-        credit: Credit::Scenes,
-        visibility: Visibility::Visible,
-        hints: Hints::Full,
-        speed: None,
-    };
-    let grade = Grade {
-        groups: vec![score::group("Group", marking, results.into_iter().map(|result| (result, false)).collect())],
+/// A group of ten points, of whose scenes students are told this much.
+fn marking(hints: Hints) -> Marking {
+    Marking { points: 10.0, credit: Credit::Scenes, visibility: Visibility::Visible, hints, speed: None }
+}
+
+/// The wrong submission with these results.
+fn wrong(results: Vec<SceneResult>, hints: Hints) -> Grade {
+    Grade {
+        groups: vec![with_results(marking(hints), results)],
         verdict: Verdict::WrongAnswer,
         shows_output: true,
         ..crate::grade::samples::good()
-    };
+    }
+}
+
+/// The page of a submission with these results, all of which have the same card.
+fn page_of(results: Vec<SceneResult>, card: Option<&Card>) -> String {
+    let grade = wrong(results, Hints::Full);
     GradePage { grade: &grade, card: &|_| card.cloned(), class: None, reader: Audience::Staff }.html()
 }
 
@@ -183,13 +186,7 @@ fn page_of(results: Vec<SceneResult>, card: Option<&Card>) -> String {
 fn graded(scene: &Scene, id: &str, hints: Hints) -> [String; 2] {
     let ((own, mut result), (full, _)) = (drawn(scene, id, hints), drawn(scene, id, Hints::Full));
     (result.card, result.card_for_students) = (Some("full".to_owned()), own.is_some().then(|| "own".to_owned()));
-    let marking = Marking { points: 10.0, credit: Credit::Scenes, visibility: Visibility::Visible, hints, speed: None };
-    let grade = Grade {
-        groups: vec![score::group("Group", marking, vec![(result, false)])],
-        verdict: Verdict::WrongAnswer,
-        shows_output: true,
-        ..crate::grade::samples::good()
-    };
+    let grade = wrong(vec![result], hints);
     let card = |scene: &fosssim_grading::SceneGrade| match scene.card.as_deref() {
         Some("full") => full.clone(),
         Some("own") => own.clone(),
@@ -294,15 +291,8 @@ fn the_most_telling_scene_is_opened_first_and_links_lead_to_it() {
     let card = |scene: &fosssim_grading::SceneGrade| {
         scenes.iter().find(|(result, _)| result.scene == scene.scene).and_then(|(_, card)| card.clone())
     };
-    let marking = Marking {
-        points: 10.0,
-        credit: Credit::Scenes,
-        visibility: Visibility::Visible,
-        hints: Hints::Full,
-        speed: None,
-    };
     let grade = Grade {
-        groups: vec![with_results(marking, results)],
+        groups: vec![with_results(marking(Hints::Full), results)],
         verdict: Verdict::RuntimeError,
         ..crate::grade::samples::good()
     };
