@@ -4,15 +4,21 @@ use crate::support::{
     server::Server,
 };
 use std::{
+    io::ErrorKind,
     os::unix::net::UnixDatagram,
     process::{Command, Stdio},
     time::Duration,
 };
 
-/// The next word to systemd.
+/// The next word to systemd. Signals to this process, of other tests' children for example, may interrupt the wait.
 fn told(socket: &UnixDatagram) -> String {
     let mut text = [0; 4096];
-    let length = socket.recv(&mut text).expect("a word");
+    let length = loop {
+        match socket.recv(&mut text) {
+            Err(error) if error.kind() == ErrorKind::Interrupted => {}
+            received => break received.expect("a word"),
+        }
+    };
     String::from_utf8_lossy(&text[..length]).trim().to_owned()
 }
 
