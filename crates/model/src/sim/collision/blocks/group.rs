@@ -1,7 +1,10 @@
 //! The pairs of some particles in a row, one per lane, with every edge and every half-plane, and of one particle with
-//! some others: coefficients, and what the closed forms of the certificate say about them.
+//! some others or some edges: coefficients, and what the closed forms of the certificate say about them.
 use super::{
-    super::{particle_edge, particle_half_plane, particle_particle},
+    super::{
+        particle_edge::{self, EdgePolynomials},
+        particle_half_plane, particle_particle,
+    },
     lists::Lists,
 };
 use crate::sim::bodies::Bodies;
@@ -47,59 +50,105 @@ const NOTHING: f64 = (1_u64 << 52) as f64;
 pub(super) struct Group {
     /// The particles.
     pub particles: Range<usize>,
-    /// The pairs with edges, edge by edge, and for each of these particle by particle.
+    /// The pairs with edges, edge by edge, and for each of these particle by particle; and room for the edges that
+    /// lanes may reach behind the last one.
     pub edges: Vec<f64>,
     /// The pairs with half-planes, likewise.
     pub half_planes: Vec<f64>,
     /// No coefficient has a larger modulus.
     pub largest: f64,
+    /// Whether a response has moved bodies in this pass: the next one would spoil what is computed of other particles.
+    has_moved: bool,
 }
 
 impl Group {
-    /// Forgets all pairs.
-    pub fn clear(&mut self) {
+    /// Forgets all pairs, at the start of a pass or when a response has moved bodies.
+    pub fn clear(&mut self, has_moved: bool) {
         self.particles = 0..0;
+        self.has_moved = has_moved;
     }
 
-    /// Computes the pairs of the particles from `first` on.
+    /// Makes sure that the pairs of a particle with half-planes and with edges from `edge` on are computed.
     #[inline(always)]
-    pub fn fill<S: Simd>(&mut self, simd: S, lists: &Lists, bodies: &Bodies, first: usize) {
-        let width = Lanes::<S>::COUNT;
-        self.particles = first..first + width;
-        self.edges.resize(bodies.edges.len() * EDGE_ROW * width + BEHIND, 0.0);
-        self.half_planes.resize(bodies.points.len() * TWO_ROW * width, 0.0);
-        let (x, d, radius) = lists.particles(simd, first);
-        let mut largest = Lanes::all(simd, 0.0);
-        for (edge, rows) in self.edges.chunks_exact_mut(EDGE_ROW * width).enumerate() {
-            let motion = lists.edge(simd, bodies.edges[edge]);
-            let sum = radius + Lanes::all(simd, bodies.edge_radii[edge]);
-            let pair = particle_edge::coefficients(x, d, &motion, sum);
-            let [o0, o1, o2, o3, o4] = pair.distance;
-            let [f0, f1, f2] = pair.beyond_first;
-            let [s0, s1, s2] = pair.before_second;
-            let [a0, a1, a2, a3, a4, a5] = pair.approach;
-            // Code that needs all of them comes before code with branches, across which few numbers can be kept at
-            // hand.
-            let all = [o0, o1, o2, o3, o4, f0, f1, f2, s0, s1, s2, a0, a1, a2, a3, a4, a5];
-            let small = small(simd, &all);
-            for lanes in &all {
-                largest = largest.max(lanes.abs());
-            }
-            let ends = search_ends(&pair.distance) & search_ends(&pair.approach);
-            let fours = [[o0, o1, o2, o3], [o4, f0, f1, f2], [s0, s1, s2, a0], [a1, a2, a3, a4]];
-            Lanes::store_by_lane(&fours, EDGE_ROW, rows);
-            let excluded = excludes_edge(ends, pair.distance, pair.beyond_first, pair.before_second, pair.approach);
-            let known = small + (!excluded).as_numbers();
-            Lanes::store_by_lane(&[[a5, known, known, known]], EDGE_ROW, &mut rows[16..]);
+    pub fn provide<S: Simd>(&mut self, simd: S, lists: &Lists, bodies: &Bodies, first: usize, edge: usize) {
+        if self.particles.contains(&first) {
+            return;
         }
-        for (half_plane, rows) in self.half_planes.chunks_exact_mut(TWO_ROW * width).enumerate() {
+        let width = Lanes::<S>::COUNT;
+        let edges = bodies.edges.len();
+        let is_alone = self.has_moved && edges > 0;
+        self.particles = first..first + if is_alone { 1 } else { width };
+        self.edges.resize((edges + width) * EDGE_ROW * width + BEHIND, 0.0);
+        self.half_planes.resize(bodies.points.len() * TWO_ROW * width, 0.0);
+        let mut largest = Lanes::all(simd, 0.0);
+        if is_alone {
+            largest = self.with_edges(simd, lists, first, edge..edges, largest);
+        } else {
+            for edge in 0..edges {
+                largest = self.with_edge(simd, lists, bodies, edge, largest);
+            }
+        }
+        self.largest = self.with_half_planes(simd, lists, bodies, largest).largest();
+    }
+
+    /// Computes the pairs of all particles with one edge. Gives the largest moduli so far.
+    #[inline(always)]
+    fn with_edge<S: Simd>(
+        &mut self,
+        simd: S,
+        lists: &Lists,
+        bodies: &Bodies,
+        edge: usize,
+        largest: Lanes<S>,
+    ) -> Lanes<S> {
+        let (x, d, radius) = lists.particles(simd, self.particles.start);
+        let motion = lists.edge(simd, bodies.edges[edge]);
+        let pair = particle_edge::coefficients(x, d, &motion, radius + Lanes::all(simd, bodies.edge_radii[edge]));
+        let begin = edge * EDGE_ROW * Lanes::<S>::COUNT;
+        store_edges(simd, &pair, EDGE_ROW, &mut self.edges[begin..], largest)
+    }
+
+    /// The same of the first particle with some edges.
+    #[inline(always)]
+    fn with_edges<S: Simd>(
+        &mut self,
+        simd: S,
+        lists: &Lists,
+        first: usize,
+        edges: Range<usize>,
+        mut largest: Lanes<S>,
+    ) -> Lanes<S> {
+        let width = Lanes::<S>::COUNT;
+        let (x, d, radius) = lists.particle(simd, first);
+        let mut edge = edges.start;
+        while edge < edges.end {
+            let (motions, edge_radii) = lists.edges(simd, edge);
+            let pair = particle_edge::coefficients(x, d, &motions, radius + edge_radii);
+            let begin = edge * EDGE_ROW * width;
+            largest = store_edges(simd, &pair, EDGE_ROW * width, &mut self.edges[begin..], largest);
+            edge += width;
+        }
+        largest
+    }
+
+    /// The same of all particles with all half-planes.
+    #[inline(always)]
+    fn with_half_planes<S: Simd>(
+        &mut self,
+        simd: S,
+        lists: &Lists,
+        bodies: &Bodies,
+        mut largest: Lanes<S>,
+    ) -> Lanes<S> {
+        let (x, d, radius) = lists.particles(simd, self.particles.start);
+        for (half_plane, rows) in self.half_planes.chunks_exact_mut(TWO_ROW * Lanes::<S>::COUNT).enumerate() {
             let point = all(simd, bodies.points[half_plane]);
             let normal = all(simd, bodies.normals[half_plane]);
             let squared = Lanes::all(simd, lists.squares[half_plane]);
             let (overlap, approach) = particle_half_plane::coefficients(x, d, radius, point, normal, squared);
             largest = store(simd, overlap, approach, rows, largest);
         }
-        self.largest = largest.largest();
+        largest
     }
 }
 
@@ -122,6 +171,33 @@ pub(super) fn of_particles<S: Simd>(
     let (x2, d2, r2) = lists.particles(simd, second);
     let (overlap, approach) = particle_particle::coefficients(x1, d1, x2, d2, r1 + r2);
     store(simd, overlap, approach, rows, largest)
+}
+
+/// Asks the certificate about pairs with edges, and stores everything; the rows of two lanes are `stride` apart. Gives
+/// the largest moduli so far.
+#[inline(always)]
+fn store_edges<S: Simd>(
+    simd: S,
+    pair: &EdgePolynomials<Lanes<S>>,
+    stride: usize,
+    rows: &mut [f64],
+    mut largest: Lanes<S>,
+) -> Lanes<S> {
+    let EdgePolynomials { distance, beyond_first, before_second, approach } = *pair;
+    let ([o0, o1, o2, o3, o4], [a0, a1, a2, a3, a4, a5]) = (distance, approach);
+    let ([f0, f1, f2], [s0, s1, s2]) = (beyond_first, before_second);
+    // Code that needs all of them comes before code with branches, across which few numbers can be kept at hand.
+    let all = [o0, o1, o2, o3, o4, f0, f1, f2, s0, s1, s2, a0, a1, a2, a3, a4, a5];
+    let small = small(simd, &all);
+    for lanes in &all {
+        largest = largest.max(lanes.abs());
+    }
+    let ends = search_ends(&distance) & search_ends(&approach);
+    let fours = [[o0, o1, o2, o3], [o4, f0, f1, f2], [s0, s1, s2, a0], [a1, a2, a3, a4]];
+    Lanes::store_by_lane(&fours, stride, rows);
+    let known = small + (!excludes_edge(ends, distance, beyond_first, before_second, approach)).as_numbers();
+    Lanes::store_by_lane(&[[a5, known, known, known]], stride, &mut rows[16..]);
+    largest
 }
 
 /// Asks the certificate about a parabola and a line, and stores everything.

@@ -13,6 +13,10 @@ pub(super) struct Lists {
     /// Positions at the start of the step (x, y), displacements (x, y) and radii of particles, with as many entries
     /// behind the last one as lanes may reach; these repeat it.
     particles: [Vec<f64>; 5],
+    /// The same of edges: starts and displacements of their first and second ends, and radii.
+    edges: [Vec<f64>; 9],
+    /// Whether these are filled in this pass; nobody needs them before a response has moved bodies.
+    has_edges: bool,
     /// The squared lengths of half-planes' normals.
     pub squares: Vec<f64>,
     /// For each particle the edges that end in it, ascending.
@@ -39,33 +43,44 @@ impl Lists {
         {
             (*x, *y, *dx, *dy) = (start[0], start[1], shift[0], shift[1]);
         }
-        let count = bodies.particles();
-        for list in &mut self.particles[..4] {
-            if let [.., last] = list[..count] {
-                list[count..].fill(last);
-            }
-        }
+        repeat_last(&mut self.particles[..4], bodies.particles());
+        self.has_edges = false;
         self.has_moderate_constants && are_moderate(q_start) && are_moderate(displacements)
     }
 
     /// Takes over the displacements of these particles; false as in [`Lists::prepare`].
     pub fn refresh(&mut self, setting: Setting<'_>, moved: [usize; 3]) -> bool {
-        let count = setting.bodies.particles();
-        moved.into_iter().all(|particle| {
-            let shift = at(setting.displacements, particle);
-            for (list, value) in self.particles[2..4].iter_mut().zip([shift.x, shift.y]) {
-                list[particle] = value;
-                if particle + 1 == count {
-                    list[count..].fill(value);
+        let Setting { bodies, displacements, .. } = setting;
+        let mut are_all_moderate = true;
+        for particle in moved {
+            let shift = at(displacements, particle);
+            put(&mut self.particles[2..4], particle, bodies.particles(), shift);
+            are_all_moderate &= are_moderate(&[shift.x, shift.y]);
+        }
+        if std::mem::replace(&mut self.has_edges, true) {
+            for particle in moved {
+                for &edge in &self.own_edges[particle] {
+                    let shift = [0, 1].map(|end| at(displacements, bodies.edges[edge][end]));
+                    put(&mut self.edges[2..4], edge, bodies.edges.len(), shift[0]);
+                    put(&mut self.edges[6..8], edge, bodies.edges.len(), shift[1]);
                 }
             }
-            are_moderate(&[shift.x, shift.y])
-        })
+        } else {
+            for (end, lists) in self.edges.chunks_exact_mut(4).enumerate() {
+                for (list, of_particles) in lists.iter_mut().zip(&self.particles) {
+                    for (place, ends) in list.iter_mut().zip(&bodies.edges) {
+                        *place = of_particles[ends[end]];
+                    }
+                }
+            }
+            repeat_last(&mut self.edges[..8], bodies.edges.len());
+        }
+        are_all_moderate
     }
 
     /// Fills the lists of values that do not change while the scene is simulated.
     fn constants(&mut self, bodies: &Bodies) {
-        let count = bodies.particles();
+        let (count, edges) = (bodies.particles(), bodies.edges.len());
         self.own_edges = vec![Vec::new(); count];
         for (edge, ends) in bodies.edges.iter().enumerate() {
             for &end in ends {
@@ -77,6 +92,8 @@ impl Lists {
         }
         self.particles = std::array::from_fn(|_| vec![0.0; count + MOST_LANES]);
         self.particles[4][..count].copy_from_slice(&bodies.radii);
+        self.edges = std::array::from_fn(|_| vec![0.0; edges + MOST_LANES]);
+        self.edges[8][..edges].copy_from_slice(&bodies.edge_radii);
         self.squares = bodies.normals.iter().map(|normal| normal.dot(normal)).collect();
         let vectors = bodies.points.iter().chain(&bodies.normals);
         self.has_moderate_constants = are_moderate(&bodies.radii)
@@ -104,9 +121,16 @@ impl Lists {
     #[inline(always)]
     pub fn particles<S: Simd>(&self, simd: S, first: usize) -> Five<S> {
         let [x, y, dx, dy, radius] = &self.particles;
-        let position = Plane { x: Lanes::load(simd, &x[first..]), y: Lanes::load(simd, &y[first..]) };
-        let displacement = Plane { x: Lanes::load(simd, &dx[first..]), y: Lanes::load(simd, &dy[first..]) };
-        (position, displacement, Lanes::load(simd, &radius[first..]))
+        (plane(simd, x, y, first), plane(simd, dx, dy, first), Lanes::load(simd, &radius[first..]))
+    }
+
+    /// Motions and radii of the edges from `first` on.
+    #[inline(always)]
+    pub fn edges<S: Simd>(&self, simd: S, first: usize) -> (EdgeMotions<Lanes<S>>, Lanes<S>) {
+        let [x2, y2, dx2, dy2, x3, y3, dx3, dy3, radius] = &self.edges;
+        let (x2, d2) = (plane(simd, x2, y2, first), plane(simd, dx2, dy2, first));
+        let (x3, d3) = (plane(simd, x3, y3, first), plane(simd, dx3, dy3, first));
+        (EdgeMotions::new(x2, d2, x3, d3), Lanes::load(simd, &radius[first..]))
     }
 
     /// The motion of an edge with these ends, in all lanes.
@@ -114,6 +138,29 @@ impl Lists {
     pub fn edge<S: Simd>(&self, simd: S, [first, second]: [usize; 2]) -> EdgeMotions<Lanes<S>> {
         let ((x2, d2, _), (x3, d3, _)) = (self.particle(simd, first), self.particle(simd, second));
         EdgeMotions::new(x2, d2, x3, d3)
+    }
+}
+
+/// The vectors from `first` on, of lists of their components.
+#[inline(always)]
+fn plane<S: Simd>(simd: S, x: &[f64], y: &[f64], first: usize) -> Plane<Lanes<S>> {
+    Plane { x: Lanes::load(simd, &x[first..]), y: Lanes::load(simd, &y[first..]) }
+}
+
+/// Fills what is behind the first `count` entries with the last of these.
+fn repeat_last(lists: &mut [Vec<f64>], count: usize) {
+    for list in lists {
+        if let [.., last] = list[..count] {
+            list[count..].fill(last);
+        }
+    }
+}
+
+/// Puts a vector into entry `index` of two lists with `count` entries, the last of which stands behind them, too.
+fn put(lists: &mut [Vec<f64>], index: usize, count: usize, vector: Vec2) {
+    for (list, value) in lists.iter_mut().zip([vector.x, vector.y]) {
+        let end = if index + 1 == count { list.len() } else { index + 1 };
+        list[index..end].fill(value);
     }
 }
 

@@ -52,13 +52,13 @@ impl Blocks {
 
     /// Prepares a pass. False where pairs have to be computed one by one.
     pub fn prepare(&mut self, setting: Setting<'_>) -> bool {
-        self.group.clear();
+        self.group.clear(false);
         self.lists.prepare(setting)
     }
 
     /// Takes over the displacements of these particles. False where the rest has to be computed one by one.
     pub fn refresh(&mut self, setting: Setting<'_>, moved: [usize; 3]) -> bool {
-        self.group.clear();
+        self.group.clear(true);
         self.lists.refresh(setting, moved)
     }
 

@@ -73,9 +73,7 @@ impl Pairs<'_> {
         if edges.is_empty() && half_planes.is_empty() {
             return false;
         }
-        if !self.group.particles.contains(&first) {
-            self.group.fill(simd, self.lists, self.setting.bodies, first);
-        }
+        self.group.provide(simd, self.lists, self.setting.bodies, first, edges.start);
         self.edges(simd, first, edges, output) || self.half_planes(simd, first, half_planes, output)
     }
 
