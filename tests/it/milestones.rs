@@ -1,5 +1,8 @@
 //! The course's milestones: each has a suite of scenes that its programs can run, fair to right ones.
-use super::workspace::{Workspace, simulate};
+use super::{
+    grading,
+    workspace::{Workspace, simulate},
+};
 use fosssim_oracle::{
     assignments::Assignment::{self, T1M1, T1M2, T1M3, T2M1, T2M2, T2M3},
     judge::{
@@ -129,4 +132,24 @@ fn a_suite_says_which_known_mistakes_no_scene_of_it_shows() {
     let one = check("one.toml");
     assert!(part(&one, "penalty").0 < part(&contest, "penalty").0 && one.contains("not shown: "), "{one}");
     assert!(one.contains("penalty-first-half-plane-only"), "{one}");
+}
+
+/// Scenes that are right speak, too, and a mistake that only one scene shows is told beside the one that most show.
+#[test]
+fn a_grade_names_what_its_scenes_show_together() {
+    let Some(workspace) = grading::workspace() else { return };
+    let cases = [
+        ("penalty-first-half-plane-only", "t2m1", "The penalty force looks at the first half-plane only."),
+        ("near-pairs-half-planes-doubled", "t2m3", "Each pair of a particle and a half-plane is reported twice."),
+        ("jacobian-drag-missing", "t1m3", "Drag has no derivatives by velocities."),
+        ("gravitation-no-masses,spring-no-rest-length", "t1m3", "The gravitational force ignores the masses."),
+        ("integrator-velocities-empty", "t1m1", "Or, with the same traces: Integrator: Velocities never change."),
+    ];
+    let paths = grading::submit(&workspace, &cases.map(|(mistake, ..)| mistake));
+    for ((mistake, suite, sentence), path) in cases.into_iter().zip(paths) {
+        let run = workspace.run(["grade", &path, "--suite", suite]);
+        let text = run.out();
+        let (_, told) = text.split_once("\nLikely mistake").unwrap_or_else(|| panic!("{}", run.shown()));
+        assert!(told.contains(sentence), "{mistake}: {}", run.shown());
+    }
 }

@@ -119,7 +119,7 @@ pub(super) fn refuted(plan: &Plan, groups: &[GroupGrade]) -> Vec<String> {
         .map(|(graded, _)| graded.explanations.as_slice())
         .filter(|explanations| !explanations.is_empty())
         .collect();
-    if wrong.len() < 2 {
+    if wrong.is_empty() {
         return Vec::new();
     }
     let mut right: Vec<&Scene> = graded()

@@ -135,6 +135,10 @@ pub const KNOWN_DROPPED: f64 = 2.0 * LEADING_COEFFICIENT;
 /// 1.
 pub const KNOWN_STATE: f64 = 1e-10;
 
+/// Known mistakes: the same of implicit steps, where Newton's method stops so near to the same state that a wrong
+/// derivative shows in its last digits only.
+pub const KNOWN_NEWTON_STATE: f64 = 2e-14;
+
 /// Known mistakes: a re-simulated contact vector may differ by this share of its length plus 1.
 pub const KNOWN_NORMAL: f64 = 1e-9;
 

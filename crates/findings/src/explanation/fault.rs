@@ -370,6 +370,9 @@ pub struct NotFinite {
     pub stage: NanStage,
     /// Whether the first one is NaN, and not infinite.
     pub is_nan: bool,
+    /// Whether all numbers of a later step are finite again.
+    #[serde(default)]
+    pub ends: bool,
 }
 
 /// The first stage of a step whose input is numbers and whose output is not.
@@ -379,6 +382,8 @@ pub enum NanStage {
     FirstRecord,
     /// The step itself, before any contact.
     Motion,
+    /// The same, where it solves a system of equations.
+    ImplicitMotion,
     /// The detection of this kind of pair, as far as that is known: its coefficients.
     Detection(Option<PairKind>),
     /// Contact vectors and times.

@@ -64,7 +64,11 @@ fn grade(scenes: Vec<Vec<Explanation>>) -> Grade {
 #[test]
 fn each_scene_says_what_all_together_say() {
     let end = |step, stage| {
-        told(Explanation::NOT_FINITE, About::NotFinite(NotFinite { step: Some(step), stage, is_nan: true }), 0)
+        told(
+            Explanation::NOT_FINITE,
+            About::NotFinite(NotFinite { step: Some(step), stage, is_nan: true, ends: false }),
+            0,
+        )
     };
     let short = told("loop-one-fewer", About::Mistake, 4);
     let empty = Explanation { same_as: vec!["loop-one-fewer".to_owned()], ..told("loop-empty", About::Mistake, 2) };
@@ -97,7 +101,7 @@ fn where_numbers_end_comes_first_unless_a_mistake_explains_it() {
     let end = || {
         told(
             Explanation::NOT_FINITE,
-            About::NotFinite(NotFinite { step: Some(7), stage: NanStage::Zones, is_nan: true }),
+            About::NotFinite(NotFinite { step: Some(7), stage: NanStage::Zones, is_nan: true, ends: false }),
             0,
         )
     };

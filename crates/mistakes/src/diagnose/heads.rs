@@ -8,15 +8,18 @@ use super::{
     about::{About, OfPolynomials},
     explain::is_formula,
     fault::StepStage,
-    known::{is_empty_stage, shows},
-    naming::{bears_out, bears_out_wholly, is_in_other_words, is_named_in},
+    known::{is_empty_stage, shows, shows_within},
+    naming::{as_row, bears_out, bears_out_wholly, is_in_other_words, is_named_in},
 };
 use crate::{
     assignments::t2m2::Subject,
     student::{Area, CATALOGUE, Row, find},
 };
 use fosssim_model::scene::Scene;
-use std::collections::{BTreeMap, BTreeSet};
+use std::{
+    cell::Cell,
+    collections::{BTreeMap, BTreeSet},
+};
 
 /// The greatest number of mistakes that are told of a program.
 const MOST: usize = 3;
@@ -43,8 +46,7 @@ pub fn common<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>) -> Option
     let same_as = votes.iter().filter(is_rival).map(|(other, _)| other.clone()).collect();
     let shared = vote.shared?;
     let Some(told) = vote.told else {
-        let key = find(said)?.id.to_owned();
-        return Some(Explanation { key, about: About::Mistake, same_as, ..shared.clone() });
+        return Some(as_row(shared, find(said)?, same_as));
     };
     Some(Explanation { same_as, ..united(told, &traces) })
 }
@@ -158,14 +160,12 @@ pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted:
             if let Some(row) =
                 named.iter().find(|row| is_in_other_words(explanation, row) && !is_refuted(&row.id.to_owned()))
             {
-                let (key, about) = (row.id.to_owned(), About::Mistake);
-                return Some(Explanation { key, about, ..explanation.clone() });
+                return Some(as_row(explanation, row, explanation.same_as.clone()));
             }
             if key == explanation.key {
                 return Some(Explanation { same_as, ..explanation.clone() });
             }
-            find(&key)?;
-            Some(Explanation { key, about: About::Mistake, same_as, ..explanation.clone() })
+            Some(as_row(explanation, find(&key)?, same_as))
         };
         list.iter().filter(|one| one.is_vote() || !one.claims.is_empty()).filter_map(settle).collect()
     };
@@ -217,6 +217,7 @@ fn not_finite(traces: &[&[Explanation]]) -> Option<Explanation> {
         && ends().count() > 1
     {
         found.step = None;
+        found.ends = ends().any(|one| matches!(&one.about, About::NotFinite(other) if other.ends));
     }
     Some(likeliest)
 }
@@ -253,13 +254,18 @@ fn wrong_polynomials(traces: &[Vec<Explanation>], found: &[Explanation]) -> Opti
     }
 }
 
+/// Whether a trace that a told mistake explains needs this known one, too: they reproduce it together, and neither does
+/// alone.
+fn is_needed(next: &Explanation, open: &[Vec<Explanation>], covered: &[bool]) -> bool {
+    let said = next.said();
+    let mut beside = open.iter().zip(covered).filter(|(_, covered)| **covered);
+    beside.any(|(list, _)| list.iter().any(|one| one.is_complete() && one.key == said))
+}
+
 /// Whether a further mistake is one that was told, in other words: a program has one formula for a polynomial, and what
 /// is seen of a stage may follow from what is told of that one or of one before it.
 fn is_said_already(found: &[Explanation], next: &Explanation, open: &[Vec<Explanation>], covered: &[bool]) -> bool {
-    let said = next.said();
-    let mut beside = open.iter().zip(covered).filter(|(_, covered)| **covered);
-    // Where two known mistakes reproduce a trace together, both are needed.
-    let are_needed = beside.any(|(list, _)| list.iter().any(|one| one.is_complete() && one.key == said));
+    let are_needed = is_needed(next, open, covered);
     let subjects = next.subjects();
     let is_said = |one: &Explanation| {
         if are_needed && matches!(one.about, About::Mistake) {
@@ -328,8 +334,8 @@ const fn stage_of(area: Area) -> Option<StepStage> {
     }
 }
 
-/// Keys of mistakes that [`several`] would tell and that these scenes speak against: the program was right there, and
-/// with the mistake it would not have been ([`shows`]).
+/// Keys of mistakes that [`several`] would tell, or name as what can't be told apart, and that these scenes speak
+/// against: the program was right there, and with the mistake it would not have been ([`shows`]).
 #[must_use]
 pub fn refuted(traces: &[&[Explanation]], right: &[&Scene]) -> Vec<String> {
     let mut refuted: Vec<String> = Vec::new();
@@ -340,7 +346,13 @@ pub fn refuted(traces: &[&[Explanation]], right: &[&Scene]) -> Vec<String> {
         let mut keys = likely.iter().map(|one| &one.key).chain(stages).filter(|key| !refuted.contains(key));
         match keys.find(|key| right.iter().any(|scene| shows(scene, key))).cloned() {
             Some(key) => refuted.push(key),
-            None => return refuted,
+            None => {
+                let work = Cell::new(0);
+                let rivals = likely.iter().filter(|one| one.about == About::Mistake).flat_map(|one| &one.same_as);
+                let is_refuted = |key: &&String| right.iter().any(|scene| shows_within(scene, key, &work));
+                refuted.extend(rivals.filter(is_refuted).cloned().collect::<Vec<_>>());
+                return refuted;
+            }
         }
     }
 }
@@ -348,9 +360,10 @@ pub fn refuted(traces: &[&[Explanation]], right: &[&Scene]) -> Vec<String> {
 /// Among this number of traces, one that looks as if a stage were empty is no evidence.
 const MANY: usize = 8;
 
-/// Whether enough of what is left names this further mistake: a trace that nothing explains yet, or two others, where
-/// there are several. What is seen of a stage counts only where nothing explains the trace, and in one trace alone it
-/// may follow from what was found before. That polynomials are missing does.
+/// Whether enough of what is left names this further mistake: a trace that nothing explains yet, one that needs it
+/// beside a mistake that was told, or two others, where there are several. Traces in which a stage looks wrong count
+/// only where nothing explains them, and one alone may follow from what was found before. That polynomials are missing
+/// does.
 fn is_supported(open: &[Vec<Explanation>], covered: &[bool], next: &Explanation) -> bool {
     let said = next.said();
     let naming = |wanted: bool| {
@@ -360,7 +373,8 @@ fn is_supported(open: &[Vec<Explanation>], covered: &[bool], next: &Explanation)
     if next.is_of_stage() {
         return naming(false) > 1 && !next.is_vague();
     }
-    !next.is_of_missing() && (naming(false) > 0 || naming(true) >= open.len().min(2))
+    let is_partner = matches!(next.about, About::Mistake) && is_needed(next, open, covered);
+    !next.is_of_missing() && (naming(false) > 0 || is_partner || naming(true) >= open.len().min(2))
 }
 
 /// Whether a trace's explanations name a mistake, told or as not to be told apart, that reproduces everything.

@@ -1,7 +1,18 @@
 //! Whether explanations speak of the same mistake.
 use super::about::{About, OfPolynomials};
 use crate::student::{Row, find};
-use fosssim_findings::explanation::Explanation;
+use fosssim_findings::explanation::{Detail, Explanation};
+
+/// The explanation of the same steps by this known mistake instead.
+pub(super) fn as_row(one: &Explanation, row: &Row, same_as: Vec<String>) -> Explanation {
+    let of_row = |detail: &Detail| match detail {
+        Detail::Term(_) => Detail::Term(row.id.into()),
+        Detail::Look(_) => Detail::Look(row.area),
+        other => other.clone(),
+    };
+    let details = one.details.iter().map(of_row).collect();
+    Explanation { key: row.id.to_owned(), about: About::Mistake, details, same_as, ..one.clone() }
+}
 
 /// Whether these explanations of a trace name it, told or as not to be told apart; of what is not written yet, one
 /// stage.

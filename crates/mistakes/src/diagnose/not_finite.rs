@@ -10,7 +10,7 @@ use super::{
 };
 use fosssim_judge::kept::KeptTrace;
 use fosssim_model::{
-    scene::{Collision, Scene},
+    scene::{Collision, Integrator, Scene},
     sim::{Pair, PairKind, State, pairs},
     trace::{LenientFrame, LoggedImpulse, PolynomialLog},
 };
@@ -27,7 +27,7 @@ pub(super) fn of_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     let (mut steps, mut reference, mut first) =
         (StepReader::new(scene, source), Reference::new(scene), First::default());
     first.begin(&steps.frames);
-    while let (Some(step), false) = (steps.next(), first.is_found) {
+    while let Some(step) = steps.next() {
         first.step(&mut reference, scene, step, &steps.frames);
     }
     first.explanation().into_iter().collect()
@@ -45,15 +45,24 @@ impl First {
     /// Looks at the first record.
     pub(super) fn begin(&mut self, frames: &StepFrames) {
         if let Some(wild) = wild_value(&frames.before.state) {
-            let told = NotFinite { step: Some(0), stage: NanStage::FirstRecord, is_nan: wild.is_nan() };
+            let told = NotFinite { step: Some(0), stage: NanStage::FirstRecord, is_nan: wild.is_nan(), ends: false };
             *self = Self { is_found: true, told: Some(told) };
         }
     }
 
-    /// Looks at a step, unless it is found already.
+    /// Looks at a step: is it the first one, or finite again?
     pub(super) fn step(&mut self, reference: &mut Reference<'_>, scene: &Scene, step: u32, frames: &StepFrames) {
+        if self.is_found {
+            let is_finite = || ![&frames.before, &frames.mid, &frames.end].into_iter().any(is_wild);
+            if let Some(told) = &mut self.told
+                && !told.ends
+            {
+                told.ends = is_finite();
+            }
+            return;
+        }
         let begins = wild_value(&frames.before.state).is_none() && (is_wild(&frames.mid) || is_wild(&frames.end));
-        if begins && !self.is_found {
+        if begins {
             *self = Self { is_found: true, told: of_step(reference, scene, step, frames) };
         }
     }
@@ -90,7 +99,10 @@ fn of_step(reference: &mut Reference<'_>, scene: &Scene, step: u32, frames: &Ste
     let mut capture = Capture::new(&scene.collision);
     let has_result = reference.step(step, &frames.before.state, &mut capture).is_some();
     let (stage, value) = stage(scene, frames)?;
-    (has_result && capture.records.is_finite()).then_some(NotFinite { step: Some(step), stage, is_nan: value.is_nan() })
+    let is_implicit = matches!(scene.integrator, Integrator::ImplicitEuler | Integrator::LinearizedImplicitEuler);
+    let stage = if is_implicit && stage == NanStage::Motion { NanStage::ImplicitMotion } else { stage };
+    let found = NotFinite { step: Some(step), stage, is_nan: value.is_nan(), ends: false };
+    (has_result && capture.records.is_finite()).then_some(found)
 }
 
 /// The first stage whose results are no numbers, with the first such value.
@@ -183,15 +195,17 @@ fn bodies(scene: &Scene, pair: Pair) -> Vec<u32> {
         PairKind::ParticleHalfPlane => vec![pair.first],
     }
 }
+
 /// Explanations with the one that says where numbers end: first, unless a proven mistake is the cause. What is wrong
-/// before the end was reproduced then, and mending it comes first.
+/// before the end was reproduced then, and mending it comes first, and so does what is proven besides.
 pub(super) fn with_end(
     end: Option<Explanation>,
     mut found: Vec<Explanation>,
     is_cause: impl Fn(&Explanation) -> bool,
 ) -> Vec<Explanation> {
     if let Some(end) = end {
-        let place = usize::from(found.first().is_some_and(|first| first.is_proven() && is_cause(first)));
+        let proven = found.iter().take_while(|one| one.is_proven()).count();
+        let place = if found.first().is_some_and(is_cause) { proven } else { 0 };
         found.insert(place, end);
     }
     found

@@ -83,7 +83,7 @@ fn limit(world: &World, max_iterations: i32) -> i32 {
     }
     match world.student.mistake_in(&[Area::ImpulseLoop]) {
         Some(Mistake::ImpulsesOneFewer) => max_iterations.saturating_sub(1),
-        Some(Mistake::ImpulsesOneMore) if max_iterations > 0 => max_iterations.saturating_add(1),
+        Some(Mistake::ImpulsesOneMore) => max_iterations.saturating_add(1),
         Some(Mistake::ImpulsesOnlyOne) => max_iterations.min(1),
         Some(Mistake::ImpulsesAlwaysTen) => 10,
         Some(Mistake::ImpulsesDouble) => max_iterations.saturating_mul(2),

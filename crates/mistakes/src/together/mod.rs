@@ -86,13 +86,12 @@ pub fn explained_by(grade: &Grade, mistake: &Explanation) -> usize {
     grade.scenes().filter(|scene| is_named_in(mistake, &scene.explanations)).count()
 }
 
-/// Settles by all scenes together what is said of each. A caller that leaves groups out of a grade asks again, so
-/// that nothing of them is told.
+/// Settles by all scenes together what is said of each: by several that are wrong, or by right ones that speak against
+/// a mistake. A caller that leaves groups out of a grade asks again, so that nothing of them is told.
 pub fn settle(grade: &mut Grade) {
-    let likely: Vec<Explanation> = match likely_mistake(grade) {
-        Some(_) => likely_mistakes(grade).into_iter().map(|(one, _)| one).collect(),
-        None => Vec::new(),
-    };
+    let speak_together = !grade.refuted.is_empty() || likely_mistake(grade).is_some();
+    let likely = if speak_together { likely_mistakes(grade) } else { Vec::new() };
+    let likely: Vec<Explanation> = likely.into_iter().map(|(one, _)| one).collect();
     for scene in grade.groups.iter_mut().flat_map(|group| &mut group.scenes) {
         let of_scene = settled(&scene.result.explanations, &likely);
         (scene.settled, scene.agreed) = (of_scene.explanations, of_scene.agreed);

@@ -90,7 +90,7 @@ mod tests {
         for hints in [Hints::None, Hints::Where, Hints::What, Hints::Full] {
             assert_eq!(hints.explains(), !told(hints).is_empty(), "{hints:?}");
             // Where numbers end is a place and no guess.
-            let end = NotFinite { step: Some(3), stage: NanStage::Zones, is_nan: true };
+            let end = NotFinite { step: Some(3), stage: NanStage::Zones, is_nan: true, ends: false };
             let end = Explanation { about: About::NotFinite(end), ..explanation() };
             assert_eq!(cut(hints, vec![end]).len(), usize::from(hints > Hints::None), "{hints:?}");
         }

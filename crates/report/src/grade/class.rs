@@ -99,7 +99,7 @@ pub(crate) fn hardest(grades: &[Grade]) -> (Vec<(&str, SceneShare)>, usize) {
 fn frequent(grades: &[Grade]) -> Vec<(String, usize)> {
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
     for (mistake, _) in grades.iter().flat_map(likely_mistakes) {
-        *counts.entry(words::explanation::what(&mistake)).or_default() += 1;
+        *counts.entry(words::explanation::what_or(&mistake)).or_default() += 1;
     }
     let mut sorted: Vec<(String, usize)> = counts.into_iter().collect();
     sorted.sort_by_key(|(_, count)| std::cmp::Reverse(*count));

@@ -50,7 +50,7 @@ pub fn submissions(grades: &[Grade], passed_over: &[PassedOver]) -> String {
         head.extend(timed.map(|group| safe(&format!("{}: times the reference", group.name))));
     }
     let rows = grades.iter().map(|grade| {
-        let mistakes = likely_mistakes(grade).into_iter().map(|(mistake, _)| words::explanation::what(&mistake));
+        let mistakes = likely_mistakes(grade).into_iter().map(|(mistake, _)| words::explanation::what_or(&mistake));
         let mistakes: Vec<String> = grade.located.iter().map(words::located).chain(mistakes).collect();
         let mut row = vec![
             safe(&grade.submission),

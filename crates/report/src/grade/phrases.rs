@@ -98,7 +98,7 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
     let wrong = counted(grade.scenes().filter(wrong).count() as u64, "wrong scene");
     let mut rank = "most likely mistake";
     let line = |(mistake, explained): (Explanation, usize)| {
-        let what = words::explanation::what(&mistake);
+        let what = words::explanation::what_or(&mistake);
         if mistake.is_not_finite() {
             return format!("{what} (in {explained} of {wrong})");
         }

@@ -131,7 +131,7 @@ impl ClassPage<'_> {
             let (accepted, all) = (grade.count(Verdict::Accepted), grade.scenes().count());
             let _ = write!(out, "<td class=\"num\" data-sort=\"{accepted}\">{accepted} of {all}</td>");
             let _ = write!(out, "<td class=\"heat\" data-sort=\"{accepted}\">{}</td>", heat(grade));
-            let mistakes = likely_mistakes(grade).into_iter().map(|(mistake, _)| words::explanation::what(&mistake));
+            let mistakes = likely_mistakes(grade).into_iter().map(|(mistake, _)| words::explanation::what_or(&mistake));
             let likely: Vec<String> = grade.located.iter().map(words::located).chain(mistakes).collect();
             let words = if likely.is_empty() { words::reason(grade).unwrap_or_default() } else { likely.join(" ") };
             let _ = write!(out, "<td class=\"words\">{}</td>", text(&short(&words)));
@@ -158,7 +158,7 @@ impl ClassPage<'_> {
             let _ = writeln!(
                 out,
                 "<section class=\"cluster\"><h3>{}</h3>\n{}{look}</section>",
-                text(&one_line(&words::explanation::what(mistake))),
+                text(&one_line(&words::explanation::what_or(mistake))),
                 self.members(members)
             );
         }

@@ -129,7 +129,7 @@ impl GradePage<'_> {
                 let _ = writeln!(
                     out,
                     "<section class=\"card mistake\"><p class=\"lead\">{}</p><p>Explains {explained} of {wrong}.{}</p></section>",
-                    text(&words::explanation::what(&mistake)),
+                    text(&words::explanation::what_or(&mistake)),
                     shows.map_or_else(String::new, |(scene, _)| format!(" Look at it in {}.", link(scene)))
                 );
             }

@@ -28,7 +28,7 @@ pub(super) fn all() -> Vec<Explanation> {
     let terms = vec![(ForceTerm::VortexTurning, WrongWeight::Half), (ForceTerm::Drag, WrongWeight::Other)];
     let others = [About::Mistake, About::Unfinished, About::Scene { has_length: false }, About::Forces(terms)];
     let stages = [NanStage::Detection(Some(PairKind::ParticleEdge)), NanStage::FirstRecord, NanStage::Zones];
-    let ends = stages.map(|stage| About::NotFinite(NotFinite { step: Some(7), stage, is_nan: true }));
+    let ends = stages.map(|stage| About::NotFinite(NotFinite { step: Some(7), stage, is_nan: true, ends: false }));
     let abouts = of_polynomials.chain(others).chain(ends).chain(faults().into_iter().map(About::Stage));
     let mut all: Vec<Explanation> = abouts.map(|about| explanation(about, Vec::new(), None)).collect();
     all.extend(examples().into_iter().map(|example| explanation(About::Mistake, Vec::new(), Some(example))));

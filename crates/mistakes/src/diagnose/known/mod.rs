@@ -20,6 +20,7 @@ mod shown;
 mod trials;
 
 pub use refute::shows;
+pub(super) use refute::shows_within;
 pub(super) use several::is_empty_stage;
 
 use super::{

@@ -22,6 +22,11 @@ const WORK: u64 = 200_000;
 /// `hybrid` only.
 #[must_use]
 pub fn shows(scene: &Scene, key: &str) -> bool {
+    shows_within(scene, key, &Cell::new(0))
+}
+
+/// The same, where all that was looked for before counts towards what may take too long.
+pub(in crate::diagnose) fn shows_within(scene: &Scene, key: &str, work: &Cell<u64>) -> bool {
     let Some(row) = find(key).filter(|row| can_show(scene, row)) else { return false };
     if row.area == Area::Response
         && matches!(scene.collision, Collision::ContinuousTime { .. } | Collision::Simple { .. })
@@ -31,7 +36,7 @@ pub fn shows(scene: &Scene, key: &str) -> bool {
     let world = World::new(scene.clone(), Student::new(Some(row.mistake)));
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     let mut capture = Capture::new(&scene.collision);
-    let (work, each) = (Cell::new(0), step_work(scene));
+    let each = step_work(scene);
     for _ in 0..scene.steps() {
         let before = simulation.state().clone();
         if work.get() > WORK || simulation.step(&mut capture).is_err() {

@@ -1,7 +1,9 @@
 //! Programs with mistakes of the catalogue, tried on kept steps.
 use super::resimulate::{Correct, resimulate, step_work};
 use crate::{
-    diagnose::sampling::{KeptStep, ROUND_OFF, Reference, StepDifference, first_difference, same_polynomial},
+    diagnose::sampling::{
+        KeptStep, ROUND_OFF, Reference, StepDifference, Tolerance, first_difference, same_polynomial,
+    },
     student::{Area, Row, StepLog, Student, World},
 };
 use fosssim_model::scene::Scene;
@@ -12,6 +14,7 @@ pub(super) struct Trials<'a> {
     /// The scene, for programs of all students.
     world: World,
     correct: Correct,
+    round_off: Tolerance,
     step_work: u64,
     /// The polynomials that were computed so far.
     work: Cell<u64>,
@@ -30,7 +33,8 @@ impl<'a> Trials<'a> {
     /// On a scene; `correct` is the program to which mistakes are added.
     pub(super) fn new(reference: &'a Reference<'_>, scene: &Scene, correct: Correct) -> Self {
         let world = World::new(scene.clone(), Student::default());
-        Self { world, correct, step_work: step_work(scene), work: Cell::new(0), left: &reference.trials }
+        let (round_off, step_work) = (Tolerance::of(scene), step_work(scene));
+        Self { world, correct, round_off, step_work, work: Cell::new(0), left: &reference.trials }
     }
 
     /// Whether more than these polynomials were computed, or nothing is left.
@@ -70,7 +74,7 @@ impl<'a> Trials<'a> {
         self.left.set(self.left.get().saturating_sub(asked.get() + log.long_searches));
         let share = |index: usize| 0.5 * index as f64 / (logged.len() + 1) as f64;
         let Some(records) = records else { return failed.get().map_or(0.0, share) };
-        match first_difference(&records, &kept.records, &ROUND_OFF) {
+        match first_difference(&records, &kept.records, &self.round_off) {
             None => 1.0,
             Some(StepDifference::Polynomial(index)) => share(index),
             Some(StepDifference::PolynomialCount) => share(records.end.polynomials.len().min(logged.len())),

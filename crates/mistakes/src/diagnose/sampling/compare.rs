@@ -5,13 +5,17 @@
 //! proves no mistake.
 use crate::student::{Object, Record};
 use fosssim_model::{
+    scene::{Integrator, Scene},
     sim::State,
-    trace::{LenientFrame, LoggedImpulse, PolynomialLog},
+    trace::{Layout, LenientFrame, LoggedImpulse, PolynomialLog},
 };
 use fosssim_num::{
     bounded::Bounded,
     polynomial::trim,
-    tolerances::{KNOWN_COEFFICIENT, KNOWN_COEFFICIENT_FLOOR, KNOWN_DROPPED, KNOWN_NORMAL, KNOWN_STATE, KNOWN_TIME},
+    tolerances::{
+        KNOWN_COEFFICIENT, KNOWN_COEFFICIENT_FLOOR, KNOWN_DROPPED, KNOWN_NEWTON_STATE, KNOWN_NORMAL, KNOWN_STATE,
+        KNOWN_TIME,
+    },
     vector::Vec2,
 };
 
@@ -41,6 +45,14 @@ pub const ROUND_OFF: Tolerance = Tolerance {
     normal: KNOWN_NORMAL,
     time: KNOWN_TIME,
 };
+
+impl Tolerance {
+    /// Round-off, in steps of this scene.
+    pub fn of(scene: &Scene) -> Self {
+        let is_newton = scene.integrator == Integrator::ImplicitEuler && !Layout::of(scene).polynomials;
+        Self { state: if is_newton { KNOWN_NEWTON_STATE } else { KNOWN_STATE }, ..ROUND_OFF }
+    }
+}
 
 /// The bound beyond which nobody takes a difference for round-off.
 pub const PLAIN: Tolerance = Tolerance { coefficient: 1e-7, floor: 1e-9, state: 1e-8, normal: 1e-8, time: 1e-6 };

@@ -9,7 +9,7 @@ mod source;
 
 pub use capture::Capture;
 pub use compare::{
-    Logged, PLAIN, ROUND_OFF, StepDifference, StepRecords, first_difference, same_formula, same_impulse,
+    Logged, PLAIN, ROUND_OFF, StepDifference, StepRecords, Tolerance, first_difference, same_formula, same_impulse,
     same_polynomial, state_difference,
 };
 pub use detections::{Detections, Sample};

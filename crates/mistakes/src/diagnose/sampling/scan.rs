@@ -1,7 +1,9 @@
 //! Finds the wrong steps of a trace, and keeps some of them, as diverse as possible.
 use super::{
     capture::Capture,
-    compare::{Logged, ROUND_OFF, SINGLE_PRECISION, StepDifference, StepRecords, first_difference, same_polynomial},
+    compare::{
+        Logged, ROUND_OFF, SINGLE_PRECISION, StepDifference, StepRecords, Tolerance, first_difference, same_polynomial,
+    },
     reference::Reference,
     source::{Outline, StepFrames},
 };
@@ -74,6 +76,7 @@ impl Scan {
 /// Looks at the steps of a trace, one after the other.
 pub struct Scanner {
     has_mid: bool,
+    round_off: Tolerance,
     capture: Capture,
     actual: StepRecords,
     scan: Scan,
@@ -86,6 +89,7 @@ impl Scanner {
     pub fn new(scene: &Scene) -> Self {
         Self {
             has_mid: Layout::of(scene).polynomials,
+            round_off: Tolerance::of(scene),
             capture: Capture::new(&scene.collision),
             actual: StepRecords::default(),
             scan: Scan::default(),
@@ -116,7 +120,7 @@ impl Scanner {
             // What follows from NaN speaks neither for a mistake nor against one.
             return;
         }
-        let difference = first_difference(&self.capture.records, &self.actual, &ROUND_OFF);
+        let difference = first_difference(&self.capture.records, &self.actual, &self.round_off);
         let signature = self.signature(difference);
         let count = self.seen.entry((difference.is_some(), signature)).or_default();
         let number = *count;
@@ -212,14 +216,14 @@ impl Scanner {
         is_meant
             && self.capture.events() != 0
             && has_lengths(&expected.end, &actual.end)
-            && first_difference(&without_lists(expected), &without_lists(actual), &ROUND_OFF).is_none()
+            && first_difference(&without_lists(expected), &without_lists(actual), &self.round_off).is_none()
     }
 
     /// Whether the step is right once `strip` has taken the lists of the step before off its records.
     fn right_without(&self, before: &LenientFrame, strip: impl Fn(&mut Logged, &LenientFrame) -> bool) -> bool {
         let mut records = self.actual.clone();
         let stripped = records.mid.as_mut().is_none_or(|mid| strip(mid, before)) && strip(&mut records.end, before);
-        stripped && first_difference(&self.capture.records, &records, &ROUND_OFF).is_none()
+        stripped && first_difference(&self.capture.records, &records, &self.round_off).is_none()
     }
 }
 

@@ -3,7 +3,7 @@ use crate::{
     assignments::t2m2::Subject,
     diagnose::is_named_in,
     diagnose::{
-        About, Explanation, Guess, NanStage, NotFinite, OfPolynomials, QuantityGuess, StageFault, WrongMotion,
+        About, Detail, Explanation, Guess, NanStage, NotFinite, OfPolynomials, QuantityGuess, StageFault, WrongMotion,
         WrongVectors, settled, several,
     },
 };
@@ -163,10 +163,33 @@ fn a_stage_of_one_trace_is_no_second_mistake() {
     assert_eq!(heads(&traces), words(&[(&first, 5)]));
 }
 
+/// A trace that needs two mistakes is not explained by the one that the others name.
+#[test]
+fn what_a_trace_needs_besides_is_told() {
+    let (spring, drag) = (row("spring-no-rest-length", &[]), row("drag-mass", &[]));
+    let mut traces = vec![vec![spring.clone()]; 3];
+    traces.push(vec![spring.clone(), drag.clone()]);
+    assert_eq!(heads(&traces), words(&[(&spring, 4), (&drag, 1)]));
+}
+
+/// A mistake that right traces speak against makes room for another one, with the exact form of that.
+#[test]
+fn another_mistake_has_its_own_exact_form() {
+    let all = Explanation {
+        details: vec![Detail::Term("penalty-missing".into())],
+        same_as: vec!["penalty-first-half-plane-only".to_owned()],
+        ..row("penalty-missing", &[])
+    };
+    let traces = [vec![all]];
+    let told = several(traces.iter().map(Vec::as_slice), &["penalty-missing".to_owned()]);
+    assert_eq!(told[0].key, "penalty-first-half-plane-only");
+    assert_eq!(told[0].details, [Detail::Term("penalty-first-half-plane-only".into())]);
+}
+
 #[test]
 fn where_numbers_end_comes_first() {
     let end = |step, stage| {
-        let found = NotFinite { step: Some(step), stage, is_nan: true };
+        let found = NotFinite { step: Some(step), stage, is_nan: true, ends: false };
         said(Explanation::NOT_FINITE, About::NotFinite(found), (0, 0), &[])
     };
     let first = row("pp-no-two", &[]);

@@ -72,9 +72,9 @@ fn nan_is_told_with_its_step_and_stage() {
         told(&struck, changed)
     };
     let of_vector = with(&|frame| frame.impulses[0].normal.x = f64::INFINITY);
-    assert_eq!(of_vector, NotFinite { step, stage: NanStage::ContactVectors, is_nan: false });
+    assert_eq!(of_vector, NotFinite { step, stage: NanStage::ContactVectors, is_nan: false, ends: false });
     let of_response = with(&|frame| frame.state.velocities[0] = f64::NAN);
-    assert_eq!(of_response, NotFinite { step, stage: NanStage::Responses, is_nan: true });
+    assert_eq!(of_response, NotFinite { step, stage: NanStage::Responses, is_nan: true, ends: false });
     let of_detection = with(&|frame| frame.polynomials.coefficients[0] = f64::NAN);
     assert!(matches!(of_detection.stage, NanStage::Detection(Some(_))), "{of_detection:?}");
     let mut changed = right;
@@ -99,10 +99,28 @@ fn nan_of_the_failsafe_is_no_sum_of_integers() {
         let step = Some(u32::try_from(end / 2).expect("few"));
         let mut of_zones = right.clone();
         spoil(&mut of_zones[end..], &all);
-        assert_eq!(told(&scene, of_zones), NotFinite { step, stage: NanStage::Zones, is_nan: true }, "{name}");
+        assert_eq!(
+            told(&scene, of_zones),
+            NotFinite { step, stage: NanStage::Zones, is_nan: true, ends: false },
+            "{name}"
+        );
         let mut of_rounds = right;
         spoil(&mut of_rounds[end - 1..], &all);
-        assert_eq!(told(&scene, of_rounds), NotFinite { step, stage: NanStage::ImpulseRounds, is_nan: true }, "{name}");
+        assert_eq!(
+            told(&scene, of_rounds),
+            NotFinite { step, stage: NanStage::ImpulseRounds, is_nan: true, ends: false },
+            "{name}"
+        );
     }
     assert!(seen > 2, "{seen}");
+}
+
+/// A value in one record alone was not made by a step, or made nothing of the next one.
+#[test]
+fn numbers_that_are_finite_again_are_told_as_such() {
+    let struck = Scene { duration: 3.0, ..scene("edges-struck") };
+    let mut changed = frames(&struck);
+    changed[2].state.positions[0] = f64::NAN;
+    let found = told(&struck, changed);
+    assert!(found.ends, "{found:?}");
 }

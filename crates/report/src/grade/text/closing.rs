@@ -35,7 +35,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
         }
         let verb = if mistake.is_not_finite() { "in" } else { "explains" };
         let share = format!("({verb} {explained} of {})", counted(wrong, "wrong scene"));
-        let _ = writeln!(text, "  - {} {share}", plain(&words::explanation::what(mistake)));
+        let _ = writeln!(text, "  - {} {share}", plain(&words::explanation::what_or(mistake)));
     }
     if grade.unfit().is_some() {
         return text;

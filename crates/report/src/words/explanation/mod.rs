@@ -35,6 +35,22 @@ pub fn what(explanation: &Explanation) -> String {
     sentence
 }
 
+/// The sentence in a list of a program's mistakes: with the others that its traces can't tell from this one.
+#[must_use]
+pub fn what_or(explanation: &Explanation) -> String {
+    let rivals = explanation.same_as.iter().filter(|_| explanation.about == About::Mistake);
+    let rivals: Vec<String> = rivals.filter_map(|key| known(key)).collect();
+    let sentence = what(explanation);
+    match rivals.as_slice() {
+        [] => sentence,
+        [one] => format!("{sentence} Or, with the same traces: {one}"),
+        [one, other] => format!("{sentence} Or, with the same traces: {one} Or: {other}"),
+        [one, others @ ..] => {
+            format!("{sentence} Or, with the same traces: {one} Or one of {} other mistakes.", others.len())
+        }
+    }
+}
+
 /// The exact form, a line each: which term of which coefficient has which weight. May give the right formula away. Of a
 /// known mistake, which the reference has made, it says nothing of other weights that fit as well.
 #[must_use]

@@ -6,7 +6,9 @@ pub(super) fn what(found: &NotFinite) -> String {
     let what = if found.is_nan { "NaN (not a number)" } else { "an infinite number" };
     let where_from = match (found.step, found.stage) {
         (_, NanStage::FirstRecord) => "In the first record".to_owned(),
+        (Some(step), _) if found.ends => format!("In step {step}, but not in all steps behind it,"),
         (Some(step), _) => format!("From step {step} on"),
+        (None, _) if found.ends => "In some steps".to_owned(),
         (None, _) => "From some step on".to_owned(),
     };
     let (makes, divisors) = match found.stage {
@@ -15,7 +17,13 @@ pub(super) fn what(found: &NotFinite) -> String {
                 "{where_from} there is {what}: nothing has moved yet, so look at how the trace is written."
             );
         }
-        NanStage::Motion => ("the motion before any contact makes it", "a mass or a step size"),
+        NanStage::Motion => ("the forces or the integrator make it", "a mass, a distance or a step size"),
+        NanStage::ImplicitMotion => {
+            return format!(
+                "{where_from} there is {what}: the implicit integrator makes it from finite numbers. Wrong second \
+                 derivatives are a usual cause: Newton's method does not converge with them."
+            );
+        }
         NanStage::Detection(Some(kind)) => {
             let name = kind.name();
             return sentences(&where_from, what, &format!("the {name} detection makes it"), "a length or a step size");

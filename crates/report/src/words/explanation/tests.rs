@@ -186,10 +186,13 @@ fn all() -> Vec<Explanation> {
         NanStage::Responses,
         NanStage::ImpulseRounds,
         NanStage::Zones,
+        NanStage::ImplicitMotion,
     ];
-    let ends = stages.map(|stage| NotFinite { step: Some(60), stage, is_nan: stage != NanStage::ContactVectors });
+    let ends =
+        stages.map(|stage| NotFinite { step: Some(60), stage, is_nan: stage != NanStage::ContactVectors, ends: false });
     let together = NotFinite { step: None, ..ends[7] };
-    all.extend(ends.into_iter().chain([together]).map(|end| explanation("k", About::NotFinite(end), Vec::new())));
+    let once = NotFinite { ends: true, ..ends[1] };
+    all.extend(ends.into_iter().chain([together, once]).map(|end| explanation("k", About::NotFinite(end), Vec::new())));
     all.extend(guesses().into_iter().map(|guess| of(edge[..2].to_vec(), OfPolynomials::Guess(guess))));
     let terms = [
         (ForceTerm::SpringDamping, WrongWeight::Zero),
