@@ -50,5 +50,6 @@ mod terminal;
 mod trace;
 mod trace_props;
 mod tree;
+mod vectors;
 mod verdicts;
 mod workspace;

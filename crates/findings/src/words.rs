@@ -61,12 +61,14 @@ impl Display for FindingDetail {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match *self {
             Self::MissedCollision { expected } => {
-                let Impulse { pair, normal: Vec2 { x, y }, time } = expected;
+                let Impulse { pair, normal, time } = expected;
+                let [x, y]: [f64; 2] = normal.into();
                 let pair = PairWords(pair);
                 write!(f, "{pair} collide at time {time} with normal ({x}, {y}), the trace misses it")
             }
             Self::SuperfluousCollision { actual } => {
-                let LoggedImpulse { normal: Vec2 { x, y }, time, .. } = actual;
+                let LoggedImpulse { normal, time, .. } = actual;
+                let [x, y]: [f64; 2] = normal.into();
                 let pair = LoggedPair(&actual);
                 write!(f, "the trace has {pair} collide at time {time} with normal ({x}, {y}), they do not")
             }

@@ -25,8 +25,6 @@ pub mod first_time;
 pub mod interval;
 pub mod lanes;
 pub mod linear;
-#[cfg(any(test, feature = "nalgebra"))]
-pub mod matrices;
 pub mod polynomial;
 pub mod printed;
 pub mod rpoly;

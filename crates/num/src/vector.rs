@@ -1,140 +1,13 @@
 //! Two-dimensional vectors with the original's order of operations.
 //!
-//! [`Vec2`] has exactly the operations that the specification uses, each rounded as it says (`simulation.md`,
-//! conventions). **It has no division and no `normalize`**: the original multiplies by the reciprocal where a library
-//! would divide each component. Use [`over`] and [`unit`](fn@unit).
-
-use std::iter::Sum;
-use std::ops::{Add, AddAssign, Index, Mul, MulAssign, Neg, Sub, SubAssign};
+//! They are nalgebra's, whose sums, products and inner product are rounded as the specification says (`simulation.md`,
+//! conventions). **Nobody divides or normalises them with nalgebra's operations**: the original multiplies by the
+//! reciprocal where a library divides each component. Use [`over`] and [`unit`](fn@unit); the lints of the numeric
+//! crates hold this.
+use nalgebra::{MatrixView2xX, Vector2};
 
 /// A point or a direction in the plane, in the scene's length unit; x to the right, y up.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Vec2 {
-    /// To the right.
-    pub x: f64,
-    /// Up.
-    pub y: f64,
-}
-
-impl Vec2 {
-    /// The vector `(x, y)`.
-    #[inline]
-    #[must_use]
-    pub const fn new(x: f64, y: f64) -> Self {
-        Self { x, y }
-    }
-
-    /// The vector `(0, 0)`.
-    #[inline]
-    #[must_use]
-    pub const fn zeros() -> Self {
-        Self::new(0.0, 0.0)
-    }
-
-    /// The inner product, `x*x' + y*y'`: two products and a sum, each rounded.
-    #[inline]
-    #[must_use]
-    pub fn dot(&self, other: &Self) -> f64 {
-        self.x * other.x + self.y * other.y
-    }
-}
-
-impl Add for Vec2 {
-    type Output = Self;
-
-    #[inline]
-    fn add(self, other: Self) -> Self {
-        Self::new(self.x + other.x, self.y + other.y)
-    }
-}
-
-impl Sub for Vec2 {
-    type Output = Self;
-
-    #[inline]
-    fn sub(self, other: Self) -> Self {
-        Self::new(self.x - other.x, self.y - other.y)
-    }
-}
-
-impl Neg for Vec2 {
-    type Output = Self;
-
-    #[inline]
-    fn neg(self) -> Self {
-        Self::new(-self.x, -self.y)
-    }
-}
-
-impl Mul<Vec2> for f64 {
-    type Output = Vec2;
-
-    #[inline]
-    fn mul(self, v: Vec2) -> Vec2 {
-        Vec2::new(self * v.x, self * v.y)
-    }
-}
-
-impl Mul<f64> for Vec2 {
-    type Output = Self;
-
-    #[inline]
-    fn mul(self, scalar: f64) -> Self {
-        Self::new(self.x * scalar, self.y * scalar)
-    }
-}
-
-impl AddAssign for Vec2 {
-    #[inline]
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
-}
-
-impl SubAssign for Vec2 {
-    #[inline]
-    fn sub_assign(&mut self, other: Self) {
-        *self = *self - other;
-    }
-}
-
-impl MulAssign<f64> for Vec2 {
-    #[inline]
-    fn mul_assign(&mut self, scalar: f64) {
-        *self = *self * scalar;
-    }
-}
-
-impl Sum for Vec2 {
-    /// From left to right, beginning with zero.
-    fn sum<I: Iterator<Item = Self>>(vectors: I) -> Self {
-        vectors.fold(Self::zeros(), Add::add)
-    }
-}
-
-impl From<[f64; 2]> for Vec2 {
-    #[inline]
-    fn from([x, y]: [f64; 2]) -> Self {
-        Self::new(x, y)
-    }
-}
-
-impl From<Vec2> for [f64; 2] {
-    #[inline]
-    fn from(v: Vec2) -> Self {
-        [v.x, v.y]
-    }
-}
-
-impl Index<usize> for Vec2 {
-    type Output = f64;
-
-    /// `x` at 0, `y` at 1; panics at any other index.
-    #[inline]
-    fn index(&self, index: usize) -> &f64 {
-        [&self.x, &self.y][index]
-    }
-}
+pub type Vec2 = Vector2<f64>;
 
 /// `v / s` as the original evaluates it: `r = 1/s`, then `(r*v.x, r*v.y)`. `s = 0` gives infinities or NaN.
 #[inline]
@@ -159,6 +32,13 @@ pub fn unit(v: Vec2) -> Vec2 {
     Vec2::new(v.x * reciprocal, v.y * reciprocal)
 }
 
+/// The positions or velocities of a state, `x` and `y` of each particle in turn, as a matrix with a column per
+/// particle. Nothing is copied.
+#[must_use]
+pub fn columns(values: &[f64]) -> MatrixView2xX<'_, f64> {
+    MatrixView2xX::from_slice(values, values.len() / 2)
+}
+
 /// Reads the vector of element `index` from an array in trace order (`x0, y0, x1, y1, ...`).
 #[inline]
 #[must_use]
@@ -171,4 +51,67 @@ pub fn at(array: &[f64], index: usize) -> Vec2 {
 pub fn put(array: &mut [f64], index: usize, v: Vec2) {
     array[2 * index] = v.x;
     array[2 * index + 1] = v.y;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linear::{Workspace, solve};
+    use nalgebra::{DMatrix, DVector};
+    use proptest::{prelude::*, test_runner::RngSeed};
+
+    fn bits(vector: Vec2) -> [u64; 2] {
+        [vector.x.to_bits(), vector.y.to_bits()]
+    }
+
+    fn vector() -> impl Strategy<Value = Vec2> {
+        (-1e3..1e3, -1e3..1e3).prop_map(|(x, y)| Vec2::new(x, y))
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig {
+            rng_seed: RngSeed::Fixed(1),
+            failure_persistence: None,
+            ..ProptestConfig::default()
+        })]
+
+        /// What the specification writes with scalars.
+        #[test]
+        fn sums_and_products_are_those_of_the_components(a in vector(), b in vector(), s in -1e3..1e3) {
+            prop_assert_eq!(bits(a + b), bits(Vec2::new(a.x + b.x, a.y + b.y)));
+            prop_assert_eq!(bits(a - b), bits(Vec2::new(a.x - b.x, a.y - b.y)));
+            prop_assert_eq!(bits(a * s), bits(Vec2::new(a.x * s, a.y * s)));
+            prop_assert_eq!(a.dot(&b).to_bits(), (a.x * b.x + a.y * b.y).to_bits());
+        }
+
+        /// An independent method finds what the original's order of operations finds.
+        #[test]
+        fn the_solver_agrees_with_singular_values(list in prop::collection::vec(-1.0..1.0, 42)) {
+            let (n, mut rhs) = (6, list[36..].to_vec());
+            // A dominant diagonal keeps the matrix regular.
+            let matrix = DMatrix::from_column_slice(n, n, &list[..36]) + DMatrix::identity(n, n) * 8.0;
+            let target = DVector::from_column_slice(&rhs);
+            let expected = matrix.clone().svd(true, true).solve(&target, 1e-12).expect("both factors");
+            solve(matrix.clone().as_mut_slice(), &mut rhs, &mut Workspace::default());
+            let found = DVector::from_column_slice(&rhs);
+            prop_assert!((matrix * &found - target).norm() < 1e-13);
+            // The decomposition is iterative: it leaves a residual of up to 1e-11.
+            prop_assert!((found - expected).norm() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn division_differs_which_is_why_nobody_may_use_it() {
+        let differs = |n: u32| {
+            let (vector, divisor) = (Vec2::new(f64::from(n), 1.0), 1.0 + f64::from(n) / 7.0);
+            bits(over(vector, divisor)) != bits(vector / divisor)
+        };
+        assert!((1..1000).any(differs));
+    }
+
+    #[test]
+    fn a_state_is_a_matrix_with_a_column_per_particle() {
+        let matrix = columns(&[1.0, 2.0, 3.0, 4.0]);
+        assert_eq!((matrix.ncols(), matrix.column(1).into_owned()), (2, Vec2::new(3.0, 4.0)));
+    }
 }

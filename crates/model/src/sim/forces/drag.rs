@@ -1,5 +1,5 @@
 //! Linear drag (simulation.md 3, dragdamping): a force `-b v` on every particle.
-use crate::sim::matrix::Matrix;
+use nalgebra::DMatrix;
 
 /// Adds `b v`.
 pub(super) fn add_gradient(coefficient: f64, v: &[f64], gradient: &mut [f64]) {
@@ -9,8 +9,8 @@ pub(super) fn add_gradient(coefficient: f64, v: &[f64], gradient: &mut [f64]) {
 }
 
 /// Adds `b` to every diagonal entry.
-pub(super) fn add_velocity_hessian(coefficient: f64, matrix: &mut Matrix) {
-    for index in 0..matrix.size() {
-        *matrix.get_mut(index, index) += coefficient;
+pub(super) fn add_velocity_hessian(coefficient: f64, matrix: &mut DMatrix<f64>) {
+    for index in 0..matrix.nrows() {
+        matrix[(index, index)] += coefficient;
     }
 }

@@ -1,7 +1,8 @@
 //! Newtonian attraction of two particles (simulation.md 3, gravitationalforce).
 use super::{add, subtract};
-use crate::sim::matrix::{Block, Matrix};
+use crate::sim::matrix::couple;
 use fosssim_num::vector::{at, length, over};
+use nalgebra::{DMatrix, Matrix2};
 
 /// Adds `G m m' / r^2` along the line from the first to the second (NaN when they coincide).
 pub(super) fn add_gradient(masses: &[f64], [a, b]: [usize; 2], constant: f64, x: &[f64], gradient: &mut [f64]) {
@@ -14,23 +15,22 @@ pub(super) fn add_gradient(masses: &[f64], [a, b]: [usize; 2], constant: f64, x:
 }
 
 /// Adds the position Hessian `G m m' / r^3 (I - 3 n nT)`.
-pub(super) fn add_position_hessian(masses: &[f64], [a, b]: [usize; 2], constant: f64, x: &[f64], matrix: &mut Matrix) {
+pub(super) fn add_position_hessian(
+    masses: &[f64],
+    [a, b]: [usize; 2],
+    constant: f64,
+    x: &[f64],
+    matrix: &mut DMatrix<f64>,
+) {
     let d = at(x, b) - at(x, a);
     let r = length(d);
     let n = over(d, r);
-    let n = [n.x, n.y];
     let s = constant * masses[b] * masses[a] / (r * r * r);
-    let mut block: Block = [[0.0; 2]; 2];
-    for row in 0..2 {
-        for column in 0..2 {
-            let identity = if row == column { 1.0 } else { 0.0 };
-            block[row][column] = (identity - (3.0 * n[row]) * n[column]) * s;
-        }
-    }
-    matrix.add_block(a, a, &block);
-    matrix.add_block(b, b, &block);
-    matrix.subtract_block(a, b, &block);
-    matrix.subtract_block(b, a, &block);
+    let block = Matrix2::from_fn(|row, column| {
+        let identity = if row == column { 1.0 } else { 0.0 };
+        (identity - (3.0 * n[row]) * n[column]) * s
+    });
+    couple(matrix, [a, b], &block);
 }
 
 #[cfg(test)]
@@ -46,7 +46,7 @@ mod tests {
             add_gradient(&masses, [0, 1], 0.7, x, &mut gradient);
             gradient
         };
-        let mut hessian = Matrix::new(2);
+        let mut hessian = DMatrix::zeros(4, 4);
         add_position_hessian(&masses, [0, 1], 0.7, &x, &mut hessian);
         let h = 1e-6;
         for column in 0..4 {
@@ -55,7 +55,7 @@ mod tests {
             down[column] -= h;
             for row in 0..4 {
                 let difference = (gradient(&up)[row] - gradient(&down)[row]) / (2.0 * h);
-                assert!((hessian.get(row, column) - difference).abs() < 1e-8, "{row} {column}");
+                assert!((hessian[(row, column)] - difference).abs() < 1e-8, "{row} {column}");
             }
         }
     }

@@ -11,9 +11,10 @@ mod penalty;
 mod spring;
 mod vortex;
 
-use super::{bodies::Bodies, matrix::Matrix};
+use super::bodies::Bodies;
 use crate::scene::{Collision, CollisionDetection, Force, Scene};
 use fosssim_num::vector::{Vec2, at, put};
+use nalgebra::DMatrix;
 use penalty::Penalty;
 pub use penalty::{PenaltyPairs, PenaltyTerms};
 
@@ -70,7 +71,7 @@ impl Forces {
     }
 
     /// Adds all d2U/dx2 to `matrix`. The penalty force counts as having none (simulation.md 3).
-    pub fn add_position_hessians(&self, bodies: &Bodies, x: &[f64], v: &[f64], matrix: &mut Matrix) {
+    pub fn add_position_hessians(&self, bodies: &Bodies, x: &[f64], v: &[f64], matrix: &mut DMatrix<f64>) {
         for force in &self.list {
             match *force {
                 Force::Spring { edge, stiffness, rest_length, damping } => {
@@ -85,7 +86,7 @@ impl Forces {
     }
 
     /// Adds the velocity analogues of the Hessians to `matrix`.
-    pub fn add_velocity_hessians(&self, bodies: &Bodies, x: &[f64], matrix: &mut Matrix) {
+    pub fn add_velocity_hessians(&self, bodies: &Bodies, x: &[f64], matrix: &mut DMatrix<f64>) {
         for force in &self.list {
             match *force {
                 Force::Spring { edge, damping, .. } => {

@@ -1,7 +1,8 @@
 //! The damped spring on an edge (simulation.md 3, springforce).
 use super::{add, subtract};
-use crate::sim::matrix::{Block, Matrix};
+use crate::sim::matrix::{couple, decouple};
 use fosssim_num::vector::{Vec2, at, length, over};
+use nalgebra::{DMatrix, Matrix2};
 
 /// The spring's length and its direction from the first to the second endpoint (NaN when they coincide).
 fn direction([a, b]: [usize; 2], x: &[f64]) -> (f64, Vec2) {
@@ -37,52 +38,33 @@ pub(super) fn add_position_hessian(
     damping: f64,
     x: &[f64],
     v: &[f64],
-    matrix: &mut Matrix,
+    matrix: &mut DMatrix<f64>,
 ) {
     let (l, n) = direction([a, b], x);
-    let n = [n.x, n.y];
-    let p: Block = [[n[0] * n[0], n[0] * n[1]], [n[1] * n[0], n[1] * n[1]]];
+    let p = Matrix2::new(n.x * n.x, n.x * n.y, n.y * n.x, n.y * n.y);
     let stretch = l - rest_length;
     let reciprocal = 1.0 / l;
-    let mut elastic: Block = [[0.0; 2]; 2];
-    for r in 0..2 {
-        for c in 0..2 {
-            let identity = if r == c { 1.0 } else { 0.0 };
-            elastic[r][c] = (p[r][c] + (stretch * (identity - p[r][c])) * reciprocal) * stiffness;
-        }
-    }
-    matrix.add_block(a, a, &elastic);
-    matrix.add_block(b, b, &elastic);
-    matrix.subtract_block(a, b, &elastic);
-    matrix.subtract_block(b, a, &elastic);
+    let elastic = Matrix2::from_fn(|r, c| {
+        let identity = if r == c { 1.0 } else { 0.0 };
+        (p[(r, c)] + (stretch * (identity - p[(r, c)])) * reciprocal) * stiffness
+    });
+    couple(matrix, [a, b], &elastic);
 
     let w = at(v, b) - at(v, a);
-    let w = [w.x, w.y];
-    let mut cross: Block = [[n[0] * w[0], n[0] * w[1]], [n[1] * w[0], n[1] * w[1]]];
-    let s = n[0] * w[0] + n[1] * w[1];
-    cross[0][0] += s;
-    cross[1][1] += s;
+    let s = n.dot(&w);
+    let cross = Matrix2::new(n.x * w.x + s, n.x * w.y, n.y * w.x, n.y * w.y + s);
     let scale = (-damping) / l;
-    let mut damped: Block = [[0.0; 2]; 2];
-    for r in 0..2 {
-        for c in 0..2 {
-            damped[r][c] = (cross[r][c] - (cross[r][0] * p[0][c] + cross[r][1] * p[1][c])) * scale;
-        }
-    }
-    matrix.subtract_block(a, a, &damped);
-    matrix.subtract_block(b, b, &damped);
-    matrix.add_block(a, b, &damped);
-    matrix.add_block(b, a, &damped);
+    let damped =
+        Matrix2::from_fn(|r, c| (cross[(r, c)] - (cross[(r, 0)] * p[(0, c)] + cross[(r, 1)] * p[(1, c)])) * scale);
+    decouple(matrix, [a, b], &damped);
 }
 
 /// Adds the velocity Hessian `b n nT` of the damping.
-pub(super) fn add_velocity_hessian([a, b]: [usize; 2], damping: f64, x: &[f64], matrix: &mut Matrix) {
+pub(super) fn add_velocity_hessian([a, b]: [usize; 2], damping: f64, x: &[f64], matrix: &mut DMatrix<f64>) {
     let (_, n) = direction([a, b], x);
-    let block: Block = [[(damping * n.x) * n.x, (damping * n.x) * n.y], [(damping * n.y) * n.x, (damping * n.y) * n.y]];
-    matrix.add_block(a, a, &block);
-    matrix.add_block(b, b, &block);
-    matrix.subtract_block(a, b, &block);
-    matrix.subtract_block(b, a, &block);
+    let scaled = damping * n;
+    let block = Matrix2::new(scaled.x * n.x, scaled.x * n.y, scaled.y * n.x, scaled.y * n.y);
+    couple(matrix, [a, b], &block);
 }
 
 #[cfg(test)]
@@ -111,9 +93,9 @@ mod tests {
             add_gradient([0, 1], k, l0, b, x, v, &mut gradient);
             gradient
         };
-        let mut by_position = Matrix::new(2);
+        let mut by_position = DMatrix::zeros(4, 4);
         add_position_hessian([0, 1], k, l0, b, &x, &v, &mut by_position);
-        let mut by_velocity = Matrix::new(2);
+        let mut by_velocity = DMatrix::zeros(4, 4);
         add_velocity_hessian([0, 1], b, &x, &mut by_velocity);
         let h = 1e-6;
         for column in 0..4 {
@@ -125,9 +107,9 @@ mod tests {
             slower[column] -= h;
             for row in 0..4 {
                 let difference = (gradient(&up, &v)[row] - gradient(&down, &v)[row]) / (2.0 * h);
-                assert!((by_position.get(row, column) - difference).abs() < 1e-8, "x {row} {column}");
+                assert!((by_position[(row, column)] - difference).abs() < 1e-8, "x {row} {column}");
                 let difference = (gradient(&x, &faster)[row] - gradient(&x, &slower)[row]) / (2.0 * h);
-                assert!((by_velocity.get(row, column) - difference).abs() < 1e-8, "v {row} {column}");
+                assert!((by_velocity[(row, column)] - difference).abs() < 1e-8, "v {row} {column}");
             }
         }
     }

@@ -8,9 +8,10 @@ mod linearized;
 mod symplectic;
 mod system;
 
-use super::{bodies::Bodies, forces::Forces, matrix::Matrix, observer::Steer, state::State};
+use super::{bodies::Bodies, forces::Forces, observer::Steer, state::State};
 use crate::scene::{Integrator, Scene};
 use fosssim_num::linear::Workspace;
+use nalgebra::DMatrix;
 use system::System;
 
 /// The update's norm stays above the bound after too many iterations, or the iterates repeat; or the work that is
@@ -50,7 +51,7 @@ impl Effort {
 /// The additional memory of the implicit methods, of size (2N)^2.
 #[derive(Debug, Clone)]
 struct ImplicitScratch {
-    matrix: Matrix,
+    matrix: DMatrix<f64>,
     workspace: Workspace,
     x: Vec<f64>,
     v: Vec<f64>,
@@ -65,7 +66,7 @@ impl Stepper {
         let entries = 2 * scene.particles.len();
         let implicit = match scene.integrator {
             Integrator::ImplicitEuler | Integrator::LinearizedImplicitEuler => Some(Box::new(ImplicitScratch {
-                matrix: Matrix::new(scene.particles.len()),
+                matrix: DMatrix::zeros(2 * scene.particles.len(), 2 * scene.particles.len()),
                 workspace: Workspace::default(),
                 x: vec![0.0; entries],
                 v: vec![0.0; entries],

@@ -1,7 +1,8 @@
 //! The system matrix of the implicit integrators (simulation.md 4, system matrix).
 use super::ImplicitScratch;
-use crate::sim::{bodies::Bodies, forces::Forces, matrix::Matrix, observer::Steer};
+use crate::sim::{bodies::Bodies, forces::Forces, observer::Steer};
 use fosssim_num::linear;
+use nalgebra::DMatrix;
 
 /// A scene's bodies and forces as an implicit method sees them.
 pub(super) struct System<'a> {
@@ -21,31 +22,29 @@ impl System<'_> {
         let ImplicitScratch { matrix, workspace, x, v, .. } = scratch;
         assemble(matrix, self.bodies, self.forces, self.h, x, v);
         if let Some(steer) = &mut self.steer {
-            steer.system(matrix.entries_mut());
+            steer.system(matrix.as_mut_slice());
         }
-        linear::solve(matrix.entries_mut(), rhs, workspace);
+        linear::solve(matrix.as_mut_slice(), rhs, workspace);
     }
 }
 
 /// Fills the matrix with `M + h (Hv + h Hx)` at positions `x` and velocities `v`; the rows and columns of fixed
 /// particles become those of the identity.
-pub(crate) fn assemble(matrix: &mut Matrix, bodies: &Bodies, forces: &Forces, h: f64, x: &[f64], v: &[f64]) {
-    matrix.clear();
+pub(crate) fn assemble(matrix: &mut DMatrix<f64>, bodies: &Bodies, forces: &Forces, h: f64, x: &[f64], v: &[f64]) {
+    matrix.fill(0.0);
     forces.add_position_hessians(bodies, x, v, matrix);
-    matrix.scale(h);
+    *matrix *= h;
     forces.add_velocity_hessians(bodies, x, matrix);
-    matrix.scale(h);
-    for index in 0..matrix.size() {
-        *matrix.get_mut(index, index) += bodies.masses[index / 2];
+    *matrix *= h;
+    for index in 0..matrix.nrows() {
+        matrix[(index, index)] += bodies.masses[index / 2];
     }
     for (particle, &fixed) in bodies.fixed.iter().enumerate() {
         if fixed {
             for index in [2 * particle, 2 * particle + 1] {
-                for other in 0..matrix.size() {
-                    *matrix.get_mut(index, other) = 0.0;
-                    *matrix.get_mut(other, index) = 0.0;
-                }
-                *matrix.get_mut(index, index) = 1.0;
+                matrix.row_mut(index).fill(0.0);
+                matrix.column_mut(index).fill(0.0);
+                matrix[(index, index)] = 1.0;
             }
         }
     }
@@ -65,12 +64,12 @@ mod tests {
             scene(vec![particle((0.0, 0.0), (0.0, 0.0), 2.0, 0.1), fixed(particle((1.0, 0.0), (0.0, 0.0), 3.0, 0.1))]);
         scene.forces.push(Force::Drag { coefficient: 0.5 });
         let (bodies, forces) = (Bodies::new(&scene), Forces::new(&scene));
-        let mut matrix = Matrix::new(2);
+        let mut matrix = DMatrix::zeros(4, 4);
         assemble(&mut matrix, &bodies, &forces, 0.5, &[0.0, 0.0, 1.0, 0.0], &[0.0; 4]);
         for row in 0..4 {
             for column in 0..4 {
                 let diagonal = if row < 2 { 2.25 } else { 1.0 };
-                assert_eq!(matrix.get(row, column), if row == column { diagonal } else { 0.0 }, "{row} {column}");
+                assert_eq!(matrix[(row, column)], if row == column { diagonal } else { 0.0 }, "{row} {column}");
             }
         }
     }
