@@ -122,6 +122,63 @@ test("a trace that is cut, one of another scene, a text, an empty file: each has
   await close();
 });
 
+test("each trace is recognised anew, and a scene that its reader chooses or drops stays", async () => {
+  const { page, complaints, close } = await opened(browser, html);
+  const names = ["ContinuousTimeTests/head-on-equal-masses", "ContinuousTimeTests/spinning-edge-sweeps-balls", WRONG[0]];
+  const scenes = async () => (await report(page).locator(".names").innerText()).match(/scene (\S+)/)[1];
+  for (const [number, name] of names.entries()) {
+    await drop(page, trace(name, null, `trace${number}.bin`));
+    assert.match(await said(page), /: accepted/, name);
+    assert.equal(await scenes(), `asset:${name}`);
+  }
+  const chosen = async (choice, name) => {
+    const before = await page.evaluate(() => document.documentElement.dataset.checked);
+    await page.locator("#ask").evaluate((ask) => { ask.open = true; });
+    await page.locator("#scene").selectOption(choice);
+    await page.waitForFunction((before) => document.documentElement.dataset.checked !== before, before);
+    assert.equal(await scenes(), name);
+  };
+  copyFileSync(scene(names[0]), join(folder, "own.xml"));
+  await drop(page, [join(folder, "own.xml"), join(folder, "trace0.bin")]);
+  assert.equal(await scenes(), "own.xml");
+  await drop(page, join(folder, "trace1.bin"));
+  assert.equal(await scenes(), "own.xml");
+  await chosen("", `asset:${names[1]}`);
+  await chosen("own", "own.xml");
+  await chosen(names[2], `asset:${names[2]}`);
+  await chosen("", `asset:${names[1]}`);
+  // Of two, one is checked, and the page says so.
+  await drop(page, [join(folder, "trace1.bin"), join(folder, "trace0.bin")]);
+  assert.match(await said(page), /^trace0\.bin: accepted.*Not checked: trace1\.bin/s);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test("what is no trace, and a broken scene, are told at once", async () => {
+  const { page, complaints, close } = await opened(browser, html);
+  for (const [content, words] of [["Dear grader", /is no trace: it looks like text/], ["", /is no trace: it is empty/]]) {
+    writeFileSync(join(folder, "notes.bin"), content);
+    await drop(page, join(folder, "notes.bin"));
+    assert.match(await said(page), words);
+  }
+  await page.reload();
+  await page.waitForSelector("html[data-ready]");
+  writeFileSync(join(folder, "broken.xml"), readFileSync(scene(WRONG[0]), "utf8").replace('radius="', 'radios="'));
+  await page.locator("#pick").setInputFiles(join(folder, "broken.xml"));
+  await page.getByText("did you mean `radius`").waitFor();
+  assert.match(await page.locator("#said").evaluate((said) => getComputedStyle(said).fontFamily), /mono/i);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test("without a mouse one goes on from the report", async () => {
+  const { page, close } = await opened(browser, html);
+  await page.locator("#pick").focus();
+  await drop(page, trace(...WRONG));
+  assert.equal(await page.evaluate(() => document.activeElement.id), "again");
+  await close();
+});
+
 test("a trace that may be one of several scenes is asked about by their names", async () => {
   const { page, complaints, close } = await opened(browser, html);
   const names = ["implicit-euler-stiff-chain", "linearized-implicit-chain"];

@@ -1,6 +1,8 @@
 // A trace is checked: the report is the file that the command line writes, in a frame of its own.
-const check = { oracle: new Oracle(), trace: null, scene: null, report: null };
-const say = (words, look = "") => { $("said").textContent = words; $("said").className = look; };
+// The list holds what its reader has chosen; with its first choice each trace is recognised anew. `given` comes with a trace.
+const check = { oracle: new Oracle(), trace: null, given: null, others: [], own: null, report: null, run: 0 };
+// The strict reader points at a place of its excerpt, which takes letters of one width.
+const say = (words, look = "") => { $("said").textContent = words; $("said").className = words.includes("\n") ? `${look} excerpt` : look; };
 
 // A dropped file that may be read again later: the handle sees what was written since. Browsers unpack gzip themselves.
 async function freshFile(item) {
@@ -15,77 +17,103 @@ async function freshFile(item) {
 }
 const bare = (name) => name.replace(/\.bin(\.(zst|gz))?$/i, "");
 
-async function takeFiles(items) {
-  for (const item of items) {
-    const { name } = item.file;
-    if (/\.xml$/i.test(name)) await takeScene(item);
-    else check.trace = item;
+async function takeFiles(items, scene = null) {
+  const scenes = items.filter(({ file }) => /\.xml$/i.test(file.name)), traces = items.filter((item) => !scenes.includes(item));
+  const last = traces.at(-1);
+  if (last) {
+    Object.assign(check, { trace: last, given: scene, others: traces.slice(0, -1).map(({ file }) => file.name) });
+    $("trace-name").textContent = `${last.file.name}, ${counted(last.file.size, "byte")}`;
   }
-  $("trace-name").textContent = check.trace ? `${check.trace.file.name}, ${counted(check.trace.file.size, "byte")}` : "none yet";
-  if (check.trace && !check.scene && !$("scene").value) await recognise();
-  if (check.trace && (check.scene || $("scene").value)) return judge();
-  if (check.trace) say(check.alike?.length > 1 ? `The trace begins like those of ${check.alike.join(" and ")}: choose its scene, or drop its XML.` : "Which scene is this a trace of? Choose one, or drop its XML.");
-  else if (check.scene) say("Now drop the trace.");
+  try {
+    for (const item of scenes) await takeScene(item);
+  } catch (error) {
+    if (!check.trace) return failed(error);
+  }
+  if (check.trace) return judge();
+  if (check.own) say("Now drop the trace.");
 }
 
-async function takeScene(item) {
-  check.scene = { name: item.file.name, xml: new Uint8Array(await item.file.arrayBuffer()) };
+// A scene is read when it is dropped: what is wrong with it is told at once.
+async function takeScene({ file }) {
+  check.own = { name: file.name, xml: new Uint8Array(await file.arrayBuffer()) };
   let own = $("scene").querySelector("option.own");
-  if (!own) $("scene").prepend(own = el("option", { class: "own", value: "" }));
-  own.textContent = `your file ${item.file.name}`;
+  if (!own) $("scene").options[0].after(own = el("option", { class: "own", value: "own" }));
+  own.textContent = `your file ${file.name}`;
   own.selected = true;
+  check.oracle.stop();
+  await check.oracle.ask({ do: "read", name: file.name }, { blobs: [check.own.xml] });
 }
 
-// A trace begins with the state of its scene.
-async function recognise() {
-  check.alike = [];
-  const name = bare(check.trace.file.name);
+// A scene as the program is asked for it: a course's and a dropped one have their XML with them.
+function sceneOf(value) {
+  const own = ownScene(value);
+  if (own) return { name: own.name, xml: bytesOf(own.xml) };
+  return value === "own" ? check.own : { name: `asset:${value}` };
+}
+
+// The scene of a trace, where nobody has chosen it: a trace begins with the state of its scene.
+async function recognised(file) {
+  const name = bare(file.name);
   const own = course?.scenes.findIndex((scene) => scene.name.replace(/\.xml$/, "").split("/").pop() === name) ?? -1;
-  if (own >= 0) { $("scene").value = `course:${own}`; return; }
-  const file = await freshFile(check.trace).catch(() => null);
-  if (!file) return;
-  const { value } = await check.oracle.ask({ do: "recognise" }, { files: [file] });
-  const found = value.scenes.find((scene) => scene === name || scene.endsWith(`/${name}`)) ?? (value.scenes.length === 1 ? value.scenes[0] : null);
-  check.alike = value.scenes;
-  if (found) $("scene").value = found;
+  if (own >= 0) return sceneOf(`course:${own}`);
+  const answer = await check.oracle.ask({ do: "recognise" }, { files: [file] });
+  if (!answer) return null;
+  const { scenes, looks_like } = answer.value;
+  const found = scenes.find((scene) => scene === name || scene.endsWith(`/${name}`)) ?? (scenes.length === 1 ? scenes[0] : null);
+  if (found) return sceneOf(found);
+  if (looks_like) throw new Error(`${file.name} is no trace: it ${looks_like}.`);
+  throw new Error(scenes.length ? `The trace begins like those of ${scenes.join(" and ")}: choose its scene, or drop its XML.` : "Which scene is this a trace of? Choose one, or drop its XML.");
+}
+
+// The report that was there is one of another trace.
+function failed(error) {
+  $("frame").hidden = $("save-html").hidden = $("save-json").hidden = true;
+  $("doing").hidden = !check.trace;
+  document.body.classList.remove("reads");
+  $("ask").open = true;
+  say(error.message, "bad");
 }
 
 async function judge() {
-  const own = ownScene($("scene").value), asset = own ? "" : $("scene").value;
-  const scene = own ? { name: own.name, xml: bytesOf(own.xml) } : check.scene;
   if (!check.trace) return say("Choose a trace first.", "bad");
-  if (!asset && !scene) return say("Choose a scene first.", "bad");
   check.oracle.stop();
-  const started = performance.now();
+  const run = ++check.run, started = performance.now(), chosen = $("scene").value;
   $("bar").hidden = $("stop").hidden = false;
   $("bar").removeAttribute("value");
   say(`Checking ${check.trace.file.name} ...`);
   try {
     const file = await freshFile(check.trace);
-    const request = { do: "check", scene: asset ? `asset:${asset}` : scene.name, trace: file.name, rules: $("rules").value, html: true };
-    const progress = (done, all) => { $("bar").max = all; $("bar").value = done; };
-    const answer = await check.oracle.ask(request, { blobs: asset ? [] : [scene.xml], files: [file], progress });
-    if (!answer) return say("Stopped.");
+    const scene = chosen ? sceneOf(chosen) : check.given ?? await recognised(file);
+    const request = scene && { do: "check", scene: scene.name, trace: file.name, rules: $("rules").value, html: true };
+    const progress = (done, all) => {
+      if (done < all) { $("bar").max = all; $("bar").value = done; return; }
+      $("bar").removeAttribute("value");
+      say(`Writing the report on ${file.name} ...`);
+    };
+    const answer = request && await check.oracle.ask(request, { blobs: scene.xml ? [scene.xml] : [], files: [file], progress });
+    if (run !== check.run) return;
+    if (!answer) return say($("frame").hidden ? "Stopped." : "Stopped. The report is that of the run before.");
     const [json, html] = answer.parts;
     check.report = { name: bare(file.name), json, html };
     $("frame").srcdoc = text(html);
+    const hadFocus = $("ask").contains(document.activeElement);
     $("ask").open = false;
-    $("frame").hidden = $("doing").hidden = false;
+    $("frame").hidden = $("doing").hidden = $("save-html").hidden = $("save-json").hidden = false;
+    if (hadFocus) $("again").focus();
     document.body.classList.toggle("reads", current() === "check");
-    say(`${file.name}: ${answer.value.verdict}, judged in ${((performance.now() - started) / 1000).toFixed(2)} s on this computer.`, answer.value.accepted ? "good" : "bad");
+    const { verdict, accepted, difference } = answer.value;
+    const others = check.others.length ? ` Not checked: ${check.others.join(", ")}. One trace is checked at a time; a folder of them belongs under All traces.` : "";
+    say(`${file.name}: ${verdict}${difference ? ` (${difference})` : ""}, judged in ${((performance.now() - started) / 1000).toFixed(2)} s on this computer.${others}`, accepted ? (difference ? "" : "good") : "bad");
   } catch (error) {
-    $("frame").hidden = $("doing").hidden = true;
-    document.body.classList.remove("reads");
-    $("ask").open = true;
-    say(error.message, "bad");
+    if (run === check.run) failed(error);
   } finally {
-    $("bar").hidden = $("stop").hidden = true;
+    if (run === check.run) $("bar").hidden = $("stop").hidden = true;
     document.documentElement.dataset.checked = String(Number(document.documentElement.dataset.checked ?? 0) + 1);
   }
 }
 
 choices($("scene"));
-$("scene").addEventListener("change", () => { if (check.trace && $("scene").selectedIndex > 0) judge(); });
+$("scene").addEventListener("change", () => { check.given = null; if (check.trace) judge(); });
 $("rules").addEventListener("change", () => { if (check.report) judge(); });
 $("judge").addEventListener("click", judge);
 $("again").addEventListener("click", judge);

@@ -121,18 +121,12 @@ function showMarks(suite, grade, rows) {
   $("save-marks").hidden = $("marks-again").hidden = false;
 }
 
-// The whole report on one scene.
+// The whole report on one scene. It is this trace's alone: the next one is recognised.
 function lookAt(scene, file) {
   open("check");
-  const own = course?.scenes.findIndex(({ name }) => name === `${scene}.xml`) ?? -1;
-  if (marks.suite === courseSuite && own >= 0) $("scene").value = `course:${own}`;
-  else if ([...$("scene").options].some((option) => option.value === scene)) $("scene").value = scene;
-  else if (marks.suite) {
-    const number = marks.suite.scenes.findIndex((name) => name.replace(/\.xml$/i, "") === scene);
-    return takeFiles([{ file: new File([marks.suite.xml[number]], marks.suite.scenes[number].split("/").pop()) }, { file }]);
-  }
-  check.trace = null;
-  takeFiles([{ file }]);
+  $("scene").value = "";
+  const number = marks.suite?.scenes.findIndex((name) => name.replace(/\.xml$/i, "") === scene) ?? -1;
+  takeFiles([{ file }], number < 0 ? sceneOf(scene) : { name: marks.suite.scenes[number], xml: marks.suite.xml[number] });
 }
 
 $("pick-folder").addEventListener("change", ({ target }) => {

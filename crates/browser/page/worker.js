@@ -10,7 +10,7 @@ const host = {
   },
   progress(done, all) {
     const now = performance.now();
-    if (now - told < 100) return;
+    if (now - told < 100 && done < all) return;
     told = now;
     postMessage({ id, progress: [done, all] });
   },

@@ -1,5 +1,8 @@
 //! The scenes that are inside.
-use crate::dropped::{PageHost, ReadFault, opened};
+use crate::{
+    dropped::{PageHost, ReadFault, opened},
+    parts::PageAnswer,
+};
 use fosssim_grading::library;
 use fosssim_model::{
     assignments::Assignment,
@@ -7,6 +10,7 @@ use fosssim_model::{
     sim::{RootSearch, Simulation},
     trace::{Layout, Recorder},
 };
+use fosssim_report::check::{LOOKED_AT, looks_like};
 use serde_json::{Value, json};
 use std::{collections::BTreeMap, io::Read};
 
@@ -32,13 +36,19 @@ pub(crate) fn xml(name: &str) -> Result<&'static [u8], String> {
     library::scene(name).ok_or_else(|| format!("there is no scene asset:{name}"))
 }
 
-/// The names of the scenes with whose first record a dropped trace begins.
-pub(crate) fn beginning(file: u32, host: &dyn PageHost) -> Vec<&'static str> {
+/// The names of the scenes with whose first record a dropped trace begins, and the kind of file that it seems to be
+/// where it can't be a trace.
+pub(crate) fn beginning(file: u32, host: &dyn PageHost) -> PageAnswer {
     let (fault, mut start) = (ReadFault::new(), Vec::new());
-    if opened(host, file, &fault).take(LONGEST_RECORD).read_to_end(&mut start).is_err() {
-        return Vec::new();
+    // An error has its words in `fault`.
+    let _ = opened(host, file, &fault).take(LONGEST_RECORD).read_to_end(&mut start);
+    if let Some(why) = fault.get() {
+        return Err(format!("cannot read the trace: {why}"));
     }
-    library::names().filter(|name| library::scene(name).is_some_and(|xml| is_beginning(xml, &start))).collect()
+    let begins = |name: &&str| library::scene(name).is_some_and(|xml| is_beginning(xml, &start));
+    let scenes: Vec<_> = library::names().filter(begins).collect();
+    let kind = looks_like(&start[..start.len().min(LOOKED_AT as usize)]);
+    Ok((json!({ "scenes": scenes, "looks_like": kind }), Vec::new()))
 }
 
 /// Whether a trace with this beginning may be one of the scene.

@@ -19,7 +19,9 @@ enum PageRequest {
     Scenes,
     /// The XML of one of them.
     Scene { name: String },
-    /// The scenes inside with whose start the dropped trace begins.
+    /// Reads the scene of the second part: whether its strict reader takes it.
+    Read { name: String },
+    /// The scenes inside with whose start the dropped trace begins, and the kind of file that it seems to be instead.
     Recognise {
         #[serde(default)]
         file: u32,
@@ -73,7 +75,8 @@ impl PageSession {
                 Ok((json!({ "assignments": scenes::list(), "suites": suites }), Vec::new()))
             }
             PageRequest::Scene { name } => Ok((json!({}), vec![scenes::xml(&name)?.to_vec()])),
-            PageRequest::Recognise { file } => Ok((json!({ "scenes": scenes::beginning(file, host) }), Vec::new())),
+            PageRequest::Read { name } => check::read_scene(&name, xml).map(|_| (json!({}), Vec::new())),
+            PageRequest::Recognise { file } => scenes::beginning(file, host),
             PageRequest::Check(request) => check::answer(&request, xml, host),
             PageRequest::Simulate(request) => {
                 let (value, film) = film::simulate(&request, xml.ok_or("the scene is missing")?, host);
