@@ -47,6 +47,8 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
     let mut heard = WrongStepsHeard { host, all: scene.steps(), wrong: WrongSteps::new(StepChoice::None) };
     let examined = examine(&scene, Cursor::new(start).chain(trace), Keep::All, &options, &mut heard);
     let outcome = &examined.outcome;
+    // What follows takes as long as judging where a mistake has to be found.
+    host.progress(scene.steps(), scene.steps());
     if let Some(why) = no_verdict(outcome, &request.scene) {
         return Err(why);
     }
@@ -71,7 +73,10 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
         let evidence = examined.evidence(again.as_mut().map(|trace| trace as &mut dyn Read), evidence::BUDGET);
         parts.push(page::of_examined(check, &examined, &evidence).into_bytes());
     }
-    Ok((json!({ "accepted": check.accepted(), "verdict": check.verdict() }), parts))
+    let value = json!({
+        "accepted": check.accepted(), "verdict": check.verdict(), "difference": check.difference(),
+    });
+    Ok((value, parts))
 }
 
 /// A scene that was dropped, or one of those inside.

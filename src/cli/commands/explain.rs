@@ -111,9 +111,11 @@ fn case(
     let explanations = cut(hints, explanations);
     let draws = arguments.format == ExplainFormat::Html && !accepted;
     let card = draws.then(|| {
+        let kept = examined.bytes();
         pages::card(&Source {
             scene,
-            trace: &examined.bytes(),
+            is_cut: !examined.trace.is_whole() || kept.len() as u64 >= LONGEST,
+            trace: &kept,
             outcome,
             rulings: &examined.rulings,
             explanations: &explanations,

@@ -136,6 +136,7 @@ pub(super) fn draw(judged: &Judged<'_>, names: (&str, Option<&str>), recorded: b
         card(&Source {
             scene: &judged.task.scene,
             trace: judged.trace,
+            is_cut: judged.is_cut,
             outcome: judged.outcome,
             rulings: judged.rulings,
             explanations: &judged.result.explanations,
@@ -156,6 +157,8 @@ pub(super) fn draw(judged: &Judged<'_>, names: (&str, Option<&str>), recorded: b
 pub(super) struct Source<'a> {
     pub(super) scene: &'a Scene,
     pub(super) trace: &'a [u8],
+    /// Whether it is the beginning of a longer one.
+    pub(super) is_cut: bool,
     pub(super) outcome: &'a Outcome,
     pub(super) rulings: &'a [evidence::StepRuling],
     pub(super) explanations: &'a [Explanation],
@@ -168,11 +171,11 @@ pub(super) struct Source<'a> {
 
 /// The card of a judged trace.
 pub(super) fn card(source: &Source<'_>) -> Option<Card> {
-    let Source { scene, trace, outcome, rulings, explanations, rules, hints, names, depth } = *source;
+    let Source { scene, trace, is_cut, outcome, rulings, explanations, rules, hints, names, depth } = *source;
     let (fair, focus) = (outcome.fair.is_some(), Focus::of(outcome));
     let evidence = evidence::gather(scene, &mut &trace[..], rulings, fair, &focus, BUDGET);
     let what_if = match (hints, explanations.first()) {
-        (Hints::Full, Some(first)) => WhatIf::of(scene, first, trace, &evidence),
+        (Hints::Full, Some(first)) => WhatIf::of(scene, first, (!is_cut).then_some(trace), &evidence),
         _ => None,
     };
     let steps = WrongSteps::new(StepChoice::None);

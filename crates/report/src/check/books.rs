@@ -4,10 +4,14 @@ use crate::{
     number::counted,
     style::{Look, Style},
 };
+use fosssim_findings::Cause;
 use fosssim_judge::{Overall, fair::cause};
 
-/// The section; nothing where the headline has said all.
-pub(super) fn render(check: &Check<'_>, style: Style) -> Option<String> {
+/// The verdict of one rule book: its name, its word and how it looks, and its grounds.
+pub(crate) type BookWords = (&'static str, Look, &'static str, String);
+
+/// The verdicts of both books; nothing where the headline has said all.
+pub(crate) fn verdicts(check: &Check<'_>) -> Option<[BookWords; 2]> {
     let outcome = check.outcome;
     let judgement = outcome.fair.as_deref()?;
     let (look, word) = match outcome.parity.overall {
@@ -15,20 +19,33 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> Option<String> {
         Overall::Failed => (Look::Bad, "failed"),
         Overall::None => (Look::Notice, "no verdict"),
     };
-    let counts = &outcome.parity.findings.counts;
-    let mut found = match counts.total() {
-        0 => String::new(),
-        many => format!(": {}", counted(many, "finding")),
-    };
+    let mut found: Vec<String> = Vec::new();
+    let total = outcome.parity.findings.counts.total();
+    found.extend((total > 0).then(|| counted(total, "finding")));
     let follow = follows::count(outcome);
-    if follow > 0 {
-        found += &format!(", among them {}", follows::words(follow));
-    }
-    let mut text = format!("{}\n", style.paint(Look::Strong, "Rule books"));
-    text += &format!("  the original's rules: {}{found}\n", style.paint(look, word));
+    found.extend((follow > 0).then(|| format!("among them {}", follows::words(follow))));
+    let parity = ("the original's rules", look, word, found.join(", "));
     let (look, word) = fair::verdict(judgement);
-    text += &format!("  the fair rules: {}: {}\n", style.paint(look, word), fair::summary(judgement, outcome));
-    if let Some(cause) = cause(outcome) {
+    Some([parity, ("the fair rules", look, word, fair::summary(judgement, outcome))])
+}
+
+/// Which of the books accepts a trace that the other one refuses.
+pub(crate) const fn sides(cause: Cause) -> &'static str {
+    if cause.original_fails() {
+        "the original fails this trace, the fair rules accept it"
+    } else {
+        "the original passes this trace, the fair rules reject it"
+    }
+}
+
+/// The section; nothing where the headline has said all.
+pub(super) fn render(check: &Check<'_>, style: Style) -> Option<String> {
+    let mut text = format!("{}\n", style.paint(Look::Strong, "Rule books"));
+    for (name, look, word, grounds) in verdicts(check)? {
+        let grounds = if grounds.is_empty() { grounds } else { format!(": {grounds}") };
+        text += &format!("  {name}: {}{grounds}\n", style.paint(look, word));
+    }
+    if let Some(cause) = cause(check.outcome) {
         text += &format!("  {} {cause}\n", style.paint(Look::Notice, "They differ:"));
     }
     Some(text)

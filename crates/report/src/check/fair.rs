@@ -1,8 +1,11 @@
 //! The fair rules' part of the check report, for people.
-use super::super::{
-    number::{count, general},
-    style::{Look, Style},
-    table::{Align, Table},
+use super::{
+    super::{
+        number::{count, general},
+        style::{Look, Style},
+        table::{Align, Table},
+    },
+    books,
 };
 use fosssim_judge::{
     Outcome, PairWords, PassWords,
@@ -63,12 +66,8 @@ pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
         text += &table.render(style);
     }
     if let Some(cause) = cause(outcome) {
-        let verdicts = if cause.original_fails() {
-            "the original fails this trace, the fair rules accept it"
-        } else {
-            "the original passes this trace, the fair rules reject it"
-        };
-        text += &format!("  {} {verdicts}:\n  {cause}\n", style.paint(Look::Notice, "The rule books differ:"));
+        let (heading, sides) = (style.paint(Look::Notice, "The rule books differ:"), books::sides(cause));
+        text += &format!("  {heading} {sides}:\n  {cause}\n");
     }
     Some(text)
 }

@@ -5,7 +5,7 @@
 
 pub(crate) mod advice;
 mod asked;
-mod books;
+pub(crate) mod books;
 mod closer;
 pub(crate) mod divergence;
 mod fair;
@@ -21,8 +21,8 @@ pub use asked::{is_wrong, no_verdict};
 pub use looks_like::{LOOKED_AT, looks_like};
 pub use plots::plots;
 pub use steps::{LISTED, StepChoice, WrongSteps};
-pub(crate) use text::headline;
 pub use text::stopped;
+pub(crate) use text::{headline, notes, problem};
 
 use super::{
     describe::step_error,
@@ -78,8 +78,14 @@ impl Check<'_> {
     }
 
     /// Whether the file is no trace at all, which is all that there is to say of it.
-    fn is_no_trace(&self) -> bool {
+    pub(crate) fn is_no_trace(&self) -> bool {
         self.looks_like.is_some() && !self.accepted()
+    }
+
+    /// Where the two rule books differ: which of them accepts the trace.
+    #[must_use]
+    pub fn difference(&self) -> Option<&'static str> {
+        cause(self.outcome).map(books::sides)
     }
 
     /// The official book.

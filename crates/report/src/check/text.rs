@@ -14,6 +14,16 @@ use super::{
 };
 use fosssim_judge::{Book, BookFindings, Outcome, Overall, Ruling, Stop, Unreadable, share};
 use fosssim_mistakes::diagnose::Explanation;
+use fosssim_model::sim::StepError;
+use std::iter;
+
+/// What is said of a limit that a trace has met.
+const LIMIT: &str =
+    "this is a limit of this program, which the original does not have: it says nothing about the trace";
+
+/// What is said of a computation without result.
+const ABSURD: &str = "the trace's own positions and velocities lead here; look for values that are not finite or \
+                      absurdly large in the steps before";
 
 /// The greatest number of explanations that are shown without `--tables`.
 const EXPLANATIONS: usize = 2;
@@ -24,7 +34,11 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     if check.is_no_trace() {
         return parts.concat();
     }
-    parts.extend(outcome.stop.as_ref().map(|stop| problem(stop, outcome, style)));
+    parts.extend(outcome.stop.as_ref().map(|stop| {
+        let (place, message, advice) = problem(stop, outcome);
+        let lines: String = iter::once(&*message).chain(advice).map(|line| format!("  {line}\n")).collect();
+        format!("{} {place}\n{lines}", style.paint(Look::Strong, "Stopped at"))
+    }));
     if steps::only_these(check) {
         parts.extend(steps::render(check, style));
         return parts.join("\n");
@@ -111,10 +125,11 @@ pub(crate) fn headline(check: &Check<'_>) -> String {
         }
         Overall::None => {
             let judged = count(u64::from(outcome.steps_judged));
-            format!(
-                "judged {judged} of {}, then the trace could not be followed",
-                counted(outcome.steps.into(), "step")
-            )
+            let end = match &outcome.stop {
+                Some(stop) if is_limit(stop) => "a limit of this program ended judging",
+                _ => "the trace could not be followed",
+            };
+            format!("judged {judged} of {}, then {end}", counted(outcome.steps.into(), "step"))
         }
     };
     match (check.book(), &outcome.fair, outcome.ruling(Book::Fair)) {
@@ -152,26 +167,22 @@ fn damaged(outcome: &Outcome) -> String {
 /// Where a trace can't be followed any further, and why: one line.
 #[must_use]
 pub fn stopped(stop: &Stop, outcome: &Outcome) -> String {
-    let (place, message, _) = parts(stop, outcome);
+    let (place, message, _) = problem(stop, outcome);
     format!("the trace can't be followed any further at {place}: {message}")
 }
 
-fn problem(stop: &Stop, outcome: &Outcome, style: Style) -> String {
-    let (place, message, advice) = parts(stop, outcome);
-    // Some messages ask already.
-    let advice = if message.ends_with('?') { String::new() } else { format!("  {advice}\n") };
-    format!("{} {place}\n  {message}\n{advice}", style.paint(Look::Strong, "Stopped at"))
+/// Whether judging ended at a limit of this program, which says nothing about the trace.
+const fn is_limit(stop: &Stop) -> bool {
+    matches!(stop, Stop::Trace { cause: Unreadable::Limit, .. } | Stop::Step(StepError::Work { .. }))
 }
 
-/// Where it is, what is the matter, and what to look at.
-fn parts(stop: &Stop, outcome: &Outcome) -> (String, String, &'static str) {
-    match stop {
+/// Where a trace can't be followed any further, what is the matter, and what to look at, unless the matter asks already.
+pub(crate) fn problem(stop: &Stop, outcome: &Outcome) -> (String, String, Option<&'static str>) {
+    let (place, message, advice) = match stop {
         Stop::Trace { frame, step, cause, offset, what } => {
             let advice = match cause {
                 Unreadable::Io => "the file could not be read on; check the disk, or who else writes to it",
-                Unreadable::Limit => {
-                    "this is a limit of this program, which the original does not have: it says nothing about the trace"
-                }
+                Unreadable::Limit => LIMIT,
                 Unreadable::Memory => {
                     "the trace is damaged, or was made for another scene: compare the scene's number of particles \
                      and its collision type with those of the run"
@@ -192,11 +203,12 @@ fn parts(stop: &Stop, outcome: &Outcome) -> (String, String, &'static str) {
         }
         Stop::Step(error) => {
             let (step, message) = step_error(error);
-            let advice = "the trace's own positions and velocities lead here; look for values that are not finite or \
-                          absurdly large in the steps before";
+            let advice = if is_limit(stop) { LIMIT } else { ABSURD };
             (format!("step {step} of {}", outcome.steps), message, advice)
         }
-    }
+    };
+    let asks = message.ends_with('?');
+    (place, message, (!asks).then_some(advice))
 }
 
 fn residuals(outcome: &Outcome, style: Style) -> String {
@@ -259,7 +271,7 @@ fn noted(check: &Check<'_>, style: Style) -> Option<String> {
 }
 
 /// Further notes.
-pub(super) fn notes(check: &Check<'_>) -> Vec<String> {
+pub(crate) fn notes(check: &Check<'_>) -> Vec<String> {
     let outcome = check.outcome;
     let mut notes = Vec::new();
     if let Some(damage) = &outcome.damage {

@@ -7,17 +7,19 @@ use super::{
 };
 use crate::{
     check::{
-        advice,
+        Check, advice,
+        books::{BookWords, verdicts},
         divergence::{self, SideBySide, Value},
         first::first,
-        follows, headline,
+        follows, headline, notes, problem,
     },
     explain::Told,
     number::count,
+    style::Look,
 };
 use fosssim_evidence::{Evidence, Focus, InspectedCall};
 use fosssim_findings::{Finding, FindingDetail, Hints};
-use fosssim_judge::{Book, BookFindings, Outcome, PairWords, Ruling};
+use fosssim_judge::{BookFindings, PairWords, fair::cause};
 use fosssim_mistakes::diagnose::Explanation;
 use fosssim_num::tolerances::PARITY_MAXIMUM;
 use fosssim_render::plot::{Embedding, PASSES_AXIS, PassPlot, RESIDUALS_AXIS, ResidualPlot, Series};
@@ -33,7 +35,11 @@ impl Case<'_> {
     /// The case as a page's own content.
     pub(super) fn html(&self, key: &str) -> String {
         let check = &self.check;
-        let look = if check.accepted() { "good" } else { "bad" };
+        let look = match (check.accepted(), check.difference()) {
+            (true, None) => "good",
+            (true, Some(_)) => "warn",
+            (false, _) => "bad",
+        };
         let mut out = format!(
             "<article class=\"case\" data-case=\"{key}\" data-scene=\"{}\" aria-labelledby=\"title-{key}\">\n\
              <h1 id=\"title-{key}\"><span class=\"chip {look}\">{}</span> {}</h1>\n\
@@ -44,8 +50,14 @@ impl Case<'_> {
             text(check.scene),
             text(check.trace),
         );
+        if check.is_no_trace() {
+            return out + "</article>\n";
+        }
+        if let (Some(sides), Some(cause)) = (check.difference(), cause(check.outcome)) {
+            let _ = writeln!(out, "<p><span class=\"chip warn\">the rule books differ</span> {sides}: {cause}</p>");
+        }
         let explanations = if self.is_other_scene() { &[][..] } else { check.explanations };
-        out += &self.trace_part(key, 1, &mistakes(explanations, self.first().is_some()));
+        out += &self.trace_part(key, 1, &(self.stopped() + &mistakes(explanations, self.first().is_some())));
         if let Some(evidence) = self.evidence {
             out += &data::blocks(self, evidence, key, Precision::AsRoomAllows);
         }
@@ -88,6 +100,19 @@ impl Case<'_> {
         out
     }
 
+    /// Where the trace can't be followed any further, why, and what to look at.
+    fn stopped(&self) -> String {
+        let outcome = self.check.outcome;
+        let Some(stop) = &outcome.stop else { return String::new() };
+        let (place, message, advice) = problem(stop, outcome);
+        let advice = advice.map(|advice| format!("<p>{advice}</p>")).unwrap_or_default();
+        format!(
+            "<section class=\"card mistake\"><p class=\"label\">Stopped at {}</p><p class=\"lead\">{}</p>{advice}</section>\n",
+            text(&place),
+            text(&message)
+        )
+    }
+
     /// That the likely mistake writes the same trace.
     fn proof(&self) -> String {
         let Some(what) = self.what_if.filter(|_| self.hints == Hints::Full) else { return String::new() };
@@ -120,7 +145,12 @@ impl Case<'_> {
                     writeln!(out, "<section class=\"card\">{}<ul>{lines}</ul></section>", heading("What to look at"));
             }
         }
-        out + &books(outcome) + "</div>\n"
+        out += &books(&self.check, &heading("Rule books"));
+        let notes: String = notes(&self.check).iter().map(|note| format!("<li>{}</li>", text(note))).collect();
+        if !notes.is_empty() {
+            let _ = writeln!(out, "<section class=\"card\">{}<ul>{notes}</ul></section>", heading("Notes"));
+        }
+        out + "</div>\n"
     }
 
     /// The detection calls that are wrong, and those that only follow from wrong positions.
@@ -237,7 +267,11 @@ pub(super) fn mistakes(explanations: &[Explanation], is_shown_beside: bool) -> S
         if is_likely {
             out += "<p class=\"label\">Likely mistake</p>";
         }
-        let _ = write!(out, "<p class=\"lead\">{}</p>", text(&what));
+        // The first sentence leads; what it is an instance of comes below.
+        let (lead, more) = what.split_once(". ").unwrap_or((&what, ""));
+        let dot = if more.is_empty() { "" } else { "." };
+        let _ = write!(out, "<p class=\"lead\">{}{dot}</p>", text(lead));
+        out.extend((!more.is_empty()).then(|| format!("<p>{}</p>", text(more))));
         out.extend(details.iter().map(|line| format!("<p>{}</p>", text(line))));
         out.extend(evidence.map(|evidence| format!("<p class=\"hint\">{}</p>", text(&evidence))));
         if !example.is_empty() && !is_shown_beside {
@@ -252,32 +286,20 @@ pub(super) fn mistakes(explanations: &[Explanation], is_shown_beside: bool) -> S
     out
 }
 
-/// The verdicts of both rule books: in a line where they say the same, which is most often so.
-fn books(outcome: &Outcome) -> String {
-    let right = |book: Book| {
-        format!("{} of {} steps right", count(u64::from(outcome.right_steps(book))), count(u64::from(outcome.steps)))
+/// The verdicts of both rule books, as the text report says them.
+fn books(check: &Check<'_>, heading: &str) -> String {
+    let Some(verdicts) = verdicts(check) else { return String::new() };
+    let line = |(name, look, word, grounds): BookWords| {
+        let look = match look {
+            Look::Good => "good",
+            Look::Bad => "bad",
+            _ => "warn",
+        };
+        let grounds = if grounds.is_empty() { grounds } else { format!(": {}", text(&grounds)) };
+        format!("<li>{name}: <b class=\"{look}\">{word}</b>{grounds}</li>")
     };
-    let same = |one: Book, other: Book| {
-        outcome.ruling(one) == outcome.ruling(other) && outcome.right_steps(one) == outcome.right_steps(other)
-    };
-    if outcome.fair.is_none() {
-        return format!("<p class=\"hint\">By the original's rules: {}.</p>\n", right(Book::Parity));
-    }
-    if same(Book::Parity, Book::Fair) {
-        let right = right(Book::Parity);
-        return format!("<p class=\"hint\">The original's rules and the fair rules agree: {right}.</p>\n");
-    }
-    let row = |name: &str, book: Book| {
-        let ruling = outcome.ruling(book);
-        let look = if ruling == Ruling::Accepted { "good" } else { "bad" };
-        let (ruling, right) = (ruling.words(), right(book));
-        format!("<tr><th scope=\"row\">{name}</th><td class=\"{look}\">{ruling}</td><td>{right}</td></tr>\n")
-    };
-    format!(
-        "<table><caption>The rule books differ</caption><tbody>\n{}{}</tbody></table>\n",
-        row("the original's rules", Book::Parity),
-        row("the fair rules", Book::Fair)
-    )
+    let lines: String = verdicts.into_iter().map(line).collect();
+    format!("<section class=\"card\">{heading}<ul class=\"books\">{lines}</ul></section>\n")
 }
 
 fn plots(evidence: &Evidence, key: &str, first: Option<u32>) -> String {

@@ -7,11 +7,12 @@ use fosssim_mistakes::{diagnose::Explanation, student};
 use fosssim_model::scene::Scene;
 
 impl WhatIf {
-    /// The run of the reference with the mistake that is named, beside the trace. Nothing where the reference with it
-    /// writes another trace, or where the evidence does not hold the whole motion.
+    /// The run of the reference with the mistake that is named, beside the trace. Nothing where no step was reproduced
+    /// with it, where the trace was not kept whole (`None`), or where the evidence does not hold the whole motion.
     #[must_use]
-    pub fn of(scene: &Scene, named: &Explanation, trace: &[u8], evidence: &Evidence) -> Option<Self> {
-        // What is not shown as a whole is not made as a whole either.
+    pub fn of(scene: &Scene, named: &Explanation, trace: Option<&[u8]>, evidence: &Evidence) -> Option<Self> {
+        // What is not there as a whole is not made as a whole either, and can't be compared.
+        let trace = trace?;
         if named.reproduced == 0 || !evidence.window.is_whole(evidence.layout.steps) {
             return None;
         }
@@ -26,7 +27,8 @@ impl WhatIf {
 #[must_use]
 pub fn of_examined(check: Check<'_>, examined: &Examined<'_>, evidence: &Evidence) -> String {
     let scene = examined.trace.scene();
-    let what_if = check.explanations.first().and_then(|first| WhatIf::of(scene, first, &examined.bytes(), evidence));
+    let trace = (examined.trace.is_whole() && !check.explanations.is_empty()).then(|| examined.bytes());
+    let what_if = check.explanations.first().and_then(|first| WhatIf::of(scene, first, trace.as_deref(), evidence));
     let title = format!("{}: {}", check.verdict(), check.scene);
     let (evidence, what_if) = (Some(evidence), what_if.as_ref());
     let case = Case { check, scene, evidence, what_if, hints: Hints::Full, has_trace: true };

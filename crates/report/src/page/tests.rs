@@ -1,4 +1,5 @@
 use super::*;
+use crate::check::{StepChoice, WrongSteps};
 use fosssim_evidence::{BUDGET, Focus, StepRulings, gather};
 use fosssim_grading::{
     Grade, Reason, SceneResult, Verdict,
@@ -9,7 +10,7 @@ use fosssim_grading::{
 };
 use fosssim_judge::{Outcome, Rules, replay};
 use fosssim_mistakes::{
-    diagnose,
+    diagnose::{self, Explanation},
     student::{self, Student},
     together::told::cut,
 };
@@ -32,19 +33,20 @@ fn told(scene: &Scene, scene_name: &str, trace_name: &str, trace: &[u8], hints: 
     let explanations = cut(hints, diagnose::explain(scene, trace));
     let focus: Vec<Focus> = outcome.parity.findings.examples.iter().map(Focus::from).collect();
     let evidence = gather(scene, &mut &trace[..], &rulings.into_steps(&outcome), true, &focus, BUDGET);
-    let check = Check {
-        scene: scene_name,
-        trace: trace_name,
-        outcome: &outcome,
-        explanations: &explanations,
-        rules: Rules::Both,
-        steps: &crate::check::WrongSteps::new(crate::check::StepChoice::None),
-        audit: false,
-        tables: false,
-        looks_like: None,
-    };
+    let check = check_of(scene_name, trace_name, &outcome, &explanations);
     let case = Case { check, scene, evidence: Some(&evidence), what_if: None, hints, has_trace: true };
     Page { title: trace_name, cases: vec![case] }.html()
+}
+
+fn check_of<'a>(scene: &'a str, trace: &'a str, outcome: &'a Outcome, explanations: &'a [Explanation]) -> Check<'a> {
+    static NONE: std::sync::LazyLock<WrongSteps> = std::sync::LazyLock::new(|| WrongSteps::new(StepChoice::None));
+    let (rules, steps) = (Rules::Both, &*NONE);
+    Check { scene, trace, outcome, explanations, rules, steps, audit: false, tables: false, looks_like: None }
+}
+
+fn text_of(scene: &Scene, trace: &[u8]) -> String {
+    let outcome = replay::judge(scene, trace, &replay::Options { fair: true, ..Default::default() }, &mut ());
+    check_of("scene", "trace", &outcome, &[]).text(crate::style::Style::Plain)
 }
 
 fn of_mistake(scene: &Scene, id: &str) -> Vec<u8> {
@@ -70,6 +72,59 @@ fn the_essentials_need_no_script() {
     ] {
         assert!(without.contains(words), "{words} is missing in {without}");
     }
+}
+
+/// The text report and the page say the same of a trace that can't be followed: where, why, and what the books say.
+#[test]
+fn a_page_says_where_and_why_a_trace_ends_and_agrees_with_the_text() {
+    let scene = asset("ContinuousTimeTests/spinning-edge-sweeps-balls.xml");
+    let whole = of_mistake(&scene, "pe-linear-one-ab");
+    for (trace, words) in [
+        (whole[..whole.len() / 2 + 3].to_vec(), ["Stopped at step", "did the program crash, or was it stopped"]),
+        ([&whole[..], &[0; 100]].concat(), ["bytes follow the last record", "the original never looks at them"]),
+    ] {
+        let html = page(&scene, "spinning", "mine.bin", &trace);
+        assert!(!html.contains("rules agree"), "{html}");
+        for words in words {
+            assert!(html.contains(words), "{words}");
+        }
+        let told = text_of(&scene, &trace);
+        let books = told.split_once("Rule books\n").expect("the books are told").1;
+        for line in books.lines().take(2) {
+            let (name, rest) = line.trim().split_once(": ").expect("a verdict");
+            let (word, grounds) = rest.split_once(": ").unwrap_or((rest, ""));
+            let row = format!("<li>{name}: ");
+            let row = html.split_once(&row).expect("a row").1.split_once("</li>").expect("a row").0;
+            assert!(row.contains(word) && row.contains(&markup::text(grounds)), "{line} in {row}");
+        }
+    }
+}
+
+/// Of a file that is no trace there is nothing else to say.
+#[test]
+fn a_page_about_no_trace_has_no_verdicts_of_books() {
+    let scene = asset("ContinuousTimeTests/head-on-equal-masses.xml");
+    let outcome = replay::judge(&scene, &b""[..], &replay::Options { fair: true, ..Default::default() }, &mut ());
+    let check = Check { looks_like: Some("is empty"), ..check_of("head-on", "mine.bin", &outcome, &[]) };
+    let case = Case { check, scene: &scene, evidence: None, what_if: None, hints: Hints::Full, has_trace: true };
+    let html = Page { title: "mine.bin", cases: vec![case] }.html();
+    assert!(html.contains("is no trace: it is empty") && !html.contains("fair rules"), "{html}");
+}
+
+/// What was not kept whole is not compared with a whole run.
+#[test]
+fn a_proof_is_told_of_whole_traces_only() {
+    let scene = asset("ContinuousTimeTests/head-on-equal-masses.xml");
+    let trace = of_mistake(&scene, "pp-contact-reversed");
+    let mut nobody = ();
+    let mut rulings = StepRulings::new(&mut nobody);
+    let options = replay::Options { fair: true, ..Default::default() };
+    let outcome = replay::judge(&scene, &trace[..], &options, &mut rulings);
+    let focus = Focus::of(&outcome);
+    let evidence = gather(&scene, &mut &trace[..], &rulings.into_steps(&outcome), true, &focus, BUDGET);
+    let named = &diagnose::explain(&scene, &trace)[0];
+    assert!(WhatIf::of(&scene, named, Some(&trace), &evidence).expect("a run").equal);
+    assert_eq!(WhatIf::of(&scene, named, None, &evidence), None);
 }
 
 #[test]
