@@ -298,8 +298,12 @@ test("a folder of traces gets the points of the suite, as grade --traces gives t
   const plain = join(traces, `${WRONG[0]}.bin`);
   writeFileSync(`${plain}.zst`, zstd(readFileSync(plain)));
   rmSync(plain);
+  trace(WRONG[0], null, "traces/GeometricTests/pair-becomes-rigit.bin");
   await marked(3);
-  // A scene leads to its report.
+  assert.match(await page.locator("#marks-list").innerText(), /1 trace belongs to no scene of .*: GeometricTests\/pair-becomes-rigit\.bin/);
+  // What is right is folded, below what is wrong. A scene leads to its report.
+  assert.ok(!(await page.getByRole("button", { name: "pair-becomes-rigid" }).isVisible()));
+  await page.locator("#marks-list > details", { hasText: "GeometricTests:" }).locator("details summary", { hasText: " right" }).click();
   await page.getByRole("button", { name: "pair-becomes-rigid" }).click();
   await page.waitForFunction(() => document.documentElement.dataset.checked === "1");
   assert.match(await said(page), /^pair-becomes-rigid\.bin.*: accepted/);

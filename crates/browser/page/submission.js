@@ -45,8 +45,8 @@ async function takeFolder(name, found) {
 // The trace of a scene, under its whole name or the name behind its group; below a folder of the folder if that is where
 // the first group lies.
 function traceOf(scene, below) {
-  const last = scene.split("/").pop();
-  return marks.files.get(`${below}${scene}.bin`) ?? marks.files.get(`${below}${last}.bin`) ?? null;
+  const paths = [`${below}${scene}.bin`, `${below}${scene.split("/").pop()}.bin`];
+  return paths.find((path) => marks.files.has(path)) ?? null;
 }
 function beginning(names) {
   const paths = [...marks.files.keys()];
@@ -63,7 +63,7 @@ const rounded = (points) => (points === null ? "none" : Number(points.toFixed(2)
 async function mark_all() {
   marks.oracle.stop();
   $("marks-stop").hidden = $("marks-bar").hidden = false;
-  const started = performance.now(), rows = [];
+  const started = performance.now(), rows = [], taken = new Set();
   try {
     const { suite } = marks;
     const begun = await marks.oracle.ask(suite ? { do: "suite", scenes: suite.scenes, is_for_students: suite.isForStudents ?? false } : { do: "suite", suite: $("suite").value }, { blobs: suite ? [suite.text, ...suite.xml] : [] });
@@ -74,7 +74,8 @@ async function mark_all() {
     for (const [number, { group, scene }] of names.entries()) {
       $("marks-bar").value = number;
       $("marks-said").textContent = `${number + 1} of ${names.length}: ${scene}`;
-      const file = traceOf(scene, below);
+      const path = traceOf(scene, below), file = path && marks.files.get(path);
+      taken.add(path);
       const answer = await marks.oracle.ask({ do: "judge", number, has_trace: file !== null }, { files: file ? [await freshFile({ file })] : [] });
       if (!answer) { $("marks-said").textContent = "Stopped."; return; }
       rows.push({ group, scene, file, ...answer.value });
@@ -83,7 +84,7 @@ async function mark_all() {
     if (!answer) return;
     answer.value.scenes.forEach((scene, number) => Object.assign(rows[number], scene));
     marks.json = answer.parts[0];
-    showMarks(begun.value, answer.value, rows);
+    showMarks(begun.value, answer.value, rows, [...marks.files.keys()].filter((path) => !taken.has(path)));
     $("marks-said").textContent = `${marks.name}: ${rounded(answer.value.points)} of ${rounded(answer.value.of)} points by ${begun.value.suite}, in ${((performance.now() - started) / 1000).toFixed(1)} s.`;
   } catch (error) {
     $("marks-said").textContent = error.message;
@@ -93,13 +94,15 @@ async function mark_all() {
   }
 }
 
-function showMarks(suite, grade, rows) {
+function showMarks(suite, grade, rows, strange) {
   const right = new Set(rows.filter((row) => row.accepted).map((row) => row.scene));
   const known = marks.last?.suite === suite.suite ? marks.last : null;
   const news = known ? [["became right", [...right].filter((scene) => !known.right.has(scene))], ["no longer right", [...known.right].filter((scene) => !right.has(scene))]] : [];
   marks.last = { suite: suite.suite, right };
   const since = news.filter(([, scenes]) => scenes.length).map(([words, scenes]) => el("p", { class: words === "became right" ? "good" : "bad" }, `Since the last drop ${words}: ${scenes.join(", ")}`));
   if (known && !since.length) since.push(el("p", { class: "hint" }, "Since the last drop nothing became right, and nothing wrong."));
+  const names = strange.slice(0, 12).join(", ") + (strange.length > 12 ? ` and ${strange.length - 12} more` : "");
+  const other = strange.length ? [el("p", { class: "bad" }, `${counted(strange.length, "trace")} ${strange.length === 1 ? "belongs" : "belong"} to no scene of ${suite.suite}: ${names}`)] : [];
   const mistakes = new Map();
   for (const { likely, accepted } of rows) if (likely && !accepted) mistakes.set(likely, (mistakes.get(likely) ?? 0) + 1);
   const likely = [...mistakes].sort((a, b) => b[1] - a[1]).slice(0, 5).map(([words, count]) => el("div", { class: "mistake" }, el("p", {}, words, el("span", { class: "hint" }, ` (${counted(count, "scene")})`))));
@@ -111,13 +114,18 @@ function showMarks(suite, grade, rows) {
       el("td", { class: "num" }, isMissing ? "" : `${right} of ${steps}`),
       el("td", { class: "num" }, `${rounded(points)} of ${rounded(of)}`),
       el("td", { class: "words" }, likely && !accepted ? likely : ""));
-    return el("details", { class: "card", open: good < own.length && own.some((row) => !row.isMissing) },
+    // What is wrong comes first, and what is right needs a look only if somebody asks.
+    const wrong = own.filter((row) => !row.accepted && !row.isMissing), missing = own.filter((row) => row.isMissing);
+    const folded = (list, words) => list.length ? el("details", { class: "table", open: list.length === own.length }, el("summary", {}, `${list.length} ${words}`), table(list)) : "";
+    const table = (list) => el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": `Scenes of ${name}` }, el("table", {},
+      el("thead", {}, el("tr", {}, ...["scene", "verdict", "steps right", "points", "likely mistake"].map((head) => el("th", { scope: "col", class: /steps|points/.test(head) ? "num" : "" }, head)))),
+      el("tbody", {}, ...list.map(line))));
+    return el("details", { class: "card", open: wrong.length > 0 },
       el("summary", {}, el("h2", {}, `${name}: ${good} of ${scenes.length} right, ${rounded(grade.groups[number].points)} of ${rounded(grade.groups[number].of)} points`)),
-      el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": `Scenes of ${name}` }, el("table", {},
-        el("thead", {}, el("tr", {}, ...["scene", "verdict", "steps right", "points", "likely mistake"].map((head) => el("th", { scope: "col", class: /steps|points/.test(head) ? "num" : "" }, head)))),
-        el("tbody", {}, ...own.map(line)))));
+      wrong.length ? table(wrong) : "",
+      folded(missing, "without a trace"), folded(own.filter((row) => row.accepted), "right"));
   });
-  $("marks-list").replaceChildren(el("h2", {}, `${rounded(grade.points)} of ${rounded(grade.of)} points`), ...(grade.unfit ? [el("p", { class: "bad" }, grade.unfit)] : []), ...since, ...likely, ...groups);
+  $("marks-list").replaceChildren(el("h2", {}, `${right.size} of ${counted(rows.length, "scene")} right`), ...(grade.unfit ? [el("p", { class: "bad" }, grade.unfit)] : []), ...other, ...since, ...likely, ...groups);
   $("save-marks").hidden = $("marks-again").hidden = false;
 }
 

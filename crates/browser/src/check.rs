@@ -47,7 +47,7 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
     let mut heard = WrongStepsHeard { host, all: scene.steps(), wrong: WrongSteps::new(StepChoice::None) };
     let examined = examine(&scene, Cursor::new(start).chain(trace), Keep::All, &options, &mut heard);
     let outcome = &examined.outcome;
-    // What follows takes as long as judging where a mistake has to be found.
+    // A search for the mistake may take as long as judging.
     host.progress(scene.steps(), scene.steps());
     if let Some(why) = no_verdict(outcome, &request.scene) {
         return Err(why);

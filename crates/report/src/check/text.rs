@@ -17,11 +17,11 @@ use fosssim_mistakes::diagnose::Explanation;
 use fosssim_model::sim::StepError;
 use std::iter;
 
-/// What is said of a limit that a trace has met.
+/// The advice where a trace has met a limit.
 const LIMIT: &str =
     "this is a limit of this program, which the original does not have: it says nothing about the trace";
 
-/// What is said of a computation without result.
+/// The advice at a computation without result.
 const ABSURD: &str = "the trace's own positions and velocities lead here; look for values that are not finite or \
                       absurdly large in the steps before";
 
@@ -176,7 +176,7 @@ const fn is_limit(stop: &Stop) -> bool {
     matches!(stop, Stop::Trace { cause: Unreadable::Limit, .. } | Stop::Step(StepError::Work { .. }))
 }
 
-/// Where a trace can't be followed any further, what is the matter, and what to look at, unless the matter asks already.
+/// Where a trace can't be followed any further, what is the matter, and what to look at; nothing where the matter asks.
 pub(crate) fn problem(stop: &Stop, outcome: &Outcome) -> (String, String, Option<&'static str>) {
     let (place, message, advice) = match stop {
         Stop::Trace { frame, step, cause, offset, what } => {

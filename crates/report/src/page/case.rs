@@ -107,7 +107,8 @@ impl Case<'_> {
         let (place, message, advice) = problem(stop, outcome);
         let advice = advice.map(|advice| format!("<p>{advice}</p>")).unwrap_or_default();
         format!(
-            "<section class=\"card mistake\"><p class=\"label\">Stopped at {}</p><p class=\"lead\">{}</p>{advice}</section>\n",
+            "<section class=\"card mistake\"><p class=\"label\">Stopped at {}</p><p class=\"lead\">{}</p>{advice}\
+             </section>\n",
             text(&place),
             text(&message)
         )

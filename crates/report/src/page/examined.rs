@@ -11,7 +11,7 @@ impl WhatIf {
     /// with it, where the trace was not kept whole (`None`), or where the evidence does not hold the whole motion.
     #[must_use]
     pub fn of(scene: &Scene, named: &Explanation, trace: Option<&[u8]>, evidence: &Evidence) -> Option<Self> {
-        // What is not there as a whole is not made as a whole either, and can't be compared.
+        // A motion that is not there as a whole is not made as a whole either, and can't be compared.
         let trace = trace?;
         if named.reproduced == 0 || !evidence.window.is_whole(evidence.layout.steps) {
             return None;

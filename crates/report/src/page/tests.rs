@@ -111,7 +111,7 @@ fn a_page_about_no_trace_has_no_verdicts_of_books() {
     assert!(html.contains("is no trace: it is empty") && !html.contains("fair rules"), "{html}");
 }
 
-/// What was not kept whole is not compared with a whole run.
+/// A trace that was not kept whole is not compared with a whole run.
 #[test]
 fn a_proof_is_told_of_whole_traces_only() {
     let scene = asset("ContinuousTimeTests/head-on-equal-masses.xml");
