@@ -11,21 +11,8 @@ pub(crate) fn lines(check: &Check<'_>) -> Vec<&'static str> {
     match check.explanations.iter().find(|one| explanation::is_known(one)) {
         Some(known) if known.is_of_stage() => explanation::where_to_look(known).into_iter().collect(),
         Some(_) => Vec::new(),
-        None => of_finding(charged(check, first)).to_vec(),
+        None => of_finding(first).to_vec(),
     }
-}
-
-/// The finding that the fair rules charge first, where a polynomial of a later pass differs first: they know a wrong
-/// formula from wrong positions.
-fn charged<'a>(check: &Check<'a>, first: &'a Finding) -> &'a Finding {
-    let is_later = match &first.detail {
-        FindingDetail::PolynomialDegree { place, .. }
-        | FindingDetail::VanishingPolynomial { place, .. }
-        | FindingDetail::Coefficient { place, .. } => place.pass.index > 0,
-        _ => false,
-    };
-    let fair = check.outcome.fair.as_ref().and_then(|fair| fair.findings.first_divergence.as_ref());
-    fair.filter(|_| is_later).unwrap_or(first)
 }
 
 /// By the kind of the first finding: what comes later often follows from it.

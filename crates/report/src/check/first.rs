@@ -1,5 +1,5 @@
 //! The finding that a check looks at first.
-use super::Check;
+use super::{Check, follows};
 use fosssim_judge::Finding;
 use fosssim_mistakes::diagnose::Explanation;
 
@@ -9,8 +9,16 @@ pub(super) fn is_other_scene(check: &Check<'_>) -> bool {
 }
 
 /// The first finding that is worth a look: of the official book, or of the other one where the official has nothing.
+/// A formula of a later pass is no first fault where the fair rules charge something else in its step: they follow the
+/// trace's own positions, and so tell a wrong formula from wrong positions.
 pub(crate) fn first<'a>(check: &Check<'a>) -> Option<&'a Finding> {
-    let other = check.outcome.fair.as_ref().and_then(|fair| fair.findings.first_divergence.as_ref());
-    let first = check.outcome.findings_by(check.book()).first_divergence.as_ref().or(other);
-    first.filter(|_| !is_other_scene(check))
+    let fair = check.outcome.fair.as_ref().and_then(|fair| fair.findings.first_divergence.as_ref());
+    let first = check.outcome.findings_by(check.book()).first_divergence.as_ref().or(fair)?;
+    let cause = fair.filter(|fair| fair.step == first.step && is_of_later_pass(first));
+    Some(cause.unwrap_or(first)).filter(|_| !is_other_scene(check))
+}
+
+/// Whether it is a formula's fault in a pass whose positions earlier passes of the step have made.
+pub(super) fn is_of_later_pass(finding: &Finding) -> bool {
+    follows::is_of_formula(finding.kind()) && finding.detail.pass().is_some_and(|pass| pass.index > 0)
 }

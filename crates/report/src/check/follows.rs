@@ -1,4 +1,5 @@
 //! Consequences: polynomials that differ only because the positions differ that they are made of.
+use super::first::is_of_later_pass;
 use crate::number::count as number;
 use fosssim_judge::{FindingKind, Outcome, fair::FairVerdict};
 
@@ -18,11 +19,15 @@ pub(crate) fn is_of_formula(kind: FindingKind) -> bool {
 }
 
 /// How many polynomials of a trace the original's rules find wrong that only follow from wrong positions: all of them,
-/// where the fair rules, which follow the trace's own positions, charge no formula, but the positions of later passes.
+/// where the fair rules, which follow the trace's own positions, charge no formula, but the positions of later passes;
+/// or where they charge states alone, and the first formulas that differ are those of later passes.
 pub(crate) fn count(outcome: &Outcome) -> u64 {
     let Some(fair) = outcome.fair.as_ref().filter(|fair| fair.verdict == FairVerdict::Rejected) else { return 0 };
     let charged = |kind: FindingKind| fair.findings.counts.get(kind);
-    if charged(FindingKind::PassPositions) == 0 || OF_FORMULAS.into_iter().any(|kind| charged(kind) > 0) {
+    let examples = outcome.parity.findings.examples.iter().filter(|example| is_of_formula(example.kind()));
+    let has_states = charged(FindingKind::Position) + charged(FindingKind::Velocity) > 0;
+    let follow = charged(FindingKind::PassPositions) > 0 || has_states && { examples }.all(is_of_later_pass);
+    if !follow || OF_FORMULAS.into_iter().any(|kind| charged(kind) > 0) {
         return 0;
     }
     OF_FORMULAS.into_iter().map(|kind| outcome.parity.findings.counts.get(kind)).sum()

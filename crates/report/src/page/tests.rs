@@ -100,6 +100,28 @@ fn a_page_says_where_and_why_a_trace_ends_and_agrees_with_the_text() {
     }
 }
 
+/// A mistake in a response or in the failsafe shows where its step ends first. Polynomials of the passes behind it have
+/// right formulas, in both reports.
+#[test]
+fn a_wrong_state_comes_before_the_polynomials_that_follow_from_it() {
+    for (name, id) in [
+        ("HolisticTests/balls-in-a-box.xml", "response-halved"),
+        ("GeometricTests/pair-becomes-rigid.xml", "failsafe-angular-overwritten"),
+    ] {
+        let scene = asset(name);
+        let trace = of_mistake(&scene, id);
+        let html = page(&scene, "scene", "mine.bin", &trace);
+        let first = html.split_once("Where it goes wrong first").expect("it is told").1;
+        let first = first.split_once("</section>").expect("a card").0;
+        assert!(first.contains("where particle") && first.contains("<mark>"), "{first}");
+        assert!(html.contains("Polynomials that follow from wrong positions"), "{id}");
+        assert!(!html.contains("The detection calls that are wrong"), "{id}");
+        let told = text_of(&scene, &trace);
+        let first = told.split_once("First divergence").expect("it is told").1.lines().nth(1).expect("a line");
+        assert!(first.contains("ends at"), "{first}");
+    }
+}
+
 /// Of a file that is no trace there is nothing else to say.
 #[test]
 fn a_page_about_no_trace_has_no_verdicts_of_books() {
