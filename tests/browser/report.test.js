@@ -98,6 +98,9 @@ test("the picture stands in the first screen, near the difference, and no width 
   const top = () => page.locator(".viewer canvas.picture").evaluate((canvas) => canvas.getBoundingClientRect().top + scrollY);
   for (const [width, height] of [[1440, 900], [1024, 768], [390, 844]]) {
     await page.setViewportSize({ width, height });
+    // So does the sentence that says what is wrong in the step.
+    const said = await page.locator(".say").evaluate((say) => say.getBoundingClientRect().top + scrollY);
+    assert.ok(said < height - 20, `${width}: ${said}`);
     assert.ok((await top()) < 0.7 * height, `${width}: ${await top()}`);
     assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= width, `${width}`);
   }
@@ -126,6 +129,27 @@ test("the picture stands in the first screen, near the difference, and no width 
   await page.keyboard.press("?");
   assert.equal(await page.locator(".keys").isVisible(), false);
   assert.deepEqual(complaints, []);
+  await close();
+});
+
+test("a wrong failsafe is told by its state: the digits of a momentum are marked, and no pair is called wrong", async () => {
+  const { page, complaints, close } = await open(report("failsafe"));
+  const row = page.locator(".facts tr", { hasText: "momentum after the failsafe" });
+  assert.equal(await row.locator("mark").count(), 1);
+  assert.equal(await page.locator(".lights").count(), 0);
+  assert.match(await page.locator(".numbers h4").innerText(), /particle 0 after step 6/);
+  assert.match(await page.locator(".viewer").innerText(), /yours.*expected from your own state/s);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test("letters of charts are no smaller on a phone", async () => {
+  const { page, close } = await open(report("failsafe"));
+  for (const width of [1440, 390]) {
+    await page.setViewportSize({ width, height: 844 });
+    const size = await page.locator("figure .fp text").first().evaluate((text) => text.getBoundingClientRect().height);
+    assert.ok(size > 9 && size < 20, `${width}: ${size}`);
+  }
   await close();
 });
 
@@ -237,6 +261,7 @@ test("a still and a clip are saved", async () => {
     const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name }).click()]);
     return [download.suggestedFilename(), readFileSync(await download.path())];
   };
+  await page.locator("details.save summary").click();
   const [still, png] = await saved("PNG");
   assert.match(still, /^step-\d+\.png$/);
   assert.deepEqual([...png.subarray(0, 8)], [137, 80, 78, 71, 13, 10, 26, 10]);
@@ -285,6 +310,7 @@ test("hostile names are text, and a damaged trace has its page", async () => {
 
 test("a picture is saved as a drawing, and bodies as a scene that has the same case", async () => {
   const { page, complaints, close } = await open(report("contact"));
+  await page.locator("details.save summary").click();
   const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "SVG" }).click()]);
   assert.match(download.suggestedFilename(), /^step-\d+\.svg$/);
   const svg = readFileSync(await download.path(), "utf8");

@@ -100,7 +100,7 @@ fn yours(step: u32, call: &InspectedCall, study: &Study, logged: &[Vec<f64>]) ->
     let impact = common.iter().map(|set| set.lo).reduce(f64::min);
     let title = format!("Yours in step {step}: {}", PairWords(call.pair));
     let svg = PolynomialPlot { title: &title, curves: &curves, common: Some(&common), impact }.svg(Embedding::Inline);
-    format!("<figure>{svg}</figure>\n")
+    format!("<figure tabindex=\"0\">{svg}</figure>\n")
 }
 
 /// Where a set ends within the step the polynomial is zero.
@@ -157,7 +157,7 @@ fn both(step: u32, role: &str, expected: &[f64], set: &[Interval], logged: &[f64
     ];
     let title = format!("Step {step}: {role}, expected and yours");
     let svg = PolynomialPlot { title: &title, curves: &curves, common: None, impact: None }.svg(Embedding::Inline);
-    format!("<figure>{svg}</figure>\n")
+    format!("<figure tabindex=\"0\">{svg}</figure>\n")
 }
 
 /// All coefficients side by side; those that differ after the factor that fits most are marked.

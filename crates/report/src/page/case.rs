@@ -297,7 +297,7 @@ fn books(check: &Check<'_>, heading: &str) -> String {
             _ => "warn",
         };
         let grounds = if grounds.is_empty() { grounds } else { format!(": {}", text(&grounds)) };
-        format!("<li>{name}: <b class=\"{look}\">{word}</b>{grounds}</li>")
+        format!("<li>{name}: <strong class=\"{look}\">{word}</strong>{grounds}</li>")
     };
     let lines: String = verdicts.into_iter().map(line).collect();
     format!("<section class=\"card\">{heading}<ul class=\"books\">{lines}</ul></section>\n")
@@ -319,7 +319,7 @@ fn plots(evidence: &Evidence, key: &str, first: Option<u32>) -> String {
     let passes = PassPlot { title: "Detection passes in each step", expected: &expected, actual: &actual };
     let figure = |svg: &str, [left, right]: [f64; 2]| {
         format!(
-            "<figure data-plot=\"{key}\" data-left=\"{left}\" data-right=\"{right}\" data-steps=\"{steps}\">{svg}</figure>\n"
+            "<figure tabindex=\"0\" data-plot=\"{key}\" data-left=\"{left}\" data-right=\"{right}\" data-steps=\"{steps}\">{svg}</figure>\n"
         )
     };
     let mut out = String::new();

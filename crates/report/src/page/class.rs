@@ -90,7 +90,7 @@ impl ClassPage<'_> {
         let names: Vec<&str> =
             self.grades.first().iter().flat_map(|grade| grade.scenes()).map(|one| one.scene.as_str()).collect();
         let mut out = format!(
-            "<h2>Submissions</h2>\n<p class=\"filter\" hidden><label>Only those that hold <input type=\"search\"></label> \
+            "<h2>Submissions</h2>\n<p class=\"filter\" hidden><label>Filter <input type=\"search\"></label> \
              <output></output></p>\n\
              <p class=\"hint keys\">Scenes in the order of the suite: <span><span class=\"h h-r\"></span> accepted</span> \
              <span><span class=\"h h-w\"></span> wrong</span> <span><span class=\"h h-e\"></span> crashed, too slow or \
@@ -402,25 +402,26 @@ fn histogram(grades: &[Grade]) -> String {
     let words: Vec<String> = counts.iter().zip(&names).map(|(count, name)| format!("{name}: {count}")).collect();
     let title = "Points of the class";
     let mut out = format!(
-        "<figure class=\"card\"><svg class=\"fp\" viewBox=\"0 0 640 190\" width=\"640\" height=\"190\" role=\"img\" \
-         aria-label=\"{title}: {}\"><title>{title}</title>\n<text x=\"20\" y=\"16\">{title}, in percent of what can be reached</text>\n",
+        "<figure class=\"card\"><svg class=\"fp\" viewBox=\"0 0 340 190\" width=\"340\" height=\"190\" role=\"img\" \
+         aria-label=\"{title}: {}\"><title>{title}</title>\n<text x=\"10\" y=\"16\">{title}, in percent of all</text>\n",
         words.join(", ")
     );
     for (bar, count) in counts.into_iter().enumerate() {
-        let (left, height) = (20 + 61 * bar, 120 * count / most);
+        let (left, height) = (10 + 31 * bar, 120 * count / most);
         let top = 160 - height;
         let _ = writeln!(
             out,
-            "<rect class=\"f1\" x=\"{left}\" y=\"{top}\" width=\"52\" height=\"{height}\"/>\
-             <text x=\"{0}\" y=\"{1}\" text-anchor=\"middle\">{count}</text>\
-             <text class=\"ft\" x=\"{0}\" y=\"178\" text-anchor=\"middle\">{2}-{3}</text>",
-            left + 26,
+            "<rect class=\"f1\" x=\"{}\" y=\"{top}\" width=\"27\" height=\"{height}\"/>\
+             <text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{count}</text>\
+             <text class=\"ft\" x=\"{left}\" y=\"178\" text-anchor=\"middle\">{}</text>",
+            left + 2,
+            left + 15,
             top - 5,
             10 * bar,
-            10 * bar + 10
         );
     }
-    out + "<line class=\"ax\" x1=\"14\" y1=\"160\" x2=\"632\" y2=\"160\"/></svg></figure>\n"
+    out + "<text class=\"ft\" x=\"320\" y=\"178\" text-anchor=\"middle\">100</text>\
+           <line class=\"ax\" x1=\"10\" y1=\"160\" x2=\"320\" y2=\"160\"/></svg></figure>\n"
 }
 
 #[cfg(test)]

@@ -3,9 +3,10 @@ use super::{
     Case, markup,
     packed::{Packed, Precision, Rounded},
 };
+use crate::check::{first::first, follows};
 use fosssim_evidence::{Evidence, InspectedPass, InspectedStep, Track};
 use fosssim_findings::Hints;
-use fosssim_judge::PassWords;
+use fosssim_judge::{FindingDetail, PassWords};
 use fosssim_model::{
     scene::{self, Scene},
     sim::{Impulse, Pair, State},
@@ -48,7 +49,11 @@ fn of_case(case: &Case<'_>, evidence: &Evidence, rounded: Option<&Rounded>) -> V
             json!({"step": up.step, "pair": key(call.pair), "zeros": zeros})
         })
     });
-    let first = case.check.outcome.findings_by(case.check.rules.official()).first_divergence.map(|first| first.step);
+    let first = first(&case.check);
+    let particle = first.filter(|_| is_full).and_then(|first| match first.detail {
+        FindingDetail::Position { particle, .. } | FindingDetail::Velocity { particle, .. } => Some(particle),
+        _ => None,
+    });
     json!({
         "scene": markup::visible(case.check.scene),
         "traceName": case.has_trace.then(|| markup::visible(case.check.trace)),
@@ -64,7 +69,8 @@ fn of_case(case: &Case<'_>, evidence: &Evidence, rounded: Option<&Rounded>) -> V
         "n": particles.len(),
         "first": evidence.window.first,
         "last": evidence.window.last,
-        "focus": first,
+        "focus": first.map(|first| first.step),
+        "particle": particle,
         "radii": particles.iter().map(|particle| particle.radius).collect::<Vec<_>>(),
         "masses": particles.iter().map(|particle| particle.mass).collect::<Vec<_>>(),
         "fixed": particles.iter().map(|particle| particle.fixed).collect::<Vec<_>>(),
@@ -72,6 +78,7 @@ fn of_case(case: &Case<'_>, evidence: &Evidence, rounded: Option<&Rounded>) -> V
         "planes": half_planes.iter()
             .map(|plane| [plane.point.x, plane.point.y, plane.normal.x, plane.normal.y]).collect::<Vec<_>>(),
         "strip": strip,
+        "follows": follows::count(case.check.outcome) > 0,
         "closeUps": inspected.iter().map(|up| inspected_step(up, evidence)).collect::<Vec<_>>(),
         "calls": calls.collect::<Vec<_>>(),
         "whatIf": case.what_if.filter(|_| is_full).map(|what| json!({"id": what.id, "text": what.sentence, "equal": what.equal})),

@@ -190,7 +190,8 @@ class Drawing extends Motion {
   }
   arrows(context) {
     const apart = this.difference();
-    if (!apart || !(apart.most > 0)) { this.factorText.textContent = apart ? "(no difference)" : "(nothing to compare)"; return; }
+    this.factor.hidden = !(apart && apart.most > 0);
+    if (this.factor.hidden) { this.factorText.textContent = apart ? "(no difference)" : "(nothing to compare)"; return; }
     const wish = (0.12 * this.extent) / this.zoom / apart.most, ten = 10 ** Math.floor(Math.log10(wish));
     const auto = Math.max(1, ten * (wish >= 5 * ten ? 5 : wish >= 2 * ten ? 2 : 1));
     const factor = this.magnify === null ? auto : this.magnify;

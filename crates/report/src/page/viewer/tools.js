@@ -97,8 +97,8 @@ class Sketch {
 const quoted = (text) => (/^[\w@%+=:,./-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`);
 const same = (one, other) => one.length === other.length && one.every((value, k) => Object.is(value, other[k]));
 function table(head, rows, caption) {
-  return el("table", {}, el("caption", {}, caption), el("thead", {}, el("tr", {}, ...head.map((text) => el("th", { scope: "col" }, text)))),
-    el("tbody", {}, ...rows.map(([name, ...cells]) => el("tr", {}, el("th", { scope: "row" }, name), ...cells.map((cell) => el("td", {}, cell instanceof Node ? cell : String(cell)))))));
+  return el("table", {}, el("caption", {}, caption), el("thead", {}, el("tr", {}, ...head.map((text) => el("th", { scope: "col", class: text ? "num" : "" }, text)))),
+    el("tbody", {}, ...rows.map(([name, ...cells]) => el("tr", {}, el("th", { scope: "row" }, name), ...cells.map((cell) => el("td", { class: "n" }, cell instanceof Node ? cell : String(cell)))))));
 }
 function copy(text, button) {
   const done = () => { if (button) { const old = button.textContent; button.textContent = "Copied"; setTimeout(() => { button.textContent = old; }, 1200); } };

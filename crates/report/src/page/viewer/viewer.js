@@ -94,23 +94,25 @@ class Viewer extends Words {
     this.root = el("div", { class: "viewer", onkeydown: (event) => this.key_down(event) },
       this.canvas,
       el("div", { class: "timeline" }, this.preview, this.strip, this.slider),
+      this.say,
       el("div", { class: "bar" },
         el("span", { class: "group" }, button("\u00ab wrong", "Previous wrong step", () => this.finding(-1), "p"), button("\u2039", "One step back", () => this.go(this.step - 1), "left"),
           this.play, button("\u203a", "One step on", () => this.go(this.step + 1), "right"), button("wrong \u00bb", "Next wrong step", () => this.finding(1), "n")),
         el("label", {}, "step ", this.stepBox, ` of ${data.steps}`),
-        el("label", {}, "speed ", this.speeds()),
+        this.speeds(),
         el("span", { class: "group" }, data.full ? button("Near", "Near the difference", () => { this.approach(); this.look(); }, "z") : "", button("All", "Show everything", () => this.whole(), "0"), data.full ? this.besideButton : ""),
-        el("span", { class: "group" }, button("PNG", "Save this picture", () => this.picture()), button("SVG", "Save this picture as a drawing", () => this.drawing()),
+        el("details", { class: "save" }, el("summary", {}, "Save"), el("span", { class: "group" },
+          button("PNG", "Save this picture", () => this.picture()), button("SVG", "Save this picture as a drawing", () => this.drawing()),
           button("Clip", "Record a film of the steps", () => this.clip()),
           // A page within a page has no address of its own.
-          location.protocol === "about:" ? "" : button("Link", "Copy a link to this moment", () => this.link()))),
-      el("div", { class: "bar" }, el("label", { class: "grow" }, "inside the step, t = ", this.insideText, this.inside, this.ticks),
-        el("label", {}, "moving ", this.passes), hybrid ? el("label", { class: "check" }, this.midBox, "after the impulses") : ""),
-      data.full ? el("div", { class: "bar" }, check("reference", "reference from the start", "k-ref"), check("expected", "expected from your own state", "k-exp"),
+          location.protocol === "about:" ? "" : button("Link", "Copy a link to this moment", () => this.link())))),
+      el("div", { class: "bar" }, el("label", { class: "grow within" }, el("span", {}, "inside the step, t = ", this.insideText), el("span", {}, this.inside, this.ticks)),
+        el("label", { class: "moving" }, "moving ", this.passes), hybrid ? el("label", { class: "check" }, this.midBox, "after the impulses") : ""),
+      data.full ? el("div", { class: "bar" }, el("span", { class: "check" }, el("span", { class: "key k-own" }), "yours"), check("reference", "reference from the start", "k-ref"), check("expected", "expected from your own state", "k-exp"),
         data.whatIf ? check("what", "the reference with the mistake", "k-what") : "",
         check("arrows", "differences", "k-arrow"),
-        el("label", { class: "grow" }, "magnified ", this.factorText, this.factor)) : "",
-      remark, this.say, this.keys);
+        el("label", { class: "grow within" }, el("span", {}, "magnified ", this.factorText), this.factor)) : "",
+      remark, this.keys);
     // Numbers stand beside the picture where there is room.
     (this.article.querySelector(".side") || this.root).append(el("section", { class: "card step", "aria-label": "The step in numbers" }, this.facts, this.matrix, this.numbers, this.table));
     this.article.querySelector(".stage").replaceChildren(this.root);
@@ -134,7 +136,7 @@ class Viewer extends Words {
   speeds() {
     const select = el("select", { "aria-label": "Speed", onchange: (event) => { this.speed = Number(event.target.value); } });
     for (const speed of [0.03125, 0.125, 0.25, 0.5, 1, 2, 4, 8]) {
-      const option = el("option", { value: speed }, speed < 1 ? `1/${1 / speed}` : `${speed}`);
+      const option = el("option", { value: speed }, speed < 1 ? `1/${1 / speed} x` : `${speed} x`);
       option.selected = speed === 1;
       select.append(option);
     }
@@ -278,7 +280,7 @@ function search(articles) {
     for (const scene of scenes) scene.hidden = !scene.textContent.toLowerCase().includes(wish.value.trim().toLowerCase());
     count.textContent = wish.value.trim() && `${scenes.filter((scene) => !scene.hidden).length} of ${scenes.length}`;
   } });
-  scenes[0].before(el("p", { class: "filter" }, el("label", {}, "Only scenes that hold ", wish), " ", count));
+  scenes[0].before(el("p", { class: "filter" }, el("label", {}, "Filter ", wish), " ", count));
 }
 async function start() {
   const articles = [...document.querySelectorAll("article.case")];

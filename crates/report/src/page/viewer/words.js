@@ -18,7 +18,7 @@ class Words extends Drawing {
     const rows = [];
     if (close) {
       rows.push(["polynomials", close.polynomials[0], close.polynomials[1]], ["detection passes", close.expectedPasses, close.actualPasses === null ? "no whole number" : close.actualPasses]);
-      rows.push(["collisions in the impulse list", data.collision === "hybrid" ? "none is logged" : close.expected.length, close.actual.length]);
+      rows.push(["collisions in the impulse list", data.collision === "hybrid" ? 0 : close.expected.length, close.actual.length]);
     }
     const sums = (state) => {
       if (!state) return null;
@@ -33,13 +33,23 @@ class Words extends Drawing {
     };
     const before = sums(this.state("submission", this.step - 1)), after = sums(this.state("submission", this.step));
     const right = close && sums(close.end || close.mid);
-    const momentum = (s) => (s && finite(...s) ? `(${short(s[0])}, ${short(s[1])}), angular ${short(s[2])}` : "-");
-    const phases = [["before the step", "", before]];
+    // What rounding alone makes of a sum is no difference.
+    const near = (one, other) => Math.abs(one - other) <= 1e-9 * Math.max(1, Math.abs(one));
+    const momentum = ([x, y, l]) => el("span", {}, "(", x, ", ", y, ")", el("br"), "angular ", l);
+    const both = (right, own) => {
+      const known = [right, own].map((s) => s && finite(...s));
+      if (known[0] && known[1]) {
+        const parts = right.map((value, k) => (near(value, own[k]) ? [short(value), short(value)] : beside(value, own[k])));
+        return [0, 1].map((side) => momentum(parts.map((part) => part[side])));
+      }
+      return [right, own].map((s, side) => (known[side] ? momentum(s.map(short)) : "-"));
+    };
+    const phases = [["before the step", before, before]];
     if (data.collision === "hybrid") phases.push(["after the impulses", close && sums(close.mid), sums(this.state("submission", this.step, true))]);
     phases.push([data.collision === "hybrid" ? "after the failsafe" : "after the step", right, after]);
     this.facts.replaceChildren(el("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "This step in numbers" }, table(data.full ? ["", "expected", "yours"] : ["", "yours"], this.cut([
       ...rows,
-      ...phases.map(([name, expected, own]) => [`momentum ${name}`, expected === "" ? "" : momentum(expected), momentum(own)]),
+      ...phases.map(([name, expected, own]) => [`momentum ${name}`, ...both(expected, own)]),
     ]), "This step in numbers")));
     if (close && close.zones.length) {
       this.facts.append(el("p", {}, "Impact zones of the reference: " + close.zones[close.zones.length - 1].zones
@@ -63,7 +73,8 @@ class Words extends Drawing {
       for (const [pair] of pass.hits) of(pair).hit = true;
       for (const pair of pass.missing) of(pair).made -= 1;
       for (const pair of pass.repeated) of(pair).made += 1;
-      for (const pair of pass.differing) if (!of(pair).wrong.length) of(pair).wrong.push("its polynomials differ");
+      // Where the passes before lead elsewhere, other polynomials are right.
+      if (!this.data.follows || pass === close.passes[0]) for (const pair of pass.differing) if (!of(pair).wrong.length) of(pair).wrong.push("its polynomials differ");
     }
     // Whole passes that are too many ask every pair once more.
     const each = close.polynomials[0] / close.expectedPasses;
@@ -85,12 +96,14 @@ class Words extends Drawing {
     this.asking = { key: `${this.step} ${this.pass}`, expected, more, known, pairs, name: this.pass >= 0 ? passes[0].name : "the whole step", calls: passes[0].calls };
     return this.asking;
   }
-  // A wrong pair selects its bodies, as long as nobody has selected others.
+  // A wrong pair selects its bodies, and so does the first wrong state, as long as nobody has selected others.
   choose() {
     if (this.selected && !this.selected.auto) return;
     const asked = this.asked();
     const wrong = asked && [...asked.pairs].find(([, one]) => one.wrong.length);
-    this.selected = wrong ? { pair: wrong[0], auto: true } : null;
+    const { focus, particle } = this.data;
+    const state = this.step === focus && particle !== null ? { kind: "particle", index: particle, auto: true } : null;
+    this.selected = wrong ? { pair: wrong[0], auto: true } : state;
   }
   tellMatrix() {
     const asked = this.asked();
@@ -166,8 +179,7 @@ class Words extends Drawing {
     const { selected, data } = this;
     if (!selected) return this.numbers.replaceChildren(el("p", { class: "hint" }, "Click a particle, an edge, a half-plane or a contact for its numbers, or a pair in the table of pairs."));
     const rows = [];
-    const list = selected.pair ? [parse(selected.pair).first, ...(selected.pair.startsWith("pp") ? [parse(selected.pair).second] : selected.pair.startsWith("pe") ? data.edges[parse(selected.pair).second].slice(0, 2) : [])]
-      : selected.kind === "particle" ? [selected.index] : selected.kind === "edge" ? data.edges[selected.index].slice(0, 2) : [];
+    const list = selected.pair ? this.members(selected.pair) : selected.kind === "particle" ? [selected.index] : selected.kind === "edge" ? data.edges[selected.index].slice(0, 2) : [];
     const plane = selected.kind === "half-plane" ? selected.index : selected.pair && selected.pair.startsWith("ph") ? parse(selected.pair).second : null;
     if (plane !== null && data.planes[plane]) {
       ["point x", "point y", "normal x", "normal y"].forEach((name, k) => rows.push([`half-plane ${plane} ${name}`, ...Array(3).fill(data.planes[plane][k])]));
@@ -189,7 +201,9 @@ class Words extends Drawing {
     const number = (value) => typeof value === "number";
     const compared = ([name, right, own, ref]) => {
       const [base, marked] = number(own) && number(right) ? beside(right, own) : number(own) && number(ref) ? beside(ref, own) : [];
-      const plain = (value) => (number(value) ? short(value) : value);
+      // One row has one notation.
+      const digits = typeof base === "string" ? base.replace(/^.*\.|e.*$/g, "").length : 0;
+      const plain = (value) => (!number(value) ? value : /^-?\d+\.\d+$/.test(base ?? "") && finite(value) ? value.toFixed(digits) : short(value));
       return marked === undefined ? [name, plain(right), plain(own), plain(ref)] : number(right) ? [name, base, marked, plain(ref)] : [name, plain(right), marked, base];
     };
     const exact = (value) => (number(value) ? `${value} (${hex(value)})` : value);
@@ -204,15 +218,28 @@ class Words extends Drawing {
     const scene = quoted(data.scene), trace = quoted(data.traceName || "TRACE.bin");
     const command = selected.pair ? `fosssim-oracle detect --scene ${scene} --trace ${trace} --step ${this.step} --pair ${selected.pair}${this.pass > 0 ? ` --pass ${this.pass + 1}` : ""}`
       : `fosssim-oracle trace show ${scene} ${trace} --step ${this.step}`;
+    const company = selected.pair ? list : this.company(list);
     const button = (text, act) => el("button", { type: "button", onclick: (event) => copy(act(), event.target) }, text);
     this.numbers.replaceChildren(
       el("h4", {}, title, " after step ", String(this.step)),
       other.length ? el("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Numbers" }, table(this.columns(), this.cut(other.map(compared)), "Digits that differ are marked")) : "",
       data.full && rest ? el("p", { class: "hint" }, `${rest} ${other.length ? "more " : ""}numbers of it are the same to the last bit.`) : "", bits,
       el("p", {}, data.traceName ? "On the command line: " : "On the command line, with a trace that grade --keep-traces keeps: ", el("code", {}, command), " ", button("Copy", () => command)),
-      el("p", {}, "The same bodies alone, moving as here: ", button("Copy as scene", () => this.asScene(list, false)),
-        data.forces.length ? " or from the same state under the same forces: " : "", data.forces.length ? button("Copy with forces", () => this.asScene(list, true)) : "",
+      el("p", {}, selected.pair ? "The same bodies alone, moving as here: " : "It and those that it meets in this step, moving as here: ", button("Copy as scene", () => this.asScene(company, false)),
+        data.forces.length ? " or from the same state under the same forces: " : "", data.forces.length ? button("Copy with forces", () => this.asScene(company, true)) : "",
         ". Saved as case.xml: ", el("code", {}, "./FOSSSim -s case.xml -d 0 -o case.bin; fosssim-oracle check case.xml case.bin")));
+  }
+  // The particles of a pair.
+  members(pair) {
+    const { kind, first, second } = parse(pair);
+    return [first, ...(kind === "pp" ? [second] : kind === "pe" ? this.data.edges[second].slice(0, 2) : [])];
+  }
+  // Particles with those that they meet in this step: alone they would only fly on.
+  company(list) {
+    const close = this.close(), all = new Set(list);
+    const met = close ? [...close.passes.flatMap((pass) => pass.hits.map(([pair]) => this.members(pair))), ...close.zones.flatMap((round) => round.zones.map((zone) => zone.particles))] : [];
+    for (const group of met) if (group.some((k) => all.has(k))) group.forEach((k) => all.add(k));
+    return [...all];
   }
   // Where hints hide what is right, there is only one column.
   columns() {
