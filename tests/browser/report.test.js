@@ -298,6 +298,14 @@ test("what is copied as a scene shows the same mistake when it is run", async ()
   await close();
 });
 
+test("a trace that is cut opens at its last step, and says why it ends", async () => {
+  const { page, complaints, close } = await open(report("contact", { cut: 1501 }));
+  assert.match(await page.locator(".mistakes").innerText(), /Stopped at step \d+ of.*the trace ends/s);
+  assert.ok(Number(await page.locator(".stepbox").inputValue()) > 0);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
 test("hostile names are text, and a damaged trace has its page", async () => {
   const { page, complaints, close } = await open(report("contact", { traceName: "<img src=x onerror=alert(1)>'\"\u202e.bin", cut: 1501 }));
   page.on("dialog", () => assert.fail("a dialog"));

@@ -1,7 +1,7 @@
 //! One judged trace on a page.
 use super::{
     Case, call, data,
-    markup::{compared, text},
+    markup::{self, compared, text},
     packed::Precision,
     strip,
 };
@@ -232,7 +232,8 @@ fn values(sides: &SideBySide) -> String {
         for row in &sides.rows {
             let (expected, actual) = match (row.expected, row.actual) {
                 (Value::Number(expected), Value::Number(actual)) => compared(expected, actual, row.differs),
-                (expected, actual) => (expected.exact(), actual.exact()),
+                // A value that stands alone is no longer than others.
+                (expected, actual) => (alone(expected), alone(actual)),
             };
             let _ = writeln!(
                 out,
@@ -246,6 +247,14 @@ fn values(sides: &SideBySide) -> String {
     }
     out.extend(sides.after.iter().map(|line| format!("<p class=\"hint\">{}</p>\n", text(line))));
     out
+}
+
+/// A value with nothing beside it to be compared with; the title has its last bit.
+fn alone(value: Value) -> String {
+    match value {
+        Value::Number(number) => markup::number(number),
+        other => other.exact(),
+    }
 }
 
 /// The first ones of some calls, each with its step; the first one is open.

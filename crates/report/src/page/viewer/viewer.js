@@ -5,8 +5,9 @@ class Viewer extends Words {
     Object.assign(this, { article, data, tracks });
     this.key = article.dataset.case;
     this.name = article.dataset.scene;
-    const wrong = data.strip.indexOf("w");
-    this.step = Math.max(data.first, Math.min(data.last, wrong >= 0 ? wrong + 1 : data.focus || data.first));
+    // The first wrong step, or the last one that was judged before the trace ends.
+    const wrong = data.strip.indexOf("w"), end = Math.max(0, data.strip.indexOf("u"));
+    this.step = Math.max(data.first, Math.min(data.last, wrong >= 0 ? wrong + 1 : data.focus || end || data.first));
     this.t = 1;
     this.pass = -1;
     this.zoom = 1;
@@ -94,7 +95,7 @@ class Viewer extends Words {
     this.root = el("div", { class: "viewer", onkeydown: (event) => this.key_down(event) },
       this.canvas,
       el("div", { class: "timeline" }, this.preview, this.strip, this.slider),
-      this.say,
+      this.say, this.stripKey(),
       el("div", { class: "bar" },
         el("span", { class: "group" }, button("\u00ab wrong", "Previous wrong step", () => this.finding(-1), "p"), button("\u2039", "One step back", () => this.go(this.step - 1), "left"),
           this.play, button("\u203a", "One step on", () => this.go(this.step + 1), "right"), button("wrong \u00bb", "Next wrong step", () => this.finding(1), "n")),
@@ -148,10 +149,18 @@ class Viewer extends Words {
     this.approach();
     this.look();
   }
+  count(letter) {
+    return [...this.data.strip].filter((one) => one === letter).length;
+  }
   stripWords() {
-    const of = (letter) => [...this.data.strip].filter((one) => one === letter).length;
-    return `All steps: ${of("r")} right, ${of("w")} wrong by themselves, ${of("i")} right but following from a wrong one, ` +
-      `${this.data.steps - of("r") - of("w") - of("i")} not judged`;
+    const [right, wrong, after] = ["r", "w", "i"].map((letter) => this.count(letter));
+    return `All steps: ${right} right, ${wrong} wrong by themselves, ${after} right but following from a wrong one, ${this.data.steps - right - wrong - after} not judged`;
+  }
+  // The colours of the strip in words.
+  stripKey() {
+    const names = [["r", "right"], ["w", this.count("w") === 1 ? "wrong by itself" : "wrong by themselves"], ["i", "right, but after a wrong one"]];
+    const parts = names.filter(([letter]) => this.count(letter)).map(([letter, name]) => el("span", {}, el("span", { class: `h is-${letter}` }), ` ${this.count(letter)} ${name}`));
+    return parts.length > 1 ? el("p", { class: "hint strip-key" }, "Steps: ", ...parts) : "";
   }
 
 
