@@ -87,6 +87,9 @@ pub(super) struct Grade {
     /// Beside reports for students, write the page that tells staff everything.
     #[arg(long, value_name = "FILE", env = "FOSSSIM_STAFF_PAGE")]
     pub(super) staff_page: Option<PathBuf>,
+    /// Keep hidden groups in reports for students, because a platform that hides them itself asks for the reports.
+    #[arg(long, env = "FOSSSIM_PLATFORM_HIDES")]
+    pub(super) platform_hides: bool,
     /// Show a line per submission only.
     #[arg(short, long, conflicts_with = "verbose")]
     pub(super) quiet: bool,

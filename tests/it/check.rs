@@ -176,6 +176,20 @@ fn colours_only_decorate() {
     assert_eq!(check.text(Style::Plain), plain);
 }
 
+/// The bytes may end inside the last list of a record. Then `check` and `trace info` count the same whole records.
+#[test]
+fn a_record_that_is_cut_does_not_count() {
+    let workspace = Workspace::new();
+    workspace.write("scene.xml", BOUNCE);
+    let trace = trace_of(BOUNCE);
+    // Positions and velocities, impulses, and the polynomials but for one byte.
+    workspace.write("cut.bin", &trace[..163]);
+    let check = workspace.run(["check", "scene.xml", "cut.bin"]);
+    assert!(check.out().contains("the trace ends after 1 records, but this scene's trace has 5"), "{}", check.shown());
+    let info = workspace.run(["trace", "info", "scene.xml", "cut.bin"]);
+    assert!(info.out().contains("1 of 5 records"), "{}", info.shown());
+}
+
 #[test]
 fn damaged_traces_are_bad_traces_with_a_position() {
     let trace = trace_of(BOUNCE);

@@ -277,6 +277,22 @@ fn wrong_usage_is_said() {
     assert!(run.err().contains("missing"), "{}", run.err());
 }
 
+/// A program that writes no trace is told by its end and its own words, and text is no trace.
+#[test]
+fn without_a_trace_there_is_nothing_to_explain() {
+    let Some(workspace) = grading::workspace() else { return };
+    workspace.write("older", "#!/bin/sh\necho 'invalid collision type hybrid' >&2\nexit 1\n");
+    std::fs::set_permissions(workspace.path("older"), std::os::unix::fs::PermissionsExt::from_mode(0o755))
+        .expect("ours");
+    let run = workspace.run(["explain", "--program", "./older"]);
+    assert!(run.code == Some(1) && run.err().contains("another milestone: --assignment t1m1, "), "{}", run.shown());
+    let said = "exited with code 1 and wrote no trace; its error output ends with: invalid collision type hybrid";
+    assert!(run.out().contains(said), "{}", run.shown());
+    workspace.write("notes.txt", "nothing but some words\n");
+    let run = workspace.run(["explain", SPINNING, "notes.txt"]);
+    assert!(run.code == Some(2) && run.err().contains("is no trace: it looks like text"), "{}", run.shown());
+}
+
 /// The small scenes are those of the program's milestone.
 #[test]
 fn a_program_of_any_milestone_is_explained() {

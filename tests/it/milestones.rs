@@ -123,6 +123,7 @@ fn a_suite_says_which_known_mistakes_no_scene_of_it_shows() {
     }
     assert!(!contest.contains("jacobians"), "of what a suite does not ask for it says nothing: {contest}");
     let implicit = check("t1m3");
+    assert!(!implicit.contains("log-") && part(&implicit, "together").1 > 100, "{implicit}");
     let (seen, all) = part(&implicit, "jacobians");
     assert_eq!(seen, all, "{implicit}");
     // One scene shows less.

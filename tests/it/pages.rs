@@ -163,6 +163,27 @@ fn pages_to_hand_out_hold_no_hidden_group() {
         );
         assert!(student.contains(shown), "{student}");
     }
+    let formats = ["text", "json", "junit", "markdown", "github", "csv", "prairielearn", "html"];
+    let formats = formats.map(|format| format!("--format={format}={format}.out"));
+    let formats: Vec<&str> = formats.iter().map(String::as_str).chain(["--format=text"]).collect();
+    let student = ["grade", &words[7], "--suite", "veils.toml", "--for", "student"];
+    let printed = workspace.run([&student[..], &formats].concat());
+    let reports = || formats[..8].iter().map(|format| text(&workspace, format.rsplit('=').next().expect("a file")));
+    assert_eq!(printed.code, Some(1), "{}", printed.shown());
+    for report in reports().chain([printed.out(), printed.err()]) {
+        assert!(!report.contains("Veiled") && !report.contains("spinning-edge-sweeps-balls"), "{report}");
+        assert!(
+            report.is_empty() || !report.contains("Simulation complete"),
+            "what programs print may tell of hidden scenes"
+        );
+    }
+    assert_eq!(reports().filter(|report| report.contains("he grade has others, too")).count(), 7, "all but CSV");
+    workspace.run([&student[..], &formats, &["--platform-hides"]].concat());
+    assert_eq!(
+        reports().filter(|report| report.contains("Veiled")).count(),
+        4,
+        "a platform that hides groups has them"
+    );
     for (reader, runs) in [("student", "1/1\n"), ("staff", "2/2\n")] {
         let report = format!("html={reader}.html");
         let words = ["grade", &words[7], "--suite", "veils.toml", "--for", reader, "--format", &report, "--quiet"];

@@ -2,6 +2,7 @@
 use super::{
     explain::{ExplanationView, lines},
     grade::one_line,
+    number::counted,
     style::{Look, Style},
     words::{first_divergence, located},
 };
@@ -57,7 +58,9 @@ impl Diagnosis {
             return text;
         }
         let wrong = self.cases.iter().filter(|case| !case.accepted).count();
-        let _ = writeln!(text, "{} of {} traces are wrong by the fair rules.\n", wrong, self.cases.len());
+        let is = if wrong == 1 { "is" } else { "are" };
+        let traces = counted(self.cases.len() as u64, "trace");
+        let _ = writeln!(text, "{wrong} of {traces} {is} wrong by the fair rules.\n");
         if let Some(found) = &self.located {
             let heading = style.paint(Look::Strong, "Where it fails");
             let _ = writeln!(text, "{heading}\n  {}\n", one_line(&located(found)));
@@ -72,10 +75,10 @@ impl Diagnosis {
                 match (likely, common.is_unexplained()) {
                     (_, true) => "What is wrong in most",
                     (1, _) => "What explains most",
-                    _ => "What explains more",
+                    _ => "What explains others, or the same together with it",
                 }
             };
-            let heading = format!("{most} ({explained} of {wrong} wrong traces)");
+            let heading = format!("{most} ({explained} of {})", counted(wrong as u64, "wrong trace"));
             let _ = writeln!(text, "{}", style.paint(Look::Strong, &heading));
             text += &indented(std::slice::from_ref(common));
             text.push('\n');

@@ -18,6 +18,7 @@ use crate::{
     report::{
         check::stopped,
         diagnosis::{Case, Diagnosis},
+        grade::one_line,
         page::{Card, Explained},
         style::Style,
     },
@@ -76,6 +77,9 @@ pub(super) fn run(arguments: &Explain) -> Result<u8> {
 fn trace_on_scene(scene: &Path, trace: &Path, arguments: &Explain) -> Result<(Case, Option<Card>)> {
     let scene = input::scene(scene)?;
     let mut trace = input::trace(trace)?;
+    if let Some(kind) = trace.looks_like {
+        bail!("{} is no trace: it {kind}", trace.name);
+    }
     let (case, card, _) =
         case((scene.name, trace.name.clone()), true, &scene.scene, &mut trace.reader, None, arguments);
     // Bytes behind the last step are of interest only where they can't be read.
@@ -169,7 +173,7 @@ fn program_on_probes(
         rehearse: &|_| {},
     };
     let (mut cases, mut cards, mut ends) = (Vec::new(), Vec::new(), Vec::new());
-    let mut stopped = 0;
+    let (mut stopped, mut traceless) = (0, 0);
     let bar = console::Bar::of_runs(tasks.len() as u64);
     for task in &tasks {
         bar.next_run(&task.name);
@@ -183,7 +187,12 @@ fn program_on_probes(
         }
         let failing = Failing::of(&outcome.ended);
         stopped += usize::from(matches!(failing, Some(Failing::Time | Failing::Memory | Failing::Output)));
-        let note = (!matches!(outcome.ended, Ended::Exited(0))).then(|| format!("the program {}", outcome.ended));
+        let note = match (&outcome.ended, trace.is_empty()) {
+            (Ended::Exited(0), false) => None,
+            (ended, false) => Some(format!("the program {ended}")),
+            (ended, true) => Some(format!("the program {ended} and wrote no trace{}", said(&outcome.stderr.bytes))),
+        };
+        traceless += usize::from(trace.is_empty());
         let shown = program.display().to_string();
         let (case, card, steps) = case((task.name.clone(), shown), false, &task.scene, &trace[..], note, arguments);
         cases.push(case);
@@ -191,12 +200,25 @@ fn program_on_probes(
         ends.push((failing, steps));
     }
     drop(bar);
+    if traceless == tasks.len() {
+        let others = Assignment::ALL.into_iter().filter(|other| *other != arguments.assignment);
+        let others: Vec<&str> = others.map(Assignment::key).collect();
+        let hint = format!("if this program is of another milestone: --assignment {}\n", others.join(", "));
+        console::remark(hint.as_bytes());
+    }
     let located = located(&tasks, &ends);
     let common = likely(&cases, &tasks);
     for case in &mut cases {
         case.explanations = diagnose::settled(&case.explanations, &common).explanations;
     }
     Ok(Some((Diagnosis { cases, common, located }, cards)))
+}
+
+/// The last line of a program's error output, where it wrote one.
+fn said(stderr: &[u8]) -> String {
+    let text = String::from_utf8_lossy(stderr);
+    let last = text.lines().rev().map(str::trim).find(|line| !line.is_empty());
+    last.map(|line| format!("; its error output ends with: {}", one_line(line))).unwrap_or_default()
 }
 
 /// The properties that the failing scenes have in common, by the end of the program in each and the number of complete

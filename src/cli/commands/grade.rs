@@ -303,7 +303,8 @@ impl GradingSession<'_> {
         let (folder, pages, reader) = (self.folder.as_deref(), self.pages.as_ref(), self.arguments.reader);
         let passed_over = self.passed_over();
         let (staff_page, is_part) = (self.arguments.staff_page.as_deref(), self.is_part);
-        let results = Results { folder, pages, reader, staff_page, is_part, grades, passed_over };
+        let platform_hides = self.arguments.platform_hides;
+        let results = Results { folder, pages, reader, platform_hides, staff_page, is_part, grades, passed_over };
         results.write(reports, |grades| self.text(grades, submissions))
     }
 

@@ -74,6 +74,7 @@ pub(super) fn run(arguments: &Merge) -> Result<u8> {
         folder: Some(&output),
         pages: Some(&pages),
         reader,
+        platform_hides: false,
         staff_page: None,
         is_part: false,
         grades: &grades,

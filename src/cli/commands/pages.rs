@@ -77,8 +77,8 @@ impl Pages {
         GradePage { grade, card: &|scene| self.card(scene), class, reader }.html()
     }
 
-    /// Writes the pages for staff into the folder for results, and those to hand out beside them where they are asked
-    /// for; the one to begin with.
+    /// Writes the pages for staff into the folder for results, and beside them those to hand out: of a class always,
+    /// of one submission where they are asked for. Returns the one to begin with.
     pub(super) fn write(
         &self,
         grades: &[Grade],
@@ -86,7 +86,7 @@ impl Pages {
         reader: Audience,
     ) -> Result<Option<PathBuf>> {
         let Some(folder) = &self.folder else { return Ok(None) };
-        if reader == Audience::Student {
+        if reader == Audience::Student || grades.len() > 1 {
             for grade in grades {
                 let place = Place::new(folder, format!("students/{}.html", file_name(&grade.submission)));
                 output::write_at(&place, self.of_one(grade, None, Audience::Student).as_bytes())?;

@@ -10,10 +10,10 @@ use crate::{
         wrap,
     },
     suite::{Grade, PassedOver, guarded},
-    together::told_to_students,
 };
 use anyhow::{Context, Result, bail};
 use std::{
+    borrow::Cow,
     fs,
     io::Write,
     path::{Path, PathBuf},
@@ -68,6 +68,8 @@ pub(super) struct Results<'a> {
     pub(super) pages: Option<&'a Pages>,
     /// The reader of the reports. Files in the folder are for staff, but for pages in students/.
     pub(super) reader: Audience,
+    /// Whether the platform that asks for the reports keeps hidden groups from the reader.
+    pub(super) platform_hides: bool,
     /// The file for a page that tells staff more than the reader, when one is wanted.
     pub(super) staff_page: Option<&'a Path>,
     /// Whether scenes of the suite were left out on purpose.
@@ -120,15 +122,9 @@ impl Results<'_> {
         if let (Some(file), Some(pages), [grade]) = (self.staff_page, self.pages, grades) {
             keep(write(file, || pages.of_one(grade, None, Audience::Staff)));
         }
-        let told: Vec<Grade>;
-        let grades = match self.reader {
-            Audience::Staff => grades,
-            Audience::Student => {
-                told = grades.iter().map(|grade| told_to_students(grade).into_owned()).collect();
-                &told
-            }
-        };
         for report in reports {
+            let told = self.told(report.format);
+            let grades = told.as_ref();
             let render = || match (report.format, self.pages, grades) {
                 (Format::Html, Some(pages), [grade]) => pages.of_one(grade, None, self.reader),
                 _ => report.format.render_class(grades, passed_over),
@@ -148,6 +144,17 @@ impl Results<'_> {
             Some(error) => Err(error),
             None => Ok(()),
         }
+    }
+}
+
+impl<'a> Results<'a> {
+    /// The grades with no more in them than this format tells the reader.
+    fn told(&self, format: Format) -> Cow<'a, [Grade]> {
+        let told = |grade: &'a Grade| format.told(grade, self.reader, self.platform_hides);
+        if self.grades.iter().all(|grade| matches!(told(grade), Cow::Borrowed(_))) {
+            return Cow::Borrowed(self.grades);
+        }
+        Cow::Owned(self.grades.iter().map(|grade| told(grade).into_owned()).collect())
     }
 }
 

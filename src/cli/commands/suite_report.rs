@@ -143,9 +143,13 @@ fn head(plan: &Plan, style: Style) -> String {
     );
     let _ = writeln!(text, "rules: {}", rules(plan.rules));
     let levels: BTreeSet<Hints> = plan.groups.iter().map(|group| group.marking.hints).collect();
+    let several = levels.len() > 1;
     for level in levels {
         let (hints, meaning) = level.words();
-        let _ = writeln!(text, "hints for students: {hints}: {meaning}");
+        let groups = plan.groups.iter().filter(|group| group.marking.hints == level);
+        let groups: Vec<String> = groups.map(|group| one_line(&group.name)).collect();
+        let of_groups = if several { format!(" of {}", groups.join(", ")) } else { String::new() };
+        let _ = writeln!(text, "hints for students{of_groups}: {hints}: {meaning}");
     }
     text
 }
@@ -201,13 +205,16 @@ fn of_mistakes(parts: &[SeenPart], style: Style) -> String {
     }
     let title = style.paint(Look::Strong, "Known mistakes that a scene shows, by parts of the work");
     let mut text = format!("\n{title}\n");
-    let width = parts.iter().map(|part| part.area.name().len()).max().unwrap_or(0);
+    let width = parts.iter().map(|part| part.area.name().len()).chain(["together".len()]).max().unwrap_or(0);
+    let (mut all_seen, mut together) = (0, 0);
     for SeenPart { area, all, unseen } in parts {
+        (all_seen, together) = (all_seen + all - unseen.len(), together + all);
         let _ = writeln!(text, "  {:width$}  {:4} of {all:4}", area.name(), all - unseen.len());
         if !unseen.is_empty() {
             let _ = writeln!(text, "    not shown: {}", unseen.join(", "));
         }
     }
+    let _ = writeln!(text, "  {:width$}  {all_seen:4} of {together:4}", "together");
     text
 }
 

@@ -63,8 +63,9 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report]) -> Resu
     let grades: Vec<Grade> = named.map(|(folder, name)| grade(&plan, folder, name, pages.as_ref())).collect();
     let (folder, reader) = (arguments.output.as_deref(), arguments.reader);
     let staff_page = arguments.staff_page.as_deref();
+    let (pages, platform_hides) = (pages.as_ref(), arguments.platform_hides);
     let results =
-        Results { folder, pages: pages.as_ref(), reader, staff_page, is_part, grades: &grades, passed_over: &[] };
+        Results { folder, pages, reader, platform_hides, staff_page, is_part, grades: &grades, passed_over: &[] };
     results.write(reports, |grades| {
         let shown = shown(arguments, grades.len() > 1);
         let (style, width) = (console::style(), console::width());

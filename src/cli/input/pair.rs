@@ -5,7 +5,7 @@ use crate::{
     sim::{Pair, PairKind, PairMotion, PointMotion},
     suite::near,
 };
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
 
 /// A pair and how it moves from its word: `pe:3,1+4,1:5,9+2,6:5,3+5,8`.
 ///
@@ -134,7 +134,7 @@ pub(in crate::cli) fn vector(word: &str) -> Result<Vec2> {
 }
 
 fn radii_of(word: &str) -> Result<[f64; 2]> {
-    let advice = || format!("`{word}` are no radii; write R,R as in 1,0.5");
+    let advice = || format!("`{word}` are no two radii; write R,R as in 1,0.5");
     let (first, second) = word.split_once(',').with_context(advice)?;
     let radius = |text| number(text).and_then(not_negative).with_context(advice);
     Ok([radius(first)?, radius(second)?])
@@ -148,7 +148,7 @@ fn not_negative(radius: f64) -> Result<f64> {
 }
 
 fn number(text: &str) -> Result<f64> {
-    let value: f64 = text.trim().parse().with_context(|| format!("`{text}` is no number"))?;
+    let value: f64 = text.trim().parse().map_err(|_| anyhow!("`{text}` is no number"))?;
     if !value.is_finite() {
         bail!("`{text}` is not finite");
     }
@@ -198,7 +198,7 @@ mod tests {
         for (pair, radii, says) in [
             ("pe:3,1:5,9", "1,1", "pe takes 3 points (the particle's centre and the ends of the edge), not 2"),
             ("pq:3,1:5,9", "1,1", "`pq` is no kind of pair"),
-            ("pp:3,1:5,9", "1", "`1` are no radii"),
+            ("pp:3,1:5,9", "1", "`1` are no two radii"),
             ("pp:3,1:5,9", "1,-1", "a radius is negative"),
             ("ph:3,1:0,0:0,0", "1", "the half-plane's normal is zero"),
         ] {

@@ -38,7 +38,9 @@ pub(in crate::cli) fn scene(name: &Path) -> Result<SceneInput> {
         None => scene_file(name).with_context(|| format!("cannot read the scene {shown}"))?,
     };
     if is_binary(&bytes) {
-        bail!("{shown} is no scene but a trace, or other binary data: SCENE comes first, then TRACE");
+        bail!(
+            "{shown} is no scene but a trace, or other binary data: SCENE comes first, then TRACE where one is wanted"
+        );
     }
     match scene::read(&shown, &bytes) {
         Ok(Loaded { scene, warnings, .. }) => {

@@ -34,6 +34,12 @@ pub enum FindError {
         #[source]
         why: io::Error,
     },
+    /// The file is a scene.
+    #[error("{name} is a scene and no suite: a group of a suite lists it in its `scenes`")]
+    Scene {
+        /// The file.
+        name: String,
+    },
     /// There is one, but it is not sound; each problem is a line.
     #[error("the suite has {}{}", counted(.error.problems.len()), lines(name, .error))]
     Unsound {
@@ -62,11 +68,14 @@ pub fn find(name: &str) -> Result<Plan, FindError> {
     let loaded = match built_in(name) {
         Some(text) => load(text, Path::new(".")),
         None => {
-            let name = name.to_owned();
+            let owned = || name.to_owned();
             let text = read_text(path, LARGEST_SUITE).map_err(|why| match why.kind() {
-                io::ErrorKind::NotFound => FindError::Unknown { name, why },
-                _ => FindError::Unreadable { name, why },
+                io::ErrorKind::NotFound => FindError::Unknown { name: owned(), why },
+                _ => FindError::Unreadable { name: owned(), why },
             })?;
+            if ["<?xml", "<scene"].iter().any(|start| text.starts_with(start)) {
+                return Err(FindError::Scene { name: owned() });
+            }
             load(&text, beside)
         }
     };

@@ -25,7 +25,7 @@ pub use fosssim_findings::explanation::{
 };
 use fosssim_findings::explanation::{about, fault, force, guess};
 pub use heads::{common, refuted, several};
-pub use known::{known, shows};
+pub use known::{can_show, known, shows};
 pub use naming::is_named_in;
 pub use not_finite::not_finite;
 pub use settled::{Settled, settled};

@@ -277,6 +277,8 @@ impl<R: Read> Lenient<R> {
     }
 
     fn state(&mut self, state: &mut State) -> Result<(), ReadStop> {
+        // The original took the record before for a whole one, although the bytes ended in it.
+        let whole = self.record - u64::from(self.failed && self.record > 0);
         self.failed = self.failed || !decode::state(&mut self.source, self.layout.particles, state);
         if !self.failed {
             return Ok(());
@@ -284,7 +286,7 @@ impl<R: Read> Lenient<R> {
         let left = self.source.offset() - self.begin + self.source.ensure(1) as u64;
         let what = match (left, self.record) {
             (0, 0) => Malformation::Empty,
-            (0, records) => Malformation::TooFewRecords { records, expected: self.layout.records() },
+            (0, _) => Malformation::TooFewRecords { records: whole, expected: self.layout.records() },
             _ => Malformation::State { needs: self.layout.state_bytes() as u64, left },
         };
         Err(self.stop(Unreadable::State, self.begin, what))

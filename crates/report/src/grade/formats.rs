@@ -111,6 +111,26 @@ fn prairielearn_follows_its_schema() {
     insta::assert_snapshot!("grade_prairielearn", Format::Prairielearn.render(&[samples::bad()]));
 }
 
+/// Half of the score beside the word "accepted" needs its reason.
+#[test]
+fn prairielearn_says_that_groups_which_are_not_shown_count() {
+    let mut grade = samples::good();
+    grade.groups.retain(|group| group.visibility == Visibility::Visible);
+    assert!(Format::Prairielearn.render(&[grade.clone()]).contains(r#""message": "accepted""#));
+    let hidden = fosssim_grading::GroupGrade {
+        name: "Veiled".to_owned(),
+        visibility: Visibility::Hidden,
+        points: Some(0.0),
+        verdict: Verdict::WrongAnswer,
+        ..grade.groups[0].clone()
+    };
+    grade.max_points += hidden.max_points;
+    (grade.verdict, grade.groups) = (Verdict::WrongAnswer, [grade.groups, vec![hidden]].concat());
+    let document = Format::Prairielearn.render(&[grade]);
+    assert!(document.contains("\"message\": \"accepted on the tests shown here (") && !document.contains("Veiled"));
+    assert!(document.contains("the grade has others, too") && !document.contains("points points"), "{document}");
+}
+
 /// A fact about the upload is said once, at the top, and not of each scene.
 #[test]
 fn what_is_wrong_with_a_submission_itself_is_said_once() {

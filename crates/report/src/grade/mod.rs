@@ -15,6 +15,7 @@ mod phrases;
 mod prairielearn;
 mod speed;
 mod text;
+mod told;
 
 use crate::page::{Audience, GradePage};
 use fosssim_findings::{Grade, GroupGrade, Hints, Rules, SceneGrade, SceneResult, Visibility, result::Measurements};

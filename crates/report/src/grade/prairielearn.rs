@@ -1,6 +1,6 @@
 //! PrairieLearn's results.json: a score in [0, 1]; `gradable: false` for faults of ours, which charge no attempt.
 use super::speed_words;
-use super::{super::explain, difference, head_lines, one_line, plain, printed, see_above, wrong_first};
+use super::{super::explain, difference, head_lines, one_line, plain, printed, score, see_above, wrong_first};
 use crate::words;
 use fosssim_findings::{Grade, SceneGrade, Verdict};
 use fosssim_mistakes::together::for_students;
@@ -68,7 +68,12 @@ pub(super) fn render(grade: &Grade) -> String {
             Verdict::JudgeError => "The grader failed; this attempt is not counted.".to_owned(),
             _ if grade.is_incomplete() => "Grading was stopped before its end; this attempt is not counted.".to_owned(),
             // Groups that students do not see must not show through.
-            _ => shown.verdict.words().to_owned(),
+            verdict if shown.groups.len() == grade.groups.len() => verdict.words().to_owned(),
+            _ => format!(
+                "{} on the tests shown here ({}); the grade has others, too",
+                shown.verdict,
+                score(shown.points.unwrap_or_default(), shown.max_points)
+            ),
         },
         output: grade
             .warnings

@@ -47,6 +47,7 @@ impl Explained<'_> {
         let title = match (&cases[..], wrong) {
             ([case], 0) => format!("{}: nothing to explain", case.scene),
             ([case], _) => format!("{}: what is wrong", case.scene),
+            (_, 1) => format!("1 of {} traces is wrong", cases.len()),
             (_, wrong) => format!("{wrong} of {} traces are wrong", cases.len()),
         };
         let mut body = format!("<h1><span class=\"{look}\">{}</span></h1>\n", text(&title));

@@ -93,13 +93,15 @@ impl Program {
         if let Some(hints) = &task.hints {
             command.arg("--hints").arg(hints);
         }
-        // All reports tell as much as students may know. Those of hidden groups are in all but the page, for staff.
+        // All reports tell as much as students may know. Hidden groups are in all but the page: staff reads them, and
+        // the server keeps them from students.
         command.args(["--for", "student"]);
         for (format, file, _) in REPORTS.into_iter().filter(|(_, file, _)| *file != STAFF_PAGE) {
             command.arg("--format").arg(format!("{format}={}", folder.join(file).display()));
         }
         at_home(&mut command, folder);
         // Another grader may not know these.
+        command.env("FOSSSIM_PLATFORM_HIDES", "true");
         command.env("FOSSSIM_PROGRESS", folder.join(PROGRESS));
         command.env("FOSSSIM_STAFF_PAGE", folder.join(STAFF_PAGE));
         command

@@ -22,6 +22,7 @@ mod trials;
 pub use refute::shows;
 pub(super) use refute::shows_within;
 pub(super) use several::is_empty_stage;
+pub use shown::can_show;
 
 use super::{
     Detail, Explanation,

@@ -17,7 +17,8 @@ pub(super) fn applicable(scene: &Scene) -> impl Iterator<Item = &'static Row> {
 
 /// Whether a program with this row may leave another trace than one without. Only what the scene does not have speaks
 /// against it: stages of a step, and kinds of pairs.
-pub(super) fn can_show(scene: &Scene, row: &Row) -> bool {
+#[must_use]
+pub fn can_show(scene: &Scene, row: &Row) -> bool {
     shows(scene, &pairs(scene).counts(), row)
 }
 

@@ -61,6 +61,7 @@ pub fn details(explanation: &Explanation) -> Vec<String> {
     for detail in explanation.details.iter().filter(|detail| !(is_exact && is_doubt(detail))) {
         let line = match detail {
             Detail::Term(key) => find(key).map(|row| row.term.to_owned()),
+            Detail::Look(Area::Integrator) => Some(look_at_step(&explanation.key).to_owned()),
             Detail::Look(area) => Some(look(*area).to_owned()),
             Detail::Letters(kinds) => letters::of(&lines, kinds),
             Detail::Polynomial(detail) => Some(polynomials::detail(detail)),
@@ -105,6 +106,21 @@ fn empty_stage(row: &Row) -> &'static str {
         Mistake::ImpulsesEmpty | Mistake::ImpulsesEmptySuccess => "the impulse loop",
         Mistake::GeometricEmpty => "the geometric part",
         _ => "the rigid failsafe",
+    }
+}
+
+/// The same of a mistake in a step without collisions: the row's name says what it is about.
+fn look_at_step(key: &str) -> &'static str {
+    match key.split('-').next() {
+        _ if key.contains("fixed") => "Look at what a step does with fixed particles.",
+        Some("matrix") => "Look at how the system matrix is built.",
+        Some("right") => "Look at how the right-hand side of the system is built.",
+        Some("implicit") => "Look at Newton's method: what each iteration computes from what, and when it ends.",
+        Some("linear") => {
+            "Look at where forces and matrix are computed, and at what the solution of the system changes."
+        }
+        _ if ["order", "first", "behind", "mean"].iter().any(|word| key.contains(word)) => look(Area::Integrator),
+        _ => "Look at how forces change velocities, and velocities change positions.",
     }
 }
 

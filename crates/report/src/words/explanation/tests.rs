@@ -304,3 +304,18 @@ fn a_known_mistake_is_told_by_its_row() {
     assert!(lines[1].starts_with("Here d21 is dx2 - dx1"), "{lines:?}");
     assert_eq!(lines[2], "Look at the coefficients that the particle-edge detection computes.");
 }
+
+#[test]
+fn advice_on_a_step_fits_its_mistake() {
+    for (key, word) in [
+        ("matrix-velocities-squared", "system matrix"),
+        ("right-side-of-fixed", "fixed particles"),
+        ("right-side-sign", "right-hand side"),
+        ("implicit-one-iteration", "Newton's method"),
+        ("linear-overwrites", "solution of the system"),
+        ("integrator-velocity-first", "order"),
+        ("integrator-no-mass", "forces change velocities"),
+    ] {
+        assert!(find(key).is_some() && super::look_at_step(key).contains(word), "{key}");
+    }
+}
