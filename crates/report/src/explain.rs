@@ -71,7 +71,7 @@ impl From<&Explanation> for Told {
             (_, 0) => (false, Some(format!("{samples} looked at"))),
             (About::Unfinished, _) => (false, None),
             (About::Mistake | About::Forces(_), _) => {
-                (true, Some(format!("in {reproduced} of {samples} wrong steps tried")))
+                (true, Some(format!("in {reproduced} of {samples} differing steps tried")))
             }
             _ => (true, Some(format!("fits {reproduced} of {samples} polynomials looked at"))),
         };
@@ -249,7 +249,7 @@ pub(crate) mod tests {
     #[test]
     fn the_likeliest_mistake_comes_first_with_all_that_is_known() {
         insta::assert_snapshot!(lines(&explanations()).join("\n"), @r"
-        likely mistake: Particle-edge: The sum of the radii is not squared. (in 11 of 12 wrong steps tried)
+        likely mistake: Particle-edge: The sum of the radii is not squared. (in 11 of 12 differing steps tried)
           t^2: i R^2 has weight 0, expected 1 (i = d32.d32)
           can't be told apart here from 5 other formulas
           example: step 3, particle 3 and edge 1, pass 0, overlap polynomial
