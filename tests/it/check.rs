@@ -185,7 +185,7 @@ fn a_record_that_is_cut_does_not_count() {
     // Positions and velocities, impulses, and the polynomials but for one byte.
     workspace.write("cut.bin", &trace[..163]);
     let check = workspace.run(["check", "scene.xml", "cut.bin"]);
-    assert!(check.out().contains("the trace ends after 1 records, but this scene's trace has 5"), "{}", check.shown());
+    assert!(check.out().contains("the trace ends after 1 record, but this scene's trace has 5"), "{}", check.shown());
     let info = workspace.run(["trace", "info", "scene.xml", "cut.bin"]);
     assert!(info.out().contains("1 of 5 records"), "{}", info.shown());
 }

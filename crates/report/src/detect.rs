@@ -271,7 +271,9 @@ fn polynomial_lines(name: &str, curve: &Curve, style: Style) -> String {
     let real = curve.real_zeros();
     let complex = curve.zeros.len() - real.len();
     let mut zeros = real.iter().map(|&zero| exact(zero)).collect::<Vec<_>>().join(", ");
-    if zeros.is_empty() {
+    if curve.logged.coefficients().is_empty() {
+        zeros = "every time".to_owned();
+    } else if zeros.is_empty() {
         zeros = "none real".to_owned();
     }
     if complex > 0 {

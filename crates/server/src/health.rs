@@ -156,9 +156,10 @@ pub fn without_paths(text: &str) -> String {
         plain.push_str(head);
         let end = tail.find(|c: char| c.is_whitespace() || "\"'`(),;:<>|".contains(c)).unwrap_or(tail.len());
         let (path, after) = tail.split_at(end);
-        // `Group/scene` and `asset:Group/scene` are names.
+        // `Group/scene` and `asset:Group/scene` are names, and in `<a/>` a slash is no path.
         let is_name = before.is_some_and(|c| c.is_alphanumeric() || "_.-@*".contains(c));
-        plain.push_str(if is_name { path } else { path.trim_end_matches('/').rsplit('/').next().unwrap_or("") });
+        let last = path.trim_end_matches('/').rsplit('/').next().unwrap_or_default();
+        plain.push_str(if is_name || last.is_empty() { path } else { last });
         rest = after;
     }
     plain.push_str(rest);
@@ -176,7 +177,7 @@ mod tests {
             ("cannot read `/etc/passwd`, (/tmp/a b)", "cannot read `passwd`, (a b)"),
             ("no embedded scene matches asset:No/such", "no embedded scene matches asset:No/such"),
             ("file:///srv/x/y failed in Group/scene-1", "file:y failed in Group/scene-1"),
-            ("1 / 2 and /", "1  2 and "),
+            ("add `<duration time=\"...\"/>`: 1 / 2", "add `<duration time=\"...\"/>`: 1 / 2"),
             ("", ""),
         ] {
             assert_eq!(without_paths(said), told);

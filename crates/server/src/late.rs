@@ -30,14 +30,16 @@ impl LatePolicy {
         due + i64::from(self.late_days) * DAY
     }
 
-    /// How late a submission is that came at this moment, of somebody who has another due date than the others, or not.
-    /// Nothing where it came in time, or where the assignment takes nothing late.
+    /// How late a submission is that came at this moment, of somebody who has more time than the others, or not. Nothing
+    /// where it came in time, or where the assignment says nothing of late ones.
     fn late(&self, own_due: Option<i64>, came_at: i64) -> Option<Late> {
-        let after = came_at - self.due_at.map(|due| own_due.unwrap_or(due))?;
-        // At most as late as anything may be: it was in time by an extension that was taken back.
-        let days = (after + DAY - 1).div_euclid(DAY).min(self.late_days.into());
-        let percent = (days * i64::from(self.late_percent)).min(100);
-        (days > 0).then_some(Late { days, percent })
+        let after = came_at - self.due_at.map(|due| due.max(own_due.unwrap_or(due)))?;
+        // At most as late as anything may be: it was in time by an extension that was taken back. Where nothing is taken
+        // late any more, the work that was taken keeps its price.
+        let most = if self.late_days == 0 { i64::MAX } else { self.late_days.into() };
+        let days = (after + DAY - 1).div_euclid(DAY).min(most);
+        let percent = days.saturating_mul(self.late_percent.into()).min(100);
+        (days > 0 && (self.late_days > 0 || percent > 0)).then_some(Late { days, percent })
     }
 }
 
@@ -70,8 +72,11 @@ mod tests {
         assert_eq!([late(3 * DAY), late(9 * DAY)], [Some((3, 100)); 2], "it never costs more than all");
         assert_eq!(policy.late(Some(due + DAY), due + DAY), None, "an extension moves the due date");
         assert_eq!(policy.closes_at(due), due + 3 * DAY);
-        let never = LatePolicy { late_days: 0, ..policy };
-        assert_eq!(never.late(None, due + 1), None, "where nothing is taken late, nothing is late");
+        assert_eq!(policy.late(Some(due - DAY), due), None, "and never forwards");
+        let closed = LatePolicy { late_days: 0, ..policy };
+        assert_eq!(closed.late(None, due + 1).map(|late| late.percent), Some(40), "closing later forgives nothing");
+        let never = LatePolicy { late_percent: 0, ..closed };
+        assert_eq!(never.late(None, due + 1), None, "where nothing is said of late work, nothing is late");
         assert_eq!(Late { days: 1, percent: 10 }.left_of("85.5"), "76.95");
     }
 }

@@ -11,6 +11,7 @@ use crate::{
     files::{FileError, Folder},
     report::{
         grade::{Format, Text, rehearse},
+        number::counted,
         page::Audience,
     },
     suite::{
@@ -28,9 +29,9 @@ use std::{
 pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report]) -> Result<u8> {
     let names: Vec<&str> = plan.scenes().map(|task| task.name.as_str()).collect();
     let selection = Selection::new(&arguments.scene, &names)?;
-    let whole = names.len();
+    let names: Vec<String> = names.into_iter().map(str::to_owned).collect();
     let plan = plan.part(|scene| selection.takes(scene));
-    let is_part = plan.scenes().count() < whole;
+    let is_part = plan.scenes().count() < names.len();
     for folder in &arguments.programs {
         if !folder.is_dir() {
             bail!(
@@ -60,7 +61,7 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report]) -> Resu
     };
     let paths: Vec<&Path> = arguments.programs.iter().map(PathBuf::as_path).collect();
     let named = paths.iter().zip(distinct_names(&paths));
-    let grades: Vec<Grade> = named.map(|(folder, name)| grade(&plan, folder, name, pages.as_ref())).collect();
+    let grades: Vec<Grade> = named.map(|(folder, name)| grade(&plan, &names, folder, name, pages.as_ref())).collect();
     let (folder, reader) = (arguments.output.as_deref(), arguments.reader);
     let staff_page = arguments.staff_page.as_deref();
     let (pages, platform_hides) = (pages.as_ref(), arguments.platform_hides);
@@ -75,14 +76,43 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report]) -> Resu
     Ok(exit_code(&grades))
 }
 
-/// The grade of a folder of traces.
-fn grade(plan: &Plan, folder: &Path, submission: String, pages: Option<&Pages>) -> Grade {
+/// The grade of a folder of traces; `names` are all scenes of the suite, those that are not asked for included.
+fn grade(plan: &Plan, names: &[String], folder: &Path, submission: String, pages: Option<&Pages>) -> Grade {
     let tasks: Vec<&SceneTask> = plan.scenes().collect();
     // In the plan's order, whatever the number of threads.
     let opened = Folder::open(folder);
     let judged: Vec<JudgedScene> = tasks.par_iter().map(|task| scene(plan, task, &opened, pages)).collect();
     let (results, passed_over): (Vec<_>, Vec<_>) = judged.into_iter().unzip();
-    traces::grade(plan, submission, results, passed_over.into_iter().flatten().collect())
+    let strays = opened.as_ref().ok().and_then(|folder| strays(folder, names));
+    traces::grade(plan, submission, results, passed_over.into_iter().flatten().chain(strays).collect())
+}
+
+/// Traces that are named in a warning.
+const NAMED: usize = 5;
+
+/// The traces in a folder and in the folders within it that belong to no scene, in words.
+fn strays(folder: &Folder, scenes: &[String]) -> Option<String> {
+    let texts = |folder: &Folder| -> Vec<String> {
+        let names = folder.names().unwrap_or_default();
+        names.iter().map(|name| name.to_string_lossy().into_owned()).collect()
+    };
+    let mut found = texts(folder);
+    for group in found.clone() {
+        let inner = folder.folder(OsStr::new(&group)).iter().flat_map(&texts).collect::<Vec<_>>();
+        found.extend(inner.into_iter().map(|name| format!("{group}/{name}")));
+    }
+    let is_stray = |name: &&String| {
+        let trace = name.strip_suffix(".zst").unwrap_or(name).strip_suffix(".bin");
+        let is_of = |scene: &String, trace: &str| scene == trace || scene.rsplit('/').next() == Some(trace);
+        trace.is_some_and(|trace| !scenes.iter().any(|scene| is_of(scene, trace)))
+    };
+    let mut strays: Vec<&String> = found.iter().filter(is_stray).collect();
+    strays.sort_unstable();
+    let named: Vec<&str> = strays.iter().take(NAMED).map(|name| name.as_str()).collect();
+    let more = if strays.len() > NAMED { ", ..." } else { "" };
+    let verb = if strays.len() == 1 { "belongs" } else { "belong" };
+    let count = counted(strays.len() as u64, "trace");
+    (!strays.is_empty()).then(|| format!("{count} {verb} to no scene of the suite: {}{more}", named.join(", ")))
 }
 
 /// The result of one scene, and what of it was passed over.

@@ -68,8 +68,9 @@ pub enum Malformation {
     Empty,
     /// The bytes end between two records.
     #[error(
-        "the trace ends after {records} records, but this scene's trace has {expected}; did the program crash, or was it \
-         stopped?"
+        "the trace ends after {records} {}, but this scene's trace has {expected}; did the program crash, or was it \
+         stopped?",
+        if *records == 1 { "record" } else { "records" }
     )]
     TooFewRecords {
         /// Complete records.

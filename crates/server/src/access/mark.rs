@@ -233,7 +233,7 @@ async fn extension(transaction: &mut Transaction, assignment: i64, account: i64)
     row.map(|row| row.int("due_at")).transpose()
 }
 
-/// Until when an account may hand in.
+/// Until when an account may hand in: an extension gives more time, and never less.
 pub(super) async fn due(
     transaction: &mut Transaction,
     assignment: &Assignment,
@@ -241,6 +241,6 @@ pub(super) async fn due(
 ) -> Result<Option<i64>, DbError> {
     match assignment.settings.due_at {
         None => Ok(None),
-        Some(due) => Ok(Some(extension(transaction, assignment.id, account).await?.unwrap_or(due))),
+        Some(due) => Ok(extension(transaction, assignment.id, account).await?.max(Some(due))),
     }
 }

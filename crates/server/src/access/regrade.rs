@@ -186,7 +186,7 @@ impl Staff {
             transaction.commit().await?;
             self.hurry(id).await;
             return Err(Problem::conflict(
-                format!("{missing} submissions came in meanwhile, and are graded now"),
+                format!("submissions that came in meanwhile ({missing}) are graded now"),
                 "look at them, and apply then",
             ));
         }

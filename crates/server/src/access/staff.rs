@@ -10,7 +10,11 @@ use crate::{
     values,
 };
 use serde::Serialize;
-use std::{collections::BTreeMap, ops::Deref, path::Path};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    ops::Deref,
+    path::Path,
+};
 use utoipa::ToSchema;
 
 /// Somebody of a course's staff.
@@ -63,12 +67,19 @@ impl Staff {
         &self,
         slug: &str,
         title: &str,
-        visible: bool,
-        settings: &Settings,
+        visible: Option<bool>,
+        settings: Option<&Settings>,
     ) -> Result<Assignment, Problem> {
         identity::check_slug("an assignment's name", slug)?;
         identity::check_title("a title", title)?;
-        let settings = settings.checked(&self.app.suites)?;
+        let mut transaction = self.app.0.database.begin().await?;
+        let statement = "SELECT visible, settings FROM assignment WHERE course = ? AND slug = ?";
+        let before = transaction.row(statement, values![self.course, slug]).await?;
+        let was_visible = before.as_ref().map(|row| row.flag("visible")).transpose()?;
+        let visible = visible.or(was_visible).unwrap_or_default();
+        let before = before.map(|row| row.text("settings")).transpose()?;
+        let before = before.and_then(|text| Settings::read(&text).ok());
+        let settings = settings.cloned().or_else(|| before.clone()).unwrap_or_default().checked(&self.app.suites)?;
         if let Some(digest) = settings.suite_archive.as_ref().and_then(|digest| digest.parse().ok())
             && !self.app.0.store.has(&digest).await?
         {
@@ -77,10 +88,6 @@ impl Staff {
                 "upload the archive first",
             ));
         }
-        let mut transaction = self.app.0.database.begin().await?;
-        let statement = "SELECT settings FROM assignment WHERE course = ? AND slug = ?";
-        let before = transaction.row(statement, values![self.course, slug]).await?;
-        let before = before.map(|row| row.text("settings")).transpose()?;
         let statement = "INSERT INTO assignment (course, slug, title, visible, settings, created_at)
             VALUES (?, ?, ?, ?, ?, {now})
             ON CONFLICT (course, slug) DO UPDATE SET title = excluded.title, visible = excluded.visible,
@@ -89,7 +96,6 @@ impl Staff {
         let row = transaction.one(statement, values![self.course, slug, title, visible, settings.text()]).await?;
         let assignment = view::read_assignment(&row)?;
         // Late submissions may be worth something else now.
-        let before = before.and_then(|text| Settings::read(&text).ok());
         if before.is_some_and(|before| before.late_policy() != settings.late_policy()) {
             score::send_all(&mut transaction, assignment.id, false).await?;
         }
@@ -127,7 +133,7 @@ impl Staff {
         let assignment = self.assignment(slug).await?;
         let artefact = self.app.0.store.put_file(archive).await?;
         let settings = Settings { suite_archive: Some(artefact.digest.to_string()), ..assignment.settings };
-        self.set_assignment(slug, &assignment.title, assignment.visible, &settings).await
+        self.set_assignment(slug, &assignment.title, None, Some(&settings)).await
     }
 
     /// How all students stand in an assignment.
@@ -137,14 +143,18 @@ impl Staff {
     pub async fn standings(&self, assignment: &str) -> Result<Vec<Standing>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let assignment = self.find_assignment(&mut transaction, assignment).await?;
-        let statement = "SELECT account.login, account.name FROM member JOIN account ON account.id = member.account
-            WHERE member.course = ? AND member.role = 'student'";
+        let statement = "SELECT account.login, account.name, member.role FROM member
+            JOIN account ON account.id = member.account WHERE member.course = ?";
         let rows = transaction.rows(statement, values![self.course]).await?;
-        let mut standings = BTreeMap::new();
+        let (mut standings, mut others) = (BTreeMap::new(), BTreeSet::new());
         let empty = |login: String, name: String| Standing { login, name, submissions: 0, counts: None };
         for row in rows {
             let (login, name) = (row.text("login")?, row.text("name")?);
-            standings.insert(login.clone(), empty(login, name));
+            if row.text("role")? == "student" {
+                standings.insert(login.clone(), empty(login, name));
+            } else {
+                others.insert(login);
+            }
         }
         let points = |submission: &Submission| {
             let points = submission.grade.as_ref()?.points.as_ref()?;
@@ -155,7 +165,8 @@ impl Staff {
             let page = view::submissions_after(&mut transaction, assignment.id, after).await?;
             let Some(last) = page.last() else { break };
             after = last.id;
-            for submission in page {
+            // Staff tries assignments, too.
+            for submission in page.into_iter().filter(|one| !others.contains(&one.login)) {
                 let standing = standings
                     .entry(submission.login.clone())
                     .or_insert_with(|| empty(submission.login.clone(), submission.name.clone()));

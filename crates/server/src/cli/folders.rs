@@ -4,7 +4,7 @@ use crate::{
     db::{Address, Database},
     store::Store,
 };
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use std::{
     fs,
     os::unix::fs::{DirBuilderExt, PermissionsExt},
@@ -37,7 +37,11 @@ impl Folders {
                 .create(data)
                 .with_context(|| format!("cannot make {}", data.display()))?;
         }
-        let mode = fs::metadata(data).with_context(|| format!("cannot read {}", data.display()))?.permissions().mode();
+        let metadata = fs::metadata(data).with_context(|| format!("cannot read {}", data.display()))?;
+        if !metadata.is_dir() {
+            bail!("{} is no folder: name the server's own folder by --data", data.display());
+        }
+        let mode = metadata.permissions().mode();
         if mode & 0o077 != 0 {
             tracing::warn!(folder = %data.display(), "others can read the data folder: chmod 700 it");
         }

@@ -238,6 +238,10 @@ fn clear_incoming(folder: &PathBuf) -> Result<()> {
 }
 
 pub(super) async fn admin_link(arguments: &AdminLink) -> Result<()> {
+    let data = &arguments.place.data;
+    if !data.is_dir() {
+        bail!("there is no data folder {}: start the server once, or name its folder by --data", data.display());
+    }
     let folders = Folders::open(&arguments.place)?;
     let (database, _) = folders.open_database(&arguments.place).await?;
     let store = folders.store(&arguments.place)?;

@@ -13,7 +13,7 @@ mod who;
 
 pub use upload::receive_form;
 
-use crate::{access::App, problem::Problem};
+use crate::access::App;
 use axum::{Router, extract::DefaultBodyLimit, middleware};
 use utoipa_axum::router::OpenApiRouter;
 
@@ -45,7 +45,7 @@ pub fn router(app: App) -> Router {
     Router::new()
         .merge(api)
         .merge(pages)
-        .fallback(async || Problem::not_found("page"))
+        .fallback(pages::missing)
         // Anybody who reads a body counts it: what is allowed differs.
         .layer(DefaultBodyLimit::disable())
         .layer(middleware::from_fn_with_state(app.clone(), guard::same_site))

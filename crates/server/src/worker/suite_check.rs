@@ -47,7 +47,13 @@ pub async fn check_suite(grader: &Path, folder: &Path) -> Result<(), String> {
     match (end, said.trim().strip_prefix("error:")) {
         (End::Code(0), _) => Ok(()),
         (End::Code(_), Some(said)) if !said.contains("unrecognized subcommand") => Err(without_paths(
-            &said.lines().map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join("; "),
+            &said
+                .lines()
+                .map(str::trim)
+                .filter(|line| !line.is_empty())
+                .collect::<Vec<_>>()
+                .join("; ")
+                .replace(":;", ":"),
         )),
         (End::Code(_), _) => Ok(()),
         (End::Signal(_), _) => Err("the grader failed while it looked at it, which may be for its size".to_owned()),

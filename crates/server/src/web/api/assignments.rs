@@ -24,16 +24,16 @@ use utoipa::ToSchema;
 /// The largest archive of a suite.
 const SUITE: u64 = 64 << 20;
 
-/// An assignment as it is to be.
+/// An assignment as it is to be. Of an assignment that is there, parts that are not named stay as they are; settings are
+/// one part.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct AssignmentWish {
     #[schema(value_type = Title)]
     title: String,
-    #[serde(default)]
-    visible: bool,
-    #[serde(default)]
-    settings: Settings,
+    /// Whether students see it; not at first.
+    visible: Option<bool>,
+    settings: Option<Settings>,
 }
 
 /// How to write an export.
@@ -142,10 +142,11 @@ async fn lines(staff: Staff, assignment: &str) -> Result<HttpBody, Problem> {
 }
 
 answers! {
-    /// Makes an assignment or changes it. Submissions that are graded already stay as they are: that takes a regrade.
+    /// Makes an assignment or changes it. Grades stay as they are: that takes a regrade. What late work costs counts at
+    /// once.
     put "/api/v1/courses/{course}/assignments/{assignment}" "assignments"
         set_assignment(staff: Staff, { assignment }, wish: AssignmentWish) -> Assignment:
-            staff.set_assignment(&assignment, &wish.title, wish.visible, &wish.settings);
+            staff.set_assignment(&assignment, &wish.title, wish.visible, wish.settings.as_ref());
     /// The assignments of a course.
     get "/api/v1/courses/{course}/assignments" "assignments"
         assignments(member: Member) -> Vec<Assignment>: member.assignments();

@@ -143,7 +143,7 @@ pub(super) async fn new_assignment(staff: Staff, Fields(form): Fields<NewAssignm
     if staff.assignments().await?.iter().any(|assignment| assignment.slug == slug) {
         return Err(Problem::conflict("there is an assignment of this name", "give it another name"));
     }
-    staff.set_assignment(slug, form.title.trim(), false, &Settings::default()).await?;
+    staff.set_assignment(slug, form.title.trim(), Some(false), Some(&Settings::default())).await?;
     Ok(see(&format!("/c/{}/a/{slug}/settings", staff.course().slug)))
 }
 

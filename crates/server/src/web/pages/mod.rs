@@ -32,7 +32,7 @@ use askama::Template;
 use axum::{
     Router,
     extract::{Request, State},
-    http::{HeaderValue, Method, StatusCode, header},
+    http::{HeaderMap, HeaderValue, Method, StatusCode, header},
     middleware::Next,
     response::{Html, IntoResponse, Redirect, Response},
     routing,
@@ -211,7 +211,18 @@ struct ProblemPage {
 /// Turns refusals into pages, and shows the way in to who is not signed in.
 pub(super) async fn show_problems(State(_): State<App>, request: Request, next: Next) -> Response {
     let asks = request.method() == Method::GET;
-    let mut response = next.run(request).await;
+    as_page(next.run(request).await, asks)
+}
+
+/// The answer where nothing is: a page for a browser.
+pub(super) async fn missing(method: Method, headers: HeaderMap) -> Response {
+    let answer = Problem::not_found("page").into_response();
+    let accepted = headers.get(header::ACCEPT).and_then(|value| value.to_str().ok()).unwrap_or_default();
+    if accepted.contains("text/html") { as_page(answer, method == Method::GET) } else { answer }
+}
+
+/// A refusal as a page; other answers as they are.
+fn as_page(mut response: Response, asks: bool) -> Response {
     let Some(problem) = response.extensions_mut().remove::<Problem>() else { return response };
     if asks && problem.status() == StatusCode::UNAUTHORIZED {
         return see("/sign-in").into_response();

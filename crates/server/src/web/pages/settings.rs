@@ -174,7 +174,7 @@ pub(super) async fn set(
     // An assignment is made on the course's page: a typing error in an address makes none.
     let assignment = staff.assignment(&assignment).await?;
     let settings = form.over(&assignment.settings)?;
-    staff.set_assignment(&assignment.slug, form.title.trim(), form.visible.is_some(), &settings).await?;
+    staff.set_assignment(&assignment.slug, form.title.trim(), Some(form.visible.is_some()), Some(&settings)).await?;
     Ok(see(&format!("/c/{slug}/a/{}", assignment.slug)))
 }
 

@@ -31,6 +31,7 @@ struct AssignmentPage {
     frame: Frame,
     slug: String,
     is_staff: bool,
+    is_archived: bool,
     assignment: Assignment,
     work: OwnWork,
     key: String,
@@ -65,7 +66,8 @@ pub(super) async fn assignment(
     let frame = Frame::assignment(&member, &assignment.slug, &assignment.title);
     let work = OwnWork::of(&member, &assignment).await?;
     let key = secret::random_hex();
-    show(&AssignmentPage { frame, slug, is_staff: member.is_staff, assignment, work, key })
+    let (is_staff, is_archived) = (member.is_staff, member.is_archived);
+    show(&AssignmentPage { frame, slug, is_staff, is_archived, assignment, work, key })
 }
 
 pub(super) async fn submit(

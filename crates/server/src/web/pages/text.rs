@@ -93,8 +93,13 @@ pub(super) fn size(bytes: &(impl Copy + TryInto<u64>)) -> String {
     }
 }
 
-/// Its points; a dash while there are none.
+/// Its points; a dash while there are none. Points by hand are of the whole grade: they have no maximum of the groups that
+/// are shown.
 pub(super) fn of(submission: &Submission) -> String {
+    let by_hand = submission.mark.as_ref().and_then(|mark| mark.points.as_ref());
+    if let (true, Some(by_hand)) = (submission.is_withheld, by_hand) {
+        return by_hand.clone();
+    }
     submission.grade.as_ref().map_or_else(|| points(&None, &None), |grade| points(&grade.points, &grade.max_points))
 }
 
