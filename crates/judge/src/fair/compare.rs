@@ -152,10 +152,10 @@ fn is_clear(expected: &[Bounded], actual: &[f64]) -> Option<Match> {
 /// Whether a logged polynomial is certainly wrong with every factor, found without looking for the best one. `false`
 /// leaves it open.
 ///
-/// Whatever [`compare`] takes for right differs from the expected one times its factor by less than `WIDEST` units of
-/// all bounds together, at any time within the step: the tolerances of six coefficients are at most 2 `FAIR_UNITS` of
-/// the sum of bounds and six times `FAIR_NORM_UNITS` of it, and where values are compared instead they have less. So
-/// each time allows an interval of factors, and where two of these have nothing in common there is none.
+/// A polynomial that [`compare`] takes for right stays near the expected one times its factor, at any time within the
+/// step: it is off by less than `WIDEST` units of all bounds together. For the tolerances of six coefficients are at
+/// most 2 `FAIR_UNITS` of the sum of bounds and six times `FAIR_NORM_UNITS` of it; values that are compared instead
+/// have less. So each time allows an interval of factors, and where two of these have nothing in common there is none.
 pub fn fits_with_no_factor(expected: &[Bounded], actual: &[f64]) -> bool {
     /// Tolerances, and the rounding of values here.
     const WIDEST: f64 = 2.0 * FAIR_UNITS + 6.0 * FAIR_NORM_UNITS + 32.0;
@@ -165,8 +165,8 @@ pub fn fits_with_no_factor(expected: &[Bounded], actual: &[f64]) -> bool {
     let size: f64 = expected.iter().map(|r| r.bound.max(r.value.abs())).sum();
     let room = WIDEST * UNIT_ROUNDOFF * size;
     let rounding = 32.0 * UNIT_ROUNDOFF * actual.iter().map(|s| s.abs()).sum::<f64>();
-    // What was dropped may be missing, whatever the factor; where both have dropped it, it may have been a little
-    // larger.
+    // Dropped coefficients may be missing, whatever the factor; where both have dropped them, they may have been a
+    // little larger.
     let logged_room = rounding + missing as f64 * FAIR_LOSS * LEADING_COEFFICIENT;
     if !(room.is_finite() && logged_room.is_finite()) {
         return false;
@@ -181,7 +181,7 @@ pub fn fits_with_no_factor(expected: &[Bounded], actual: &[f64]) -> bool {
             most = most.min((logged + logged_room) / (right - room));
         }
     }
-    // What the intervals' ends round is far less than this.
+    // The rounding of the intervals' ends is far less than this.
     least > most + 1e-9 * most.abs()
 }
 
@@ -193,7 +193,7 @@ fn fits(expected: &[Bounded], actual: &[f64]) -> Option<Match> {
         return None;
     }
     let norm = norm(expected);
-    // What is not finite makes the sums so.
+    // One number that is not finite makes the sums so.
     if !(norm > 0.0 && norm.is_finite() && sum_of_moduli(expected).is_finite()) || says_nothing(expected) {
         return None;
     }
@@ -262,7 +262,7 @@ fn compare_closely(expected: &[Bounded], actual: &[f64], hints: &[f64]) -> Resul
     if first.is_ok() {
         return first;
     }
-    // What is left of a polynomial may tell the factor only roughly.
+    // The coefficients that are left of a polynomial may tell the factor only roughly.
     if let Some(found) = hinted() {
         return Ok(found);
     }
@@ -281,7 +281,7 @@ fn compare_closely(expected: &[Bounded], actual: &[f64], hints: &[f64]) -> Resul
     if best.0 + 1 >= whole && whole > 1 { matched(1.0) } else { best.1 }
 }
 
-/// What is wrong with a logged polynomial that has the factor 1, if anything.
+/// Compares a logged polynomial that has the factor 1: the mismatch, if there is one.
 pub(super) fn compare_with_one(expected: &[Bounded], actual: &[f64]) -> Result<(), Mismatch> {
     let Some(missing) = expected.len().checked_sub(actual.len()) else { return Err(Mismatch::TooLong) };
     let mut logged = [0.0; MAX_COEFFICIENTS];

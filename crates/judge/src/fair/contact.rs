@@ -277,7 +277,7 @@ pub(super) fn time_of(polynomials: &[Polynomial]) -> Option<f64> {
     first_time(polynomials).ok()
 }
 
-/// What the polynomials decide, where round-off can't change it.
+/// The decision that the polynomials lead to, where round-off can't change it.
 ///
 /// Where a parabola's inputs have so few digits that every way to evaluate the formulas is exact, there is no round-off
 /// to excuse anything: touching at the very end of the step is then as certain as anything else.

@@ -1,4 +1,4 @@
-//! What a step is judged by: the scene, and the trace's records.
+//! The facts by which a step is judged: the scene, and the trace's records.
 use super::{formulas::extent, ordinary::Ordinary};
 use fosssim_model::{
     scene::{Collision, Scene},

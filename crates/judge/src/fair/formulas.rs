@@ -1,8 +1,8 @@
 //! The detection polynomials with bounds of their rounding errors (collisions.md 2; numerics.md 1 and 2).
 //!
-//! What a polynomial should be, and how far a correct program may be off: every operation, and every input, adds its
-//! modulus to the bound of what it yields. The formulas are those of the passes ([`fosssim_model::sim::formulas`]), so
-//! values are the reference's own bits.
+//! Each coefficient has its right value, and a bound of how far a correct program may be off: every operation, and
+//! every input, adds its modulus to the bound of the result. The formulas are those of the passes
+//! ([`fosssim_model::sim::formulas`]), so values are the reference's own bits.
 use fosssim_model::{
     scene::Scene,
     sim::{
@@ -236,7 +236,7 @@ fn within(v: Vec2, size: f64) -> Bounded2 {
     Bounded2 { x: component(v.x), y: component(v.y) }
 }
 
-/// What the scene says, in axes of any direction.
+/// A vector that the scene gives, in axes of any direction.
 fn turned(v: Vec2) -> Bounded2 {
     within(v, extent(v))
 }

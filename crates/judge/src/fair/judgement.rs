@@ -16,7 +16,7 @@ const EXAMPLES: usize = 8;
 /// So few decisions, though they may be most of a trace's, can be all that a small scene has.
 const FEW: u64 = 64;
 
-/// What the fair rules say about a trace, as far as it is judged, and what hangs on the rest of it.
+/// The fair rules' judgement of a trace, as far as it goes, and the polynomials that hang on the rest of the trace.
 #[derive(Debug, Default)]
 pub(crate) struct Judging {
     said: Judgement,
@@ -27,7 +27,7 @@ pub(crate) struct Judging {
     /// How many polynomials are the reference's bit for bit; approaches, which say nothing of objects at rest, count
     /// once a step.
     same: ByKind<[u64; PairKind::MOST_POLYNOMIALS]>,
-    /// What hangs on the factors of polynomials, step by step.
+    /// Polynomials that hang on the program's factors, step by step.
     pending: Vec<PendingOfStep>,
 }
 
@@ -89,7 +89,7 @@ impl Judging {
             let (kind, number) = claim.place;
             self.claimed[kind][number].take(claim.least.0.midpoint(claim.most.0));
         }
-        // What fits already is settled, and so is what counts in the other form only.
+        // Polynomials that fit already are settled, and so are those that count in the other form only.
         let hangs = |pending: &&Pending| {
             let (kind, number) = pending.place;
             let is_of_other_form = self.said.form != Form::Either && !pending.is_of(self.said.form);
@@ -102,9 +102,9 @@ impl Judging {
         self.pending.extend(hanging);
     }
 
-    /// What is wrong with polynomials that hang on factors, with those that are usual in the trace so far: those that
-    /// others show, beside the reference's own polynomials; where there are none of either, those that all claim; or
-    /// else 1.
+    /// The finding about polynomials that hang on factors, with the factors that are usual in the trace so far. Others
+    /// show these, beside the reference's own polynomials; where there are none of either, it takes those that all
+    /// claim, or else 1.
     fn finding(&self, pending: &Pending) -> Option<Finding> {
         let (kind, number) = pending.place;
         let mut told = self.scales[kind][number];
@@ -126,7 +126,7 @@ impl Judging {
         let fails =
             |form| all.iter().any(|step| step.polynomials.is_of(form) && self.finding(&step.polynomials).is_some());
         if self.said.form == Form::Either && fails(Form::Course) {
-            // What is gone may tell the form all the same: that in which nothing is gone that counts.
+            // Missing coefficients may tell the form all the same: it is the one in which none that counts is missing.
             self.said.form = if fails(Form::Right) { Form::Course } else { Form::Right };
         }
         let (form, mut last_wrong) = (self.said.form, 0);

@@ -1,12 +1,12 @@
 //! The fair rule book: scale-free and condition-aware, so that no correct program fails because of round-off, scale or
 //! the course's own slip, and no wrong one passes because of an absolute tolerance (numerics.md 2).
 //!
-//! What it does in one step:
+//! Its work in one step:
 //!
-//! 1. It rebuilds what the submission should have logged from *its own* states, and follows the submission: its
-//!    polynomials are what is searched, its logged contacts are what is answered, its mid record is what the geometric
-//!    part starts from. So a mistake is charged once, at the stage where it is made. Where the time of impact that its
-//!    polynomials give is the reference's but for round-off, the reference's is taken; where right polynomials lead the
+//! 1. It rebuilds the log that the submission should have written from *its own* states, and follows the submission: it
+//!    searches the submission's polynomials, answers its logged contacts, and begins the geometric part at its mid
+//!    record. So a mistake is charged once, at the stage where it is made. Where the time of impact that its
+//!    polynomials give is the reference's but for round-off, it takes the reference's. Where right polynomials lead the
 //!    root finder to another decision than the reference's, either will do.
 //! 2. A polynomial may have any positive factor; each coefficient may be off by [`FAIR_UNITS`] times its running error
 //!    bound. A small leading coefficient may be missing, because the course's library drops it, if the factor makes it
@@ -17,7 +17,7 @@
 //! 4. A decision that such roundings can flip is borderline: it is followed and counted, never charged. Where and when
 //!    the pair collides, if it does, is not free. Coefficients that were lost because of a factor are no round-off:
 //!    decisions and times of impact are compared with those of the whole polynomials. Those that a factor keeps, and
-//!    the course's library drops of the reference's, are followed.
+//!    that the course's library drops from the reference's, are followed.
 //! 5. It looks at everything: the first record, mid records, times of impact, repeated contacts, and what follows the
 //!    last record.
 //! 6. A step from or to a state that leads nowhere is never right.

@@ -24,7 +24,7 @@ pub(crate) struct Pending {
 }
 
 impl Pending {
-    /// What is wrong where the program's factors lie between these.
+    /// The finding, if there is one, where the program's factors lie between these.
     pub fn finding(&self, [low, high]: [f64; 2]) -> Option<Finding> {
         // Factors are known but for rounding.
         let room = 1e-9;

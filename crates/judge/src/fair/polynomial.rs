@@ -1,5 +1,5 @@
-//! What one logged polynomial says, as far as its own step tells: the factor and the form of a right one, what a wrong
-//! one lacks, and what hangs on the factors that others of the trace tell.
+//! The evidence of one logged polynomial, as far as its own step tells: the factor and the form of a right one, the
+//! fault of a wrong one, and all that hangs on the factors that others of the trace tell.
 use super::{
     compare::{Match, Mismatch, claimed_factors, compare, compare_with_one, fits_with_no_factor, possible_factors},
     formulas::Expected,
@@ -27,7 +27,7 @@ pub(super) struct Logged<'a> {
     pub list: &'a [f64],
 }
 
-/// What is said of it.
+/// The judgement of a logged polynomial.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Said {
     /// It is right.
@@ -55,8 +55,8 @@ pub(super) fn compare_first(
 }
 
 impl StepJudgement {
-    /// Notes what a polynomial says, whose comparison with the course's form is `first`. What hangs on factors is kept
-    /// to be settled if `is_known`, that is if the positions that it belongs to are.
+    /// Notes what a polynomial says; `first` is its comparison with the course's form. One that hangs on factors is
+    /// kept to be settled if `is_known`, that is if its positions are known.
     pub(super) fn note(
         &mut self,
         expected: &Expected,
@@ -84,7 +84,7 @@ impl StepJudgement {
         let other = compare(right, list, &self.hints(place.pair.kind, number));
         match (first, other) {
             (Ok(found), other) => {
-                // What says nothing of its own factor says nothing of the form either.
+                // A polynomial that says nothing of its own factor says nothing of the form either.
                 if other.is_err() && found.scale.is_some() && possible_factors(right, list).is_none() {
                     self.course_form = self.course_form.or(Some(place));
                 } else if other.is_err() {
@@ -185,7 +185,7 @@ impl StepJudgement {
     }
 }
 
-/// What is wrong with a polynomial.
+/// The finding about a wrong polynomial.
 pub(super) fn wrong_polynomial(logged: &Logged<'_>, expected: &[Bounded], mismatch: Mismatch) -> FindingDetail {
     let &Logged { place, list, .. } = logged;
     let right: Vec<f64> = expected.iter().map(|c| c.value).collect();

@@ -1,4 +1,4 @@
-//! What is known of a step's sensitivity to round-off.
+//! The sensitivity of a step to round-off.
 
 /// Largest deviations, component by component.
 #[derive(Debug, Clone)]

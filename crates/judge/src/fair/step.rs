@@ -103,8 +103,8 @@ fn follow(
     Ok(second)
 }
 
-/// What both records of a step must agree in (trace-format.md 2), and what no program that uses the course's library
-/// can have written.
+/// Charges differences between the two records of a step where they must agree (trace-format.md 2), and logs that no
+/// program with the course's library can have written.
 fn compare_records(context: &Context<'_>, records: Records<'_>, judged: &mut StepJudgement) {
     let Records { step, frame, mid, end, .. } = records;
     let mut charge = |detail| judged.charge(Finding { step, frame, detail });

@@ -1,4 +1,4 @@
-//! What judging one step yields.
+//! The result of judging one step.
 use super::{
     context::{Context, Records},
     factors::Scales,
@@ -10,7 +10,7 @@ use fosssim_findings::{
 };
 use fosssim_model::sim::{ByKind, Pair, PairKind, Pass};
 
-/// What judging one step yields.
+/// The findings, decisions and factors of one step.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct StepJudgement {
     /// The step, from 1.

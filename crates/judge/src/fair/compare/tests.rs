@@ -34,7 +34,7 @@ fn what_fits_at_once_is_what_a_close_look_says() {
     assert!(answered > 5000, "{answered}");
 }
 
-/// What is right at once is right in a close look, too, and by the same factor but for round-off.
+/// Polynomials that are right at once are right in a close look, too, and by the same factor but for round-off.
 #[test]
 fn what_is_right_at_once_is_right() {
     let mut next = numbers();
@@ -95,8 +95,8 @@ fn the_wrong_coefficient_is_named_in_spite_of_a_factor() {
     assert!((expected - 6.6).abs() < 1e-12);
 }
 
-/// What is wrong with every factor is wrong in a close look, too, whatever the hints; and most of what is wrong in one
-/// coefficient is found to be so.
+/// Polynomials that fit with no factor are wrong in a close look, too, whatever the hints; and more than half of the
+/// wrong ones fit with none.
 #[test]
 fn what_fits_with_no_factor_is_wrong() {
     let mut next = numbers();

@@ -26,8 +26,8 @@ pub(super) type AtOnce = [Option<Match>; PairKind::MOST_POLYNOMIALS];
 pub(super) type Floors = ByKind<[f64; PairKind::MOST_POLYNOMIALS]>;
 
 impl Follower<'_> {
-    /// What is known at once of a call's logged polynomials; [`compare`](crate::fair::compare::compare) says the same
-    /// of those that are right.
+    /// The logged polynomials of a call that are right at once: [`compare`](crate::fair::compare::compare) says the
+    /// same of them.
     #[inline]
     pub(super) fn right_at_once(
         &mut self,
@@ -153,7 +153,7 @@ mod tests {
         }
     }
 
-    /// What is above the floor is never round-off; and the floor is no larger than it has to be by much.
+    /// A polynomial above the floor is never round-off; and the floor is not much larger than it has to be.
     #[test]
     fn what_says_something_is_above_round_off() {
         let scene = scene(CROWD);

@@ -1,4 +1,4 @@
-//! What a step's decisions and contacts are charged for.
+//! The charges against a step's decisions and contacts.
 use super::Follower;
 use crate::{
     contacts::{key, logged_key},
@@ -11,7 +11,7 @@ use fosssim_model::{
 };
 use fosssim_num::vector::Vec2;
 
-/// What the reference's own polynomials say about a pair whose logged ones are right, and others.
+/// The result of the reference's own polynomials for a pair whose logged ones are right, but differ from them.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Own {
     /// Their time of impact.
@@ -40,7 +40,7 @@ impl Follower<'_> {
             Some(own) if (own.time <= 1.0) != (time(by_polynomials) <= 1.0) => own.time <= 1.0,
             _ => collides(by_polynomials),
         };
-        // What is charged is not excused as well.
+        // A decision that is charged is not excused as well.
         if collides(decision) != is_expected && self.judged.total() == findings {
             self.judged.borderline(self.pass, pair, collides(decision));
         }

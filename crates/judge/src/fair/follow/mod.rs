@@ -34,11 +34,11 @@ const DECISIONS: usize = 1 << 14;
 pub(super) struct Follower<'a> {
     context: &'a Context<'a>,
     records: Records<'a>,
-    /// What is known of the step's sensitivity to round-off, on a second look.
+    /// The step's sensitivity to round-off, on a second look.
     sensitivity: Option<&'a Sensitivity>,
     /// Decisions (by number of the call) that are turned round: borderline ones, in hybrid scenes.
     flips: &'a [usize],
-    /// What was found.
+    /// The judgement of the step so far.
     pub judged: StepJudgement,
     /// All decisions of the step.
     pub decisions: Vec<Followed>,
@@ -63,20 +63,20 @@ pub(super) struct Follower<'a> {
     contacts: Contacts,
     /// Logged impulses that a decision has used.
     used: Vec<bool>,
-    /// What is known of the call that is looked at.
+    /// The facts about the current call.
     call: CurrentCall,
     /// Whether any call was disputed.
     pub has_disputes: bool,
     /// Whether such calls are decided as the reference decides them.
     prefers_own: bool,
-    /// Above these polynomials of the positions that the pass sees are more than round-off, once that was asked.
+    /// The floors of round-off for polynomials of the positions that the pass sees, once they were asked for.
     floors: Option<Floors>,
 }
 
-/// What is known of a call between its polynomials and its decision.
+/// The facts about a call between its polynomials and its decision.
 #[derive(Debug, Default)]
 struct CurrentCall {
-    /// What the reference's own polynomials say, where the logged ones are right, and others.
+    /// The result of the reference's own polynomials, where the logged ones are right, but differ from them.
     own: Option<Own>,
     /// Whether the polynomials are right, and lead the root finder to another decision than the reference's.
     is_disputed: bool,
@@ -86,7 +86,7 @@ struct CurrentCall {
     seen: Option<SeenCall>,
 }
 
-/// How the objects of a call move. What its polynomials should be follows, and is seldom asked once they are compared.
+/// How the objects of a call move. Its expected polynomials follow, and are seldom asked for once they are compared.
 #[derive(Debug, Clone, Copy)]
 struct SeenCall {
     motion: BoundedPairMotion,
@@ -287,7 +287,7 @@ impl Steer for Follower<'_> {
                 return;
             }
         }
-        // What the submission solved is what decides, even if it is wrong: a wrong polynomial is charged once.
+        // The submission's polynomials decide, even if they are wrong: a wrong polynomial is charged once.
         polynomials.copy_from_slice(&searched[..count]);
     }
 

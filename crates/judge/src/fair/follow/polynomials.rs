@@ -1,4 +1,4 @@
-//! What a step's polynomials are charged for.
+//! The charges against a step's polynomials.
 use super::{Follower, SeenCall};
 use crate::{
     fair::{
@@ -82,7 +82,7 @@ impl<'a> Follower<'a> {
                     self.charge_polynomial(&logged, &expected, mismatch, is_known);
                 }
             }
-            // What a response has led to has its round-off.
+            // Positions that a response has led to have its round-off.
             self.judged.hangs |= self.is_moved(pair) && (hangs || matches!(said, Said::Wrong(_)));
         }
         self.call.seen = Some(SeenCall { motion: seen, has_right_approach });

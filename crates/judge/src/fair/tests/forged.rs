@@ -204,7 +204,7 @@ const LEAVE: &str = r#"<scene><duration time="2"/><integrator type="explicit-eul
     <particle m="1" px="0.3" py="0.5" vx="0.1" vy="1" fixed="0" radius="0.25"/>
     <halfplane px="0" py="0" nx="0" ny="1"/></scene>"#;
 
-/// What hangs on factors is charged in the steps where it stands.
+/// Polynomials that hang on factors are charged in the steps where they stand.
 #[test]
 fn polynomials_that_hang_on_factors_count_in_their_steps() {
     let scene = scene(LEAVE);
@@ -358,7 +358,7 @@ fn what_a_response_has_moved_is_not_left_out() {
             let judged = fair(&scene, &forged);
             assert_eq!(judged.verdict, FairVerdict::Rejected, "{name}");
             let first = judged.findings.first_divergence.expect("a finding");
-            // What is missing is named before what follows from it.
+            // Missing polynomials are named before their consequences.
             assert!(matches!(first.kind(), FindingKind::Coefficient | FindingKind::MissedCollision), "{name}: {first}");
             told += u32::from(first.kind() == FindingKind::Coefficient);
         }
