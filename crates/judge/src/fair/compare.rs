@@ -327,8 +327,8 @@ fn fit(right: &[Bounded], logged: &[f64], missing: usize) -> Option<f64> {
     (squares > 0.0).then(|| products / squares)
 }
 
-/// How far a coefficient may be off, in units of the roundoff. Both sides round. What is small beside the others may
-/// hold the rounding of all of them: some correct programs interpolate, and on [0, 1] no decision can tell.
+/// How far a coefficient may be off, in units of the roundoff. Both sides round. A coefficient that is small beside the
+/// others may hold the rounding of all of them: some correct programs interpolate, and on [0, 1] no decision can tell.
 fn units(r: &Bounded, norm: f64) -> f64 {
     f64::max(2.0 * FAIR_UNITS * r.bound, FAIR_NORM_UNITS * norm)
 }

@@ -1,5 +1,5 @@
-//! What is bound to an assignment of the course, one folder each: the catalogue of mistakes, formulas as data, probe
-//! scenes.
+//! Code that is bound to an assignment of the course, one folder each: the catalogue of mistakes, formulas as data,
+//! probe scenes.
 pub mod all;
 pub mod rows;
 pub mod states;

@@ -24,14 +24,14 @@ use fosssim_model::{
 /// explanations keep whole, takes some hundred bytes a pair. Where numbers end is told all the same.
 const MOST_PAIRS: usize = 400_000;
 
-/// What is likely wrong with the program that left this trace, the likeliest first; empty when nothing is, or when
+/// The likely mistakes of the program that left this trace, the likeliest first; empty when nothing is wrong, or when
 /// nothing that is known explains it.
 ///
-/// A known mistake that reproduces all wrong steps comes first, with what is found out about the polynomials that it
-/// gets wrong. Else explanations of polynomials come first that reproduce all their samples, then what reproduces a
-/// part. Whether the trace is right is for the judge to say: this is asked about traces that the fair rules reject.
-/// Traces of any content are accepted; what follows the first 64 MiB is passed over, and so is the record in which a
-/// trace breaks off. A trace of another scene yields nothing but that question ([`Explanation::is_other_scene`]).
+/// A known mistake that reproduces all wrong steps comes first, with the details of polynomials that it gets wrong.
+/// Else explanations of polynomials come first that reproduce all their samples, then those that reproduce a part. The
+/// judge says whether a trace is right: callers ask this about traces that the fair rules reject. Traces of any content
+/// are accepted; what follows the first 64 MiB is passed over, and so is the record in which a trace breaks off. A
+/// trace of another scene yields only the question whether it is of this one ([`Explanation::is_other_scene`]).
 #[must_use]
 pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
     explain_source(scene, Source::whole(trace))

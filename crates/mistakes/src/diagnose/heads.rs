@@ -1,8 +1,8 @@
-//! What the traces of one program say together.
+//! The explanations that the traces of one program give together.
 //!
-//! Votes are by what is said, in the words in which it is told ([`Explanation::said`]): two mistakes with one key are
-//! two. A trace votes for all that would explain it as well as what it tells, so that what is told first has been tried
-//! on all traces before anything is told beside it.
+//! Traces vote for what they say, in the words in which it is told ([`Explanation::said`]): two mistakes with one key
+//! are two. A trace votes for all explanations that would do as well as the one that it tells. So the first explanation
+//! has been tried on all traces before anything is told beside it.
 use super::{
     Explanation,
     about::{About, OfPolynomials},
@@ -40,7 +40,7 @@ pub fn common<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>) -> Option
         let known = is_known(said).cmp(&is_known(other));
         weight(a).cmp(&weight(b)).then(known).then(a.first.cmp(&b.first)).then(b.order.cmp(&a.order))
     })?;
-    // What explains as many traces as well can't be told apart.
+    // Mistakes that explain the same number of traces as well can't be told apart.
     let is_rival =
         |(other, rival): &(&String, &Vote<'_>)| *other != said && is_known(other) && weight(rival) == weight(vote);
     let same_as = votes.iter().filter(is_rival).map(|(other, _)| other.clone()).collect();
@@ -71,7 +71,7 @@ fn united(told: &Explanation, traces: &[&[Explanation]]) -> Explanation {
     told
 }
 
-/// What speaks for something that is said.
+/// The votes for one explanation.
 #[derive(Default)]
 struct Vote<'a> {
     traces: usize,
@@ -192,7 +192,7 @@ pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted:
         }
     }
     if let Some(head) = wrong_polynomials(&wrong, &found) {
-        // What a wrong formula leads to is wrong behind it.
+        // The stages behind a wrong formula are wrong because of it.
         found.retain(|one| !one.is_of_stage());
         found.insert(0, head);
     }
@@ -235,7 +235,7 @@ fn wrong_polynomials(traces: &[Vec<Explanation>], found: &[Explanation]) -> Opti
     let named_in = |one: &Explanation| traces.iter().filter(|list| is_named_in(one, list)).count();
     let is_told = found.iter().any(|one| !one.subjects().is_empty())
         || found.first().is_some_and(|first| named_in(first) >= most);
-    // What few traces show may follow from something else.
+    // A fault that few traces show may follow from something else.
     if is_told || most * 2 <= traces.len() {
         return None;
     }
@@ -295,9 +295,9 @@ fn is_said_already(found: &[Explanation], next: &Explanation, open: &[Vec<Explan
     found.iter().any(is_said)
 }
 
-/// Leaves of what is said of stages only what concerns the earliest one: what is wrong behind it may follow. And a
-/// known mistake of that stage or a later one that explains fewer traces than there are of these is no more than like
-/// what is wrong.
+/// Of the explanations of stages, leaves those of the earliest one only: later faults may follow from it. Also drops
+/// known mistakes of that stage or a later one that explain fewer traces than show it wrong: they only resemble the
+/// fault.
 fn keep_earliest_stage(open: &mut Vec<Vec<Explanation>>) {
     let Some(earliest) = open.iter().flatten().filter_map(Explanation::stage).min() else { return };
     let is_of_it = |one: &Explanation| one.stage() == Some(earliest);
@@ -308,7 +308,7 @@ fn keep_earliest_stage(open: &mut Vec<Vec<Explanation>>) {
             weak.push(row.id);
         }
     }
-    // Who says what is wrong with the stage speaks for those who only say that something is.
+    // An explanation that says what is wrong with the stage speaks for those that only say that something is.
     let is_said = open.iter().flatten().any(|one| is_of_it(one) && !one.is_vague());
     // In another order, polynomials of one pair stand where those of another are looked for.
     let is_misread = |one: &Explanation| find(&one.key).is_none() && one.stage().is_none();
@@ -341,7 +341,7 @@ pub fn refuted(traces: &[&[Explanation]], right: &[&Scene]) -> Vec<String> {
     let mut refuted: Vec<String> = Vec::new();
     loop {
         let likely = several(traces.iter().copied(), &refuted);
-        // What is not written yet stands for its stages.
+        // An explanation of unfinished work stands for its stages.
         let stages = likely.iter().filter(|one| one.is_unfinished()).flat_map(|one| &one.same_as);
         let mut keys = likely.iter().map(|one| &one.key).chain(stages).filter(|key| !refuted.contains(key));
         match keys.find(|key| right.iter().any(|scene| shows(scene, key))).cloned() {
@@ -396,7 +396,7 @@ fn leave_open(open: &mut [Vec<Explanation>], covered: &mut [bool], said: &str, t
 fn unfinished(traces: &[Vec<Explanation>]) -> Option<Explanation> {
     let told: Vec<&Explanation> = traces.iter().flatten().filter(|one| one.is_complete()).collect();
     let naming = |key: &str| traces.iter().filter(|list| names_completely(list, key)).count();
-    // What a trace can't tell from an empty stage may explain more traces than that.
+    // A mistake that a trace can't tell from an empty stage may explain more traces than that stage.
     let is_likeliest = |row: &&Row| {
         let rivals = told.iter().filter(|one| one.key == row.id).flat_map(|one| &one.same_as);
         rivals.map(|rival| naming(rival)).max().unwrap_or(0) <= naming(row.id)

@@ -15,14 +15,14 @@ use fosssim_model::{
     trace::{LenientFrame, LoggedImpulse, PolynomialLog},
 };
 
-/// What is told of the first number of a kept trace that is none, and nothing else that explanations find; empty where
-/// all are finite, or where the reference comes to the same.
+/// The explanation of the first value of a kept trace that is no finite number, and no other explanation; empty where
+/// all values are finite, or where the reference comes to the same.
 #[must_use]
 pub fn not_finite(trace: &KeptTrace<'_>) -> Vec<Explanation> {
     of_source(trace.scene(), trace.into())
 }
 
-/// The same, of what records are at hand.
+/// The same, of the records at hand.
 pub(super) fn of_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     let (mut steps, mut reference, mut first) =
         (StepReader::new(scene, source), Reference::new(scene), First::default());
@@ -33,7 +33,7 @@ pub(super) fn of_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     first.explanation().into_iter().collect()
 }
 
-/// Looks for the first number that is none, step by step.
+/// Looks for the first value that is no finite number, step by step.
 #[derive(Default)]
 pub(super) struct First {
     is_found: bool,
@@ -67,7 +67,7 @@ impl First {
         }
     }
 
-    /// What is told of it.
+    /// The explanation of that value.
     pub(super) fn explanation(self) -> Option<Explanation> {
         self.told.map(|found| Explanation::about(Explanation::NOT_FINITE, About::NotFinite(found)))
     }
@@ -196,8 +196,8 @@ fn bodies(scene: &Scene, pair: Pair) -> Vec<u32> {
     }
 }
 
-/// Explanations with the one that says where numbers end: first, unless a proven mistake is the cause. What is wrong
-/// before the end was reproduced then, and mending it comes first, and so does what is proven besides.
+/// Explanations with the one that says where numbers end: first, unless a proven mistake is the cause. That mistake
+/// then reproduces the faults before the end, and mending it comes first, as do other proven mistakes.
 pub(super) fn with_end(
     end: Option<Explanation>,
     mut found: Vec<Explanation>,

@@ -1,7 +1,7 @@
-//! What a trace alone says, in the light of what all traces of its program say together.
+//! One trace's own explanations, in the light of what all traces of its program say together.
 use super::{About, Explanation, is_named_in, not_finite::with_end};
 
-/// What is to be said of one trace, once all traces of its program have been heard.
+/// The explanations of one trace, once all traces of its program have been heard.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Settled {
     /// The explanations, the likeliest first.
@@ -79,7 +79,7 @@ mod tests {
         assert_eq!((of_first.agreed, of_first.explanations.len()), (1, 1));
         let told = &of_first.explanations[0];
         assert_eq!((told.key.as_str(), told.reproduced, told.samples), ("loop-one-fewer", 2, 2));
-        // What they do not explain keeps its own.
+        // A trace that they do not explain keeps its own explanations.
         assert_eq!(settled(std::slice::from_ref(&other), &likely), Settled { explanations: vec![other], agreed: 0 });
         assert_eq!(settled(&[], &likely), Settled::default());
     }

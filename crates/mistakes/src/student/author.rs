@@ -1,4 +1,4 @@
-//! Who wrote a program: the mistakes that are made in it.
+//! The author of a program: the mistakes that are made in it.
 use super::{
     Area, Mistake,
     hooks::{Change, Mutation},

@@ -1,4 +1,4 @@
-//! What moves, what collides, and what is moved together.
+//! Objects that move, that collide, and that are moved together.
 use fosssim_num::vector::Vec2;
 use std::collections::BTreeSet;
 

@@ -1,4 +1,4 @@
-//! What a program writes of a state and its log: the contents of one record, not yet as bytes (trace-format.md).
+//! The contents of one record: a state and its log as a program writes them, not yet as bytes (trace-format.md).
 
 use super::{
     Area, Mistake,
@@ -78,7 +78,7 @@ impl Record {
 /// The whole trace that this student's program writes, in memory; up to the step that fails, if one does.
 ///
 /// # Errors
-/// What was written, and why there is no more.
+/// The bytes that were written, and why there are no more.
 pub fn trace(scene: &Scene, student: Student) -> Result<Vec<u8>, (Vec<u8>, StepFailure)> {
     written(scene, student, StepLog::default())
 }
@@ -86,7 +86,7 @@ pub fn trace(scene: &Scene, student: Student) -> Result<Vec<u8>, (Vec<u8>, StepF
 /// The same of a program that may go on for ever: up to the step that has more polynomials than this.
 ///
 /// # Errors
-/// What was written, and why there is no more.
+/// The bytes that were written, and why there are no more.
 pub fn trace_within(scene: &Scene, student: Student, most: usize) -> Result<Vec<u8>, (Vec<u8>, StepFailure)> {
     let guard = |index: usize, _: &[f64]| index < most;
     written(scene, student, StepLog { guard: Some(&guard), ..StepLog::default() })

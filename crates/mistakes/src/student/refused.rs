@@ -1,4 +1,4 @@
-//! What the judge and the explanations are known to get wrong about correct programs.
+//! Correct programs that the judge or the explanations are known to get wrong.
 
 /// Correct variants that the fair rules refuse, each with the scene, or with `probe/` and the probe scene. Tests and
 /// matrices pass over these and over nothing else, and see to it that each is still refused; the goal is an empty list.

@@ -1,4 +1,4 @@
-//! What a step works on: the scene's constants, the moving state, and the pairs that detection looks at.
+//! The world that a step works on: the scene's constants, the moving state, and the pairs that detection looks at.
 use fosssim_model::scene::Scene;
 use fosssim_num::{
     polynomial::Polynomial,
@@ -40,9 +40,9 @@ pub struct StepLog<'a> {
     pub long_searches: u64,
 }
 
-/// Says whether a step may go on after this polynomial (index in the step's log, coefficients highest power first). Who
-/// looks for a certain step saves the rest of it as soon as it is another one, and bounds loops that mistakes make
-/// endless.
+/// Says whether a step may go on after this polynomial (index in the step's log, coefficients highest power first). A
+/// search for a certain step saves the rest of it as soon as it is another one. A guard also bounds loops that mistakes
+/// make endless.
 pub type Guard<'a> = &'a dyn Fn(usize, &[f64]) -> bool;
 
 /// Adds `change` to the vector of one particle.

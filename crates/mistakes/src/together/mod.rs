@@ -1,4 +1,4 @@
-//! What the scenes of one submission say together about its likely mistakes.
+//! The likely mistakes of one submission, as its scenes tell them together.
 #![forbid(unsafe_code)]
 
 use crate::diagnose::{is_named_in, settled, several};

@@ -1,8 +1,8 @@
 //! The formulas of collisions.md 2 as data: each coefficient a sum of weighted products of letters.
 //!
-//! What is right is said by the fair rules' formulas (`judge::fair::formulas`), and a test holds these tables to them.
-//! As data a formula can be bent: a term dropped, a letter exchanged. The letters are those of the assignment and of
-//! the quintic that the course supplies; its sums `k..o` are multiplied out, `p` and `q` are `b` and `c`.
+//! The fair rules' formulas (`judge::fair::formulas`) say what is right, and a test compares these tables with them. As
+//! data a formula can be bent: a term dropped, a letter exchanged. The letters are those of the assignment and of the
+//! quintic that the course supplies; its sums `k..o` are multiplied out, `p` and `q` are `b` and `c`.
 use super::{Inputs, Subject};
 use fosssim_num::bounded::Bounded;
 

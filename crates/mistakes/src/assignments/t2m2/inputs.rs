@@ -1,4 +1,4 @@
-//! What goes into the formulas of a detection.
+//! The inputs of the formulas of a detection.
 use fosssim_judge::fair::formulas::BoundedPointMotion;
 use fosssim_model::sim::{PairKind, PairMotion};
 use fosssim_num::{

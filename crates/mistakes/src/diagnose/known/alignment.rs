@@ -18,7 +18,7 @@ pub(super) fn missing_record(scene: &Scene, scan: &Scan) -> Option<Explanation> 
             return None;
         }
         let steps = aligned_steps(scene, layout, &scan.outline.opening, row)?;
-        // What never moves is right however it is read; then only the number of records tells.
+        // A scene in which nothing moves is right however it is read; then only the number of records tells.
         let tells = !scan.wrong.is_empty() || scan.outline.records == Some(expected);
         tells.then(|| explain(row, (steps, steps)))
     })

@@ -105,7 +105,7 @@ impl<'a> Candidates<'a> {
                 break;
             }
             tried = number + 1;
-            // Who has failed in half of the spread steps is out.
+            // A candidate that has failed in more than half of the spread steps is out.
             let allowed = spread.len().max(tried) / 2;
             left.retain_mut(|(candidate, reproduced)| {
                 *reproduced += usize::from(self.reproduces(candidate, sample));

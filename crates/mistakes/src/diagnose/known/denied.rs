@@ -1,4 +1,4 @@
-//! What a trace shows not to be so, whatever else is wrong with it: stages that are not empty, zones that do not stop.
+//! Mistakes that a trace denies, whatever else is wrong with it: its stages are not empty, its zones do not stop.
 use crate::{
     diagnose::sampling::{KeptStep, Logged, PLAIN, ROUND_OFF, Scan, StepDifference, state_difference},
     student::{CATALOGUE, Mistake},

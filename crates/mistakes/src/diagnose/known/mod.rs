@@ -55,7 +55,7 @@ pub fn known(scene: &Scene, trace: impl Read) -> Vec<Explanation> {
     known_or_open(&mut reference, scene, scan).explanations
 }
 
-/// What the catalogue says of a trace.
+/// The catalogue's explanations of a trace, and what they leave open.
 #[derive(Debug, Default)]
 pub(super) struct Known {
     /// The mistakes, the likeliest first.
@@ -66,7 +66,7 @@ pub(super) struct Known {
     pub(super) denies: Vec<String>,
 }
 
-/// The same of kept steps, with these where no mistake explains all of them.
+/// The catalogue's explanations of kept steps, and the steps themselves where no mistake explains all of them.
 pub(super) fn known_or_open(reference: &mut Reference<'_>, scene: &Scene, mut scan: Scan) -> Known {
     let only = |one: Explanation| Known { explanations: vec![one], ..Known::default() };
     if let Some(missing) = alignment::missing_record(scene, &scan) {
@@ -88,8 +88,8 @@ pub(super) fn known_or_open(reference: &mut Reference<'_>, scene: &Scene, mut sc
     Known { explanations: padded.into_iter().collect(), open: None, denies }
 }
 
-/// What the catalogue says, and whether that is all there is to say. May leave the steps as a program with the right
-/// approach sees them.
+/// The catalogue's explanations, and whether there is nothing else to say. May leave the steps as a program with the
+/// right approach sees them.
 fn of_wrong_steps(reference: &mut Reference<'_>, scene: &Scene, scan: &mut Scan) -> (Vec<Explanation>, bool) {
     if scan.wrong.is_empty() {
         return (Vec::new(), true);
@@ -163,7 +163,7 @@ fn together(
     all
 }
 
-/// What the catalogue says about a trace.
+/// The catalogue's best explanation of a trace.
 #[derive(Debug, Default)]
 struct Found {
     /// The mistake; `None` when no row reproduces the steps, or a correct variant does.

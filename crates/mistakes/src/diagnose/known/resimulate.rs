@@ -8,7 +8,7 @@ use fosssim_model::{
     sim::pairs,
 };
 
-/// What a submission does right.
+/// The particle-edge approach of a submission, right in either form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Correct {
     /// It uses the particle-edge approach that the course supplies.
@@ -28,9 +28,8 @@ impl Correct {
     }
 }
 
-/// What a step costs besides its polynomials, in polynomials: forces between all pairs are many times cheaper than
-/// these, and those of a penalty force look at near pairs only. Solves of implicit integrators are counted as they
-/// come.
+/// The cost of a step besides its polynomials, in polynomials: forces between all pairs are many times cheaper than
+/// these, and penalty forces look at near pairs only. Solves of implicit integrators are counted as they come.
 pub(super) fn step_work(scene: &Scene) -> u64 {
     let of_pairs = match scene.collision {
         Collision::None => 0,

@@ -41,7 +41,7 @@ pub(super) fn several(reference: &Reference<'_>, scene: &Scene, scan: &Scan, cor
         return search.pair();
     }
     let mut found = search.starts().into_iter().find_map(|start| search.from(start))?;
-    // What is not written may look like a mistake in what is.
+    // A stage that is not written may look like a mistake in one that is.
     if found.rows.iter().any(|row| is_empty_stage(row))
         && let Some(other) = search.from(Vec::new())
         && other.rows.len() <= found.rows.len()
@@ -88,7 +88,7 @@ impl<'a> Search<'a> {
 
     /// Adds rows to a set of empty stages until it reproduces everything.
     fn from(&self, mut set: Vec<&'static Row>) -> Option<Several> {
-        // What was as good as each row when that was added.
+        // The rows that were as good as each row when that one was added.
         let mut alike: Vec<Vec<&'static Row>> = set.iter().map(|_| Vec::new()).collect();
         let mut best = self.progress(&set);
         while best < self.goal() && set.iter().filter(|row| !is_empty_stage(row)).count() < MOST {

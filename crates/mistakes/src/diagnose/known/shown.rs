@@ -105,7 +105,7 @@ mod tests {
     };
     use fosssim_model::{assignments::Assignment, scene::CollisionDetection};
 
-    /// What is not tried on a scene would leave the right trace of it.
+    /// A mistake that is not tried on a scene would leave the right trace of it.
     #[test]
     fn what_a_scene_can_not_show_leaves_its_trace_as_it_is() {
         let mut left_out = 0;

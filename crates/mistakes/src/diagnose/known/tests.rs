@@ -154,7 +154,7 @@ fn made(scene: &Scene, ids: &[&str]) -> Vec<u8> {
     student::trace(scene, student).unwrap_or_else(|(bytes, _)| bytes)
 }
 
-/// What is said of a program that makes all of these: each named as made, or as not to be told from it.
+/// Explanations of a program that makes all of these name each of them, as made or as not to be told from another.
 fn are_named(scene: &Scene, ids: &[&str]) {
     let found = explain(scene, &made(scene, ids));
     assert_eq!(found.len(), ids.len(), "{ids:?}: {found:#?}");

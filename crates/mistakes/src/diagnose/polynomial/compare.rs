@@ -1,7 +1,7 @@
 //! Whether a logged polynomial is a given one, up to a positive scale and round-off.
 //!
-//! What is right is decided by [`fosssim_judge::fair`]; this asks the same of wrong formulas, within the same bounds.
-//! Coefficients are aligned at the constant one. What the log lacks was dropped by the course's library for being
+//! [`fosssim_judge::fair`] decides what is right; this asks the same of wrong formulas, within the same bounds.
+//! Coefficients are aligned at the constant one. The course's library has dropped those that the log lacks, for being
 //! small.
 use fosssim_judge::fair::compare::compare;
 use fosssim_num::{

@@ -147,8 +147,8 @@ impl Suspect<'_> {
     }
 }
 
-/// What a guess says of a polynomial, in one word ([`Explanation::claims`]). The digest is of what the program does,
-/// without what it should do.
+/// The claim of a guess about a polynomial, in one word ([`Explanation::claims`]). The digest is of what the program
+/// does, without what it should do.
 fn claim(subject: Subject, candidate: &Candidate) -> String {
     let guess = candidate.guess.word();
     if candidate.guess.is_general() {
@@ -209,7 +209,7 @@ fn candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     all.extend(specials::candidates(study));
     all.extend(slips::candidates(study));
     all.extend(terms::candidates(study));
-    // What the right formula does as well is no explanation.
+    // A guess that reproduces no more than the right formula is no explanation.
     let plain = study.plainly_right();
     all.retain(|guess| guess.reproduced > plain);
     all.sort_by(|one, two| two.reproduced.cmp(&one.reproduced).then(one.cost.total_cmp(&two.cost)));
@@ -235,7 +235,7 @@ fn exchanged_inputs(study: &PolynomialStudy) -> Vec<Candidate> {
     EXCHANGES.iter().filter(|exchange| exchange.concerns(study.subject.kind())).filter_map(of).collect()
 }
 
-/// What is right but for more round-off than the rules allow, and not explained by anything better.
+/// A polynomial that is right but for more round-off than the rules allow, and that nothing explains better.
 fn nearly_right(suspect: &Suspect) -> Option<Explanation> {
     let study = &suspect.study;
     let (error, samples) = (study.error(), study.cases.len() as u64);

@@ -8,7 +8,7 @@ use crate::assignments::t2m2::{
 use crate::diagnose::{Guess, PolynomialDetail, QuantityGuess, Stand};
 use fosssim_num::bounded::Bounded;
 
-/// What is tried in a letter's place.
+/// A quantity that is tried in a letter's place.
 enum Trial<'a> {
     /// The letter itself, multiplied.
     Scaled(f64),

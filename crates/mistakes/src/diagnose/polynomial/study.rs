@@ -30,13 +30,13 @@ const ALIKE: f64 = 1e-9;
 pub(super) struct Case<'a> {
     /// Where it comes from.
     pub sample: &'a Sample,
-    /// What was logged.
+    /// The logged coefficients.
     pub logged: &'a [f64],
-    /// What goes into the formulas.
+    /// The inputs of the formulas.
     pub inputs: Inputs,
-    /// What should have been logged; of the quintic the supplied form.
+    /// The coefficients that should have been logged; of the quintic the supplied form.
     pub expected: Vec<Bounded>,
-    /// Whether what was logged is right, in any accepted form.
+    /// Whether the logged ones are right, in any accepted form.
     pub right: bool,
     /// The positive factor that the submission's polynomials seem to carry here.
     pub scale: f64,
@@ -56,7 +56,7 @@ pub(super) struct PolynomialStudy<'a> {
 /// A guess that reproduces samples.
 #[derive(Debug, Clone)]
 pub(super) struct Candidate {
-    /// What it says.
+    /// The guess itself.
     pub guess: Guess,
     /// Its exact form.
     pub details: Vec<PolynomialDetail>,
@@ -144,8 +144,8 @@ impl<'a> PolynomialStudy<'a> {
         self.is_supported(wrong, right).then_some(wrong + right)
     }
 
-    /// Whether these numbers of wrong and right samples are enough. What reproduces all wrong ones may be done under a
-    /// condition, so that right samples don't speak against it.
+    /// Whether these numbers of wrong and right samples are enough. A mistake that reproduces all wrong ones may be
+    /// made under a condition, so right samples don't speak against it.
     pub fn is_supported(&self, wrong: usize, right: usize) -> bool {
         let all_right = self.cases.len() - self.wrong;
         wrong == self.wrong || (2 * wrong >= self.wrong && all_right - right <= all_right / SPARED)

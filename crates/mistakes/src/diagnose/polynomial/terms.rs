@@ -287,7 +287,7 @@ impl Telling<'_> {
             Edit::Factor(factor) if factor.value == 0.0 => CoefficientGuess::Zero,
             Edit::Factor(factor) if factor.value == -1.0 => CoefficientGuess::Sign,
             Edit::Factor(_) => CoefficientGuess::Factor,
-            // What nothing explains is no guess of its own (see `candidate`).
+            // A coefficient that nothing explains is no guess of its own (see `candidate`).
             Edit::Unknown => CoefficientGuess::Several,
             Edit::Terms(changes) => match changes[..] {
                 [change] => match self.weights(*power, change) {

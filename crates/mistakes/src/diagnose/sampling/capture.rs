@@ -1,4 +1,4 @@
-//! What the reference computes in one step, kept in the form in which a trace holds it.
+//! The results of the reference in one step, kept in the form in which a trace holds them.
 use super::compare::{Logged, StepRecords};
 use fosssim_model::{
     assignments::ImpulseList,

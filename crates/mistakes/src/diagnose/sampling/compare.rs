@@ -1,8 +1,8 @@
-//! What one step logged, and when two such logs are the same but for round-off.
+//! The log of one step, and when two such logs are the same but for round-off.
 //!
 //! Polynomials count up to a positive factor, as only their signs matter; contacts in any order; states and contact
-//! vectors relative to the size of the numbers around them. NaN equals nothing: whatever makes it makes it, so that it
-//! proves no mistake.
+//! vectors relative to the size of the numbers around them. NaN equals nothing: any mistake may make it, so that it
+//! proves none.
 use crate::student::{Object, Record};
 use fosssim_model::{
     scene::{Integrator, Scene},

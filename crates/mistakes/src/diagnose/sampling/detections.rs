@@ -20,13 +20,13 @@ pub struct Sample {
     pub step: u32,
     /// The detection pass within the step, from 0.
     pub pass: u32,
-    /// Who was looked at. Its kind is that of `motion`.
+    /// The pair that was looked at. Its kind is that of `motion`.
     pub pair: Pair,
     /// The inputs, from the submission's own states.
     pub motion: PairMotion,
-    /// What was logged, one list per polynomial of the kind in the trace's order (2 or 4); each highest power first and
-    /// without the small leading coefficients that the course's library drops. Fewer lists: the last polynomials are
-    /// missing.
+    /// The logged coefficients, one list per polynomial of the kind in the trace's order (2 or 4); each highest power
+    /// first and without the small leading coefficients that the course's library drops. Fewer lists: the last
+    /// polynomials are missing.
     pub polynomials: Vec<Vec<f64>>,
 }
 
@@ -65,7 +65,7 @@ impl<'a> Detections<'a> {
         reference.step(step, &frames.before.state, &mut Gatherer { scene, step, mid, log, kinds, sizes, next: None });
     }
 
-    /// What was gathered.
+    /// The samples that were gathered.
     pub fn into_samples(self) -> Vec<Sample> {
         self.kinds.into_values().flat_map(|kind| kind.samples).collect()
     }
@@ -150,7 +150,7 @@ impl Steer for Gatherer<'_> {
         let (Some((pass, index)), Some(Sizes(sizes))) = (self.next, self.sizes) else { return };
         let size = sizes[pair.kind];
         let lists = index..index + size;
-        // What comes behind a contact of the submission's own depends on a response that is not logged.
+        // Polynomials behind a contact of the submission's own depend on a response that is not logged.
         self.next = (!self.is_hit(pair)).then_some((pass, lists.end));
         if lists.end > self.log.len() {
             self.next = None;
@@ -158,7 +158,7 @@ impl Steer for Gatherer<'_> {
         }
         let polynomials: Vec<Vec<f64>> = lists.map(|index| self.log.get(index).to_vec()).collect();
         if polynomials.iter().flatten().any(|value| !value.is_finite()) {
-            // What is no number says nothing about a formula.
+            // NaN and infinity say nothing about a formula.
             return;
         }
         let expected = formulas::BoundedPairMotion::of(self.scene, pair, q_start, q_end).polynomials();

@@ -20,11 +20,11 @@ pub use source::{Source, StepFrames, StepReader};
 use super::{Explanation, not_finite::First};
 use fosssim_model::scene::Scene;
 
-/// What explanations are made of.
+/// The material of explanations.
 pub struct Sampled<'a> {
     /// The reference, with what is left of its budget.
     pub reference: Reference<'a>,
-    /// What is told of the first number that is none.
+    /// The explanation of the first value that is no finite number.
     pub not_finite: Option<Explanation>,
     /// Wrong steps and right ones.
     pub scan: Scan,

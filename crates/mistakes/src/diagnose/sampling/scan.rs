@@ -32,17 +32,17 @@ pub struct KeptStep {
     pub step: u32,
     /// The submission's own state before it.
     pub before: State,
-    /// What the submission logged.
+    /// The submission's records.
     pub records: StepRecords,
     /// Where it differs first from the reference; `None` for right steps.
     pub difference: Option<StepDifference>,
-    /// What can only be seen with the record before.
+    /// Facts that show only with the record before.
     pub context: Context,
     /// Steps with the same one look alike.
     pub signature: u64,
 }
 
-/// What the step tells together with the step before.
+/// Facts that the step tells together with the step before.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Context {
     /// Right, but behind the polynomials of the step before.
@@ -55,14 +55,14 @@ pub struct Context {
     pub single_precision: bool,
 }
 
-/// What a trace has, for the rows of the catalogue.
+/// The parts of a trace on which the rows of the catalogue are tried.
 #[derive(Debug, Default)]
 pub struct Scan {
     /// Wrong steps, in their order.
     pub wrong: Vec<KeptStep>,
     /// Right steps, in their order.
     pub right: Vec<KeptStep>,
-    /// What is known of the trace besides its steps.
+    /// Facts about the trace besides its steps.
     pub outline: Outline,
 }
 
@@ -98,7 +98,7 @@ impl Scanner {
         }
     }
 
-    /// What was kept.
+    /// The steps that were kept, with the outline of their trace.
     pub fn into_scan(self, outline: Outline) -> Scan {
         Scan { outline, ..self.scan }
     }
@@ -117,7 +117,7 @@ impl Scanner {
         }
         let logs_nan = !self.actual.is_finite();
         if logs_nan && !self.logs_nan() {
-            // What follows from NaN speaks neither for a mistake nor against one.
+            // Values that follow from NaN speak neither for a mistake nor against one.
             return;
         }
         let difference = first_difference(&self.capture.records, &self.actual, &self.round_off);

@@ -1,4 +1,4 @@
-//! What explanations read: the records of a trace, step by step, as far as they are at hand.
+//! The records of a trace as explanations read them: step by step, as far as they are at hand.
 use super::compare::Logged;
 use fosssim_judge::kept::{KeptTrace, LONGEST, LateStep};
 use fosssim_model::{
@@ -47,7 +47,7 @@ pub struct StepFrames {
     pub end: LenientFrame,
 }
 
-/// What is known of a trace besides its steps.
+/// Facts about a trace besides its steps.
 #[derive(Debug, Default)]
 pub struct Outline {
     /// The first records.
@@ -69,14 +69,14 @@ impl Outline {
         let simulation = Simulation::new(scene, RootSearch::WhereNeeded);
         let differs = |ours: &[f64], theirs: &[f64]| {
             let largest = ours.iter().fold(1.0_f64, |largest, value| largest.max(value.abs()));
-            // What is no number comes from no scene.
+            // A value that is not finite comes from no scene.
             ours.iter().zip(theirs).any(|(o, t)| t.is_finite() && (o - t).abs() > FIRST_RECORD * largest)
         };
         let initial = simulation.state();
         differs(&initial.positions, &first.state.positions) || differs(&initial.velocities, &first.state.velocities)
     }
 
-    /// Reads a record. False at the end of what is sound: nobody is to blame for what is left of a damaged record.
+    /// Reads a record. False behind the last sound one: nobody is to blame for the rest of a damaged record.
     fn read<R: Read>(&mut self, reader: &mut Lenient<R>, frame: &mut LenientFrame) -> bool {
         match reader.next(frame) {
             Ok(()) if frame.note.is_some() => false,
@@ -110,7 +110,7 @@ pub struct StepReader<'a> {
     next: Option<u32>,
     /// The records of the step that was read last; before that the first record of the trace, if there is one.
     pub frames: StepFrames,
-    /// What is known of the trace besides.
+    /// Facts about the trace besides its steps.
     pub outline: Outline,
 }
 

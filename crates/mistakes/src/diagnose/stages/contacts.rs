@@ -1,5 +1,5 @@
-//! What the impulse lists of `continuous-time` say: contacts too many or too few, their vectors and times. And the
-//! order in which pairs are looked at.
+//! The evidence of the impulse lists of `continuous-time`: contacts too many or too few, their vectors and times. And
+//! the order in which pairs are looked at.
 use super::{
     ALIKE, Explanation, common_value,
     events::{Hit, StepFacts},
@@ -23,8 +23,8 @@ pub(super) fn order(facts: &[StepFacts]) -> Option<Explanation> {
         .then(|| observation(StageFault::Order, vec![StageDetail::Order], permuted))
 }
 
-/// Whether nearly all pairs of the first pass are found as wholes, some of them out of their order. What a contact
-/// before them in the pass has moved is not found.
+/// Whether nearly all pairs of the first pass are found as wholes, some of them out of their order. Pairs that a
+/// contact before them in the pass has moved are not found.
 fn is_permuted(facts: &StepFacts) -> bool {
     let size = facts.pass_size();
     let (ours, theirs) = (&facts.expected.end.polynomials, &facts.actual.end.polynomials);
@@ -70,7 +70,7 @@ fn is_permuted(facts: &StepFacts) -> bool {
 /// A contact vector that is off by less of its length has lost digits, and nothing else.
 const INEXACT: f64 = 1e-5;
 
-/// What is known of the contacts of all steps.
+/// The contacts of all steps, beside those of the reference.
 #[derive(Default)]
 struct ContactStage {
     /// Kind and time of impact.
@@ -81,7 +81,7 @@ struct ContactStage {
     times: Vec<(f64, f64)>,
 }
 
-/// What is wrong with the contacts of `continuous-time`, whose polynomials are right.
+/// The fault in the contacts of `continuous-time`, whose polynomials are right.
 pub(super) fn detection(facts: &[StepFacts]) -> Option<Explanation> {
     let mut contacts = ContactStage::default();
     for facts in facts {
@@ -94,7 +94,7 @@ pub(super) fn detection(facts: &[StepFacts]) -> Option<Explanation> {
 }
 
 impl ContactStage {
-    /// Up to the first contact that is not the expected one; what comes behind it depends on that.
+    /// Looks at contacts up to the first that is not the expected one; those behind it depend on that.
     fn look(&mut self, facts: &StepFacts) {
         let place = |theirs: &LoggedImpulse| {
             facts.detections.iter().position(|(pair, _)| {

@@ -1,4 +1,4 @@
-//! What the reference does in a step from the submission's own state, event by event.
+//! The reference's work in a step from the submission's own state, event by event.
 use crate::diagnose::sampling::{
     Capture, KeptStep, Logged, ROUND_OFF, Reference, StepRecords, first_difference, same_formula, same_polynomial,
     state_difference,
@@ -41,7 +41,7 @@ pub(super) struct ZoneFacts {
     pub(super) half_plane: bool,
 }
 
-/// What the reference tells besides its records.
+/// Events that the reference tells besides its records.
 #[derive(Debug, Default)]
 struct Events {
     hits: Vec<Hit>,

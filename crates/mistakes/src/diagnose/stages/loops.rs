@@ -14,7 +14,7 @@ use fosssim_model::{
 };
 use std::cmp::Ordering;
 
-/// What is wrong with the impulse rounds, whose single contacts are right.
+/// The fault in the impulse rounds, whose single contacts are right.
 pub(super) fn explain(scene: &Scene, facts: &[StepFacts], responses: &Responses) -> Option<Explanation> {
     let Collision::Hybrid { max_iterations, .. } = scene.collision else { return None };
     let wrong: Vec<&StepFacts> = facts.iter().filter(|facts| facts.is_wrong && !facts.has_right_middle()).collect();
@@ -27,7 +27,7 @@ pub(super) fn explain(scene: &Scene, facts: &[StepFacts], responses: &Responses)
         .or_else(|| later(scene, &wrong))
 }
 
-/// What is wrong with whether the geometric part follows, where the impulse rounds are right.
+/// The fault in the decision whether the geometric part follows, where the impulse rounds are right.
 pub(super) fn geometric(facts: &[StepFacts]) -> Option<Explanation> {
     let (mut left, mut superfluous, mut followed) = (0, 0, 0);
     for facts in facts.iter().filter(|facts| facts.has_right_middle()) {
@@ -136,7 +136,7 @@ fn handed_over(wrong: &[&StepFacts], responses: &Responses) -> Option<Explanatio
     Some(observation(StageFault::HandedOver { quantity, when, or_response }, Vec::new(), count))
 }
 
-/// What the second detection of a step shows of the contacts of the first round.
+/// The contacts of the first round, as the second detection of a step shows them.
 #[derive(Default)]
 struct SecondPass {
     /// Isolated ones that led where they should.

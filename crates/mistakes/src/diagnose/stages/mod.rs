@@ -1,9 +1,9 @@
 //! Which stage of a step is wrong, where no mistake that is known explains it.
 //!
-//! What a trace holds of a stage follows from what it holds of the one before: polynomials from the state, contacts
-//! from the polynomials, the state in the middle from the contacts, zones from that state. So the first stage whose
-//! results are wrong although everything before is right is the one to look at, and what its results have in common (a
-//! factor, a kind of pair, a body) says where. These are observations and no guesses: nothing is said of a stage that
+//! In a trace the results of a stage follow from those of the one before: polynomials from the state, contacts from the
+//! polynomials, the state in the middle from the contacts, zones from that state. So the first stage whose results are
+//! wrong although everything before is right is the one to look at. The features that its results have in common (a
+//! factor, a kind of pair, a body) say where. These are observations and no guesses. They say nothing of a stage that
 //! something before it may have spoilt, and nothing where a polynomial is wrong whose inputs are known.
 mod contacts;
 mod events;
@@ -30,7 +30,7 @@ const WORK: usize = 200_000;
 /// Ratios that are this close are the same.
 const ALIKE: f64 = 1e-6;
 
-/// What can be said of the stages of these steps; nothing when polynomials whose inputs are known are wrong, or when
+/// The observation about the stages of these steps; none when polynomials whose inputs are known are wrong, or when
 /// nothing is.
 pub(super) fn explain<'a>(
     reference: &mut Reference<'_>,

@@ -1,4 +1,4 @@
-//! What isolated contacts change, body by body.
+//! The changes that isolated contacts make, body by body.
 use super::{
     ALIKE, Explanation, common_value,
     events::{Hit, StepFacts},
@@ -18,7 +18,7 @@ use std::collections::BTreeMap;
 /// Changes below this are round-off (relative to the size of the numbers, and 1).
 const SMALL: f64 = 1e-11;
 
-/// What a contact changed.
+/// The change that a contact made.
 #[derive(Debug, Clone, Copy)]
 struct Change {
     /// Along the contact vector, over what it should be; none where that is nothing.
@@ -28,7 +28,7 @@ struct Change {
     is_right: bool,
 }
 
-/// What isolated contacts changed, whose bodies have no other contact in the step.
+/// The changes that isolated contacts made, whose bodies have no other contact in the step.
 pub(super) struct Responses {
     changes: BTreeMap<Changed, Vec<Change>>,
     contacts: usize,
@@ -72,7 +72,7 @@ impl Responses {
         of_kind().next().is_some() && of_kind().all(|(_, changes)| changes.iter().all(|change| change.is_right))
     }
 
-    /// What is wrong with responses; nothing when those that can be seen are right.
+    /// The fault in responses; nothing when those that can be seen are right.
     pub(super) fn explain(&self, facts: &[StepFacts]) -> Option<Explanation> {
         let changes = &self.changes;
         let wrong: BTreeMap<Changed, Vec<Change>> = changes
@@ -134,7 +134,7 @@ fn isolated<'a>(scene: &'a Scene, facts: &'a StepFacts) -> Vec<(&'a Hit, &'a Sta
         }
         Some(Stage::Impulses { .. }) => {
             let Some((expected, actual)) = facts.middles() else { return Vec::new() };
-            // What a loop hands over when its rounds run out is another question.
+            // The state that a loop hands over when its rounds run out is another question.
             let ran_out = rounds < facts.passes.len();
             if ran_out || expected.polynomials.len() != actual.polynomials.len() {
                 return Vec::new();

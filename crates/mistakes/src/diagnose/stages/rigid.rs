@@ -1,7 +1,7 @@
 //! Impact zones and the rigid failsafe: steps whose first part is right.
 //!
-//! What is wrong with zones is told where other zones, moved as they should be, lead where the particles are. What is
-//! wrong with the failsafe is told of zones that are right: of one contact, or whose particles move as one body.
+//! Faults in zones show where other zones, moved as they should be, lead where the particles are. Faults in the
+//! failsafe show in zones that are right: those of one contact, or whose particles move as one body.
 use super::{
     ALIKE, Explanation, common_value,
     events::StepFacts,
@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 /// A turn by less is none.
 const LITTLE_TURN: f64 = 1e-6;
 
-/// What is wrong with the geometric part, whose start is right.
+/// The fault in the geometric part, whose start is right.
 pub(super) fn explain(scene: &Scene, facts: &[StepFacts]) -> Option<Explanation> {
     if !matches!(scene.collision, Collision::Hybrid { .. }) {
         return None;
@@ -87,7 +87,7 @@ fn before_failsafe(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     (count == wrong.len()).then(|| observation(fault, Vec::new(), count))
 }
 
-/// What is wrong behind the first round of zones.
+/// The fault behind the first round of zones.
 fn rounds(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let (mut fewer, mut more, mut later, mut ends) = (0, 0, 0, Vec::new());
     for facts in wrong {
@@ -139,7 +139,7 @@ fn velocities(scene: &Scene, ends: &[&StepFacts]) -> Explanation {
     observation(StageFault::Motion { wrong, or_zones: false }, details, ends.len())
 }
 
-/// What became of the zones of first rounds.
+/// The fates of the zones of first rounds.
 #[derive(Default)]
 struct Moved {
     fates: BTreeMap<Fate, usize>,
@@ -198,7 +198,7 @@ impl Moved {
         let told = |fault: WrongZones, count: usize| {
             Some(observation(StageFault::Zones(fault), vec![StageDetail::OfZones { count, of: all }], wrong))
         };
-        // What proves the failsafe right comes first.
+        // Fates that prove the failsafe right come first.
         for (fate, fault) in [
             (Fate::NotMerged, WrongZones::NotMerged),
             (Fate::Joined, WrongZones::Joined),
@@ -263,7 +263,7 @@ impl MotionErrors {
                 [(&expected, ours), (end, theirs)].map(|(state, centre)| turn(zone, start, from, state, centre));
             let is_once_round = spin(scene, zone, start, first.middle).abs() < std::f64::consts::PI;
             if !is_once_round {
-                // What is seen of such a turn is what is left of it: it says neither how far nor which way.
+                // Only the rest of such a turn can be seen: it says neither how far nor which way.
                 self.turns.push(if (angle - right).abs() <= LITTLE_TURN { 1.0 } else { f64::NAN });
             } else if right.abs() > LITTLE_TURN {
                 self.turns.push(angle / right);

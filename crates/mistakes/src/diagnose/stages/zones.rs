@@ -1,5 +1,5 @@
-//! What became of one impact zone in the first round of the geometric part: which particles were moved as one body
-//! shows which zones there were.
+//! The fate of one impact zone in the first round of the geometric part: the particles that were moved as one body show
+//! which zones there were.
 use super::events::StepFacts;
 use fosssim_model::{
     scene::Scene,
@@ -230,7 +230,7 @@ impl<'a> FirstRound<'a> {
                 let moved = self.moved(&[group]);
                 is_body && self.are_at(&moved, &group.particles) && self.are_at(self.middle, &left)
             };
-            // What stays where it should be anyway was not left out.
+            // A particle that stays where it should be anyway was not left out.
             let is_left = || left.iter().any(|&one| !self.is_at(&self.expected(zone), one));
             if is_left() && [false, zone.half_plane].iter().any(|flag| leads_there(&Group::of(part.clone(), *flag))) {
                 return Some(if zone.stops(self.scene) { Fate::PartlyStopped } else { Fate::Partly });

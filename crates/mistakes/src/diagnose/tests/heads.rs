@@ -1,4 +1,4 @@
-//! What several traces say together, over made-up lists of what each says.
+//! Several traces heard together, over made-up lists of what each says.
 use crate::{
     assignments::t2m2::Subject,
     diagnose::is_named_in,

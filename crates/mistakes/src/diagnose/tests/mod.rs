@@ -13,8 +13,7 @@ mod heads;
 mod not_finite;
 mod probes;
 
-/// What is found in all polynomials and what reproduces the steps that no other mistake touches is one mistake, not
-/// two.
+/// A mistake found in all polynomials, and again in the steps that no other mistake touches, is one mistake, not two.
 #[test]
 fn a_mistake_beside_another_is_told_once() {
     let rows = ["pe-radii-squared-apart", "failsafe-empty"].map(|id| student::find(id).expect("it is known"));

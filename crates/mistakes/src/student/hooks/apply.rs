@@ -1,4 +1,4 @@
-//! What a program does at its places: what it should, or what the author's mutation makes of it.
+//! The work of a program at its places: what it should do, or what the author's mutation makes of it.
 use super::{Mutation, Operator, Place};
 use crate::student::author::Student;
 use fosssim_num::vector::Vec2;

@@ -131,7 +131,7 @@ fn correct_variants_are_not_accused() {
     }
 }
 
-/// What stands in a formula is another object's there: who has the pair alone does not see that.
+/// Mistakes that take a value of another object into a formula: the pair alone does not show that.
 const OF_OTHERS: [&str; 1] = ["pe-first-edge-radius"];
 
 fn mistakes() -> impl Iterator<Item = &'static Row> {

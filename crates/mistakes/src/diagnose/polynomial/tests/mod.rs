@@ -429,7 +429,7 @@ fn lists_handed_over_wrongly_are_named() {
             assert_eq!(found.len(), 1, "{key}: {found:#?}");
             assert_eq!((found[0].key.as_str(), found[0].reproduced), (key, found[0].samples), "{found:#?}");
         }
-        // What is no number says nothing of a formula.
+        // NaN says nothing of a formula.
         let nan = |motion: &PairMotion| right_lists(motion).iter().map(|list| vec![f64::NAN; list.len()]).collect();
         assert_eq!(explain(&samples(kind, 300, nan)), []);
     }
