@@ -89,7 +89,7 @@ fn nouns_stand_for_people_and_numbers() {
 const QUESTIONS: [&str; 4] = ["What", "Who", "Whatever", "Whoever"];
 
 /// Lines of comments that begin so; the number may only fall.
-const MOST_QUESTIONS: usize = 32;
+const MOST_QUESTIONS: usize = 0;
 
 #[test]
 fn comments_begin_with_a_subject() {

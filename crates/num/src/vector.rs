@@ -75,7 +75,7 @@ mod tests {
             ..ProptestConfig::default()
         })]
 
-        /// What the specification writes with scalars.
+        /// Sums and products, which the specification writes with scalars.
         #[test]
         fn sums_and_products_are_those_of_the_components(a in vector(), b in vector(), s in -1e3..1e3) {
             prop_assert_eq!(bits(a + b), bits(Vec2::new(a.x + b.x, a.y + b.y)));

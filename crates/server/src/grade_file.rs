@@ -17,7 +17,7 @@ pub(crate) struct GradeInFile {
     pub(crate) code: String,
     pub(crate) points: Option<Number>,
     pub(crate) max_points: Option<Number>,
-    /// What explains the wrong scenes together, likeliest first.
+    /// The mistakes that explain the wrong scenes together, likeliest first.
     #[serde(default)]
     pub(crate) likely_mistakes: Vec<LikelyInFile>,
     #[serde(default)]

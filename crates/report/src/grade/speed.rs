@@ -3,7 +3,7 @@ use super::points;
 use crate::number::counted;
 use fosssim_findings::speed::{SpeedGrade, SpeedMarking, SpeedRatio, SpeedSource};
 
-/// What is said of a group's speed: the points, and where they come from.
+/// The words on a group's speed: the points, and where they come from.
 #[must_use]
 pub fn speed_words(speed: &SpeedGrade) -> String {
     let SpeedGrade { marking, points: reached, source } = speed;

@@ -107,7 +107,7 @@ impl Card {
     }
 }
 
-/// What is kept for terminals: what is right is shown with full hints only.
+/// The plot that is kept for terminals, with full hints only: it shows what is right.
 fn plot(case: &Case<'_>) -> String {
     let evidence = case.evidence.filter(|_| case.hints == Hints::Full);
     evidence.map(|evidence| plots(evidence, TERMINAL)).unwrap_or_default()

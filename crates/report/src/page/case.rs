@@ -74,7 +74,7 @@ impl Case<'_> {
         first(&self.check).filter(|_| self.hints == Hints::Full)
     }
 
-    /// What is shown of the trace, below a heading of the given depth: the motion beside its cause and the first values
+    /// The part about the trace, below a heading of the given depth: the motion beside its cause and the first values
     /// that are wrong, and all that needs more room below.
     pub(super) fn trace_part(&self, key: &str, depth: usize, mistakes: &str) -> String {
         let evidence = self.evidence.filter(|evidence| !evidence.steps.is_empty());
@@ -160,7 +160,7 @@ impl Case<'_> {
         let calls = evidence.inspected.iter().flat_map(|up| up.calls.iter().map(move |one| (up.step, one)));
         let mut calls: Vec<_> = calls.collect();
         calls.sort_by_key(|(step, _)| Some(*step) != first);
-        // What only follows from where the passes before it led is no mistake of detection.
+        // Calls that only follow from where the passes before them led are no mistakes of detection.
         let follows = follows::count(self.check.outcome) > 0;
         let (follow, wrong): (Vec<_>, Vec<_>) = calls.into_iter().partition(|(_, call)| follows && call.pass.index > 0);
         let mut out = String::new();
@@ -205,7 +205,7 @@ fn step_of(step: u32, steps: u32) -> String {
     }
 }
 
-/// What a finding is about, where a table beside it has its values.
+/// The subject of a finding, where a table beside it has its values.
 fn subject(finding: &Finding) -> String {
     match &finding.detail {
         FindingDetail::Coefficient { place, .. } | FindingDetail::PolynomialDegree { place, .. } => place.to_string(),
@@ -332,7 +332,7 @@ fn plots(evidence: &Evidence, key: &str, first: Option<u32>) -> String {
         )
     };
     let mut out = String::new();
-    // What is flat shows nothing.
+    // Flat curves show nothing.
     if evidence.steps.iter().any(|step| !(step.position.max(step.velocity) <= PARITY_MAXIMUM)) {
         out += &figure(&residuals.svg(Embedding::Inline), RESIDUALS_AXIS);
     }

@@ -182,7 +182,7 @@ impl ClassPage<'_> {
         out + "</section>\n"
     }
 
-    /// Who is in a cluster: folded where they are many, and to be copied into a letter.
+    /// The members of a cluster: folded where they are many, and to be copied into a letter.
     fn members(&self, members: &[usize]) -> String {
         let names: Vec<String> = members.iter().map(|&number| one_line(&self.grades[number].submission)).collect();
         format!(

@@ -1,4 +1,4 @@
-//! What the motion viewer reads: one JSON block per case, and the motions as packed doubles.
+//! The data of the motion viewer: one JSON block per case, and the motions as packed doubles.
 use super::{
     Case, markup,
     packed::{Packed, Precision, Rounded},
@@ -20,7 +20,7 @@ pub(super) fn blocks(case: &Case<'_>, evidence: &Evidence, key: &str, precision:
     // Below full hints a page holds nothing but what the program wrote itself.
     let is_full = case.hints == Hints::Full;
     let reference = is_full.then_some(("reference", &evidence.reference));
-    // What is the same to the last bit need not be there twice.
+    // A motion that is the same to the last bit need not be there twice.
     let what = case.what_if.filter(|what| is_full && !what.equal).map(|what| ("what", &what.track));
     let tracks: Vec<(&str, &Track)> =
         [("submission", &evidence.submission)].into_iter().chain(reference).chain(what).collect();

@@ -11,9 +11,9 @@ use std::fmt::Write;
 /// One trace with what was drawn of it.
 #[derive(Debug, Clone, Copy)]
 pub struct ExplainedCase<'a> {
-    /// What is to be said.
+    /// The trace, and its explanations.
     pub case: &'a Case,
-    /// What was drawn.
+    /// The pictures and the motion, where they were drawn.
     pub card: Option<&'a Card>,
 }
 

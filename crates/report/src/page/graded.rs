@@ -113,7 +113,7 @@ impl GradePage<'_> {
             );
         }
         out += "<div class=\"split halves\">\n";
-        // What is wrong with the submission itself says it all.
+        // A fault of the submission itself says it all.
         let likely = if grade.unfit().is_some() { Vec::new() } else { likely_mistakes(grade) };
         if !likely.is_empty() {
             let wrong = |scene: &&SceneGrade| scene.verdict.is_wrong_trace();
@@ -269,7 +269,7 @@ fn article(scene: &SceneGrade, (card, room): (Option<&Card>, Room), open: bool, 
         points(scene.max_points),
         text(&one_line(&words::summary(scene))),
     );
-    // What a card shows with its values need not be said again.
+    // A detail that a card shows with its values need not be said again.
     let is_shown = matches!(room, Room::Pictures(_)) && card.is_some_and(Card::has_values);
     let details = words::details(scene).into_iter().skip(usize::from(is_shown));
     let lines: Vec<String> = difference(scene).into_iter().chain(details).collect();
@@ -310,7 +310,7 @@ pub(super) fn key(name: &str) -> String {
     Sha256::digest(name.as_bytes())[..6].iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// What a program printed, as far as there is room.
+/// The output of a program, as far as there is room.
 fn printed(heading: &str, output: &str, room: &mut usize) -> String {
     if output.trim().is_empty() || *room == 0 {
         return String::new();

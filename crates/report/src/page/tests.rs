@@ -183,7 +183,7 @@ fn a_page_is_small() {
     assert!(html.len() < 700_000, "{}", html.len());
 }
 
-/// What the viewer reads is what the trace holds, to the last bit.
+/// The motion that the viewer reads is the trace's, to the last bit.
 #[test]
 fn the_motion_is_exact() {
     use base64::Engine;
@@ -273,7 +273,7 @@ fn graded(scene: &Scene, id: &str, hints: Hints) -> [String; 2] {
         .map(|reader| GradePage { grade: &grade, card: &card, class: None, reader }.html())
 }
 
-/// What a level hides is not in the file at all: neither as text, nor in the viewer's data.
+/// The details that a level hides are not in the file at all: neither as text, nor in the viewer's data.
 #[test]
 fn what_the_hints_hide_is_not_in_the_file() {
     let scene = asset("ContinuousTimeTests/spinning-edge-sweeps-balls.xml");
@@ -325,7 +325,7 @@ fn what_the_hints_hide_is_not_in_the_file() {
     }
 }
 
-/// What has no room is left out, scene by scene, and the page says so.
+/// Motions and outputs that have no room are left out, scene by scene, and the page says so.
 #[test]
 fn a_page_stays_below_its_budget_and_says_what_it_leaves_out() {
     let scene = asset("HolisticTests/crowd-of-twenty-balls.xml");

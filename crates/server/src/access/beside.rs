@@ -1,9 +1,9 @@
-//! What may stand beside a submission: other attempts of the same person, and for staff what others handed in.
+//! Submissions that may stand beside another one: other attempts of the same person, and for staff those of others.
 use super::{Member, view::Submission};
 use crate::{problem::Problem, values};
 
 impl Member {
-    /// The other attempts of the one who handed a submission in, latest first: their numbers of submission and attempt.
+    /// The other attempts of a submission's owner, latest first: their numbers of submission and attempt.
     ///
     /// # Errors
     /// When the database does not answer.

@@ -31,7 +31,7 @@ struct Row {
     overview: Option<Overview>,
 }
 
-/// What a member did in an assignment, and may still do.
+/// The work of a member in an assignment, and how much they may still do.
 pub(super) struct OwnWork {
     /// Until when they may hand in.
     pub(super) due: Option<i64>,
@@ -81,7 +81,7 @@ struct MembersPage {
     slug: String,
     members: Vec<MemberInfo>,
     platforms: Vec<String>,
-    /// What is to be handed on: to whom, what it is, and the link.
+    /// A link to be handed on: to whom, what it is, and its address.
     link: Option<(String, &'static str, String)>,
 }
 

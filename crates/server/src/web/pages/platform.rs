@@ -20,7 +20,7 @@ use axum::{
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-/// What a platform sends when somebody wants to come.
+/// The request that a platform sends when somebody wants to come.
 #[derive(Deserialize)]
 pub(super) struct Login {
     iss: String,
@@ -31,7 +31,7 @@ pub(super) struct Login {
     lti_deployment_id: Option<String>,
 }
 
-/// What it answers.
+/// The platform's answer.
 #[derive(Deserialize)]
 pub(super) struct Answer {
     state: Option<String>,
@@ -193,7 +193,7 @@ pub(super) async fn keys(State(app): State<App>) -> Result<Response, Problem> {
     Ok(([(header::CACHE_CONTROL, "public, max-age=300")], Json(keys)).into_response())
 }
 
-/// What an administrator of Canvas gives as the address of a configuration.
+/// The configuration whose address an administrator of Canvas enters.
 pub(super) async fn configuration(State(app): State<App>) -> Json<Value> {
     let public = &app.public;
     let launch = app.launch_address();

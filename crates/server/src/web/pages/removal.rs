@@ -19,13 +19,13 @@ struct RemovePage {
     title: String,
     /// The things that go with it.
     words: &'static str,
-    /// What the form says that is meant.
+    /// The name by which the form says what is meant.
     confirm: String,
     /// Another thing that can be done instead: an address and its button.
     instead: Option<(String, &'static str)>,
 }
 
-/// That it is meant: what is to be removed, by name.
+/// The form's confirmation: the name of the thing that is to be removed.
 #[derive(Deserialize)]
 pub(super) struct Confirmed {
     confirm: String,

@@ -18,7 +18,7 @@ use axum::{
 };
 use serde::Deserialize;
 
-/// What the list of suites says of one that was uploaded.
+/// The value of an uploaded suite in the list of suites.
 const UPLOADED: &str = "(uploaded)";
 
 const MIB: f64 = 1_048_576.0;
@@ -34,7 +34,7 @@ struct SettingsPage {
     megabytes: f64,
 }
 
-/// What the part of a form about grading shows.
+/// The values in the part of a form about grading.
 pub(super) struct GradingFields {
     /// The suites: value, words, and whether it is this one.
     pub(super) suites: Vec<(String, String, bool)>,
@@ -145,7 +145,7 @@ impl NewSettings {
     }
 }
 
-/// What a field with a date says; the moment that it had where it says the same minute.
+/// The moment that a field with a date says; the moment that it had where that is in the same minute.
 pub(super) fn moment(field: &str, zone: &str, before: Option<i64>) -> Result<Option<i64>, Problem> {
     if field.trim().is_empty() {
         return Ok(None);

@@ -45,7 +45,7 @@ struct SubmissionPage {
     is_own: bool,
     is_staff: bool,
     submission: Submission,
-    /// What its owner may still do; nothing for others.
+    /// The work of its owner, and how much they may still do; nothing for others.
     work: Option<OwnWork>,
     is_moving: bool,
     history: Vec<History>,

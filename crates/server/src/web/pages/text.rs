@@ -71,7 +71,7 @@ pub(super) fn look(submission: &Submission) -> &'static str {
     }
 }
 
-/// What the chip says: the verdict, or what becomes of the submission while there is none.
+/// The words of the chip: the verdict, or what becomes of the submission while there is none.
 pub(super) fn outcome(submission: &Submission) -> &str {
     match (submission.state.as_str(), &submission.grade) {
         ("waiting" | "running", _) | (_, None) => state(&submission.state),

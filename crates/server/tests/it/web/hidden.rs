@@ -126,7 +126,7 @@ async fn submissions_stand_side_by_side(fresh: Fresh) {
     page(&bob, "", 404);
 }
 
-/// What hints keep from students is on a page of its own, hidden groups or not.
+/// Details that hints keep from students are on a page of their own, hidden groups or not.
 async fn the_page_for_staff_is_for_staff(fresh: Fresh) {
     let mut server = Server::start(&fresh, &["--workers", "1"]);
     let admin = server.admin();
