@@ -186,7 +186,10 @@ impl Staff {
             transaction.commit().await?;
             self.hurry(id).await;
             return Err(Problem::conflict(
-                format!("submissions that came in meanwhile ({missing}) are graded now"),
+                match missing {
+                    1 => "1 submission came in meanwhile, and is graded now".to_owned(),
+                    _ => format!("{missing} submissions came in meanwhile, and are graded now"),
+                },
                 "look at them, and apply then",
             ));
         }

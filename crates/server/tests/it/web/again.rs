@@ -115,7 +115,7 @@ fn a_suite_that_can_t_work_is_refused() {
             archive.into_inner().expect("an archive")
         };
         let refused = admin.send("PUT", path, &[], &suite("title = 'broken'")).expect(422).json();
-        assert_eq!(refused["detail"], "the suite has a problem:; suite.toml:1:1: it is broken");
+        assert_eq!(refused["detail"], "the suite has a problem: suite.toml:1:1: it is broken");
         let assignment = admin.get("/api/v1/courses/physics/assignments/m1").expect(200).json();
         assert!(assignment["settings"]["suite_archive"].is_null(), "{assignment}");
         admin.send("PUT", path, &[], &suite("title = 'whole'")).expect(200);

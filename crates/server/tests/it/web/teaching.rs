@@ -151,8 +151,26 @@ async fn late_work_is_taken_and_costs_points(fresh: Fresh) {
     let mark = format!("/api/v1/courses/physics/submissions/{id}/mark");
     teacher.send("PUT", &mark, JSON, br#"{"points": 90, "comment": "ill"}"#).expect(200);
     assert_eq!(seen()["grade"]["points"], "90");
+    // Less time for one than for all is none.
+    teacher.send("PUT", extension, JSON, br#"{"due_at": "2001-01-01T00:00Z"}"#).expect(204);
+    teacher.send("PUT", &mark, JSON, b"{}").expect(200);
+    assert_eq!(seen()["grade"]["points"], "76");
     // The days are over.
     set(1).expect(200);
     let upload = "/api/v1/courses/physics/assignments/m1/submissions?name=FOSSSim";
     ada.send("POST", upload, &[], &program("AC", 100)).expect(409);
+    // Where nothing is taken late any more, the work that was taken keeps its price; a new title changes nothing else.
+    set(0).expect(200);
+    let wish = br#"{"title": "Another title"}"#;
+    let kept = teacher.send("PUT", "/api/v1/courses/physics/assignments/m1", JSON, wish).expect(200).json();
+    assert_eq!((&kept["visible"], &kept["settings"]["late_percent"]), (&true.into(), &10.into()));
+    assert_eq!(seen()["grade"]["points"], "76");
+    // Staff that tries the assignment is no student of the class.
+    let trial = teacher.submit("physics", &program("AC", 20));
+    teacher.wait_for_grade("physics", trial);
+    let class = teacher.get("/api/v1/courses/physics/assignments/m1/class").expect(200).json();
+    assert_eq!(class.as_array().map(Vec::len), Some(1), "{class}");
+    // A browser gets a page where nothing is.
+    let missing = ada.send("GET", "/nope", &[("accept", "text/html")], b"").expect(404).text();
+    assert!(missing.contains("<html"), "{missing}");
 }
