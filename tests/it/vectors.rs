@@ -44,8 +44,9 @@ fn divisions(source: &str) -> Vec<&str> {
 
 #[test]
 fn a_vector_that_is_divided_is_found() {
-    let source = "fn f(v: Vec2, s: f64) {\n let d = at(q, 1) - at(q, 0);\n let l = length(d);\n v / s;\n (d - v) / s;\n l / s; // v / s\n d.x / s;\n}";
-    assert_eq!(divisions(source), [" v / s;", " (d - v) / s;"]);
+    let made = "fn f(v: Vec2, s: f64) {\n let d = at(q, 1) - at(q, 0);\n let l = length(d);\n";
+    let source = format!("{made} v / s;\n (d - v) / s;\n l / s; // v / s\n d.x / s;\n}}");
+    assert_eq!(divisions(&source), [" v / s;", " (d - v) / s;"]);
 }
 
 #[test]

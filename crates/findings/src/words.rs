@@ -62,14 +62,12 @@ impl Display for FindingDetail {
         match *self {
             Self::MissedCollision { expected } => {
                 let Impulse { pair, normal, time } = expected;
-                let [x, y]: [f64; 2] = normal.into();
-                let pair = PairWords(pair);
+                let (pair, [x, y]) = (PairWords(pair), <[f64; 2]>::from(normal));
                 write!(f, "{pair} collide at time {time} with normal ({x}, {y}), the trace misses it")
             }
             Self::SuperfluousCollision { actual } => {
                 let LoggedImpulse { normal, time, .. } = actual;
-                let [x, y]: [f64; 2] = normal.into();
-                let pair = LoggedPair(&actual);
+                let (pair, [x, y]) = (LoggedPair(&actual), <[f64; 2]>::from(normal));
                 write!(f, "the trace has {pair} collide at time {time} with normal ({x}, {y}), they do not")
             }
             Self::WrongNormal { expected, actual, .. } => {

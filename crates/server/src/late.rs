@@ -30,12 +30,12 @@ impl LatePolicy {
         due + i64::from(self.late_days) * DAY
     }
 
-    /// How late a submission is that came at this moment, of somebody who has more time than the others, or not. Nothing
-    /// where it came in time, or where the assignment says nothing of late ones.
+    /// How late a submission is that came at this moment, of somebody who has more time than the others, or not.
+    /// Nothing where it came in time, or where the assignment says nothing of late ones.
     fn late(&self, own_due: Option<i64>, came_at: i64) -> Option<Late> {
         let after = came_at - self.due_at.map(|due| due.max(own_due.unwrap_or(due)))?;
-        // At most as late as anything may be: it was in time by an extension that was taken back. Where nothing is taken
-        // late any more, the work that was taken keeps its price.
+        // At most as late as anything may be: it was in time by an extension that was taken back. Where nothing is
+        // taken late any more, the work that was taken keeps its price.
         let most = if self.late_days == 0 { i64::MAX } else { self.late_days.into() };
         let days = (after + DAY - 1).div_euclid(DAY).min(most);
         let percent = days.saturating_mul(self.late_percent.into()).min(100);

@@ -4,7 +4,6 @@ use crate::{
     number::counted,
     style::{Look, Style},
 };
-use fosssim_findings::Cause;
 use fosssim_judge::{Overall, fair::cause};
 
 /// The verdict of one rule book: its name, its word and how it looks, and its grounds.
@@ -27,15 +26,6 @@ pub(crate) fn verdicts(check: &Check<'_>) -> Option<[BookWords; 2]> {
     let parity = ("the original's rules", look, word, found.join(", "));
     let (look, word) = fair::verdict(judgement);
     Some([parity, ("the fair rules", look, word, fair::summary(judgement, outcome))])
-}
-
-/// Which of the books accepts a trace that the other one refuses.
-pub(crate) const fn sides(cause: Cause) -> &'static str {
-    if cause.original_fails() {
-        "the original fails this trace, the fair rules accept it"
-    } else {
-        "the original passes this trace, the fair rules reject it"
-    }
 }
 
 /// The section; nothing where the headline has said all.

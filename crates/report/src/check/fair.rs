@@ -1,12 +1,10 @@
 //! The fair rules' part of the check report, for people.
-use super::{
-    super::{
-        number::{count, general},
-        style::{Look, Style},
-        table::{Align, Table},
-    },
-    books,
+use super::super::{
+    number::{count, general},
+    style::{Look, Style},
+    table::{Align, Table},
 };
+use fosssim_findings::Cause;
 use fosssim_judge::{
     Outcome, PairWords, PassWords,
     fair::{FairRefusal, FairVerdict, Form, Judgement, cause},
@@ -66,7 +64,7 @@ pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
         text += &table.render(style);
     }
     if let Some(cause) = cause(outcome) {
-        let (heading, sides) = (style.paint(Look::Notice, "The rule books differ:"), books::sides(cause));
+        let (heading, sides) = (style.paint(Look::Notice, "The rule books differ:"), sides(cause));
         text += &format!("  {heading} {sides}:\n  {cause}\n");
     }
     Some(text)
@@ -132,4 +130,13 @@ fn shares(fair: &Judgement) -> Option<String> {
 
 fn percent(share: f64) -> String {
     if share < 0.01 { "< 1 %".to_owned() } else { format!("{:.0} %", 100.0 * share) }
+}
+
+/// Which of the books accepts a trace that the other one refuses.
+pub(crate) const fn sides(cause: Cause) -> &'static str {
+    if cause.original_fails() {
+        "the original fails this trace, the fair rules accept it"
+    } else {
+        "the original passes this trace, the fair rules reject it"
+    }
 }

@@ -1,5 +1,5 @@
 //! The finding that a check looks at first.
-use super::{Check, follows};
+use super::{Check, follows::is_of_later_pass};
 use fosssim_judge::Finding;
 use fosssim_mistakes::diagnose::Explanation;
 
@@ -16,9 +16,4 @@ pub(crate) fn first<'a>(check: &Check<'a>) -> Option<&'a Finding> {
     let first = check.outcome.findings_by(check.book()).first_divergence.as_ref().or(fair)?;
     let cause = fair.filter(|fair| fair.step == first.step && is_of_later_pass(first));
     Some(cause.unwrap_or(first)).filter(|_| !is_other_scene(check))
-}
-
-/// Whether it is a formula's fault in a pass whose positions earlier passes of the step have made.
-pub(super) fn is_of_later_pass(finding: &Finding) -> bool {
-    follows::is_of_formula(finding.kind()) && finding.detail.pass().is_some_and(|pass| pass.index > 0)
 }

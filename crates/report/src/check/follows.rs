@@ -1,7 +1,6 @@
 //! Consequences: polynomials that differ only because the positions differ that they are made of.
-use super::first::is_of_later_pass;
 use crate::number::count as number;
-use fosssim_judge::{FindingKind, Outcome, fair::FairVerdict};
+use fosssim_judge::{Finding, FindingKind, Outcome, fair::FairVerdict};
 
 /// Faults of a formula, and not of the positions that go into it.
 const OF_FORMULAS: [FindingKind; 6] = [
@@ -16,6 +15,11 @@ const OF_FORMULAS: [FindingKind; 6] = [
 /// Whether a finding of this kind may be a fault of a formula.
 pub(crate) fn is_of_formula(kind: FindingKind) -> bool {
     OF_FORMULAS.contains(&kind)
+}
+
+/// Whether it is a formula's fault in a pass whose positions earlier passes of the step have made.
+pub(super) fn is_of_later_pass(finding: &Finding) -> bool {
+    is_of_formula(finding.kind()) && finding.detail.pass().is_some_and(|pass| pass.index > 0)
 }
 
 /// How many polynomials of a trace the original's rules find wrong that only follow from wrong positions: all of them,

@@ -85,7 +85,7 @@ impl Check<'_> {
     /// Where the two rule books differ: which of them accepts the trace.
     #[must_use]
     pub fn difference(&self) -> Option<&'static str> {
-        cause(self.outcome).map(books::sides)
+        cause(self.outcome).map(fair::sides)
     }
 
     /// The official book.

@@ -24,8 +24,8 @@ use utoipa::ToSchema;
 /// The largest archive of a suite.
 const SUITE: u64 = 64 << 20;
 
-/// An assignment as it is to be. Of an assignment that is there, parts that are not named stay as they are; settings are
-/// one part.
+/// An assignment as it is to be. Of an assignment that is there, parts that are not named stay as they are; settings
+/// are one part.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct AssignmentWish {

@@ -93,8 +93,8 @@ pub(super) fn size(bytes: &(impl Copy + TryInto<u64>)) -> String {
     }
 }
 
-/// Its points; a dash while there are none. Points by hand are of the whole grade: they have no maximum of the groups that
-/// are shown.
+/// Its points; a dash while there are none. Points by hand are of the whole grade: they have no maximum of the groups
+/// that are shown.
 pub(super) fn of(submission: &Submission) -> String {
     let by_hand = submission.mark.as_ref().and_then(|mark| mark.points.as_ref());
     if let (true, Some(by_hand)) = (submission.is_withheld, by_hand) {
