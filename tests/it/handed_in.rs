@@ -71,7 +71,7 @@ fn traces_that_are_there_already_are_graded_without_running_anything() {
     assert!(page.contains("data-scene="), "the page has a viewer");
     // A trace under a name that no scene has is told.
     workspace.write("right/ImpulsesTests/typo.bin", b"");
-    let stray = grade("right", &[]).out();
+    let stray = grade("right", &[]).err();
     assert!(stray.contains("1 trace belongs to no scene of the suite: ImpulsesTests/typo.bin"), "{stray}");
     std::fs::remove_file(workspace.path("right/ImpulsesTests/typo.bin")).expect("removed");
     // Packed traces are unpacked; a damaged copy is no trace, and the report says why there is none.

@@ -10,7 +10,7 @@ use crate::{
     cli::{console, grading::Grade as Arguments, input::unpacked, selection::Selection},
     files::{FileError, Folder},
     report::{
-        grade::{Format, Text, rehearse},
+        grade::{Format, Text, one_line, rehearse},
         number::counted,
         page::Audience,
     },
@@ -61,7 +61,12 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report]) -> Resu
     };
     let paths: Vec<&Path> = arguments.programs.iter().map(PathBuf::as_path).collect();
     let named = paths.iter().zip(distinct_names(&paths));
-    let grades: Vec<Grade> = named.map(|(folder, name)| grade(&plan, &names, folder, name, pages.as_ref())).collect();
+    let grades: Vec<Grade> = named.map(|(folder, name)| grade(&plan, folder, name, pages.as_ref())).collect();
+    for folder in &paths {
+        if let Some(strays) = Folder::open(folder).ok().and_then(|folder| strays(&folder, &names)) {
+            console::remark(format!("warning: {}\n", one_line(&format!("{}: {strays}", folder.display()))).as_bytes());
+        }
+    }
     let (folder, reader) = (arguments.output.as_deref(), arguments.reader);
     let staff_page = arguments.staff_page.as_deref();
     let (pages, platform_hides) = (pages.as_ref(), arguments.platform_hides);
@@ -76,15 +81,14 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report]) -> Resu
     Ok(exit_code(&grades))
 }
 
-/// The grade of a folder of traces; `names` are all scenes of the suite, those that are not asked for included.
-fn grade(plan: &Plan, names: &[String], folder: &Path, submission: String, pages: Option<&Pages>) -> Grade {
+/// The grade of a folder of traces.
+fn grade(plan: &Plan, folder: &Path, submission: String, pages: Option<&Pages>) -> Grade {
     let tasks: Vec<&SceneTask> = plan.scenes().collect();
     // In the plan's order, whatever the number of threads.
     let opened = Folder::open(folder);
     let judged: Vec<JudgedScene> = tasks.par_iter().map(|task| scene(plan, task, &opened, pages)).collect();
     let (results, passed_over): (Vec<_>, Vec<_>) = judged.into_iter().unzip();
-    let strays = opened.as_ref().ok().and_then(|folder| strays(folder, names));
-    traces::grade(plan, submission, results, passed_over.into_iter().flatten().chain(strays).collect())
+    traces::grade(plan, submission, results, passed_over.into_iter().flatten().collect())
 }
 
 /// Traces that are named in a warning.
