@@ -106,8 +106,8 @@ pub(super) struct Tally<'a> {
     frame_number: u64,
     /// The end record of this step, small leading coefficients dropped.
     frame: &'a LenientFrame,
-    /// The state of the mid record, when the layout has one.
-    mid: Option<&'a State>,
+    /// The mid record, when the layout has one.
+    mid: Option<&'a LenientFrame>,
     /// Whether the reference's impulses are logged; in `hybrid` they are not.
     logs_impulses: bool,
     buffers: &'a mut Buffers,
@@ -125,7 +125,7 @@ impl<'a> Tally<'a> {
     pub(super) fn new(
         (step, frame_number): (u32, u64),
         frame: &'a LenientFrame,
-        mid: Option<&'a State>,
+        mid: Option<&'a LenientFrame>,
         logs_impulses: bool,
         buffers: &'a mut Buffers,
         result: &'a mut StepResult,
@@ -342,9 +342,9 @@ impl Observer for Tally<'_> {
 impl Steer for Tally<'_> {
     fn synchronise(&mut self, state: &mut State) -> Resume {
         if let Some(mid) = self.mid {
-            self.identical &= same_bits(state, mid);
-            state.positions.copy_from_slice(&mid.positions);
-            state.velocities.copy_from_slice(&mid.velocities);
+            self.identical &= mid.logged == self.polynomials && same_bits(state, &mid.state);
+            state.positions.copy_from_slice(&mid.state.positions);
+            state.velocities.copy_from_slice(&mid.state.velocities);
         }
         Resume::Own
     }

@@ -149,7 +149,7 @@ fn judge_step(slot: &mut StepSlot, worker: &mut Worker, shape: &StepRules<'_>) {
     let frame = u64::from(*step) * u64::from(layout.records_per_step());
     let mid = layout.polynomials.then_some(&*mid);
     (*error, *beyond_limit) = (None, false);
-    let mut tally = Tally::new((*step, frame), end, mid.map(|mid| &mid.state), shape.logs_impulses, buffers, result);
+    let mut tally = Tally::new((*step, frame), end, mid, shape.logs_impulses, buffers, result);
     let begin = simulation.search_counts();
     let end_of_step = simulation.step(&mut tally);
     *searches += simulation.search_counts() - begin;

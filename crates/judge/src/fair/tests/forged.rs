@@ -5,9 +5,9 @@ use crate::{
     samples::{BOUNCE, ZONES, changed, judged, relog, run, scene, written},
 };
 use fosssim_model::{
-    scene::{Scene, original},
+    scene::{Collision, Scene, original},
     sim::{Decision, Detection, Observer, Pair, PairKind, Steer, Steering, Time},
-    trace::Frame,
+    trace::{Frame, PolynomialLog},
 };
 use fosssim_num::{polynomial::Polynomial, vector::Vec2};
 use std::path::Path;
@@ -272,6 +272,33 @@ fn a_lost_record_spoils_two_steps() {
             }
         });
         assert_eq!(fair(&scene, &forged).findings.wrong_steps, 6, "{value}");
+    }
+}
+
+/// The record in the middle of a step logs the passes before it, no more and no fewer, also where nothing else tells.
+#[test]
+fn the_mid_record_logs_the_passes_before_it() {
+    for (name, scene) in assets() {
+        let wrong_steps = |trace: &[u8]| fair(&scene, trace).findings.wrong_steps;
+        let own = run(&scene, ());
+        let steps = own[1..].chunks_exact(2);
+        let is_hybrid = matches!(scene.collision, Collision::Hybrid { .. });
+        let logging = steps.clone().filter(|step| is_hybrid && !step[0].polynomials.is_empty()).count();
+        let emptied = changed(&scene, |frames| {
+            frames[1..]
+                .iter_mut()
+                .step_by(2)
+                .filter(|_| is_hybrid)
+                .for_each(|mid| mid.polynomials = PolynomialLog::default());
+        });
+        assert_eq!(wrong_steps(&emptied) as usize, logging, "{name}, without passes");
+        let longer = steps.filter(|step| step[0].polynomials.len() < step[1].polynomials.len()).count();
+        let filled = changed(&scene, |frames| {
+            for step in frames[1..].chunks_exact_mut(2) {
+                step[0].polynomials = step[1].polynomials.clone();
+            }
+        });
+        assert_eq!(wrong_steps(&filled) as usize, longer, "{name}, with all passes");
     }
 }
 
