@@ -101,17 +101,25 @@ impl Observer for () {
     }
 }
 
+/// Every event goes on to these observers, one after the other.
+macro_rules! go_on {
+    ($self:ident => $($to:expr),+) => {
+        fn begin_step(&mut $self, step: u32) { $($to.begin_step(step);)+ }
+        fn begin_pass(&mut $self, pass: Pass) { $($to.begin_pass(pass);)+ }
+        fn pass_positions(&mut $self, q_start: &[f64], q_end: &[f64]) { $($to.pass_positions(q_start, q_end);)+ }
+        fn detection(&mut $self, detection: &Detection<'_>) { $($to.detection(detection);)+ }
+        fn end_pass(&mut $self, pass: Pass, hits: usize) { $($to.end_pass(pass, hits);)+ }
+        fn impulse(&mut $self, impulse: &Impulse) { $($to.impulse(impulse);)+ }
+        fn synchronised(&mut $self, state: &State) { $($to.synchronised(state);)+ }
+        fn zones(&mut $self, round: u32, zones: &[Zone<'_>]) { $($to.zones(round, zones);)+ }
+        fn failsafe(&mut $self, round: u32, zone: &Zone<'_>) { $($to.failsafe(round, zone);)+ }
+        fn end_step(&mut $self, step: u32, state: &State) { $($to.end_step(step, state);)+ }
+    };
+}
+
 /// An observer that is lent hears the same.
 impl<O: Observer + ?Sized> Observer for &mut O {
-    fn begin_step(&mut self, step: u32) {
-        (**self).begin_step(step);
-    }
-    fn begin_pass(&mut self, pass: Pass) {
-        (**self).begin_pass(pass);
-    }
-    fn pass_positions(&mut self, q_start: &[f64], q_end: &[f64]) {
-        (**self).pass_positions(q_start, q_end);
-    }
+    go_on!(self => (**self));
     #[inline]
     fn wanted(&mut self) -> Wanted<'_> {
         (**self).wanted()
@@ -120,73 +128,13 @@ impl<O: Observer + ?Sized> Observer for &mut O {
     fn steers(&mut self) -> Option<&mut dyn Steer> {
         (**self).steers()
     }
-    fn detection(&mut self, detection: &Detection<'_>) {
-        (**self).detection(detection);
-    }
-    fn end_pass(&mut self, pass: Pass, hits: usize) {
-        (**self).end_pass(pass, hits);
-    }
-    fn impulse(&mut self, impulse: &Impulse) {
-        (**self).impulse(impulse);
-    }
-    fn synchronised(&mut self, state: &State) {
-        (**self).synchronised(state);
-    }
-    fn zones(&mut self, round: u32, zones: &[Zone<'_>]) {
-        (**self).zones(round, zones);
-    }
-    fn failsafe(&mut self, round: u32, zone: &Zone<'_>) {
-        (**self).failsafe(round, zone);
-    }
-    fn end_step(&mut self, step: u32, state: &State) {
-        (**self).end_step(step, state);
-    }
 }
 
 /// Two observers hear the same, the first one first.
 impl<A: Observer, B: Observer> Observer for (A, B) {
-    fn begin_step(&mut self, step: u32) {
-        self.0.begin_step(step);
-        self.1.begin_step(step);
-    }
-    fn begin_pass(&mut self, pass: Pass) {
-        self.0.begin_pass(pass);
-        self.1.begin_pass(pass);
-    }
-    fn pass_positions(&mut self, q_start: &[f64], q_end: &[f64]) {
-        self.0.pass_positions(q_start, q_end);
-        self.1.pass_positions(q_start, q_end);
-    }
+    go_on!(self => self.0, self.1);
     fn steers(&mut self) -> Option<&mut dyn Steer> {
         Some(self)
-    }
-    fn detection(&mut self, detection: &Detection<'_>) {
-        self.0.detection(detection);
-        self.1.detection(detection);
-    }
-    fn end_pass(&mut self, pass: Pass, hits: usize) {
-        self.0.end_pass(pass, hits);
-        self.1.end_pass(pass, hits);
-    }
-    fn impulse(&mut self, impulse: &Impulse) {
-        self.0.impulse(impulse);
-        self.1.impulse(impulse);
-    }
-    fn synchronised(&mut self, state: &State) {
-        self.0.synchronised(state);
-        self.1.synchronised(state);
-    }
-    fn zones(&mut self, round: u32, zones: &[Zone<'_>]) {
-        self.0.zones(round, zones);
-        self.1.zones(round, zones);
-    }
-    fn failsafe(&mut self, round: u32, zone: &Zone<'_>) {
-        self.0.failsafe(round, zone);
-        self.1.failsafe(round, zone);
-    }
-    fn end_step(&mut self, step: u32, state: &State) {
-        self.0.end_step(step, state);
-        self.1.end_step(step, state);
     }
 }
 
