@@ -14,7 +14,7 @@ int main(int argc, char **argv) {
         snprintf(path[count++], sizeof path[0], "%s", start + 1);
     }
     const char *others[] = {"/etc/ld.so.cache", "/etc/localtime", "/usr/lib/x86_64-linux-gnu/gconv/gconv-modules.cache", "/usr/lib/x86_64-linux-gnu/gconv/UTF-16.so",
-        "/usr/lib/x86_64-linux-gnu/libgcc_s.so.1", NULL};
+        "/usr/lib/x86_64-linux-gnu/libgcc_s.so.1", "/usr/lib/locale/C.utf8/LC_CTYPE", "/usr/lib/locale/C.utf8/LC_MESSAGES/SYS_LC_MESSAGES", NULL};
     for (const char **other = others; *other; other++) snprintf(path[count++], sizeof path[0], "%s", *other);
     for (int i = 0; i < count; i++) {
         struct stat before, after;

@@ -33,6 +33,8 @@ const CONVERSIONS: [&str; 8] = [
 ];
 /// The loader's list of libraries, and the files that it loads into every program.
 pub(super) const LOADERS: [&str; 2] = ["/etc/ld.so.cache", "/etc/ld.so.preload"];
+/// The machine's time zone, which runtimes ask for.
+pub(super) const TIME_ZONE: &str = "/etc/localtime";
 /// No program needs more, nor does an interpreter's own library hold more files.
 const MOST: usize = 5_000;
 
@@ -85,12 +87,14 @@ pub(super) fn readable(
     let conversions: Vec<PathBuf> = search.conversions();
     conversions.iter().filter_map(|path| elf::dynamic(path)).for_each(|dynamic| drop(search.follow(dynamic)));
     let (named, missing) = (search.links.into_iter().collect(), search.missing);
-    let mut files: Vec<PathBuf> = search.found.into_iter().chain(conversions).chain(folders).collect();
+    let mut files: Vec<PathBuf> = search.found.into_iter().chain(conversions).collect();
     files.extend(LOADERS.map(PathBuf::from));
-    // Read now, none of them has a page that is not in memory, or a time that a run could change.
-    files.iter().for_each(|path| machine::load(path));
     // Names of locales; a program that asks for none has the C library's own.
     files.extend(Path::new("/usr/lib/locale").canonicalize().ok());
+    // Read now, none of them has a page that is not in memory, or a time that a run could change.
+    files.iter().map(PathBuf::as_path).chain([Path::new(TIME_ZONE)]).for_each(machine::load);
+    // An interpreter's own library holds too many files to read them all.
+    files.extend(folders);
     Readable { files, named, missing }
 }
 

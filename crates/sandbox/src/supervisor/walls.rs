@@ -20,7 +20,7 @@ use landlock::{
 };
 
 use crate::{
-    libraries::{FOLDERS, LOADERS},
+    libraries::{FOLDERS, LOADERS, TIME_ZONE},
     own::{self, Allowed},
     sys,
     wire::{self, RunOrder},
@@ -36,7 +36,7 @@ const MACHINE: [&str; 4] = [
     "/sys/devices/system/cpu/online",
     "/sys/devices/system/cpu/possible",
     "/sys/devices/system/cpu/present",
-    "/etc/localtime",
+    TIME_ZONE,
 ];
 /// The folder of most of that.
 const PROCESSORS: &str = "/sys/devices/system/cpu";
