@@ -6,13 +6,22 @@ use fosssim_model::{
     trace::Layout,
 };
 
-/// The rows that may explain a trace of this scene, in the order of the catalogue. Records that are missing are looked
-/// for elsewhere.
+/// The rows that may explain a trace of this scene, in the order of the catalogue. Where steps log polynomials, the
+/// course supplies forces and integrators, so that their rows come last. Records that are missing are looked for
+/// elsewhere.
 pub(super) fn applicable(scene: &Scene) -> impl Iterator<Item = &'static Row> {
     let is_tried =
         |row: &&Row| row.kind != RowKind::Hostile && !matches!(row.mistake, Mistake::LogNoInitial | Mistake::LogNoMid);
     let counts = pairs(scene).counts();
-    all_rows().filter(is_tried).filter(move |row| shows(scene, &counts, row))
+    let mut rows: Vec<_> = all_rows().filter(is_tried).filter(|row| shows(scene, &counts, row)).collect();
+    let logs_polynomials = Layout::of(scene).polynomials;
+    rows.sort_by_key(|row| logs_polynomials && is_of_states(row));
+    rows.into_iter()
+}
+
+/// Whether the mistake is one of forces, integrators, penalties or simple responses.
+pub(super) const fn is_of_states(row: &Row) -> bool {
+    matches!(row.mistake, Mistake::Force(_) | Mistake::Step(_))
 }
 
 /// Whether a program with this row may leave another trace than one without. Only what the scene does not have speaks
@@ -23,7 +32,7 @@ pub fn can_show(scene: &Scene, row: &Row) -> bool {
 }
 
 fn shows(scene: &Scene, counts: &ByKind<usize>, row: &Row) -> bool {
-    if matches!(row.mistake, Mistake::Force(_) | Mistake::Step(_)) {
+    if is_of_states(row) {
         return shows_in_states(scene, counts, row);
     }
     let has_stage = match (&scene.collision, row.area) {
@@ -39,9 +48,7 @@ fn shows(scene: &Scene, counts: &ByKind<usize>, row: &Row) -> bool {
 }
 
 /// The same of mistakes of forces, integrators and what follows from them: a row's name begins with what it is about.
-/// Where steps log polynomials, forces and integrators are supplied.
 fn shows_in_states(scene: &Scene, counts: &ByKind<usize>, row: &Row) -> bool {
-    let logs_states = !Layout::of(scene).polynomials;
     let is_linear = scene.integrator == Integrator::LinearizedImplicitEuler;
     let is_implicit = is_linear || scene.integrator == Integrator::ImplicitEuler;
     let has = |is_of_sort: fn(&Force) -> bool| scene.forces.iter().any(is_of_sort);
@@ -62,26 +69,24 @@ fn shows_in_states(scene: &Scene, counts: &ByKind<usize>, row: &Row) -> bool {
         "half" | "normal" => counts[PairKind::ParticleHalfPlane] > 0,
         _ => true,
     };
-    logs_states
-        && match row.area {
-            Area::Forces => has_force(first),
-            Area::Jacobians => is_implicit && has_force(second),
-            Area::Integrator => match (first, row.mistake) {
-                ("linear", _) => is_linear,
-                ("matrix" | "right", _) | (_, Mistake::Step(StepMistake::ImplicitPositionWithoutChange)) => is_implicit,
-                ("implicit", _) => scene.integrator == Integrator::ImplicitEuler,
-                (_, Mistake::Step(StepMistake::IntegratorVelocityFirst)) => {
-                    scene.integrator == Integrator::ExplicitEuler
-                }
-                (_, Mistake::Step(StepMistake::IntegratorPositionFirst)) => {
-                    matches!(scene.integrator, Integrator::SymplecticEuler | Integrator::ForwardBackwardEuler)
-                }
-                (_, Mistake::Step(mistake)) if is_of_acceleration(mistake) => !is_implicit,
-                _ => true,
-            },
-            Area::Penalty | Area::NearPairs => matches!(scene.collision, Collision::Penalty { .. }) && has_kind(second),
-            _ => matches!(scene.collision, Collision::Simple { .. }),
-        }
+    match row.area {
+        Area::Forces => has_force(first),
+        Area::Jacobians => is_implicit && has_force(second),
+        Area::Integrator => match (first, row.mistake) {
+            ("linear", _) => is_linear,
+            ("matrix" | "right", _) | (_, Mistake::Step(StepMistake::ImplicitPositionWithoutChange)) => is_implicit,
+            ("implicit", _) => scene.integrator == Integrator::ImplicitEuler,
+            (_, Mistake::Step(StepMistake::IntegratorVelocityFirst)) => scene.integrator == Integrator::ExplicitEuler,
+            (_, Mistake::Step(StepMistake::IntegratorPositionFirst)) => {
+                matches!(scene.integrator, Integrator::SymplecticEuler | Integrator::ForwardBackwardEuler)
+            }
+            (_, Mistake::Step(mistake)) if is_of_acceleration(mistake) => !is_implicit,
+            _ => true,
+        },
+        Area::Penalty if matches!(scene.collision, Collision::Hybrid { .. }) => has_kind(second),
+        Area::Penalty | Area::NearPairs => matches!(scene.collision, Collision::Penalty { .. }) && has_kind(second),
+        _ => matches!(scene.collision, Collision::Simple { .. }),
+    }
 }
 
 /// Whether a mistake is made where forces become accelerations, which implicit integrators do in their system.
@@ -124,11 +129,7 @@ mod tests {
         scenes.extend(others);
         for scene in scenes {
             let right = trace(&scene, Student::default()).ok();
-            // Where steps log polynomials, forces and integrators are right.
-            let is_supplied = |row: &Row| {
-                Layout::of(&scene).polynomials && matches!(row.mistake, Mistake::Force(_) | Mistake::Step(_))
-            };
-            let is_left_out = |row: &&Row| row.kind != RowKind::Hostile && !is_supplied(row) && !can_show(&scene, row);
+            let is_left_out = |row: &&Row| row.kind != RowKind::Hostile && !can_show(&scene, row);
             for row in all_rows().filter(is_left_out) {
                 left_out += 1;
                 assert!(trace(&scene, Student::new(Some(row.mistake))).ok() == right, "{} on {scene:?}", row.id);

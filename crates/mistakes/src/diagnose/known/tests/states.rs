@@ -2,8 +2,8 @@
 //! behind collisions.
 use crate::{
     assignments::probe_scenes,
-    diagnose::{explain, known::known, known::shown::applicable},
-    student::{self, Mistake, Row, Student, all_rows, find},
+    diagnose::{explain, known::known, known::shown::{applicable, is_of_states}},
+    student::{self, Student, all_rows, find},
 };
 use fosssim_model::{
     assignments::Assignment,
@@ -52,10 +52,6 @@ fn scenes() -> Vec<(String, Scene)> {
 
 fn scene(name: &str) -> Scene {
     scenes().into_iter().find(|(own, _)| own == name).expect("a scene").1
-}
-
-fn is_of_states(row: &Row) -> bool {
-    matches!(row.mistake, Mistake::Force(_) | Mistake::Step(_))
 }
 
 fn trace(scene: &Scene, ids: &[&str]) -> Vec<u8> {
