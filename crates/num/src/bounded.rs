@@ -177,6 +177,29 @@ impl<N: Number + Modulus> Mul<Bounded2<N>> for Bounded<N> {
 mod tests {
     use super::*;
 
+    /// The rules of running error analysis on numbers that can be reckoned by hand.
+    #[test]
+    fn each_operation_has_the_bound_of_its_rule() {
+        let number = |value: f64, bound: f64| Bounded { value, bound };
+        let (a, b) = (number(-12.0, 5.0), number(4.0, 3.0));
+        assert_eq!(a + b, number(-8.0, 5.0 + 3.0 + 12.0 + 4.0));
+        assert_eq!(a - b, number(-16.0, 5.0 + 3.0 + 12.0 + 4.0));
+        assert_eq!(a * b, number(-48.0, 5.0 * 4.0 + 12.0 * 3.0 + 48.0));
+        assert_eq!(a / b, number(-3.0, (5.0 + 3.0 * 3.0) / 4.0 + 3.0));
+        assert_eq!(-2.0 * a, number(24.0, 2.0 * 5.0 + 24.0));
+        assert_eq!(-a, number(12.0, 5.0));
+        let size = |value: f64, bound: f64| Bounded { value: Size(value), bound: Size(bound) };
+        let (c, d) = (size(12.0, 5.0), size(4.0, 3.0));
+        assert_eq!(c + d, size(16.0, 24.0));
+        assert_eq!(c - d, size(16.0, 24.0));
+        assert_eq!(c * d, size(48.0, 104.0));
+        assert_eq!(-2.0 * c, size(24.0, 34.0));
+        let vector = Bounded2::rounded(Vec2::new(-12.0, 4.0));
+        assert_eq!((vector.x, vector.y), (number(-12.0, 12.0), number(4.0, 4.0)));
+        let twice = b * vector;
+        assert_eq!((twice.x, twice.y), (b * vector.x, b * vector.y));
+    }
+
     /// `(a + b) - a` with a large `a`: the rest of `b` may be off by a rounding of `a`, and the bound says so.
     #[test]
     fn cancelled_terms_keep_their_weight() {
