@@ -100,13 +100,15 @@ struct JobFacts {
     assignment: Option<i64>,
     course: Option<i64>,
     worker: String,
+    /// The person who had it graded again.
+    asked_by: Option<i64>,
     task: String,
     seconds: i64,
 }
 
 async fn about(transaction: &mut Transaction, job: i64) -> Result<JobFacts, DbError> {
     let statement =
-        "SELECT job.submission, job.campaign, job.payload, coalesce(job.worker, job.failed_by, '') AS worker,
+        "SELECT job.submission, job.campaign, job.payload, job.asked_by, coalesce(job.worker, job.failed_by, '') AS worker,
            submission.assignment, assignment.course,
            {now} - coalesce(job.started_at, {now}) AS took
         FROM job
@@ -115,7 +117,9 @@ async fn about(transaction: &mut Transaction, job: i64) -> Result<JobFacts, DbEr
         WHERE job.id = ?";
     let row = &transaction.one(statement, values![job]).await?;
     let seconds = row.int("took")? / 1000;
-    Ok(read_row!(row => JobFacts { submission, campaign, assignment, course, worker, task = "payload"; job, seconds }))
+    Ok(
+        read_row!(row => JobFacts { submission, campaign, assignment, course, worker, asked_by, task = "payload"; job, seconds }),
+    )
 }
 
 /// Writes an event about a job.
@@ -211,7 +215,7 @@ async fn write_result(
     // A grader that failed takes nobody's grade away.
     if about.campaign.is_none() && !(outcome.code == JUDGE_ERROR && counted.is_some()) {
         let reason = if counted.is_some() { "graded again" } else { "graded" };
-        let change = GradeChange { submission, result, by: None, campaign: None, reason };
+        let change = GradeChange { submission, result, by: about.asked_by, campaign: None, reason };
         set_grade(transaction, &change).await?;
         if let (Some(course), Some(assignment), false) = (about.course, about.assignment, outcome.wrong.is_empty()) {
             suspect::look(transaction, course, assignment, result).await?;

@@ -25,7 +25,7 @@ impl Staff {
         if replaced == 0 {
             return Err(Problem::conflict("it is being graded", "wait for its grade"));
         }
-        let jobs = enqueue_replaced(&mut transaction, &assignment, id..=id).await?;
+        let jobs = enqueue_replaced(&mut transaction, &assignment, self.account.id, id..=id).await?;
         let mut entry = self.entry("graded again", Some(assignment.id), "one submission");
         entry.submission = Some(id);
         view::note(&mut transaction, &entry).await?;
@@ -54,7 +54,7 @@ impl Staff {
                     JOIN result ON result.id = grade.result AND result.code = 'JE'
                     WHERE submission.assignment = ? AND submission.removed_at IS NULL)";
             transaction.execute(statement, values![assignment.id]).await?;
-            found += enqueue_replaced(&mut transaction, &assignment, 0..=i64::MAX).await?;
+            found += enqueue_replaced(&mut transaction, &assignment, self.account.id, 0..=i64::MAX).await?;
             if found > 0 {
                 let text = format!("{found} submissions on which the grader failed");
                 self.note(&mut transaction, "graded again", Some(assignment.id), &text).await?;

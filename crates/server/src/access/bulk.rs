@@ -35,25 +35,26 @@ pub(super) fn pieces(assignment: &Assignment) -> Result<[String; 5], Problem> {
     ])
 }
 
-/// Enqueues the submissions to an assignment, of these numbers, whose jobs are replaced.
+/// Enqueues the submissions to an assignment, of these numbers, whose jobs are replaced, because somebody asks for it.
 pub(super) async fn enqueue_replaced(
     transaction: &mut Transaction,
     assignment: &Assignment,
+    by: i64,
     ids: RangeInclusive<i64>,
 ) -> Result<i64, Problem> {
     let pieces = pieces(assignment)?;
     let mut values: Vec<Value> = vec![format!("again {}", assignment.id).into()];
     values.extend(pieces.into_iter().map(Value::from));
-    values.extend([assignment.id, *ids.start(), *ids.end()].map(Value::from));
+    values.extend([by, assignment.id, *ids.start(), *ids.end()].map(Value::from));
     // A second apart: uploads that come meanwhile are graded in between.
     let jobs = transaction
         .execute(
             concat!(
-                "INSERT INTO job (lane, submission, fair_key, payload, state, rank, run_after, enqueued_at)
+                "INSERT INTO job (lane, submission, fair_key, payload, state, rank, run_after, enqueued_at, asked_by)
                  SELECT 'grading', submission.id, CAST(? AS TEXT), ",
                 payload!(),
-                ", 'waiting', {now} + 1000 * row_number() OVER (ORDER BY submission.id), {now}, {now}
-                 FROM submission WHERE submission.assignment = ? AND submission.id BETWEEN ? AND ?
+                ", 'waiting', {now} + 1000 * row_number() OVER (ORDER BY submission.id), {now}, {now},
+                    CAST(? AS {int}) FROM submission WHERE submission.assignment = ? AND submission.id BETWEEN ? AND ?
                     AND submission.removed_at IS NULL
                     AND EXISTS (SELECT 1 FROM job WHERE job.submission = submission.id AND job.replaced = 1)
                     AND NOT EXISTS (SELECT 1 FROM job WHERE job.submission = submission.id AND job.campaign IS NULL

@@ -82,7 +82,20 @@ impl Staff {
             return Err(Problem::invalid("points are a number between 0 and a million"));
         }
         let mut transaction = self.begin().await?;
-        self.find_submission(&mut transaction, id).await?;
+        let submission = self.find_submission(&mut transaction, id).await?;
+        if points.is_some() && submission.grade.is_none() {
+            return Err(Problem::conflict("it is not graded yet", "wait for its grade"));
+        }
+        let before = submission.mark.and_then(|mark| mark.points);
+        if before.as_deref() != points {
+            let what = if points.is_some() { "points by hand" } else { "the grader's points again" };
+            let reason = if comment.is_empty() { what.to_owned() } else { format!("{what}: {comment}") };
+            let statement =
+                "INSERT INTO grade_change (submission, old_result, new_result, changed_by, reason, given, changed_at)
+                SELECT submission, result, result, CAST(? AS {int}), CAST(? AS TEXT), CAST(? AS TEXT), {now}
+                FROM grade WHERE submission = ?";
+            transaction.execute(statement, values![self.account.id, reason, points, id]).await?;
+        }
         let statement =
             "INSERT INTO mark (submission, points, comment, marked_by, marked_at) VALUES (?, ?, ?, ?, {now})
             ON CONFLICT (submission) DO UPDATE SET points = excluded.points, comment = excluded.comment,

@@ -389,7 +389,8 @@ pub(super) async fn history(
     withheld: bool,
 ) -> Result<Vec<History>, DbError> {
     let statement = "SELECT grade_change.changed_at, grade_change.reason, account.login, old.code AS old_code,
-           old.points AS old_points, old.shown AS old_shown, new.shown AS new_shown, new.id AS result, new.code AS new_code, new.points AS new_points, new.version,
+           old.points AS old_points, old.shown AS old_shown, new.shown AS new_shown, grade_change.old_result,
+           grade_change.given, new.id AS result, new.code AS new_code, new.points AS new_points, new.version,
            new.grader, new.essence, new.task
         FROM grade_change
         JOIN result AS new ON new.id = grade_change.new_result
@@ -401,6 +402,7 @@ pub(super) async fn history(
         let text = row.maybe_text(column)?.filter(|_| withheld);
         Ok(text.as_deref().and_then(Shown::read).map(Shown::line))
     };
+    let mut given = None;
     let read = |row: &Row| {
         let old = match shown(row, "old_shown")? {
             Some((code, points)) => (Some(code), points),
@@ -411,12 +413,17 @@ pub(super) async fn history(
             None => (row.text("new_code")?, row.maybe_text("new_points")?),
         };
         let ((old_code, old_points), (new_code, new_points)) = (old, new);
+        let old_points = given.clone().or(old_points);
+        // Points by hand go before the grader's until staff takes them back.
+        if row.maybe_int("old_result")? == Some(row.int("result")?) {
+            given = row.maybe_text("given")?;
+        }
         Ok(read_row!(row => History {
             changed_at, reason, by = "login", result, version, grader, task;
             old_code,
             old_points,
             new_code,
-            new_points,
+            new_points: given.clone().or(new_points),
             essence: if withheld { String::new() } else { row.text("essence")? },
             by_what: by_what(&row.text("task")?),
         }))

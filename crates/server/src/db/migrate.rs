@@ -6,7 +6,7 @@ use sha2::{Digest, Sha256};
 use thiserror::Error;
 
 /// Every change, oldest first. The number of a change is its place in this list, from 1.
-const MIGRATIONS: [(&str, &str); 17] = [
+const MIGRATIONS: [(&str, &str); 18] = [
     ("first tables", include_str!("migrations/0001_first_tables.sql")),
     ("people", include_str!("migrations/0002_people.sql")),
     ("answers", include_str!("migrations/0003_answers.sql")),
@@ -24,6 +24,7 @@ const MIGRATIONS: [(&str, &str); 17] = [
     ("taken back", include_str!("migrations/0015_taken_back.sql")),
     ("progress", include_str!("migrations/0016_progress.sql")),
     ("failed scenes", include_str!("migrations/0017_failed_scenes.sql")),
+    ("asked for", include_str!("migrations/0018_asked_for.sql")),
 ];
 
 /// The version that this program works with.

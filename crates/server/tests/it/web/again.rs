@@ -66,6 +66,7 @@ async fn staff_has_it_graded_again(fresh: Fresh) {
     let history = ada.get(&format!("/api/v1/courses/physics/submissions/{}/history", ids[0])).expect(200).json();
     let reasons: Vec<_> = history.as_array().expect("a list").iter().map(|change| change["reason"].clone()).collect();
     assert_eq!(reasons, ["graded", "graded again"]);
+    assert_eq!([&history[0]["by"], &history[1]["by"]], [&serde_json::Value::Null, &"admin".into()]);
     let own = ada.get("/api/v1/courses/physics/assignments/m1/submissions").expect(200).json();
     assert_eq!(own.as_array().expect("a list").len(), 2, "a submission is one, however often it is graded");
     assert_eq!(admin.get("/api/v1/queue").expect(200).json()["buried"], 0);

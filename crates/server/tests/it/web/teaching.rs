@@ -100,6 +100,14 @@ async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
     teacher.get("/c/physics/a/m1/students/nobody").expect(404);
     teacher.send("PUT", &format!("{}/mark", place(ids[1])), JSON, br#"{"comment": "after all"}"#).expect(200);
     assert_eq!(ada.get(&place(ids[1])).expect(200).json()["grade"]["points"], "30");
+    // Both stand in the history, and a comment alone changes no grade.
+    teacher.send("PUT", &format!("{}/mark", place(ids[1])), JSON, br#"{"comment": "by the way"}"#).expect(200);
+    let history = ada.get(&format!("{}/history", place(ids[1]))).expect(200).json();
+    let changes: Vec<_> = history.as_array().expect("a list")[1..].iter().collect();
+    let line = |change: &serde_json::Value| ["by", "reason", "old_points", "new_points"].map(|key| change[key].clone());
+    assert_eq!(changes.len(), 2, "{history}");
+    assert_eq!(line(changes[0]), ["teacher", "points by hand: You are right", "30", "68.5"]);
+    assert_eq!(line(changes[1]), ["teacher", "the grader's points again: after all", "68.5", "30"]);
     // More time for one.
     let wish = r#"{"title": "M", "visible": true, "settings": {"per_hour": 0, "due_at": "2026-01-01T00:00Z"}}"#;
     teacher.send("PUT", "/api/v1/courses/physics/assignments/m1", JSON, wish.as_bytes()).expect(200);
