@@ -6,8 +6,13 @@ use std::collections::BTreeSet;
 /// The longest list.
 const MOST: usize = 5000;
 
-/// The columns, in their order where the first line does not name them.
-const COLUMNS: [&str; 4] = ["name", "login", "email", "role"];
+/// The columns, in their order where the first line does not name them, each with how else it is called.
+const COLUMNS: [&[&str]; 4] = [
+    &["name", "fullname"],
+    &["login", "username", "loginname", "userid"],
+    &["email", "emailaddress", "mail"],
+    &["role"],
+];
 
 /// A line of the table, and what became of it.
 #[derive(Debug, Clone)]
@@ -30,6 +35,32 @@ pub struct Imported {
     pub invitation: Option<NewSecret>,
 }
 
+/// Which column a heading names: "E-mail address" is "email".
+fn column(heading: &str) -> Option<usize> {
+    let plain: String = heading.to_lowercase().chars().filter(|c| c.is_alphanumeric()).collect();
+    COLUMNS.iter().position(|names| names.contains(&plain.as_str()))
+}
+
+/// The places of the columns, by the headings of the first line; nothing where these are no headings.
+fn headings(words: &[String]) -> Result<Option<[Option<usize>; 4]>, Problem> {
+    if words.iter().all(|word| column(word).is_none()) {
+        return Ok(None);
+    }
+    let mut places = [None; COLUMNS.len()];
+    for (place, word) in words.iter().enumerate().filter(|(_, word)| !word.is_empty()) {
+        let taken = column(word).is_some_and(|column| places[column].replace(place).is_none());
+        if !taken {
+            return Err(Problem::invalid(format!(
+                "the column {word} is not understood, or there twice: columns are name, login, email and role"
+            )));
+        }
+    }
+    match places[1] {
+        Some(_) => Ok(Some(places)),
+        None => Err(Problem::invalid("the first line names columns, and none of them login")),
+    }
+}
+
 /// Reads a table; what is wrong with a line is told with it.
 fn read(text: &str) -> Result<Vec<Imported>, Problem> {
     let first = text.lines().next().unwrap_or_default();
@@ -41,18 +72,22 @@ fn read(text: &str) -> Result<Vec<Imported>, Problem> {
         .flexible(true)
         .trim(csv::Trim::All)
         .from_reader(text.as_bytes());
-    let mut places: Vec<Option<usize>> = (0..COLUMNS.len()).map(Some).collect();
+    let mut places: [Option<usize>; COLUMNS.len()] = std::array::from_fn(Some);
     let mut logins = BTreeSet::new();
     let mut lines = Vec::new();
     let mut counted = (0, 1);
     for (index, record) in reader.records().enumerate() {
         let record = record.map_err(|error| Problem::invalid(format!("the table is not understood: {error}")))?;
         let cell = |text: &str| text.trim_start_matches('\u{feff}').to_owned();
-        let words: Vec<String> = record.iter().map(|word| cell(word).to_lowercase()).collect();
-        if index == 0 && words.iter().any(|word| word == "login") {
-            places = COLUMNS.iter().map(|column| words.iter().position(|word| word == column)).collect();
+        let words: Vec<String> = record.iter().map(cell).collect();
+        if index == 0
+            && let Some(named) = headings(&words)?
+        {
+            places = named;
             continue;
         }
+        let is_beside = |(place, word): (usize, &String)| !word.is_empty() && !places.contains(&Some(place));
+        let beside = words.iter().enumerate().any(is_beside);
         let field = |column: usize| places[column].and_then(|place| record.get(place)).map(cell).unwrap_or_default();
         // A reader of tables takes the second byte of a line's end for the next line's.
         let at = record.position().map_or(0, |position| usize::try_from(position.byte()).unwrap_or(0));
@@ -71,6 +106,10 @@ fn read(text: &str) -> Result<Vec<Imported>, Problem> {
             .and_then(|()| match logins.insert(login.clone()) {
                 true => Ok(()),
                 false => Err(Problem::invalid("this login is in the table twice")),
+            })
+            .and_then(|()| match beside {
+                true => Err(Problem::invalid("there is more in this line than name, login, email and role")),
+                false => Ok(()),
             });
         let error = checked.err().map(|problem| problem.detail);
         lines.push(Imported { line, name, login, email, role, error, link: None, invitation: None });
@@ -116,6 +155,12 @@ mod tests {
         assert_eq!((plain[1].name.as_str(), plain[1].login.as_str(), plain[1].line), ("Babbage, C.", "charles", 2));
         let named = lines("\u{feff}Login;Role;Name\r\nada;student;Ada\r\n");
         assert_eq!((named[0].login.as_str(), named[0].name.as_str(), named[0].line), ("ada", "Ada", 2));
+        let others = lines("User name;E-Mail;NAME;\nada;ada@example.org;Ada\n");
+        assert_eq!((others[0].login.as_str(), others[0].email.as_str()), ("ada", "ada@example.org"));
+        for bad in ["Name,Email\nAda,a@b\n", "Login,Name,Number\nada,Ada,7\n", "Login,Name,Login\nada,Ada,eve\n"] {
+            assert!(read(bad).is_err(), "{bad}");
+        }
+        assert!(lines("Ada,ada,,student,7\n")[0].error.is_some(), "nothing is dropped in silence");
         let wrong = lines("Ada,ada\nAda,ada\n,eve\nEve,e v e\nEve,eve,,boss\n");
         let errors: Vec<bool> = wrong.iter().map(|line| line.error.is_some()).collect();
         assert_eq!(errors, [false, true, true, true, true]);
