@@ -17,6 +17,9 @@ pub struct Problem {
     pub detail: String,
     /// The advice about it.
     pub remedy: String,
+    /// In how many seconds it may work, where that is known.
+    #[serde(skip)]
+    pub wait: Option<u64>,
 }
 
 /// Why a request is refused: the status, a name for programs, words, what is wrong, and what to do about it. A detail
@@ -33,6 +36,7 @@ macro_rules! problems {
                     status: $status,
                     detail: $detail.into(),
                     remedy: $remedy.to_owned(),
+                    wait: None,
                 }
             })*
         }
@@ -45,9 +49,9 @@ problems! {
         "this needs somebody who is signed in",
         "sign in, or send a token: Authorization: Bearer fso_...";
     /// The token, session or link is none of ours, or not any more.
-    unknown_secret(what: &str): 401, "unknown-secret", "Not signed in",
+    unknown_secret(what: &str, remedy: &str): 401, "unknown-secret", "Not signed in",
         format!("this {what} is unknown, used, too old or revoked"),
-        "ask for a new one";
+        remedy;
     /// No account has this login and this password.
     wrong_password(): 401, "wrong-password", "Not signed in",
         "there is no account of this login with this password",
@@ -56,6 +60,10 @@ problems! {
     not_allowed(detail: impl Into<String>): 403, "not-allowed", "Not allowed",
         detail,
         "ask somebody whose role allows it";
+    /// The server is not started with passwords.
+    no_passwords(): 403, "not-allowed", "Not allowed",
+        "this server takes no passwords",
+        "sign in by a link, a token, or from your learning platform";
     /// Known, but it is not certain that it is the person.
     sign_in_again(detail: impl Into<String>): 403, "sign-in-again", "Sign in again",
         detail,
@@ -92,10 +100,22 @@ problems! {
     unusable(detail: impl Into<String>): 422, "unusable-upload", "This can't be graded",
         detail,
         "mend the file and upload it again; nothing was counted";
-    /// More bytes than allowed.
+    /// The upload is no suite.
+    no_suite(detail: impl Into<String>): 422, "unusable-upload", "This is no suite",
+        detail,
+        "mend the suite and upload it again; the assignment has the suite that it had";
+    /// An upload with more bytes than allowed.
     too_large(most: u64): 413, "too-large", "Too large",
         format!("more than the {most} bytes that are allowed"),
         "send less: no build folders, no traces in an archive of sources";
+    /// Another request with more bytes than allowed.
+    too_long(most: usize): 413, "too-large", "Too large",
+        format!("more than the {most} bytes that are allowed"),
+        "send less in one request";
+    /// A method that the address does not take.
+    wrong_method(method: &str): 405, "wrong-method", "Not done so",
+        format!("this address does not take {method}"),
+        "look into the API's description: /api/openapi.json";
     /// The disk is nearly full.
     no_room(): 507, "no-room", "No room",
         "the server's disk is nearly full; nothing was stored",

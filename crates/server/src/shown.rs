@@ -137,7 +137,7 @@ impl Shown {
         (outcome.verdict, outcome.code, outcome.summary) = (self.verdict, self.code, self.summary);
         (outcome.points, outcome.max_points) = (self.points, self.max_points);
         outcome.essence = String::new();
-        outcome.seconds = "0".to_owned();
+        outcome.seconds = String::new();
         outcome.files.retain(|file| file.name == page);
     }
 }

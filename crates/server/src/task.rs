@@ -50,6 +50,18 @@ pub enum Form {
 }
 
 impl Form {
+    /// Every one.
+    pub const ALL: [Self; 3] = [Self::Program, Self::Sources, Self::Traces];
+
+    /// The thing to hand in, in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Program => "a program for Linux",
+            Self::Sources => "an archive of sources",
+            Self::Traces => "an archive of traces",
+        }
+    }
+
     /// Its name in tables and messages.
     pub fn name(self) -> &'static str {
         match self {
@@ -105,6 +117,7 @@ pub struct Outcome<F = OutputFile> {
     pub wrong: Vec<WrongScene>,
     /// How long it took, in seconds.
     #[schema(value_type = Decimal)]
+    #[serde(skip_serializing_if = "String::is_empty")]
     pub seconds: String,
     /// Reports and logs; empty in lists.
     pub files: Vec<F>,

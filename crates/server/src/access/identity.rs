@@ -101,7 +101,7 @@ pub(super) async fn account_of_token(transaction: &mut Transaction, token: &str)
     let row = transaction.row(statement, values![digest(token)]).await?;
     match row {
         Some(row) => Ok((Account::from_row(&row)?, row.int("token")?)),
-        None => Err(Problem::unknown_secret("token")),
+        None => Err(Problem::unknown_secret("token", "make a new one on the page Account")),
     }
 }
 
@@ -251,10 +251,15 @@ pub(super) async fn new_token(
     Ok((row.int("id")?, secret))
 }
 
+/// Whether a character has no look of its own, or turns the letters around it.
+fn is_control(c: char) -> bool {
+    c.is_control() || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
 /// A name that people gave to something: shown in pages, logs and tables.
 pub(super) fn check_title(what: &str, text: &str) -> Result<(), Problem> {
     let length = text.chars().count();
-    if !(1..=200).contains(&length) || text.chars().any(char::is_control) || text.trim() != text {
+    if !(1..=200).contains(&length) || text.chars().any(is_control) || text.trim() != text {
         return Err(Problem::invalid(format!(
             "{what} is 1 to 200 characters long, without control characters and spaces at its ends"
         )));

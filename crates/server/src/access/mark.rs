@@ -79,7 +79,7 @@ impl Staff {
                 && text.parse::<f64>().is_ok_and(|points| (0.0..=1e6).contains(&points))
         };
         if points.is_some_and(|points| !is_number(points)) {
-            return Err(Problem::invalid("points are a number between 0 and a million"));
+            return Err(Problem::invalid("points are a number between 0 and a million, such as 7.5"));
         }
         let mut transaction = self.begin().await?;
         let submission = self.find_submission(&mut transaction, id).await?;
@@ -205,8 +205,14 @@ impl Member {
         if submission.account != self.account.id {
             return Err(Problem::not_allowed("this is for the person who handed it in"));
         }
+        let before = submission.mark.and_then(|mark| mark.request).unwrap_or_default();
+        if before.chars().count() + text.chars().count() > 5 * LONGEST {
+            return Err(Problem::conflict("all that you asked is too long by now", "speak with the course's staff"));
+        }
+        let text = if before.is_empty() { text.to_owned() } else { format!("\n\n{text}") };
         let statement = "INSERT INTO mark (submission, comment, request, requested_at) VALUES (?, '', ?, {now})
-            ON CONFLICT (submission) DO UPDATE SET request = excluded.request, requested_at = excluded.requested_at";
+            ON CONFLICT (submission) DO UPDATE SET request = coalesce(mark.request, '') || excluded.request,
+               requested_at = excluded.requested_at";
         transaction.execute(statement, values![id, text]).await?;
         transaction.commit().await?;
         Ok(())

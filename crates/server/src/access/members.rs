@@ -97,6 +97,7 @@ impl Staff {
         if was.as_deref() == Some(role) {
             return Ok(added);
         }
+        self.check_left(transaction, login, role).await?;
         let gains_nothing = role == "student" && (was.is_some() || managed_by == Some(course));
         if !by.is_admin && !gains_nothing {
             added.invitation = Some(self.invite(transaction, account, (login, name), role).await?);
@@ -111,6 +112,16 @@ impl Staff {
         }
         self.enter(transaction, account, login, role).await?;
         Ok(added)
+    }
+
+    /// Whether somebody of the course's staff is left when they are something else.
+    async fn check_left(&self, transaction: &mut Transaction, login: &str, role: &str) -> Result<(), Problem> {
+        let statement = "SELECT count(*) AS n FROM member WHERE course = ? AND role = 'staff' AND account <> ?";
+        let goes = login == self.account.login && role != "staff" && !self.account.is_admin;
+        if goes && transaction.one(statement, values![self.course, self.account.id]).await?.int("n")? == 0 {
+            return Err(Problem::conflict("you are the last of the course's staff", "make somebody else staff before"));
+        }
+        Ok(())
     }
 
     /// How the user of a link of this person's comes in.
@@ -129,6 +140,7 @@ impl Staff {
     /// When they are no member.
     pub async fn remove_member(&self, login: &str) -> Result<(), Problem> {
         let mut transaction = self.app.0.database.begin().await?;
+        self.check_left(&mut transaction, login, "out").await?;
         let statement = "DELETE FROM member WHERE course = ? AND account = (SELECT id FROM account WHERE login = ?)";
         let mut removed = transaction.execute(statement, values![self.course, login]).await?;
         removed += transaction

@@ -47,9 +47,14 @@ pub struct Person {
 }
 
 impl Person {
+    /// Whether they came in by a token, or by a session that one began.
+    pub fn is_by_token(&self) -> bool {
+        self.session.as_ref().is_none_or(|session| session.is_by_token)
+    }
+
     /// The session, where it is the person at a browser: what a token can do, ends with the token.
     pub(super) fn at_browser(&self) -> Result<&Seen, Problem> {
-        let session = self.session.as_ref().filter(|session| !session.is_by_token);
+        let session = self.session.as_ref().filter(|_| !self.is_by_token());
         session.ok_or_else(|| Problem::sign_in_again("a token can't do this, nor a session that was begun by one"))
     }
 

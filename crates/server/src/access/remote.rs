@@ -30,7 +30,9 @@ impl From<SourceError> for Problem {
                 Self::unavailable("the database or the store does not answer")
             }
             SourceError::Refused(error) => Self::invalid(error),
-            SourceError::Dismissed => Self::unknown_secret("worker token"),
+            SourceError::Dismissed => {
+                Self::unknown_secret("worker token", "ask the server's administrator for a new one")
+            }
         }
     }
 }

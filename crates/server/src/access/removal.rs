@@ -100,6 +100,7 @@ impl Staff {
         let rest = [
             "DELETE FROM platform_score WHERE link IN (SELECT id FROM platform_link WHERE assignment = ?)",
             "DELETE FROM platform_link WHERE assignment = ?",
+            "DELETE FROM numbering WHERE assignment = ?",
             "DELETE FROM extension WHERE assignment = ?",
             "DELETE FROM campaign WHERE assignment = ?",
             "DELETE FROM suspicion WHERE assignment = ?",
@@ -152,6 +153,7 @@ impl Admin {
             "DELETE FROM platform_link WHERE platform_course IN (SELECT id FROM platform_course WHERE course = ?)",
             "DELETE FROM platform_member WHERE platform_course IN (SELECT id FROM platform_course WHERE course = ?)",
             "DELETE FROM platform_course WHERE course = ?",
+            "DELETE FROM numbering WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)",
             "DELETE FROM extension WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)",
             "DELETE FROM campaign WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)",
             "DELETE FROM suspicion WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)",
@@ -190,6 +192,7 @@ impl Admin {
             "DELETE FROM platform_choice WHERE account = ?",
             "DELETE FROM platform_member WHERE account = ?",
             "DELETE FROM platform_account WHERE account = ?",
+            "DELETE FROM numbering WHERE account = ?",
             "DELETE FROM extension WHERE account = ?",
             "DELETE FROM kept_bytes WHERE account = ?",
             "DELETE FROM invitation WHERE account = ?",

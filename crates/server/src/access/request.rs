@@ -32,7 +32,7 @@ impl App {
                 let mut transaction = self.0.database.read().await?;
                 let found = identity::account_of_session(&mut transaction, session).await?;
                 drop(transaction);
-                let (account, seen) = found.ok_or_else(|| Problem::unknown_secret("session"))?;
+                let (account, seen) = found.ok_or_else(|| Problem::unknown_secret("session", "sign in again"))?;
                 if seen.is_stale {
                     let mut transaction = self.0.database.begin().await?;
                     identity::session_seen(&mut transaction, session).await?;
@@ -72,7 +72,9 @@ impl App {
         let mut transaction = self.0.database.read().await?;
         let statement = "SELECT id, name FROM token WHERE digest = ? AND account IS NULL AND revoked_at IS NULL";
         let row = transaction.row(statement, values![identity::digest(token)]).await?;
-        let Some(row) = row else { return Err(Problem::unknown_secret("worker token")) };
+        let Some(row) = row else {
+            return Err(Problem::unknown_secret("worker token", "ask the server's administrator for a new one"));
+        };
         Ok(Remote::new(self.clone(), row.int("id")?, &row.text("name")?, name))
     }
 }

@@ -190,6 +190,12 @@ impl Settings {
         self.forms.iter().any(|name| name == form)
     }
 
+    /// The forms that are taken, in words.
+    pub fn taken(&self) -> String {
+        let taken = Form::ALL.into_iter().filter(|form| self.takes(*form));
+        taken.map(Form::words).collect::<Vec<_>>().join(" or ")
+    }
+
     /// Whether this may be handed in.
     pub fn takes(&self, form: Form) -> bool {
         self.has_form(form.name())

@@ -4,6 +4,7 @@ use super::{
     view::{self, Assignment, Entry, Submission},
 };
 use crate::{
+    calendar,
     db::Transaction,
     lti::score,
     problem::Problem,
@@ -14,7 +15,8 @@ use crate::{
 };
 use std::path::Path;
 
-const HOUR: i64 = 3600 * 1000;
+const MINUTE: i64 = 60 * 1000;
+const HOUR: i64 = 60 * MINUTE;
 
 /// The upload.
 #[derive(Debug, Clone)]
@@ -49,9 +51,12 @@ impl Member {
         if self.is_archived {
             return Err(Problem::conflict("the course is archived", "ask the administrator to open it again"));
         }
-        let forms = assignment.settings.forms.join(" or ");
         if !assignment.settings.takes(upload.form) {
-            return Err(Problem::unusable(format!("this assignment takes {forms}")));
+            let taken = assignment.settings.taken();
+            return Err(Problem::unusable(format!(
+                "this assignment takes {taken}; the file is {}",
+                upload.form.words()
+            )));
         }
         // Anybody who sends several at once has them looked at one after another, so that nothing is stored of one that
         // the one before leaves no room for.
@@ -140,12 +145,13 @@ impl Member {
         let settings = &assignment.settings;
         // A failure of the grader costs nobody a try.
         let statement = "SELECT {now} AS now, count(*) AS n,
-               count(CASE WHEN submission.created_at > {now} - ? AND submission.created_at <= {now} THEN 1 END) AS recent
+               count(CASE WHEN submission.created_at > {now} - ? AND submission.created_at <= {now} THEN 1 END) AS recent,
+               min(CASE WHEN submission.created_at > {now} - ? THEN submission.created_at END) AS oldest
             FROM submission
             LEFT JOIN grade ON grade.submission = submission.id
             LEFT JOIN result ON result.id = grade.result
             WHERE submission.assignment = ? AND submission.account = ? AND coalesce(result.code, '') <> 'JE'";
-        let row = transaction.one(statement, values![HOUR, assignment.id, self.account.id]).await?;
+        let row = transaction.one(statement, values![HOUR, HOUR, assignment.id, self.account.id]).await?;
         if mark::due(transaction, assignment, self.account.id)
             .await?
             .is_some_and(|due| row.int("now").is_ok_and(|now| now > settings.late_policy().closes_at(due)))
@@ -159,7 +165,15 @@ impl Member {
             ));
         }
         if settings.per_hour > 0 && row.int("recent")? >= settings.per_hour.into() {
-            return Err(Problem::too_many(format!("at most {} submissions in an hour", settings.per_hour)));
+            // Until the oldest of this hour is an hour old.
+            let again = row.int("oldest")? + HOUR;
+            let detail = format!(
+                "at most {} submissions in an hour: the next one is taken from {} UTC",
+                settings.per_hour,
+                calendar::minute(again + MINUTE - 1)
+            );
+            let wait = (again - row.int("now")?).max(0).unsigned_abs().div_ceil(1000);
+            return Err(Problem { wait: Some(wait), ..Problem::too_many(detail) });
         }
         Ok(())
     }
@@ -173,8 +187,9 @@ impl Member {
     ) -> Result<i64, Problem> {
         let input = Input { form: upload.form, name: upload.name.to_owned(), artefact: artefact.clone() };
         let task = assignment.settings.task(input);
-        let statement =
-            "SELECT coalesce(max(number), 0) + 1 AS number FROM submission WHERE assignment = ? AND account = ?";
+        // A number that was given out once is not given out again, whatever was removed since.
+        let statement = "INSERT INTO numbering (assignment, account, last) VALUES (?, ?, 1)
+            ON CONFLICT (assignment, account) DO UPDATE SET last = numbering.last + 1 RETURNING last AS number";
         let number = transaction.one(statement, values![assignment.id, self.account.id]).await?.int("number")?;
         let statement =
             "INSERT INTO submission (assignment, account, number, form, file_name, digest, size, created_at)

@@ -174,6 +174,7 @@ pub struct History {
     /// The grader's SHA-256, where it is known.
     pub grader: String,
     /// The SHA-256 of what the grade says, without what was measured: `replay` comes to the same.
+    #[serde(skip_serializing_if = "String::is_empty")]
     pub essence: String,
     /// Rules, suite and upload in short.
     pub by_what: String,

@@ -21,18 +21,25 @@ impl Visitor {
     /// When it is unknown, used or too old.
     pub async fn sign_in_by_link(&self, link: &str) -> Result<Session, Problem> {
         // Only who has a link keeps others from writing.
-        let mut transaction = self.app.0.database.read().await?;
-        if !identity::is_link(&mut transaction, link).await? {
-            return Err(Problem::unknown_secret("link"));
+        if !self.is_link(link).await? {
+            return Err(Problem::unknown_secret("link", "ask the course's staff for a new one"));
         }
-        drop(transaction);
         let mut transaction = self.app.0.database.begin().await?;
         let Some((account, way)) = identity::use_link(&mut transaction, link).await? else {
-            return Err(Problem::unknown_secret("link"));
+            return Err(Problem::unknown_secret("link", "ask the course's staff for a new one"));
         };
         let session = identity::begin_session(&mut transaction, account, way).await?;
         transaction.commit().await?;
         Ok(session)
+    }
+
+    /// Whether a link would sign somebody in.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn is_link(&self, link: &str) -> Result<bool, Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        Ok(identity::is_link(&mut transaction, link).await?)
     }
 
     /// Signs in by a token of a person, until it is revoked.

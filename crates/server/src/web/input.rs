@@ -1,7 +1,7 @@
 //! Reading requests, with answers that say what is wrong.
 use crate::{access::App, problem::Problem};
 use axum::{
-    extract::{FromRequest, FromRequestParts, Path, Query, Request},
+    extract::{FromRequest, FromRequestParts, MatchedPath, Path, Query, Request},
     http::{HeaderMap, header, request::Parts},
 };
 use futures_util::StreamExt;
@@ -51,7 +51,7 @@ async fn bytes(request: Request, app: &App) -> Result<Vec<u8>, Problem> {
         while let Some(chunk) = stream.next().await {
             bytes.extend_from_slice(&chunk.map_err(|_| Problem::invalid("the request broke off"))?);
             if bytes.len() > most {
-                return Err(Problem::too_large(most as u64));
+                return Err(Problem::too_long(most));
             }
         }
         Ok(bytes)
@@ -131,7 +131,11 @@ impl<S: Send + Sync> FromRequestParts<S> for At {
 
     async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {
         let found = Path::<Self>::from_request_parts(parts, state).await;
-        found.map(|Path(found)| found).map_err(|_| Problem::not_found("page"))
+        // A number that is none.
+        let route = parts.extensions.get::<MatchedPath>().map_or("", MatchedPath::as_str);
+        let of_submission = ["/s/{id}", "/submissions/{id}"].iter().any(|part| route.contains(part));
+        let what = if of_submission { "submission" } else { "page" };
+        found.map(|Path(found)| found).map_err(|_| Problem::not_found(what))
     }
 }
 

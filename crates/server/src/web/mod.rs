@@ -46,6 +46,7 @@ pub fn router(app: App) -> Router {
         .merge(api)
         .merge(pages)
         .fallback(pages::missing)
+        .method_not_allowed_fallback(pages::wrong_method)
         // Anybody who reads a body counts it: what is allowed differs.
         .layer(DefaultBodyLimit::disable())
         .layer(middleware::from_fn_with_state(app.clone(), guard::same_site))

@@ -1,6 +1,6 @@
 //! Receiving files: as they come, into a file of the server's own, never whole in memory.
 use crate::{
-    access::{App, is_file_name},
+    access::{App, Settings, is_file_name},
     archive::{self, ArchiveLimits},
     problem::Problem,
     task::Form,
@@ -160,6 +160,10 @@ async fn receive_at(place: &Place<'_>, request: Request, most: u64) -> Result<Re
         }
     }
     let file = file.ok_or_else(|| Problem::invalid("the form has no file"))?;
+    // So does a browser send a field in which nobody chose one.
+    if name.as_deref() == Some("") && std::fs::metadata(&file)?.len() == 0 {
+        return Err(Problem::invalid("no file was chosen"));
+    }
     Ok(Received { file, name, form: form.filter(|form| !form.is_empty()), key: key.filter(|key| !key.is_empty()) })
 }
 
@@ -230,8 +234,8 @@ const PROGRAM: &str = "a program for Linux (ELF, or a script that begins with #!
 /// Files that are looked into at one time: an archive may need some 100 MiB to be unpacked, and all of a processor.
 static LOOKING: tokio::sync::Semaphore = tokio::sync::Semaphore::const_new(2);
 
-/// The form of a file, and whether it can be that.
-pub(super) async fn examine(file: &Path, said: Option<&str>) -> Result<Form, Problem> {
+/// The form of a file, and whether it can be that; a refusal names what the assignment takes.
+pub(super) async fn examine(file: &Path, said: Option<&str>, settings: &Settings) -> Result<Form, Problem> {
     let said = match said {
         None => None,
         Some("program") => Some(Form::Program),
@@ -239,12 +243,20 @@ pub(super) async fn examine(file: &Path, said: Option<&str>) -> Result<Form, Pro
         Some("traces") => Some(Form::Traces),
         Some(_) => return Err(Problem::invalid("form is program, sources or traces")),
     };
-    let file = file.to_owned();
+    let archives: Vec<&str> = [(Form::Sources, "sources"), (Form::Traces, "traces")]
+        .into_iter()
+        .filter_map(|(form, name)| settings.takes(form).then_some(name))
+        .collect();
+    let archives =
+        (!archives.is_empty()).then(|| format!("an archive of {} ({})", archives.join(" or "), archive::KNOWN));
+    let program = settings.takes(Form::Program).then(|| PROGRAM.to_owned());
+    let wanted: Vec<String> = program.into_iter().chain(archives).collect();
+    let (file, wanted) = (file.to_owned(), wanted.join(", or "));
     let _looking = LOOKING.acquire().await.map_err(|_| Problem::fault())?;
-    tokio::task::spawn_blocking(move || examine_now(&file, said)).await.map_err(|_| Problem::fault())?
+    tokio::task::spawn_blocking(move || examine_now(&file, said, &wanted)).await.map_err(|_| Problem::fault())?
 }
 
-fn examine_now(file: &Path, said: Option<Form>) -> Result<Form, Problem> {
+fn examine_now(file: &Path, said: Option<Form>, wanted: &str) -> Result<Form, Problem> {
     let mut start = Vec::new();
     std::fs::File::open(file)?.take(512).read_to_end(&mut start)?;
     if start.is_empty() {
@@ -270,10 +282,9 @@ fn examine_now(file: &Path, said: Option<Form>) -> Result<Form, Problem> {
                     _ => Ok(form),
                 }
             }
-            Err(archive::ArchiveError::Unknown(found)) if said.is_none() => Err(Problem::unusable(format!(
-                "looked for {PROGRAM}, or an archive of sources or traces ({}), and found {found}",
-                archive::KNOWN
-            ))),
+            Err(archive::ArchiveError::Unknown(found)) if said.is_none() => {
+                Err(Problem::unusable(format!("looked for {wanted}, and found {found}")))
+            }
             Err(error) => Err(Problem::unusable(error.to_string())),
         },
     }

@@ -1,14 +1,15 @@
 //! The roles of requests: a handler says by the type of its argument whom it serves, and is not called for others.
-use super::input::{At, SignedIn};
+use super::input::SignedIn;
 use crate::{
     access::{Admin, App, Member, Person, Remote, Secrets, Staff, Visitor},
     net::ClientAddress,
     problem::Problem,
 };
 use axum::{
-    extract::FromRequestParts,
+    extract::{FromRequestParts, Path},
     http::{HeaderMap, HeaderValue, header, request::Parts},
 };
+use serde::Deserialize;
 use std::sync::{Arc, OnceLock};
 
 /// Where a request's session is noted when it lasts longer from now on: the browser is to keep its cookie as long.
@@ -78,13 +79,19 @@ impl FromRequestParts<App> for Person {
     }
 }
 
+/// The course in an address, whatever else is in it.
+#[derive(Deserialize)]
+struct InCourse {
+    course: String,
+}
+
 impl FromRequestParts<App> for Member {
     type Rejection = Problem;
 
     async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Problem> {
         let person = Person::from_request_parts(parts, app).await?;
-        let at = At::from_request_parts(parts, app).await;
-        person.member_of(&at.unwrap_or_default().course).await
+        let at = Path::<InCourse>::from_request_parts(parts, app).await;
+        person.member_of(&at.map(|Path(at)| at.course).unwrap_or_default()).await
     }
 }
 

@@ -6,3 +6,13 @@ INSERT INTO grade_change (submission, old_result, new_result, changed_by, reason
 SELECT mark.submission, grade.result, grade.result, mark.marked_by, 'points by hand: ' || mark.comment, mark.marked_at,
     mark.points
 FROM mark JOIN grade ON grade.submission = mark.submission WHERE mark.points IS NOT NULL;
+-- The last number that a submission of somebody to an assignment was given: removed ones keep theirs.
+CREATE TABLE numbering (
+    assignment {int} NOT NULL REFERENCES assignment (id),
+    account {int} NOT NULL REFERENCES account (id),
+    last {int} NOT NULL,
+    PRIMARY KEY (assignment, account)
+) {strict};
+CREATE INDEX numbering_account ON numbering (account);
+INSERT INTO numbering (assignment, account, last)
+SELECT assignment, account, max(number) FROM submission GROUP BY assignment, account;

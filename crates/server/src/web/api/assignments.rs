@@ -76,7 +76,7 @@ pub(in crate::web) async fn receive_suite(
     let looked = tokio::task::spawn_blocking(move || unpack_suite(&path, &incoming)).await;
     let folder = looked.map_err(|_| Problem::fault())??;
     if let Some(grader) = app.grader.as_deref() {
-        worker::check_suite(grader, folder.path()).await.map_err(Problem::unusable)?;
+        worker::check_suite(grader, folder.path()).await.map_err(Problem::no_suite)?;
     }
     staff.set_suite(assignment, &received.file).await
 }
@@ -84,19 +84,22 @@ pub(in crate::web) async fn receive_suite(
 /// Unpacks an archive with a suite that keeps to itself: its scenes lie in the archive, or come with the program. A
 /// worker would read any other file of its machine for it.
 fn unpack_suite(archive: &Path, incoming: &Path) -> Result<tempfile::TempDir, Problem> {
+    if std::fs::metadata(archive)?.len() == 0 {
+        return Err(Problem::no_suite("the file is empty"));
+    }
     let folder = tempfile::tempdir_in(incoming)?;
     archive::unpack(archive, folder.path(), ArchiveLimits::USUAL)
-        .map_err(|error| Problem::unusable(error.to_string()))?;
+        .map_err(|error| Problem::no_suite(error.to_string()))?;
     let Ok(text) = std::fs::read_to_string(folder.path().join("suite.toml")) else {
-        return Err(Problem::unusable("the archive has no suite.toml at its top, in UTF-8"));
+        return Err(Problem::no_suite("the archive has no suite.toml at its top, in UTF-8"));
     };
     let suite: toml::Table =
-        text.parse().map_err(|error| Problem::unusable(format!("suite.toml is not understood: {error}")))?;
+        text.parse().map_err(|error| Problem::no_suite(format!("suite.toml is not understood: {error}")))?;
     let groups = suite.get("group").and_then(toml::Value::as_array).into_iter().flatten();
     let scenes = groups.filter_map(|group| group.get("scenes")?.as_array()).flatten().filter_map(toml::Value::as_str);
     for scene in scenes {
         if scene.starts_with('/') || scene.split('/').any(|part| part == "..") {
-            return Err(Problem::unusable(format!("the scene {scene} does not lie in the archive")));
+            return Err(Problem::no_suite(format!("the scene {scene} does not lie in the archive")));
         }
     }
     Ok(folder)
@@ -111,12 +114,14 @@ pub(super) async fn export(
     At { assignment, .. }: At,
     Asked(asked): Asked<Format>,
 ) -> Result<Response, Problem> {
-    let (kind, body) = match asked.format.as_deref().unwrap_or("csv") {
+    let format = asked.format.as_deref().unwrap_or("csv");
+    let disposition = format!("attachment; filename=\"{}-{assignment}.{format}\"", staff.course().slug);
+    let (kind, body) = match format {
         "csv" => ("text/csv; charset=utf-8", HttpBody::from(super::export_csv(&staff.standings(&assignment).await?)?)),
         "jsonl" => ("application/jsonl; charset=utf-8", lines(staff, &assignment).await?),
         _ => return Err(Problem::invalid("format is csv or jsonl")),
     };
-    Ok(([(header::CONTENT_TYPE, kind), (header::CONTENT_DISPOSITION, "attachment")], body).into_response())
+    Ok(([(header::CONTENT_TYPE, kind), (header::CONTENT_DISPOSITION, disposition.as_str())], body).into_response())
 }
 
 /// All submissions, a line for each, read as they are sent.

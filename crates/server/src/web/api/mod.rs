@@ -49,7 +49,7 @@ pub(super) use accounts::{PasswordWish, TokenName, WorkerTokenName};
 pub(super) use assignments::receive_suite;
 pub(super) use courses::CourseWish;
 pub use submissions::export_csv;
-pub(super) use submissions::{RequestWish, receive, report_response, upload_response};
+pub(super) use submissions::{RequestWish, cell, receive, report_response, upload_response};
 
 use crate::access::App;
 use utoipa_axum::{router::OpenApiRouter, routes};

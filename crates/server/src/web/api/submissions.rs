@@ -60,7 +60,8 @@ pub(in crate::web) async fn receive(
     key: Option<&str>,
 ) -> Result<(Submission, bool), Problem> {
     let _transfer = member.transfer()?;
-    let most = member.assignment(assignment).await?.settings.max_bytes;
+    let settings = member.assignment(assignment).await?.settings;
+    let most = settings.max_bytes;
     // Of a form nobody knows yet whether it was sent before.
     if !upload::is_form(&request) {
         let checked = member.check_announced(assignment, key, upload::announced(&request)).await;
@@ -69,7 +70,7 @@ pub(in crate::web) async fn receive(
         }
     }
     let received = upload::receive(&member.app, request, most).await?;
-    let form = upload::examine(&received.file, received.form.as_deref().or(form)).await?;
+    let form = upload::examine(&received.file, received.form.as_deref().or(form), &settings).await?;
     let name = upload::plain_name(received.name.as_deref().or(name).unwrap_or("submission"));
     // A page's key and the file together: another file from the same page is another submission.
     let of_page = match &received.key {
@@ -194,7 +195,8 @@ pub fn export_csv(standings: &[Standing]) -> Result<String, Problem> {
     String::from_utf8(bytes).map_err(|_| Problem::fault())
 }
 
-fn cell(text: &str) -> String {
+/// A cell that no spreadsheet takes for a formula.
+pub(in crate::web) fn cell(text: &str) -> String {
     if text.starts_with(['=', '+', '-', '@', '\t']) { format!("'{text}") } else { text.to_owned() }
 }
 

@@ -37,6 +37,8 @@ struct AccountPage {
     tokens: Vec<TokenInfo>,
     new: Option<String>,
     takes_passwords: bool,
+    /// Whether they came in by a token, which makes no further ways in.
+    is_by_token: bool,
 }
 
 pub(super) async fn home(person: Person) -> Result<Html<String>, Problem> {
@@ -59,7 +61,8 @@ pub(super) async fn accept_by_link(person: Person, At { secret, .. }: At) -> Res
 async fn page(person: &Person, new: Option<String>) -> Result<Html<String>, Problem> {
     let frame = Frame::of(&person.account).then("/account".to_owned(), "Account");
     let takes_passwords = person.app.takes_passwords();
-    show(&AccountPage { frame, tokens: person.tokens().await?, new, takes_passwords })
+    let is_by_token = person.is_by_token();
+    show(&AccountPage { frame, tokens: person.tokens().await?, new, takes_passwords, is_by_token })
 }
 
 pub(super) async fn account(person: Person) -> Result<Html<String>, Problem> {

@@ -32,11 +32,12 @@ use askama::Template;
 use axum::{
     Router,
     extract::{Request, State},
-    http::{HeaderMap, HeaderValue, Method, StatusCode, header},
+    http::{HeaderMap, HeaderValue, Method, StatusCode, Uri, header, uri::PathAndQuery},
     middleware::Next,
     response::{Html, IntoResponse, Redirect, Response},
     routing,
 };
+use url::form_urlencoded::byte_serialize;
 
 /// A router, and the list of what is in it.
 macro_rules! pages {
@@ -210,22 +211,38 @@ struct ProblemPage {
 
 /// Turns refusals into pages, and shows the way in to who is not signed in.
 pub(super) async fn show_problems(State(_): State<App>, request: Request, next: Next) -> Response {
-    let asks = request.method() == Method::GET;
-    as_page(next.run(request).await, asks)
+    let wanted = (request.method() == Method::GET).then(|| request.uri().clone());
+    as_page(next.run(request).await, wanted.as_ref())
 }
 
-/// The answer where nothing is: a page for a browser.
-pub(super) async fn missing(method: Method, headers: HeaderMap) -> Response {
-    let answer = Problem::not_found("page").into_response();
+/// The answer where nothing is.
+pub(super) async fn missing(headers: HeaderMap) -> Response {
+    refusal(&headers, Problem::not_found("page"))
+}
+
+/// The answer to a method that an address does not take.
+pub(super) async fn wrong_method(method: Method, headers: HeaderMap) -> Response {
+    refusal(&headers, Problem::wrong_method(method.as_str()))
+}
+
+/// A refusal that no page has a part in: a page for a browser.
+pub(super) fn refusal(headers: &HeaderMap, problem: Problem) -> Response {
     let accepted = headers.get(header::ACCEPT).and_then(|value| value.to_str().ok()).unwrap_or_default();
-    if accepted.contains("text/html") { as_page(answer, method == Method::GET) } else { answer }
+    let answer = problem.into_response();
+    if accepted.contains("text/html") { as_page(answer, None) } else { answer }
 }
 
-/// A refusal as a page; other answers as they are.
-fn as_page(mut response: Response, asks: bool) -> Response {
+/// A refusal as a page; other answers as they are. Who is not signed in, and wanted a page, comes to it afterwards.
+fn as_page(mut response: Response, wanted: Option<&Uri>) -> Response {
     let Some(problem) = response.extensions_mut().remove::<Problem>() else { return response };
-    if asks && problem.status() == StatusCode::UNAUTHORIZED {
-        return see("/sign-in").into_response();
+    if let Some(wanted) = wanted.filter(|_| problem.status() == StatusCode::UNAUTHORIZED) {
+        let to = wanted.path_and_query().map_or("/", PathAndQuery::as_str);
+        let query = if to == "/" {
+            String::new()
+        } else {
+            format!("?to={}", byte_serialize(to.as_bytes()).collect::<String>())
+        };
+        return see(&format!("/sign-in{query}")).into_response();
     }
     let status = problem.status();
     match show(&ProblemPage { frame: Frame::nobody(), problem }) {

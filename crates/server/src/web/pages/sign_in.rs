@@ -2,7 +2,7 @@
 use super::{
     super::{
         guard::session_cookie,
-        input::{At, Fields},
+        input::{Asked, At, Fields},
         who::cookie_name,
     },
     Frame, see, show,
@@ -23,23 +23,44 @@ use serde::Deserialize;
 struct SignIn {
     frame: Frame,
     takes_passwords: bool,
+    /// The page to go on to.
+    to: String,
 }
 
 #[derive(Template)]
 #[template(path = "welcome.html")]
 struct Welcome {
     frame: Frame,
+    is_good: bool,
 }
 
 #[derive(Deserialize)]
 pub(super) struct Token {
     token: String,
+    #[serde(default)]
+    to: String,
 }
 
 #[derive(Deserialize)]
 pub(super) struct Password {
     login: String,
     password: String,
+    #[serde(default)]
+    to: String,
+}
+
+/// The page that somebody wanted who was not signed in.
+#[derive(Deserialize)]
+pub(super) struct Wanted {
+    #[serde(default)]
+    to: String,
+}
+
+/// A page of this server; the first one where the words name none. Browsers take `//` and `/\` for another host.
+fn local(to: &str) -> &str {
+    let is_local =
+        to.starts_with('/') && !to.starts_with("//") && to.bytes().all(|c| c.is_ascii_graphic() && c != b'\\');
+    if is_local { to } else { "/" }
 }
 
 /// A new session's cookie, and the way on.
@@ -55,23 +76,23 @@ pub(super) fn with_cookie(cookie: &str, to: &str) -> Response {
     response
 }
 
-pub(super) async fn page(visitor: Visitor) -> Result<Html<String>, Problem> {
-    show(&SignIn { frame: Frame::nobody(), takes_passwords: visitor.app.takes_passwords() })
+pub(super) async fn page(visitor: Visitor, Asked(Wanted { to }): Asked<Wanted>) -> Result<Html<String>, Problem> {
+    show(&SignIn { frame: Frame::nobody(), takes_passwords: visitor.app.takes_passwords(), to })
 }
 
 pub(super) async fn by_password(visitor: Visitor, Fields(form): Fields<Password>) -> Result<Response, Problem> {
     let session = visitor.sign_in_by_password(form.login.trim(), &form.password).await?;
-    Ok(enter(&visitor.app, &session, "/"))
+    Ok(enter(&visitor.app, &session, local(&form.to)))
 }
 
 pub(super) async fn by_token(visitor: Visitor, Fields(form): Fields<Token>) -> Result<Response, Problem> {
     let session = visitor.sign_in_by_token(form.token.trim()).await?;
-    Ok(enter(&visitor.app, &session, "/"))
+    Ok(enter(&visitor.app, &session, local(&form.to)))
 }
 
 /// Opening the link does nothing yet: mail programs open links, too.
-pub(super) async fn welcome(_: Visitor) -> Result<Html<String>, Problem> {
-    show(&Welcome { frame: Frame::nobody() })
+pub(super) async fn welcome(visitor: Visitor, At { secret, .. }: At) -> Result<Html<String>, Problem> {
+    show(&Welcome { frame: Frame::nobody(), is_good: visitor.is_link(&secret).await? })
 }
 
 pub(super) async fn by_link(visitor: Visitor, At { secret, .. }: At) -> Result<Response, Problem> {
@@ -88,4 +109,19 @@ pub(super) async fn sign_out(visitor: Visitor) -> Result<Response, Problem> {
         if secure { "; Secure" } else { "" }
     );
     Ok(with_cookie(&cookie, "/sign-in"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::local;
+
+    #[test]
+    fn the_way_on_leads_to_this_server_only() {
+        assert_eq!(local("/c/physics/a/m1?q=x"), "/c/physics/a/m1?q=x");
+        for other in
+            ["", "c", "//evil.example", "/\\evil.example", "https://evil.example/", "/\r\nX: y", "/\t/evil.example"]
+        {
+            assert_eq!(local(other), "/", "{other:?}");
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! One student's work, as staff sees it; and the table by which a class comes in.
 use super::{
     super::{
-        api::RequestWish,
+        api::{RequestWish, cell},
         input::{At, Fields},
     },
     Frame, heat, see,
@@ -114,9 +114,17 @@ pub(super) async fn mark(
     At { course: slug, id, .. }: At,
     Fields(form): Fields<NewMark>,
 ) -> Result<Redirect, Problem> {
-    let points = Some(form.points.trim()).filter(|points| !points.is_empty());
-    staff.mark(id, points, form.comment.trim()).await?;
+    let points = point(form.points.trim());
+    staff.mark(id, Some(points.as_str()).filter(|points| !points.is_empty()), form.comment.trim()).await?;
     Ok(see(&format!("/c/{slug}/s/{id}")))
+}
+
+/// A number with a decimal comma, `7,5`, with a point. Three digits behind a comma may be thousands.
+fn point(number: &str) -> String {
+    match number.split_once(',') {
+        Some((whole, part)) if (1..=2).contains(&part.len()) => format!("{whole}.{part}"),
+        _ => number.to_owned(),
+    }
 }
 
 pub(super) async fn request(
@@ -136,7 +144,7 @@ fn import_page(staff: &Staff, table: String, lines: Vec<Line>, is_done: bool) ->
     let is_wrong = lines.iter().any(|line| line.of.error.is_some());
     let mut writer = csv::Writer::from_writer(Vec::new());
     for line in &lines {
-        let cells = [&line.of.name, &line.of.login, &line.of.email, &line.of.role, &line.link];
+        let cells = [&line.of.name, &line.of.login, &line.of.email, &line.of.role, &line.link].map(|text| cell(text));
         writer.write_record(cells).map_err(|_| Problem::fault())?;
     }
     let bytes = writer.into_inner().map_err(|_| Problem::fault())?;

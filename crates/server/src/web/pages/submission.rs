@@ -79,10 +79,24 @@ pub(super) async fn submit(
     Ok(see(&format!("/c/{slug}/s/{}", submission.id)))
 }
 
+/// The assignment of a submission, where the member sees it.
+async fn find_assignment(member: &Member, submission: &Submission) -> Result<Option<Assignment>, Problem> {
+    Ok(member.assignments().await?.into_iter().find(|assignment| assignment.slug == submission.assignment))
+}
+
+/// The frame of a submission's pages.
+async fn frame(member: &Member, submission: &Submission) -> Result<Frame, Problem> {
+    let frame = match find_assignment(member, submission).await? {
+        Some(assignment) => Frame::assignment(member, &assignment.slug, &assignment.title),
+        None => Frame::course(member),
+    };
+    let address = format!("/c/{}/s/{}", member.course().slug, submission.id);
+    Ok(frame.then(address, &format!("Submission {}", submission.number)))
+}
+
 pub(super) async fn submission(member: Member, At { course: slug, id, .. }: At) -> Result<Html<String>, Problem> {
     let submission = member.submission(id).await?;
-    let frame = Frame::assignment(&member, &submission.assignment, &submission.title)
-        .then(format!("/c/{slug}/s/{id}"), &format!("Submission {}", submission.number));
+    let frame = frame(&member, &submission).await?;
     let has =
         |name: &str| submission.grade.as_ref().is_some_and(|grade| grade.files.iter().any(|file| file.name == name));
     let report = if has("report.txt") {
@@ -93,7 +107,11 @@ pub(super) async fn submission(member: Member, At { course: slug, id, .. }: At) 
     };
     let is_own = submission.login == member.account.login;
     let work = match is_own && !member.is_staff {
-        true => Some(OwnWork::of(&member, &member.assignment(&submission.assignment).await?).await?),
+        // Staff may have hidden the assignment again.
+        true => match find_assignment(&member, &submission).await? {
+            Some(assignment) => Some(OwnWork::of(&member, &assignment).await?),
+            None => None,
+        },
         false => None,
     };
     show(&SubmissionPage {
@@ -149,8 +167,7 @@ pub(super) async fn beside(
         Some(other) => Some(member.submission(other).await?),
         None => None,
     };
-    let frame = Frame::assignment(&member, &one.assignment, &one.title)
-        .then(format!("/c/{slug}/s/{id}"), &format!("Submission {}", one.number));
+    let frame = frame(&member, &one).await?;
     let shown = std::iter::once(one).chain(other).map(|one| {
         let page = page_of(&one);
         (one, page)

@@ -1,6 +1,7 @@
 //! The server as a process, spoken to over HTTP.
 
 mod again;
+mod answers;
 mod backup;
 mod collisions;
 mod crashes;

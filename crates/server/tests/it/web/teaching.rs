@@ -39,6 +39,11 @@ async fn a_class_comes_in_by_a_table(fresh: Fresh) {
     let link = page.split("<code>").nth(1).and_then(|rest| rest.split('<').next()).expect("a link");
     let ada = server.visitor().welcome(link.rsplit('/').next().expect("a secret"));
     assert_eq!(ada.get("/api/v1/me").expect(200).json()["login"], "ada");
+    // A name that a spreadsheet would take for a formula is text.
+    let page =
+        teacher.post_form("/c/physics/members/import", "table=%3D1%2B1,mallory%0A&import=yes").expect(200).text();
+    assert!(page.contains("data:text/csv;charset=utf-8,%27%3D1%2B1%2C"), "{page}");
+    teacher.send("DELETE", &format!("{path}/mallory"), &[], b"").expect(204);
     // Once more it makes nothing new.
     let again = teacher.send("POST", path, &csv, table.as_bytes()).expect(200).json();
     assert!(again[0]["link"].is_null() && again[0]["error"].is_null(), "{again}");
@@ -60,7 +65,9 @@ async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
     // The student asks, staff sees it and answers with other points.
     ada.post_form(&format!("/c/physics/s/{}/request", ids[1]), "text=The+scene+is+%3Cb%3Eodd%3C/b%3E").expect(303);
     eve.post_json(&format!("{}/request", place(ids[1])), r#"{"text": "me, too"}"#).expect(404);
+    ada.post_json(&format!("{}/request", place(ids[1])), r#"{"text": "Is anybody there?"}"#).expect(204);
     let class = teacher.get("/c/physics/a/m1/class").expect(200).text();
+    assert!(class.contains("Is anybody there?"), "{class}");
     assert!(class.contains("The scene is &#60;b&#62;odd"), "{class}");
     assert!(class.contains("<b>40 %</b>mean") && class.contains("40 to 50 %"), "{class}");
     teacher.send("PUT", &format!("{}/mark", place(ids[1])), JSON, br#"{"points": 10}"#).expect(409);
@@ -68,7 +75,7 @@ async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
         teacher.send("PUT", &format!("{}/mark", place(ids[1])), JSON, bad.as_bytes()).expect(400);
     }
     ada.send("PUT", &format!("{}/mark", place(ids[1])), JSON, br#"{"points": 100, "comment": "x"}"#).expect(403);
-    teacher.post_form(&format!("/c/physics/s/{}/mark", ids[1]), "points=68.5&comment=You+are+right").expect(303);
+    teacher.post_form(&format!("/c/physics/s/{}/mark", ids[1]), "points=68%2C5&comment=You+are+right").expect(303);
     assert_eq!(ada.get(&place(ids[1])).expect(200).json()["grade"]["points"], "68.5");
     let page = ada.get(&format!("/c/physics/s/{}", ids[1])).expect(200).text();
     assert!(page.contains("68.5 / 100 points") && page.contains("You are right"), "{page}");
