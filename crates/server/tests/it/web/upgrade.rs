@@ -9,7 +9,7 @@ use fosssim_server::{
 };
 
 /// Statements that take a database back to the tables of the first version, with an account in it.
-const BACK_TO_THE_FIRST: [&str; 76] = [
+const BACK_TO_THE_FIRST: [&str; 79] = [
     "DROP INDEX job_token",
     "DROP INDEX job_buried",
     "DROP INDEX job_cancelled",
@@ -18,6 +18,9 @@ const BACK_TO_THE_FIRST: [&str; 76] = [
     "DROP INDEX result_campaign",
     "DROP INDEX job_campaign",
     "DROP TABLE tally",
+    "DROP TABLE numbering",
+    "ALTER TABLE grade_change DROP COLUMN given",
+    "ALTER TABLE job DROP COLUMN asked_by",
     "ALTER TABLE result DROP COLUMN failed",
     "ALTER TABLE job DROP COLUMN scenes",
     "ALTER TABLE job DROP COLUMN scenes_done",
