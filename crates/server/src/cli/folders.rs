@@ -4,11 +4,11 @@ use crate::{
     db::{Address, Database},
     store::Store,
 };
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Error, Result, anyhow, bail};
 use std::{
     fs,
     os::unix::fs::{DirBuilderExt, PermissionsExt},
-    path::PathBuf,
+    path::{Path, PathBuf},
 };
 
 /// The data folder's parts.
@@ -26,6 +26,25 @@ pub(super) struct Folders {
 }
 
 impl Folders {
+    /// The data folder of a server that was here; makes none.
+    pub(super) fn find(place: &Place) -> Result<Self> {
+        if !place.data.exists() {
+            return Err(missing("data folder", &place.data));
+        }
+        Self::find_database(place)
+    }
+
+    /// The same for who needs the database only, which may be elsewhere.
+    pub(super) fn find_database(place: &Place) -> Result<Self> {
+        if place.database.is_none() && !place.data.exists() {
+            return Err(missing("data folder", &place.data));
+        }
+        match database(place, &place.data) {
+            Address::Sqlite(file) if !file.is_file() => Err(missing("database", &file)),
+            _ => Self::open(place),
+        }
+    }
+
     /// Makes the data folder, or checks that it is the server's alone.
     pub(super) fn open(place: &Place) -> Result<Self> {
         let data = std::path::absolute(&place.data)?;
@@ -41,6 +60,9 @@ impl Folders {
         if !metadata.is_dir() {
             bail!("{} is no folder: name the server's own folder by --data", data.display());
         }
+        tempfile::tempfile_in(data).with_context(|| {
+            format!("cannot write in {}: name a folder of the server's own by --data", data.display())
+        })?;
         let mode = metadata.permissions().mode();
         if mode & 0o077 != 0 {
             tracing::warn!(folder = %data.display(), "others can read the data folder: chmod 700 it");
@@ -76,6 +98,14 @@ impl Folders {
 
     /// The database that was asked for, or the one in the data folder.
     pub(super) fn database(&self, place: &Place) -> Address {
-        place.database.clone().unwrap_or_else(|| Address::Sqlite(self.data.join("fosssim.db")))
+        database(place, &self.data)
     }
+}
+
+fn database(place: &Place, data: &Path) -> Address {
+    place.database.clone().unwrap_or_else(|| Address::Sqlite(data.join("fosssim.db")))
+}
+
+fn missing(what: &str, path: &Path) -> Error {
+    anyhow!("there is no {what} {}: start the server once, or name its folder by --data", path.display())
 }

@@ -10,7 +10,10 @@ const PATIENCE: Duration = Duration::from_secs(5);
 pub(super) fn run(arguments: &Health) -> bool {
     let Some(server) = &arguments.server else {
         let alive = heartbeat::is_alive(&arguments.data);
-        println!("{}", if alive { "alive" } else { "no sign of life" });
+        match alive {
+            true => println!("alive"),
+            false => println!("no sign of life lately of a server or worker with --data {}", arguments.data.display()),
+        }
         return alive;
     };
     let agent: ureq::Agent = ureq::Agent::config_builder().timeout_global(Some(PATIENCE)).build().into();

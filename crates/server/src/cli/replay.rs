@@ -40,7 +40,7 @@ impl Past {
 /// Whether all results are the same.
 pub(super) async fn run(arguments: &ReplayArguments) -> Result<bool> {
     let stop = until_signalled()?;
-    let folders = Folders::open(&arguments.place)?;
+    let folders = Folders::find(&arguments.place)?;
     let (database, address) = folders.open_database(&arguments.place).await?;
     if db::version(&database).await? != db::LATEST {
         bail!("the tables of {address} are not those of this version: start the server first");
@@ -56,7 +56,11 @@ pub(super) async fn run(arguments: &ReplayArguments) -> Result<bool> {
     let rows = transaction
         .rows(statement, values![arguments.submission, arguments.result, arguments.result.is_none(), JUDGE_ERROR])
         .await?;
+    let known = transaction.row("SELECT id FROM submission WHERE id = ?", values![arguments.submission]).await?;
     drop(transaction);
+    if known.is_none() {
+        bail!("there is no submission {}: its number stands in the address of its page", arguments.submission);
+    }
     if rows.is_empty() {
         bail!("submission {} has no such result", arguments.submission);
     }

@@ -43,6 +43,10 @@ const GIVE_UP_EVERY: Duration = Duration::from_secs(DAY / 4);
 
 pub(super) async fn run(arguments: &Serve) -> Result<()> {
     let stop = until_signalled()?;
+    // First of all: a server that can't listen leaves nothing behind.
+    let listener = tokio::net::TcpListener::bind(arguments.listen).await.with_context(|| {
+        format!("cannot listen on {}; name another place by --listen ADDRESS:PORT", arguments.listen)
+    })?;
     let folders = Folders::open(&arguments.place)?;
     let (database, address) = folders.open_database(&arguments.place).await?;
     bring_up_to_date(&database, &folders, &address).await?;
@@ -51,9 +55,6 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
     let notifier = Notifier::default();
     tokio::spawn(notifier.clone().listen(database.clone(), arguments.place.database_direct.clone()));
     tokio::spawn(access::work_on_regrades(database.clone(), notifier.clone(), stop.clone()));
-    let listener = tokio::net::TcpListener::bind(arguments.listen)
-        .await
-        .with_context(|| format!("cannot listen on {}", arguments.listen))?;
     let local = format!("http://{}", listener.local_addr()?);
     let public = arguments.public_url.clone().unwrap_or_else(|| local.clone());
     let policy = policy(&arguments.work);
@@ -238,11 +239,7 @@ fn clear_incoming(folder: &PathBuf) -> Result<()> {
 }
 
 pub(super) async fn admin_link(arguments: &AdminLink) -> Result<()> {
-    let data = &arguments.place.data;
-    if !data.is_dir() {
-        bail!("there is no data folder {}: start the server once, or name its folder by --data", data.display());
-    }
-    let folders = Folders::open(&arguments.place)?;
+    let folders = Folders::find(&arguments.place)?;
     let (database, _) = folders.open_database(&arguments.place).await?;
     let store = folders.store(&arguments.place)?;
     let options = Options { public: arguments.public_url.clone(), incoming: folders.incoming, ..Options::default() };

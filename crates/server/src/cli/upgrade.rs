@@ -1,20 +1,14 @@
 //! `upgrade`: what a newer program would change in the tables, and that change with a backup before. Starting the
 //! server does the same, but for PostgreSQL's backup.
 use super::{arguments::Upgrade, backup, folders::Folders};
-use crate::db::{self, Address, Database};
+use crate::db;
 use anyhow::{Context, Result, bail};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Whether the tables are up to date (now).
 pub(super) async fn run(arguments: &Upgrade) -> Result<bool> {
-    let folders = Folders::open(&arguments.place)?;
-    let address = folders.database(&arguments.place);
-    if let Address::Sqlite(file) = &address
-        && !file.is_file()
-    {
-        bail!("there is no database {}", file.display());
-    }
-    let database = Database::open(&address).await.with_context(|| format!("database {address}"))?;
+    let folders = Folders::find_database(&arguments.place)?;
+    let (database, address) = folders.open_database(&arguments.place).await?;
     let version = db::version(&database).await?;
     if version > db::LATEST {
         bail!(

@@ -28,7 +28,7 @@ pub(super) async fn run(arguments: &WorkerArguments) -> Result<()> {
         };
         return work_for(server, file, arguments, stop).await;
     }
-    let folders = Folders::open(&arguments.place)?;
+    let folders = Folders::find_database(&arguments.place)?;
     let (database, address) = folders.open_database(&arguments.place).await?;
     if db::version(&database).await? != db::LATEST {
         bail!(

@@ -2,6 +2,7 @@
 
 mod bench;
 mod campaigns;
+mod command_line;
 mod deploy;
 mod migrations;
 mod notifier;

@@ -30,11 +30,7 @@ const PAGE: i64 = 5000;
 
 /// Copies everything into a new folder, while the server runs.
 pub(super) async fn backup(arguments: &Backup) -> Result<bool> {
-    let data = &arguments.place.data;
-    if !data.is_dir() {
-        bail!("there is no data folder {}", data.display());
-    }
-    let folders = Folders::open(&arguments.place)?;
+    let folders = Folders::find(&arguments.place)?;
     let address = folders.database(&arguments.place);
     let made = make(&folders.store(&arguments.place)?, &address, &arguments.output).await?;
     let Artefacts { count, bytes } = made.0.artefacts;
