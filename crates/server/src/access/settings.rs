@@ -8,7 +8,8 @@ use crate::{
     task::{Form, Input, Suite, Task},
 };
 use serde::{Deserialize, Deserializer, Serialize, de::Error};
-use std::ops::RangeInclusive;
+use serde_json::{Map, Value};
+use std::{collections::BTreeSet, ops::RangeInclusive};
 use utoipa::{
     ToSchema,
     openapi::{KnownFormat, ObjectBuilder, OneOfBuilder, Schema, SchemaFormat, Type},
@@ -123,6 +124,25 @@ impl Settings {
             tracing::error!(%error, "the settings of an assignment can't be read");
             Problem::fault()
         })
+    }
+
+    /// The settings that are others than before, in words.
+    pub(super) fn changes(&self, before: &Self) -> String {
+        let fields = |settings: &Self| match serde_json::to_value(settings) {
+            Ok(Value::Object(fields)) => fields,
+            _ => Map::new(),
+        };
+        let (new, old) = (fields(self), fields(before));
+        let names: BTreeSet<&String> = new.keys().chain(old.keys()).collect();
+        let words = |name: &String| match (name.as_str(), new.get(name)) {
+            (_, None) => format!("no {name}"),
+            ("due_at", Some(Value::Number(due))) => {
+                format!("{name} {} UTC", calendar::minute(due.as_i64().unwrap_or_default()))
+            }
+            (_, Some(Value::String(text))) => format!("{name} {text}"),
+            (_, Some(value)) => format!("{name} {value}"),
+        };
+        names.into_iter().filter(|name| new.get(*name) != old.get(*name)).map(words).collect::<Vec<_>>().join(", ")
     }
 
     /// As the database keeps them.

@@ -78,8 +78,8 @@ impl Staff {
         let was_visible = before.as_ref().map(|row| row.flag("visible")).transpose()?;
         let visible = visible.or(was_visible).unwrap_or_default();
         let before = before.map(|row| row.text("settings")).transpose()?;
-        let before = before.and_then(|text| Settings::read(&text).ok());
-        let settings = settings.cloned().or_else(|| before.clone()).unwrap_or_default().checked(&self.app.suites)?;
+        let before = before.and_then(|text| Settings::read(&text).ok()).unwrap_or_default();
+        let settings = settings.unwrap_or(&before).checked(&self.app.suites)?;
         if let Some(digest) = settings.suite_archive.as_ref().and_then(|digest| digest.parse().ok())
             && !self.app.0.store.has(&digest).await?
         {
@@ -96,12 +96,16 @@ impl Staff {
         let row = transaction.one(statement, values![self.course, slug, title, visible, settings.text()]).await?;
         let assignment = view::read_assignment(&row)?;
         // Late submissions may be worth something else now.
-        if before.is_some_and(|before| before.late_policy() != settings.late_policy()) {
+        if before.late_policy() != settings.late_policy() {
             score::send_all(&mut transaction, assignment.id, false).await?;
         }
         // A job that waits because nothing could be graded is tried by the new settings.
         bulk::resume(&mut transaction, &assignment).await?;
-        let text = format!("{slug} ({title}), {}: {}", if visible { "visible" } else { "hidden" }, settings.text());
+        let mut text = format!("{slug} ({title}), {}", if visible { "visible" } else { "hidden" });
+        let changes = settings.changes(&before);
+        if !changes.is_empty() {
+            text = format!("{text}: {changes}");
+        }
         self.note(&mut transaction, "assignment", Some(assignment.id), &text).await?;
         transaction.commit().await?;
         Ok(assignment)
@@ -125,15 +129,31 @@ impl Staff {
         view::read_assignment(&row)
     }
 
-    /// Stores an archive with a suite and makes it the assignment's. Submissions from now on are graded by it.
+    /// Stores an archive with a suite and makes it the assignment's. Submissions from now on are graded by it. Groups
+    /// that it hides were not meant when others were published.
     ///
     /// # Errors
     /// When there is no such assignment, or the store fails.
-    pub async fn set_suite(&self, slug: &str, archive: &Path) -> Result<Assignment, Problem> {
+    pub async fn set_suite(&self, slug: &str, archive: &Path, hides: bool) -> Result<Assignment, Problem> {
         let assignment = self.assignment(slug).await?;
         let artefact = self.app.0.store.put_file(archive).await?;
+        if hides && assignment.published_at.is_some() {
+            self.publish(slug, false).await?;
+        }
         let settings = Settings { suite_archive: Some(artefact.digest.to_string()), ..assignment.settings };
         self.set_assignment(slug, &assignment.title, None, Some(&settings)).await
+    }
+
+    /// Whether something that was handed in to an assignment was graded by a suite that hides groups.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn hides(&self, assignment: &Assignment) -> Result<bool, Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        // Of what older versions graded nobody may have looked yet.
+        let statement = "SELECT result.id FROM submission JOIN result ON result.submission = submission.id
+            WHERE submission.assignment = ? AND coalesce(result.shown, 'unknown') <> '' AND result.code <> 'JE' LIMIT 1";
+        Ok(transaction.row(statement, values![assignment.id]).await?.is_some())
     }
 
     /// How all students stand in an assignment.

@@ -53,6 +53,7 @@ pub(super) struct Extension {
 }
 
 /// Uploads an archive (zip, 7z, tar, tar.gz, tar.xz, tar.bz2) with a `suite.toml` at its top as the assignment's suite.
+/// Groups that it hides are withheld, also where others were published.
 #[utoipa::path(put, path = "/api/v1/courses/{course}/assignments/{assignment}/suite", tag = "assignments",
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),
     responses((status = 200, body = Assignment)))]
@@ -74,16 +75,16 @@ pub(in crate::web) async fn receive_suite(
     let app = &staff.app;
     let (path, incoming) = (received.file.to_path_buf(), app.incoming.clone());
     let looked = tokio::task::spawn_blocking(move || unpack_suite(&path, &incoming)).await;
-    let folder = looked.map_err(|_| Problem::fault())??;
+    let (folder, hides) = looked.map_err(|_| Problem::fault())??;
     if let Some(grader) = app.grader.as_deref() {
         worker::check_suite(grader, folder.path()).await.map_err(Problem::no_suite)?;
     }
-    staff.set_suite(assignment, &received.file).await
+    staff.set_suite(assignment, &received.file, hides).await
 }
 
 /// Unpacks an archive with a suite that keeps to itself: its scenes lie in the archive, or come with the program. A
-/// worker would read any other file of its machine for it.
-fn unpack_suite(archive: &Path, incoming: &Path) -> Result<tempfile::TempDir, Problem> {
+/// worker would read any other file of its machine for it. Also whether it hides groups.
+fn unpack_suite(archive: &Path, incoming: &Path) -> Result<(tempfile::TempDir, bool), Problem> {
     if std::fs::metadata(archive)?.len() == 0 {
         return Err(Problem::no_suite("the file is empty"));
     }
@@ -95,14 +96,16 @@ fn unpack_suite(archive: &Path, incoming: &Path) -> Result<tempfile::TempDir, Pr
     };
     let suite: toml::Table =
         text.parse().map_err(|error| Problem::no_suite(format!("suite.toml is not understood: {error}")))?;
-    let groups = suite.get("group").and_then(toml::Value::as_array).into_iter().flatten();
-    let scenes = groups.filter_map(|group| group.get("scenes")?.as_array()).flatten().filter_map(toml::Value::as_str);
+    let groups = || suite.get("group").and_then(toml::Value::as_array).into_iter().flatten();
+    let hides =
+        groups().filter_map(|group| group.get("visibility")?.as_str()).any(|visibility| visibility != "visible");
+    let scenes = groups().filter_map(|group| group.get("scenes")?.as_array()).flatten().filter_map(toml::Value::as_str);
     for scene in scenes {
         if scene.starts_with('/') || scene.split('/').any(|part| part == "..") {
             return Err(Problem::no_suite(format!("the scene {scene} does not lie in the archive")));
         }
     }
-    Ok(folder)
+    Ok((folder, hides))
 }
 
 /// The class's grades as a table (`csv`, one line per student) or all submissions as JSON lines (`jsonl`).

@@ -36,6 +36,8 @@ struct ClassPage {
     statistics: Option<Statistics>,
     heat: Heat,
     grading: GradingFields,
+    /// Whether students see less than staff until it is published.
+    hides: bool,
 }
 
 #[derive(Template)]
@@ -119,6 +121,7 @@ pub(super) async fn class(
     let results: Vec<i64> =
         standings.iter().filter_map(|one| Some(one.counts.as_ref()?.grade.as_ref()?.result)).collect();
     let heat = Heat::of(&standings, &staff.failed_scenes(&results).await?);
+    let hides = staff.hides(&assignment).await?;
     show(&ClassPage {
         frame,
         slug,
@@ -135,6 +138,7 @@ pub(super) async fn class(
         statistics,
         heat,
         grading,
+        hides,
     })
 }
 

@@ -120,6 +120,19 @@ fn a_suite_that_can_t_work_is_refused() {
         let assignment = admin.get("/api/v1/courses/physics/assignments/m1").expect(200).json();
         assert!(assignment["settings"]["suite_archive"].is_null(), "{assignment}");
         admin.send("PUT", path, &[], &suite("title = 'whole'")).expect(200);
+        let audit = admin.get("/api/v1/courses/physics/audit").expect(200).text();
+        assert!(
+            audit.contains("m1 (Milestone one), visible: suite_archive ") && !audit.contains("max_bytes"),
+            "{audit}"
+        );
+        // Groups that it hides are not those that were published.
+        let published =
+            || admin.get("/api/v1/courses/physics/assignments/m1").expect(200).json()["published_at"].clone();
+        admin.send("PUT", "/api/v1/courses/physics/assignments/m1/published", &[], b"").expect(200);
+        admin.send("PUT", path, &[], &suite("[[group]]\nvisibility = 'visible'")).expect(200);
+        assert!(published().is_i64(), "it hides nothing");
+        admin.send("PUT", path, &[], &suite("[[group]]\nvisibility = 'hidden'")).expect(200);
+        assert!(published().is_null());
     });
 }
 

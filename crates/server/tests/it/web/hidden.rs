@@ -19,9 +19,10 @@ async fn reports_that_tell_of_hidden_groups_are_for_staff(fresh: Fresh) {
     let ada = server.member(&admin, "physics", "ada", "student");
     let hidden = ada.submit("physics", b"#!grade WA 40 Secret/scene 3\n");
     let open = ada.submit("physics", b"#!grade WA 40 Group/scene 3\n");
-    for id in [hidden, open] {
-        ada.wait_for_grade("physics", id);
-    }
+    let class = || teacher.get("/c/physics/a/m1/class").expect(200).text();
+    ada.wait_for_grade("physics", hidden);
+    assert!(class().contains("Publish hidden groups"), "{}", class());
+    ada.wait_for_grade("physics", open);
     for name in ["grade.json", "report.txt"] {
         for place in ["api/v1/courses/physics/submissions", "c/physics/s"] {
             let path = |id: i64| match place {
@@ -135,7 +136,9 @@ async fn the_page_for_staff_is_for_staff(fresh: Fresh) {
     server.course(&admin, "physics");
     let teacher = server.member(&admin, "physics", "teacher", "staff");
     let ada = server.member(&admin, "physics", "ada", "student");
-    for scene in ["Secret/scene", "Group/scene"] {
+    for scene in ["Group/scene", "Secret/scene"] {
+        let class = teacher.get("/c/physics/a/m1/class").expect(200).text();
+        assert!(!class.contains("Publish hidden groups"), "nothing is hidden yet: {class}");
         let id = ada.submit("physics", format!("#!grade WA 40 {scene} 3\n").as_bytes());
         ada.wait_for_grade("physics", id);
         for path in [format!("/c/physics/s/{id}/report/"), format!("/api/v1/courses/physics/submissions/{id}/files/")] {
