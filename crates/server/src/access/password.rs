@@ -136,7 +136,7 @@ fn network(address: IpAddr) -> IpAddr {
 impl App {
     /// The parts that passwords need, where passwords are allowed.
     fn passwords(&self) -> Result<&Passwords, Problem> {
-        self.passwords.as_ref().ok_or_else(|| Problem::no_passwords())
+        self.passwords.as_ref().ok_or_else(Problem::no_passwords)
     }
 
     /// Whether people may sign in with a password.

@@ -1,5 +1,5 @@
 //! The rules for every request: where it may come from, what answers say to browsers, and what is logged.
-use super::{pages, who};
+use super::who;
 use crate::{access::App, problem::Problem};
 use axum::{
     extract::{MatchedPath, Request, State},
@@ -33,7 +33,7 @@ pub(super) async fn same_site(State(app): State<App>, request: Request, next: Ne
     if request.uri().path().starts_with("/api/") && who::secrets(request.headers(), app.is_secure()).session.is_none() {
         return Problem::not_signed_in().into_response();
     }
-    pages::refusal(request.headers(), Problem::cross_site())
+    Problem::cross_site().into_response()
 }
 
 /// Sends a session's cookie again when it lasts longer from now on.

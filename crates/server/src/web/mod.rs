@@ -50,6 +50,7 @@ pub fn router(app: App) -> Router {
         // Anybody who reads a body counts it: what is allowed differs.
         .layer(DefaultBodyLimit::disable())
         .layer(middleware::from_fn_with_state(app.clone(), guard::same_site))
+        .layer(middleware::from_fn(pages::show_others))
         .layer(middleware::from_fn_with_state(app.clone(), guard::renew))
         .layer(middleware::from_fn_with_state(app.clone(), guard::headers))
         .layer(middleware::from_fn_with_state(app.clone(), guard::log))

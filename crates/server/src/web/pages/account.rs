@@ -20,6 +20,8 @@ struct Home {
     name: String,
     courses: Vec<CourseOf>,
     invitations: Vec<Invitation>,
+    /// Whether they came in by a token, which makes no further ways in.
+    is_by_token: bool,
 }
 
 #[derive(Template)]
@@ -28,6 +30,7 @@ struct InvitationPage {
     frame: Frame,
     secret: String,
     invitation: Invitation,
+    is_by_token: bool,
 }
 
 #[derive(Template)]
@@ -37,20 +40,21 @@ struct AccountPage {
     tokens: Vec<TokenInfo>,
     new: Option<String>,
     takes_passwords: bool,
-    /// Whether they came in by a token, which makes no further ways in.
     is_by_token: bool,
 }
 
 pub(super) async fn home(person: Person) -> Result<Html<String>, Problem> {
     let account = &person.account;
     let (courses, invitations) = (person.courses().await?, person.invitations().await?);
-    show(&Home { frame: Frame::of(account), name: account.name.clone(), courses, invitations })
+    let (name, is_by_token) = (account.name.clone(), person.is_by_token());
+    show(&Home { frame: Frame::of(account), name, courses, invitations, is_by_token })
 }
 
 /// Opening the link does nothing yet.
 pub(super) async fn invitation(person: Person, At { secret, .. }: At) -> Result<Html<String>, Problem> {
     let invitation = person.invitation(&secret).await?;
-    show(&InvitationPage { frame: Frame::of(&person.account), secret, invitation })
+    let is_by_token = person.is_by_token();
+    show(&InvitationPage { frame: Frame::of(&person.account), secret, invitation, is_by_token })
 }
 
 pub(super) async fn accept_by_link(person: Person, At { secret, .. }: At) -> Result<Redirect, Problem> {

@@ -32,7 +32,7 @@ use askama::Template;
 use axum::{
     Router,
     extract::{Request, State},
-    http::{HeaderMap, HeaderValue, Method, StatusCode, Uri, header, uri::PathAndQuery},
+    http::{HeaderValue, Method, StatusCode, Uri, header, uri::PathAndQuery},
     middleware::Next,
     response::{Html, IntoResponse, Redirect, Response},
     routing,
@@ -215,21 +215,23 @@ pub(super) async fn show_problems(State(_): State<App>, request: Request, next: 
     as_page(next.run(request).await, wanted.as_ref())
 }
 
+/// Turns refusals that no page has a part in into pages, for browsers.
+pub(super) async fn show_others(request: Request, next: Next) -> Response {
+    let accepted = request.headers().get(header::ACCEPT).and_then(|value| value.to_str().ok());
+    let is_browser = accepted.is_some_and(|accepted| accepted.contains("text/html"));
+    let wants_page = is_browser && !request.uri().path().starts_with("/api/");
+    let answer = next.run(request).await;
+    if wants_page { as_page(answer, None) } else { answer }
+}
+
 /// The answer where nothing is.
-pub(super) async fn missing(headers: HeaderMap) -> Response {
-    refusal(&headers, Problem::not_found("page"))
+pub(super) async fn missing() -> Problem {
+    Problem::not_found("page")
 }
 
 /// The answer to a method that an address does not take.
-pub(super) async fn wrong_method(method: Method, headers: HeaderMap) -> Response {
-    refusal(&headers, Problem::wrong_method(method.as_str()))
-}
-
-/// A refusal that no page has a part in: a page for a browser.
-pub(super) fn refusal(headers: &HeaderMap, problem: Problem) -> Response {
-    let accepted = headers.get(header::ACCEPT).and_then(|value| value.to_str().ok()).unwrap_or_default();
-    let answer = problem.into_response();
-    if accepted.contains("text/html") { as_page(answer, None) } else { answer }
+pub(super) async fn wrong_method(method: Method) -> Problem {
+    Problem::wrong_method(method.as_str())
 }
 
 /// A refusal as a page; other answers as they are. Who is not signed in, and wanted a page, comes to it afterwards.

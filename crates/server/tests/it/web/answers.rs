@@ -1,4 +1,4 @@
-//! What people are told: which file an assignment takes, when they may go on, and where they get from here.
+//! The words that people are told: which file an assignment takes, when they may go on, and where they get from here.
 use crate::support::{
     engines::{Fresh, on_both_engines},
     server::{Answer, Client, JSON, Server, program},
