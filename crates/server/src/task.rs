@@ -115,9 +115,9 @@ pub struct Outcome<F = OutputFile> {
     #[schema(max_items = 1000)]
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub wrong: Vec<WrongScene>,
-    /// How long it took, in seconds.
+    /// How long it took, in seconds; missing while groups are withheld.
     #[schema(value_type = Decimal)]
-    #[serde(skip_serializing_if = "String::is_empty")]
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub seconds: String,
     /// Reports and logs; empty in lists.
     pub files: Vec<F>,

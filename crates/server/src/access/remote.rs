@@ -133,7 +133,8 @@ impl Remote {
         if !short(&outcome.code) || outcome.code == crate::task::JUDGE_ERROR {
             return Err(Problem::invalid("the verdict's code is none"));
         }
-        for number in [&outcome.points, &outcome.max_points, &Some(outcome.seconds.clone())].into_iter().flatten() {
+        let seconds = Some(outcome.seconds.clone()).filter(|seconds| !seconds.is_empty());
+        for number in [&outcome.points, &outcome.max_points, &seconds].into_iter().flatten() {
             let is_number = number.parse::<f64>().is_ok_and(f64::is_finite)
                 && number.len() <= 40
                 && number.bytes().all(|c| c.is_ascii_digit() || b"+-.eE".contains(&c));

@@ -209,7 +209,7 @@ async fn a_worker_reaches_the_jobs_that_it_holds_and_nothing_else(fresh: Fresh) 
     let finish = |code: &str, points: &str, name: &str, digest: &str| {
         let outcome = format!(
             r#"{{"lease": {lease}, "outcome": {{"verdict": "w", "code": "{code}", "points": "{points}",
-                "max_points": "100", "summary": "s", "version": "1", "seconds": "1",
+                "max_points": "100", "summary": "s", "version": "1",
                 "files": [{{"name": "{name}", "media_type": "text/html", "digest": "{digest}", "size": 1}}]}}}}"#
         );
         worker.send("POST", "/api/v1/worker/finish", JSON, outcome.as_bytes())
