@@ -59,7 +59,7 @@ for (const name of Object.keys(CASES)) {
 test("without script the essentials are there", async () => {
   const { page, close } = await open(report("polynomial"), { script: false });
   const text = await page.locator("main").innerText();
-  for (const words of [/WRONG ANSWER/, /Likely mistake/, /Where it goes wrong first/, /differs/, /needs JavaScript/]) assert.match(text, words);
+  for (const words of [/wrong answer/, /Likely mistake/, /Where it goes wrong first/, /differs/, /needs JavaScript/]) assert.match(text, words);
   assert.ok((await page.locator("figure svg").count()) >= 1);
   await close();
 });
@@ -124,7 +124,20 @@ test("the picture stands in the first screen, near the difference, and no width 
   assert.ok((await picture()) !== near);
   await page.keyboard.press("z");
   assert.ok((await picture()) === near);
-  // All keys are listed, and ? folds the list.
+  // A pointer drags along the timeline; what is shown stands under it, and keys go on from there.
+  const strip = await page.locator("canvas.strip").boundingBox(), steps = Number(await page.locator(".stepbox").getAttribute("max"));
+  const over = (step) => [strip.x + (strip.width * (step - 0.5)) / steps, strip.y + 10];
+  await page.mouse.move(...over(2));
+  await page.mouse.down();
+  assert.equal(await page.locator(".stepbox").inputValue(), "2");
+  await page.mouse.move(...over(5));
+  await page.mouse.up();
+  assert.equal(await page.locator(".stepbox").inputValue(), "5");
+  await page.keyboard.press("ArrowRight");
+  assert.equal(await page.locator(".stepbox").inputValue(), "6");
+  // ? lists all keys, and folds the list.
+  assert.equal(await page.locator(".keys").isVisible(), false);
+  await page.keyboard.press("?");
   assert.match(await page.locator(".keys").innerText(), /next wrong step.*side by side/s);
   await page.keyboard.press("?");
   assert.equal(await page.locator(".keys").isVisible(), false);
@@ -147,6 +160,9 @@ test("letters of charts are no smaller on a phone", async () => {
   const { page, close } = await open(report("failsafe"));
   for (const width of [1440, 390]) {
     await page.setViewportSize({ width, height: 844 });
+    // Nothing is scrolled out of sight.
+    const cut = await page.evaluate(() => [...document.querySelectorAll("figure, .scroll, .bar")].filter((box) => box.scrollWidth > box.clientWidth + 1).map((box) => box.outerHTML.slice(0, 120)));
+    assert.deepEqual(cut, [], `${width}`);
     const size = await page.locator("figure .fp text").first().evaluate((text) => text.getBoundingClientRect().height);
     assert.ok(size > 9 && size < 20, `${width}: ${size}`);
   }

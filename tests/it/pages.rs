@@ -149,7 +149,8 @@ fn pages_to_hand_out_hold_no_hidden_group() {
     words.splice(0..0, ["grade", "--suite", "veils.toml", "--output", "class", "--for", "student"].map(str::to_owned));
     let run = workspace.run(&words);
     assert_eq!(run.code, Some(1), "{}", run.shown());
-    for (mistake, shown) in [("pp-contact-reversed", "WRONG ANSWER"), ("pe-linear-one-ab", "ACCEPTED")] {
+    for (mistake, shown) in [("pp-contact-reversed", "wrong answer</span> "), ("pe-linear-one-ab", "accepted</span> ")]
+    {
         let file = format!("fosssim-sample.{mistake}.html");
         let student = text(&workspace, &format!("class/students/{file}"));
         let staff = text(&workspace, &format!("class/reports/{file}"));

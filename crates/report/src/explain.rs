@@ -101,10 +101,15 @@ fn others(keys: &[String]) -> Option<String> {
     let more = more.len() + keys.len() - named.len();
     match (shown.is_empty(), more) {
         (true, 0) => None,
-        (true, more) => Some(format!("can't be told apart here from {}", counted(more as u64, "other formula"))),
-        (false, 0) => Some(format!("can't be told apart here from: {}", shown.join(" "))),
-        (false, more) => Some(format!("can't be told apart here from: {} And {more} more.", shown.join(" "))),
+        (true, more) => Some(format!("Can't be told apart here from {}", counted(more as u64, "other formula"))),
+        (false, 0) => Some(format!("Can't be told apart here from: {}.", listed(shown))),
+        (false, more) => Some(format!("Can't be told apart here from: {}; and {more} more.", listed(shown))),
     }
+}
+
+/// Sentences in a row, of which each may hold a colon.
+fn listed(sentences: &[String]) -> String {
+    sentences.iter().map(|one| one.trim_end_matches('.')).collect::<Vec<_>>().join("; ")
 }
 
 fn of_example(example: &Example) -> Vec<String> {
@@ -251,7 +256,7 @@ pub(crate) mod tests {
         insta::assert_snapshot!(lines(&explanations()).join("\n"), @r"
         likely mistake: Particle-edge: The sum of the radii is not squared. (in 11 of 12 differing steps tried)
           t^2: i R^2 has weight 0, expected 1 (i = d32.d32)
-          can't be told apart here from 5 other formulas
+          Can't be told apart here from 5 other formulas
           example: step 3, particle 3 and edge 1, pass 0, overlap polynomial
             given     x1 = (0.5, -1), re = 0.25
             expected  1, -0.125
@@ -298,7 +303,7 @@ pub(crate) mod tests {
         let mut one = explanations().swap_remove(0);
         let other = Detail::Polynomial(PolynomialDetail::Alternative(weights(one.clone())));
         one.details.push(other);
-        assert!(details(&one)[1].starts_with("can't be told apart"));
+        assert!(details(&one)[1].starts_with("Can't be told apart"));
         one.details.insert(0, Detail::Term("pe-radius-not-squared".into()));
         let row = find("pe-radius-not-squared").expect("a row");
         assert_eq!(details(&one), [row.term, "t^2: i R^2 has weight 0, expected 1 (i = d32.d32)"]);

@@ -241,7 +241,8 @@ impl Sheet {
             self.text([x + 32.0, base], Anchor::Start, Tone::Plain, name);
             #[expect(clippy::cast_precision_loss, reason = "names are short")]
             let wide = name.chars().count() as f64;
-            x += 52.0 + 6.5 * wide;
+            // Small screens show larger letters.
+            x += 48.0 + 9.0 * wide;
         }
     }
 }

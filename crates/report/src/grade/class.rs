@@ -53,7 +53,7 @@ pub fn class(grades: &[Grade], most: usize, style: Style) -> String {
 }
 
 /// `30 submissions, 12 accepted; mean 63.2, median 71, from 0 to 100 of 100 points; 2 without points`.
-pub(crate) fn head(grades: &[Grade]) -> String {
+fn head(grades: &[Grade]) -> String {
     let accepted = grades.iter().filter(|grade| grade.verdict.is_accepted()).count();
     let mut text = format!("{}, {accepted} accepted", counted(grades.len() as u64, "submission"));
     let mut reached: Vec<f64> = grades.iter().filter_map(|grade| grade.points).collect();

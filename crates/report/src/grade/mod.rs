@@ -135,7 +135,7 @@ fn page(grade: &Grade) -> String {
 }
 
 pub use class::class;
-pub(crate) use class::{hardest, head as class_head};
+pub(crate) use class::hardest;
 pub use csv_table::submissions as csv_of_submissions;
 pub(crate) use github::annotation;
 pub use json::lines as json_lines;

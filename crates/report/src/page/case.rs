@@ -45,7 +45,7 @@ impl Case<'_> {
              <h1 id=\"title-{key}\"><span class=\"chip {look}\">{}</span> {}</h1>\n\
              <p class=\"names\">scene {} &middot; trace {}</p>\n",
             text(check.scene),
-            text(&check.verdict().to_uppercase()),
+            text(&check.verdict()),
             text(&headline(check)),
             text(check.scene),
             text(check.trace),
@@ -85,12 +85,12 @@ impl Case<'_> {
         }
         let full = evidence.filter(|_| self.hints == Hints::Full);
         if let Some(evidence) = evidence {
-            let charts = full.map(|evidence| plots(evidence, key, self.first().map(|first| first.step)));
-            let _ = writeln!(out, "<div class=\"seen\">\n{}{}</div>", stage(evidence), charts.unwrap_or_default());
+            let _ = writeln!(out, "<div class=\"seen\">\n{}</div>", stage(evidence));
         }
         out += &self.side(depth);
         out += "</div>\n";
         if let Some(evidence) = full {
+            out += &plots(evidence, key, self.first().map(|first| first.step));
             out += &self.calls(evidence, depth);
         }
         let account = self.check.outcome.findings_by(self.check.rules.official());
@@ -318,7 +318,7 @@ fn plots(evidence: &Evidence, key: &str, first: Option<u32>) -> String {
     let velocities: Vec<f64> = evidence.steps.iter().map(|step| step.velocity).collect();
     let series = [Series { name: "positions", values: &positions }, Series { name: "velocities", values: &velocities }];
     let residuals = ResidualPlot {
-        title: "How far each step ends from where it should, given its own start",
+        title: "How far each step ends from where it should",
         series: &series,
         tolerance: Some(PARITY_MAXIMUM),
         mark: first.map(|step| (step, "first divergence")),

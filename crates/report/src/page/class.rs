@@ -5,7 +5,7 @@ use super::{
     markup::{data, text},
 };
 use crate::{
-    grade::{class_head, hardest, likely_mistakes, one_line, points, reached},
+    grade::{hardest, likely_mistakes, one_line, points, reached},
     number::counted,
     words,
 };
@@ -43,11 +43,7 @@ impl ClassPage<'_> {
     #[must_use]
     pub fn html(&self) -> String {
         let suite = self.grades.first().map_or("", |grade| grade.suite.as_str());
-        let mut body = format!(
-            "<h1>Class: {}</h1>\n<p class=\"names\">{}</p>\n",
-            text(&one_line(suite)),
-            text(&class_head(self.grades))
-        );
+        let mut body = format!("<h1>Class: {}</h1>\n", text(&one_line(suite)));
         body += &figures(self.grades);
         body += "<div class=\"split halves\">\n";
         body += &histogram(self.grades);
@@ -97,7 +93,7 @@ impl ClassPage<'_> {
              unreadable</span> <span><span class=\"h h-n\"></span> not run</span> <output class=\"pointed\"></output></p>\n\
              <script type=\"application/json\" id=\"scenes\">{}</script>\n\
              <div class=\"card scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Submissions\">\
-             <table class=\"sortable\"><thead><tr>",
+             <table class=\"sortable stack\"><thead><tr>",
             data(&serde_json::json!(names))
         );
         for name in [
@@ -124,19 +120,25 @@ impl ClassPage<'_> {
             let sort = grade.points.map_or_else(String::new, |points| format!("{points}"));
             let _ = write!(
                 out,
-                "<td class=\"num\" data-sort=\"{sort}\">{} of {}</td>",
+                "<td class=\"num\" data-label=\"points\" data-sort=\"{sort}\">{} of {}</td>",
                 reached(grade.points),
                 points(grade.max_points)
             );
             let (accepted, all) = (grade.count(Verdict::Accepted), grade.scenes().count());
-            let _ = write!(out, "<td class=\"num\" data-sort=\"{accepted}\">{accepted} of {all}</td>");
+            let _ = write!(
+                out,
+                "<td class=\"num\" data-label=\"accepted\" data-sort=\"{accepted}\">{accepted} of {all}</td>"
+            );
             let _ = write!(out, "<td class=\"heat\" data-sort=\"{accepted}\">{}</td>", heat(grade));
             let mistakes = likely_mistakes(grade).into_iter().map(|(mistake, _)| words::explanation::what_or(&mistake));
             let likely: Vec<String> = grade.located.iter().map(words::located).chain(mistakes).collect();
             let words = if likely.is_empty() { words::reason(grade).unwrap_or_default() } else { likely.join(" ") };
             let _ = write!(out, "<td class=\"words\">{}</td>", text(&short(&words)));
             let differing = grade.differing();
-            let _ = writeln!(out, "<td class=\"num\" data-sort=\"{differing}\">{differing}</td></tr>");
+            let _ = writeln!(
+                out,
+                "<td class=\"num\" data-label=\"rule books differ\" data-sort=\"{differing}\">{differing}</td></tr>"
+            );
         }
         out + "</tbody></table></div>\n"
     }
@@ -303,6 +305,7 @@ fn figures(grades: &[Grade]) -> String {
     let unsolved = hardest(grades).0.iter().filter(|(_, share)| share.accepted == 0).count();
     let accepted = grades.iter().filter(|grade| grade.verdict.is_accepted()).count();
     let rows = [
+        (grades.len().to_string(), if grades.len() == 1 { "submission" } else { "submissions" }),
         (format!("{mean:.0} %"), "mean of the points"),
         (format!("{median:.0} %"), "median"),
         (accepted.to_string(), "accepted"),

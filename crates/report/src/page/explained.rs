@@ -58,7 +58,8 @@ impl Explained<'_> {
                 "<h2>Where it fails</h2>\n<div class=\"card mistake\"><p class=\"lead\">{words}</p></div>"
             );
         }
-        for one in common {
+        // A single trace says it itself.
+        for one in common.iter().filter(|_| cases.len() > 1) {
             let explained = cases.iter().filter(|case| is_named_in(one, &case.explanations)).count();
             let _ = writeln!(body, "<h2>What explains {explained} of {wrong} wrong traces</h2>");
             body += &mistakes(std::slice::from_ref(one), false);

@@ -87,7 +87,7 @@ impl GradePage<'_> {
             out,
             "<h1>{}: <span class=\"chip {look}\">{}</span> {}</h1>\n<p class=\"names\">suite {}, {}</p>",
             text(&one_line(&grade.submission)),
-            text(&grade.verdict.words().to_uppercase()),
+            grade.verdict.words(),
             text(&reached),
             text(&one_line(&grade.suite)),
             text(&books(grade)),
@@ -220,7 +220,7 @@ fn groups(groups: &[GroupGrade], told: &[(&SceneGrade, Option<Card>)], reader: A
     let tells_who = reader == Audience::Staff && groups.iter().any(|group| group.visibility != Visibility::Visible);
     let who = if tells_who { "<th scope=\"col\">who sees it</th>" } else { "" };
     let mut out = format!(
-        "<section>\n<h2>Groups</h2>\n<div class=\"card scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Groups\"><table><thead><tr><th scope=\"col\">group</th><th scope=\"col\">verdict</th>\
+        "<section>\n<h2>Groups</h2>\n<div class=\"card scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Groups\"><table class=\"stack\"><thead><tr><th scope=\"col\">group</th><th scope=\"col\">verdict</th>\
          <th scope=\"col\" class=\"num\">points</th><th scope=\"col\" class=\"num\">scenes accepted</th><th scope=\"col\">to look at</th>{who}</tr></thead>\
          <tbody>\n",
     );
@@ -237,8 +237,8 @@ fn groups(groups: &[GroupGrade], told: &[(&SceneGrade, Option<Card>)], reader: A
         let accepted = group.scenes.iter().filter(|scene| scene.verdict.is_accepted()).count();
         let _ = writeln!(
             out,
-            "<tr><th scope=\"row\">{}</th><td><span class=\"chip {}\">{}</span></td><td class=\"num\">{} of {}</td>\
-             <td class=\"num\">{accepted} of {}</td><td class=\"to\">{first}</td>{who}</tr>",
+            "<tr><th scope=\"row\">{}</th><td><span class=\"chip {}\">{}</span></td>\
+             <td class=\"num\" data-label=\"points\">{} of {}</td><td class=\"num\" data-label=\"scenes accepted\">{accepted} of {}</td><td class=\"to\">{first}</td>{who}</tr>",
             text(&one_line(&group.name)),
             if group.verdict.is_accepted() { "good" } else { "bad" },
             group.verdict.words(),
@@ -263,7 +263,7 @@ fn article(scene: &SceneGrade, (card, room): (Option<&Card>, Room), open: bool, 
          <span class=\"hint\">{} of {} points. {}</span></summary>\n",
         text(&scene.scene),
         if open { " open" } else { "" },
-        scene.verdict.code(),
+        scene.verdict.words(),
         text(&one_line(&scene.scene)),
         reached(scene.points),
         points(scene.max_points),

@@ -78,10 +78,14 @@ class Drawing extends Motion {
     else this.bodies(context, this.positions("submission"), { stroke: colour("--own"), fill: colour("--ownfill"), dash: [], label: true });
     if (panel === "both" && !this.peeking) this.arrows(context);
     if (panel !== "expected" && !this.peeking) this.contacts(context);
-    context.fillStyle = colour("--ink");
     context.font = `${this.letters()}px system-ui, sans-serif`;
     const at = `step ${this.step}${this.t < 1 ? `, t = ${this.t.toFixed(3)}` : ""}`;
-    context.fillText(panel === "both" ? at : `${panel === "yours" ? "yours" : expected ? "expected" : "reference"}, ${at}`, this.view[0] + 10, 6 + this.letters());
+    const words = panel === "both" ? at : `${panel === "yours" ? "yours" : expected ? "expected" : "reference"}, ${at}`;
+    // Lines of the scene end below the words.
+    context.fillStyle = colour("--card");
+    context.fillRect(this.view[0], 0, 20 + 0.56 * this.letters() * words.length, 14 + this.letters());
+    context.fillStyle = colour("--ink");
+    context.fillText(words, this.view[0] + 10, 6 + this.letters());
   }
   // The motion at another step, small.
   peek(step) {
@@ -190,8 +194,8 @@ class Drawing extends Motion {
   }
   arrows(context) {
     const apart = this.difference();
-    this.factor.hidden = !(apart && apart.most > 0);
-    if (this.factor.hidden) { this.factorText.textContent = apart ? "(no difference)" : "(nothing to compare)"; return; }
+    this.magnified.hidden = !(apart && apart.most > 0);
+    if (this.magnified.hidden) return;
     const wish = (0.12 * this.extent) / this.zoom / apart.most, ten = 10 ** Math.floor(Math.log10(wish));
     const auto = Math.max(1, ten * (wish >= 5 * ten ? 5 : wish >= 2 * ten ? 2 : 1));
     const factor = this.magnify === null ? auto : this.magnify;
@@ -267,8 +271,14 @@ class Drawing extends Motion {
       const tall = { r: 8, i: 14, w: 22, u: 3 }[worst];
       context.fillRect(x, height - 4 - tall, w > 3 ? w - 1 : w, tall);
     }
-    context.fillStyle = colour("--ink");
-    context.fillRect((Math.max(0, this.step - 0.5) * wide) - 1, 0, 2, height);
+    // The step that is shown has a frame and a tip above it.
+    const left = Math.max(0, this.step - 1) * wide, most = this.step > 0 ? Math.max(4, wide) : 2, middle = left + most / 2;
+    context.fillStyle = context.strokeStyle = colour("--ink");
+    context.lineWidth = 2;
+    context.strokeRect(left + 1, 8, most - 2, height - 10);
+    context.beginPath();
+    context.moveTo(middle - 7, 0); context.lineTo(middle + 7, 0); context.lineTo(middle, 8);
+    context.fill();
     if (first > 0 || last < steps) context.fillRect(first * wide, height - 2, (last - first) * wide, 2);
   }
   drawTicks() {

@@ -43,7 +43,8 @@ class Viewer extends Words {
     this.play = button("Play", "Play or pause", () => this.toggle(), "space");
     this.stepBox = el("input", { type: "number", min: data.first, max: data.last, class: "stepbox", "aria-label": "Step",
       onchange: (event) => this.go(Number(event.target.value)) });
-    this.slider = el("input", { type: "range", min: data.first, max: data.last, "aria-label": "Step", class: "wide",
+    // Keys and screen readers move it; a pointer moves along the strip above it.
+    this.slider = el("input", { type: "range", min: data.first, max: data.last, "aria-label": "Step",
       oninput: (event) => this.go(Number(event.target.value)) });
     this.inside = el("input", { type: "range", min: 0, max: 1, step: 0.001, "aria-label": "Time within the step", class: "wide",
       oninput: (event) => { this.t = Number(event.target.value); this.look(); } });
@@ -55,6 +56,7 @@ class Viewer extends Words {
     this.factor = el("input", { type: "range", min: 0, max: 15, step: 0.1, "aria-label": "Magnification of differences, power of ten",
       oninput: (event) => { this.magnify = 10 ** Number(event.target.value); this.look(); } });
     this.factorText = el("output", {}, "");
+    this.magnified = el("label", { class: "grow within" }, el("span", {}, "magnified ", this.factorText), this.factor);
     this.ticks = document.createElementNS(SVG, "svg");
     this.ticks.setAttribute("viewBox", "0 0 1000 12");
     this.ticks.setAttribute("preserveAspectRatio", "none");
@@ -64,12 +66,13 @@ class Viewer extends Words {
       const box = this.strip.getBoundingClientRect();
       return [1 + Math.floor(((event.clientX - box.left) / box.width) * data.steps), event.clientX - box.left, box.width];
     };
-    this.strip = el("canvas", { width: 960, height: 26, class: "strip", role: "img", "aria-label": this.stripWords(),
-      onclick: (event) => this.go(under(event)[0]),
+    this.strip = el("canvas", { width: 960, height: 34, class: "strip", role: "img", "aria-label": this.stripWords(),
+      onpointerdown: (event) => { this.strip.setPointerCapture(event.pointerId); this.go(under(event)[0]); this.slider.focus(); event.preventDefault(); },
       onpointerleave: () => { this.preview.hidden = true; },
       onpointermove: (event) => {
         const [step, x, width] = under(event);
-        this.preview.hidden = step < data.first || step > data.last || event.pointerType === "touch";
+        if (event.buttons) this.go(step);
+        this.preview.hidden = event.buttons || step < data.first || step > data.last || event.pointerType === "touch";
         if (this.preview.hidden) return;
         this.preview.style.left = `${Math.max(0, Math.min(width - 192, x - 96))}px`;
         this.peek(step);
@@ -79,7 +82,6 @@ class Viewer extends Words {
     this.keys = el("details", { class: "table help" }, el("summary", {}, "Keys ", el("kbd", {}, "?")), el("div", { class: "keys" },
       ...[["n", "next wrong step"], ["p", "previous wrong step"], ["space", "play, pause"], ["\u2190 \u2192", "a step"], ["shift \u2190 \u2192", "ten steps"], ["home end", "first, last step"],
         ["z", "near the difference"], ["0", "everything"], ["+ -", "zoom"], ["s", "side by side"], ["?", "this list"]].map(([key, text]) => el("span", {}, ...key.split(" ").flatMap((one) => [el("kbd", {}, one), " "]), text))));
-    this.keys.open = matchMedia("(min-width: 62rem)").matches;
     this.say = el("p", { class: "say", id: `say-${this.key}`, "aria-live": "polite" });
     this.facts = el("div", { class: "facts" });
     this.numbers = el("div", { class: "numbers" });
@@ -111,11 +113,11 @@ class Viewer extends Words {
         el("label", { class: "moving" }, "moving ", this.passes), hybrid ? el("label", { class: "check" }, this.midBox, "after the impulses") : ""),
       data.full ? el("div", { class: "bar" }, el("span", { class: "check" }, el("span", { class: "key k-own" }), "yours"), check("reference", "reference from the start", "k-ref"), check("expected", "expected from your own state", "k-exp"),
         data.whatIf ? check("what", "the reference with the mistake", "k-what") : "",
-        check("arrows", "differences", "k-arrow"),
-        el("label", { class: "grow within" }, el("span", {}, "magnified ", this.factorText), this.factor)) : "",
+        check("arrows", "differences", "k-arrow"), this.magnified) : "",
       remark, this.keys);
-    // Numbers stand beside the picture where there is room.
-    (this.article.querySelector(".side") || this.root).append(el("section", { class: "card step", "aria-label": "The step in numbers" }, this.facts, this.matrix, this.numbers, this.table));
+    // Where there is room, sums stand beside the picture and bodies below it.
+    this.article.querySelector(".side").append(el("section", { class: "card step", "aria-label": "The step in numbers" }, this.facts));
+    this.article.querySelector(".seen").append(el("section", { class: "card step", "aria-label": "Pairs and bodies" }, this.matrix, this.numbers, this.table));
     this.article.querySelector(".stage").replaceChildren(this.root);
     this.canvas.addEventListener("wheel", (event) => {
       if (!event.ctrlKey && !event.shiftKey && document.activeElement !== this.canvas) return;

@@ -35,7 +35,7 @@ class Words extends Drawing {
     const right = close && sums(close.end || close.mid);
     // What rounding alone makes of a sum is no difference.
     const near = (one, other) => Math.abs(one - other) <= 1e-9 * Math.max(1, Math.abs(one));
-    const momentum = ([x, y, l]) => el("span", {}, "(", x, ", ", y, ")", el("br"), "angular ", l);
+    const momentum = ([x, y, l]) => el("span", {}, x, el("br"), y, el("br"), l);
     const both = (right, own) => {
       const known = [right, own].map((s) => s && finite(...s));
       if (known[0] && known[1]) {
@@ -49,7 +49,7 @@ class Words extends Drawing {
     phases.push([data.collision === "hybrid" ? "after the failsafe" : "after the step", right, after]);
     this.facts.replaceChildren(el("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "This step in numbers" }, table(data.full ? ["", "expected", "yours"] : ["", "yours"], this.cut([
       ...rows,
-      ...phases.map(([name, expected, own]) => [`momentum ${name}`, ...both(expected, own)]),
+      ...phases.map(([name, expected, own]) => [`momentum ${name}: x, y, angular`, ...both(expected, own)]),
     ]), "This step in numbers")));
     if (close && close.zones.length) {
       this.facts.append(el("p", {}, "Impact zones of the reference: " + close.zones[close.zones.length - 1].zones

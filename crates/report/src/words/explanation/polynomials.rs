@@ -129,7 +129,7 @@ pub(super) fn detail(detail: &PolynomialDetail) -> String {
         PolynomialDetail::Weight(weight) => of_weight(weight),
         PolynomialDetail::Alternative(weights) => {
             let weights: Vec<String> = weights.iter().map(of_weight).collect();
-            format!("can't be told apart here from {}", weights.join("; "))
+            format!("Can't be told apart here from {}", weights.join("; "))
         }
     }
 }
