@@ -50,6 +50,8 @@ pub enum Need {
     Systemd,
     /// Python's `yaml`.
     Yaml,
+    /// Python's `chevron`.
+    Chevron,
     /// `moto_server`, which answers like S3.
     Moto,
     /// The right to mount a file system.
@@ -58,7 +60,7 @@ pub enum Need {
 
 impl Need {
     /// All of them.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 19] = [
         Self::Corpus,
         Self::Sandbox,
         Self::Walls,
@@ -75,6 +77,7 @@ impl Need {
         Self::Pgbouncer,
         Self::Systemd,
         Self::Yaml,
+        Self::Chevron,
         Self::Moto,
         Self::Mounts,
     ];
@@ -99,6 +102,7 @@ impl Need {
             Self::Pgbouncer => "pgbouncer",
             Self::Systemd => "systemd",
             Self::Yaml => "yaml",
+            Self::Chevron => "chevron",
             Self::Moto => "moto",
             Self::Mounts => "mounts",
         }

@@ -1,5 +1,5 @@
 //! Autograders of platforms, each in the layout that its platform gives it.
-use super::{SUITE, workspace};
+use super::{SUITE, submit, workspace};
 use crate::workspace::{Run, Workspace, finish};
 use fosssim_testing::{Need, skip};
 use std::{
@@ -119,6 +119,60 @@ fn the_question_for_prairielearn_works_in_its_layout() {
     fs::write(root.join("serverFilesCourse/fosssim/suite/suite.toml"), "nonsense").expect("a broken suite");
     let (run, results) = grade_for_prairielearn(&root);
     assert_eq!((run.code, &results["gradable"]), (Some(1), &false.into()), "our own fault costs no attempt: {results}");
+}
+
+/// What PrairieLearn does with the element: its controller is called in the element's folder.
+const RENDER: &str = "\
+import importlib.util, json, sys
+spec = importlib.util.spec_from_file_location('element', 'fosssim-report.py')
+element = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(element)
+print(element.render('<fosssim-report></fosssim-report>', json.loads(sys.argv[1])), end='')
+";
+
+#[test]
+fn the_element_for_prairielearn_shows_groups_scenes_and_the_mistake_and_nothing_hidden() {
+    let Some(workspace) = with_python() else { return };
+    let chevron = Command::new("python3").args(["-c", "import chevron"]).output().expect("python3");
+    if !chevron.status.success() {
+        return skip(Need::Chevron, "python3 has no chevron");
+    }
+    workspace.write("course/infoCourse.json", "{}");
+    let mut build = script("prairielearn/build");
+    build.arg(workspace.path("course")).args(["--binary", env!("CARGO_BIN_EXE_fosssim-oracle")]);
+    assert_eq!(finish(&mut build).code, Some(0));
+    let element = workspace.path("course/elements/fosssim-report");
+    let info: serde_json::Value =
+        serde_json::from_slice(&fs::read(element.join("info.json")).expect("an element")).expect("JSON");
+    assert!(element.join(info["controller"].as_str().expect("a controller")).exists());
+    let question = fs::read_to_string(workspace.path("course/questions/fosssim/question.html")).expect("a question");
+    assert!(question.contains("<fosssim-report></fosssim-report>"), "{question}");
+
+    let render = |panel: &str, feedback: serde_json::Value| {
+        let data = serde_json::json!({"panel": panel, "feedback": feedback}).to_string();
+        let run = finish(Command::new("python3").args(["-c", RENDER, &data]).current_dir(&element));
+        assert_eq!(run.code, Some(0), "{}", run.shown());
+        run.out()
+    };
+    let program = &submit(&workspace, &["pe-square-no-eh"])[0];
+    let veiled = "[[group]]\nname = \"Veiled\"\npoints = 5\nvisibility = \"hidden\"\n\
+                  scenes = [\"asset:ContinuousTimeTests/spinning-edge-sweeps-balls\"]\n";
+    for (hidden, message) in [("", ">wrong answer<"), (veiled, "on the tests shown here (")] {
+        workspace.write("suite.toml", SUITE.replace("\"Zones\"", "\"<i>Zones\"") + hidden);
+        workspace.run(["grade", program, "--suite", "suite.toml", "--format", "prairielearn=results.json"]);
+        let results: serde_json::Value = serde_json::from_slice(&workspace.read("results.json")).expect("JSON");
+        let shown = render("submission", serde_json::json!({"succeeded": true, "results": results}));
+        for words in
+            [message, "most likely mistake: Particle-edge: ", "of 10<", "&lt;i&gt;Zones", "ImpulsesTests/off-centre"]
+        {
+            assert!(shown.contains(words), "{words}: {shown}");
+        }
+        assert!(!shown.contains("Veiled") && !shown.contains("spinning-edge") && !shown.contains("<i>"), "{shown}");
+        assert_eq!(render("question", serde_json::json!({"succeeded": true, "results": results})), "");
+    }
+    assert_eq!(render("submission", serde_json::json!({})), "", "not graded yet");
+    let failed = render("submission", serde_json::json!({"succeeded": false, "message": "out of <memory>"}));
+    assert!(failed.contains("out of &lt;memory&gt;"), "{failed}");
 }
 
 #[test]

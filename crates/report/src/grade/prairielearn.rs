@@ -1,6 +1,6 @@
 //! PrairieLearn's results.json: a score in [0, 1]; `gradable: false` for faults of ours, which charge no attempt.
 use super::speed_words;
-use super::{super::explain, difference, head_lines, one_line, plain, printed, score, see_above, wrong_first};
+use super::{super::explain, difference, head_lines, one_line, plain, printed, score, see_above};
 use crate::words;
 use fosssim_findings::{Grade, SceneGrade, Verdict};
 use fosssim_mistakes::together::for_students;
@@ -16,12 +16,24 @@ struct Results {
     score: Option<f64>,
     message: String,
     output: String,
+    groups: Vec<Group>,
     tests: Vec<Test>,
+}
+
+/// What PrairieLearn knows nothing of, and keeps for the element `fosssim-report` (`scripts/prairielearn`).
+#[derive(Serialize)]
+struct Group {
+    name: String,
+    verdict: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    points: Option<f64>,
+    max_points: f64,
 }
 
 #[derive(Serialize)]
 struct Test {
     name: String,
+    group: String,
     description: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     points: Option<f64>,
@@ -33,10 +45,14 @@ struct Test {
 /// The results of one submission.
 pub(super) fn render(grade: &Grade) -> String {
     let shown = for_students(grade);
-    let tests = wrong_first(shown.groups.iter())
+    let mut scenes: Vec<_> =
+        shown.groups.iter().flat_map(|group| group.scenes.iter().map(move |scene| (group, scene))).collect();
+    scenes.sort_by_key(|(_, scene)| scene.verdict.is_accepted());
+    let tests = scenes
         .into_iter()
-        .map(|scene| Test {
+        .map(|(group, scene)| Test {
             name: one_line(&scene.scene),
+            group: one_line(&group.name),
             description: scene.verdict.words().to_owned(),
             points: scene.points,
             max_points: scene.max_points,
@@ -46,6 +62,7 @@ pub(super) fn render(grade: &Grade) -> String {
         .chain(shown.groups.iter().filter_map(|group| Some((group, group.speed.as_ref()?))).map(|(group, speed)| {
             Test {
                 name: format!("speed ({})", one_line(&group.name)),
+                group: one_line(&group.name),
                 description: "processor time beside the reference's".to_owned(),
                 points: speed.points,
                 max_points: speed.marking.points,
@@ -84,6 +101,16 @@ pub(super) fn render(grade: &Grade) -> String {
             .map(|text| cut(&text))
             .collect::<Vec<_>>()
             .join("\n"),
+        groups: shown
+            .groups
+            .iter()
+            .map(|group| Group {
+                name: one_line(&group.name),
+                verdict: group.verdict.words().to_owned(),
+                points: group.points,
+                max_points: group.max_points,
+            })
+            .collect(),
         tests,
     };
     let mut text = serde_json::to_string_pretty(&results).unwrap_or_default();
