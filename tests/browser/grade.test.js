@@ -172,7 +172,7 @@ test("a page of eighty scenes that fail stays small", { skip }, async (t) => {
   t.diagnostic(`suite page: ${statSync(html).size} bytes, open after ${Math.round(performance.now() - began)} ms`);
   // Scenes are searched by what is said of them.
   await page.getByLabel("Filter").fill("Head-On-Equal");
-  assert.deepEqual(await page.locator("article.case:visible h3").allInnerTexts(), ["WA ContinuousTimeTests/head-on-equal-masses"]);
+  assert.deepEqual(await page.locator("article.case:visible h3").allInnerTexts(), ["wrong answer ContinuousTimeTests/head-on-equal-masses"]);
   await page.getByLabel("Filter").fill("");
   assert.ok((await page.locator("article.case").count()) >= 60);
   assert.deepEqual(complaints, []);

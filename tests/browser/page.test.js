@@ -357,7 +357,7 @@ test("what is dragged onto the page is taken, whichever tab is open: a trace, a 
   trace(WRONG[0], null, `dragged/${WRONG[0]}.bin`);
   await drag(page, [join(folder, "dragged")]);
   await page.waitForFunction(() => document.documentElement.dataset.marked === "1", null, { timeout: 60_000 });
-  assert.match(await page.locator("#folder-name").innerText(), /^dragged, 1 trace$/);
+  assert.match(await page.locator("#folder-name").textContent(), /^dragged, 1 trace$/);
   const suite = join(folder, "dragged.toml");
   writeFileSync(suite, `schema = 1\nname = "one"\n[[group]]\nname = "G"\npoints = 7\nscenes = ["asset:${WRONG[0]}"]\n`);
   await drag(page, [suite]);

@@ -111,13 +111,13 @@ function showMarks(suite, grade, rows, strange) {
     const line = ({ scene, verdict, accepted, right, steps, likely, points, of, file, isMissing }) => el("tr", {},
       el("th", { scope: "row" }, file ? el("button", { type: "button", class: "plain", onclick: () => lookAt(scene, file) }, scene.split("/").pop()) : scene.split("/").pop()),
       el("td", { class: accepted ? "good" : isMissing ? "" : "bad" }, isMissing ? "no trace" : verdict),
-      el("td", { class: "num" }, isMissing ? "" : `${right} of ${steps}`),
-      el("td", { class: "num" }, `${rounded(points)} of ${rounded(of)}`),
+      el("td", { class: "num", "data-label": "steps right" }, isMissing ? "" : `${right} of ${steps}`),
+      el("td", { class: "num", "data-label": "points" }, `${rounded(points)} of ${rounded(of)}`),
       el("td", { class: "words" }, likely && !accepted ? likely : ""));
     // What is wrong comes first, and what is right needs a look only if somebody asks.
     const wrong = own.filter((row) => !row.accepted && !row.isMissing), missing = own.filter((row) => row.isMissing);
     const folded = (list, words) => list.length ? el("details", { class: "table", open: list.length === own.length }, el("summary", {}, `${list.length} ${words}`), table(list)) : "";
-    const table = (list) => el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": `Scenes of ${name}` }, el("table", {},
+    const table = (list) => el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": `Scenes of ${name}` }, el("table", { class: "stack" },
       el("thead", {}, el("tr", {}, ...["scene", "verdict", "steps right", "points", "likely mistake"].map((head) => el("th", { scope: "col", class: /steps|points/.test(head) ? "num" : "" }, head)))),
       el("tbody", {}, ...list.map(line))));
     return el("details", { class: "card", open: wrong.length > 0 },
@@ -127,6 +127,10 @@ function showMarks(suite, grade, rows, strange) {
   });
   $("marks-list").replaceChildren(el("h2", {}, `${right.size} of ${counted(rows.length, "scene")} right`), ...(grade.unfit ? [el("p", { class: "bad" }, grade.unfit)] : []), ...other, ...since, ...likely, ...groups);
   $("save-marks").hidden = $("marks-again").hidden = false;
+  const hadFocus = $("ask-all").contains(document.activeElement);
+  $("ask-all").open = false;
+  $("ask-all").classList.add("done");
+  if (hadFocus) $("marks-again").focus();
 }
 
 // The whole report on one scene. It is this trace's alone: the next one is recognised.
