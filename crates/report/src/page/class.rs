@@ -51,7 +51,7 @@ impl ClassPage<'_> {
         body += "</div>\n";
         body += &self.table();
         body += &self.not_graded();
-        body += &scenes(self.grades);
+        body += &self.scenes();
         body += &self.differing();
         document(&format!("Class: {suite}"), &body, SCRIPT)
     }
@@ -194,6 +194,46 @@ impl ClassPage<'_> {
             counted(members.len() as u64, "submission"),
             self.links(members),
             text(&names.join(", "))
+        )
+    }
+
+    /// Scenes that not everybody has right.
+    fn scenes(&self) -> String {
+        let (scenes, whole) = hardest(self.grades);
+        let mut out = String::from("<h2>Scenes by failure rate</h2>\n");
+        if !scenes.is_empty() {
+            let wrong = counted(scenes.len() as u64, "scene");
+            let _ = write!(out, "<details class=\"table\"><summary>{wrong} that not everybody has right</summary>");
+            out += "<div class=\"card scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Scenes by failure rate\">\
+                    <table class=\"sortable\"><thead><tr><th scope=\"col\">scene</th><th scope=\"col\">failed</th>\
+                    <th scope=\"col\">of</th><th scope=\"col\">rate</th></tr></thead><tbody>\n";
+            for (scene, share) in scenes {
+                let failed = share.run - share.accepted;
+                let percent = 100 * failed / share.run.max(1);
+                let _ = writeln!(
+                    out,
+                    "<tr><th scope=\"row\">{}</th><td class=\"num\" data-sort=\"{failed}\">{failed}</td>\
+                     <td class=\"num\" data-sort=\"{1}\">{1}</td><td data-sort=\"{percent}\"><meter min=\"0\" max=\"100\" \
+                     value=\"{percent}\" aria-label=\"failed\">{percent} %</meter> {percent} %</td></tr>",
+                    self.shown(scene),
+                    share.run
+                );
+            }
+            out += "</tbody></table></div></details>\n";
+        }
+        match whole {
+            0 => out,
+            whole => out + &format!("<p>{} accepted for everybody.</p>\n", counted(whole as u64, "scene")),
+        }
+    }
+
+    /// A scene, as a link to the first submission that shows what goes wrong in it.
+    fn shown(&self, name: &str) -> String {
+        let fails = |grade: &&Grade| grade.scenes().any(|scene| scene.scene == name && is_failed(scene));
+        let words = text(&one_line(name));
+        self.grades.iter().find(fails).map_or_else(
+            || words.to_string(),
+            |grade| format!("<a href=\"{}#scene-{}\">{words}</a>", text(&(self.page)(grade)), key(name)),
         )
     }
 
@@ -349,36 +389,6 @@ fn by_signature(grades: &[Grade], among: &[usize]) -> Vec<Vec<usize>> {
     several
 }
 
-/// Scenes that not everybody has right.
-fn scenes(grades: &[Grade]) -> String {
-    let (scenes, whole) = hardest(grades);
-    let mut out = String::from("<h2>Scenes by failure rate</h2>\n");
-    if !scenes.is_empty() {
-        let wrong = counted(scenes.len() as u64, "scene");
-        let _ = write!(out, "<details class=\"table\"><summary>{wrong} that not everybody has right</summary>");
-        out += "<div class=\"card scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Scenes by failure rate\">\
-                <table class=\"sortable\"><thead><tr><th scope=\"col\">scene</th><th scope=\"col\">failed</th>\
-                <th scope=\"col\">of</th><th scope=\"col\">rate</th></tr></thead><tbody>\n";
-        for (scene, share) in scenes {
-            let failed = share.run - share.accepted;
-            let percent = 100 * failed / share.run.max(1);
-            let _ = writeln!(
-                out,
-                "<tr><th scope=\"row\">{}</th><td class=\"num\" data-sort=\"{failed}\">{failed}</td>\
-                 <td class=\"num\" data-sort=\"{1}\">{1}</td><td data-sort=\"{percent}\"><meter min=\"0\" max=\"100\" \
-                 value=\"{percent}\" aria-label=\"failed\">{percent} %</meter> {percent} %</td></tr>",
-                text(&one_line(scene)),
-                share.run
-            );
-        }
-        out += "</tbody></table></div></details>\n";
-    }
-    match whole {
-        0 => out,
-        whole => out + &format!("<p>{} accepted for everybody.</p>\n", counted(whole as u64, "scene")),
-    }
-}
-
 /// How many submissions reach which share of the points.
 fn histogram(grades: &[Grade]) -> String {
     let shares: Vec<f64> = grades
@@ -483,7 +493,7 @@ mod tests {
         let grades: Vec<Grade> = (0..300).map(|student| grade(&format!("student-{student}"), fails(student))).collect();
         let html = page(&grades);
         assert!(html.len() < 1_000_000, "{}", html.len());
-        assert_eq!(html.matches("<tr><th scope=\"row\"><a href=").count(), 300);
+        assert_eq!(html.matches("<td class=\"heat\"").count(), 300);
         assert!(html.contains("No two submissions make the same mistake."), "each fails in words of its own");
     }
 
@@ -502,6 +512,8 @@ mod tests {
         assert!(cluster.contains("the same 9 scenes fail") && cluster.contains("2 submissions"), "{cluster}");
         assert!(cluster.contains("eve") && cluster.contains("&lt;b&gt;kim") && !cluster.contains("bob"), "{cluster}");
         assert!(html.contains("<td class=\"num\" data-sort=\"3\">3</td>"), "three fail the last scenes");
+        let last = key("Group/a-scene-of-number-75");
+        assert!(html.contains(&format!("<a href=\"reports/eve.html#scene-{last}\">Group/a-scene-of-number-75</a>")));
         let bars = html.split("aria-label=\"Points of the class: ").nth(1).expect("a histogram");
         assert!(bars.starts_with("0 to 10 %: 1, ") && bars.contains("90 to 100 %: 1\""), "{bars:.300}");
     }
