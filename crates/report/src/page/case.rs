@@ -45,7 +45,7 @@ impl Case<'_> {
              <h1 id=\"title-{key}\"><span class=\"chip {look}\">{}</span> {}</h1>\n\
              <p class=\"names\">scene {} &middot; trace {}</p>\n",
             text(check.scene),
-            text(&check.verdict()),
+            text(check.verdict()),
             text(&headline(check)),
             text(check.scene),
             text(check.trace),
