@@ -121,7 +121,7 @@ fn the_question_for_prairielearn_works_in_its_layout() {
     assert_eq!((run.code, &results["gradable"]), (Some(1), &false.into()), "our own fault costs no attempt: {results}");
 }
 
-/// What PrairieLearn does with the element: its controller is called in the element's folder.
+/// PrairieLearn calls the element's controller in the element's folder.
 const RENDER: &str = "\
 import importlib.util, json, sys
 spec = importlib.util.spec_from_file_location('element', 'fosssim-report.py')

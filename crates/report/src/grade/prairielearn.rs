@@ -20,7 +20,7 @@ struct Results {
     tests: Vec<Test>,
 }
 
-/// What PrairieLearn knows nothing of, and keeps for the element `fosssim-report` (`scripts/prairielearn`).
+/// A group of the suite: PrairieLearn keeps it for the element `fosssim-report` (`scripts/prairielearn`).
 #[derive(Serialize)]
 struct Group {
     name: String,
