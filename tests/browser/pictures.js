@@ -17,7 +17,7 @@ try {
   execFileSync(join(programs, "fosssim-sample"), ["--mistake", "response-halved", "-s", scene, "-d", "0", "-o", "submission.bin"], { cwd: folder });
   const html = join(folder, "report.html");
   spawnSync(join(programs, "fosssim-oracle"), ["check", "asset:HolisticTests/balls-in-a-box", "submission.bin", "--format", "html", "--output", html], { cwd: folder });
-  const page = await browser.newPage({ viewport: { width: 1180, height: 1480 } });
+  const page = await browser.newPage({ viewport: { width: 1180, height: 1456 } });
   await page.goto(pathToFileURL(html).href);
   await page.waitForSelector("html[data-ready]");
   await page.screenshot({ path: join(root, "docs/report.png") });
