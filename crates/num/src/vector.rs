@@ -68,6 +68,22 @@ mod tests {
         (-1e3..1e3, -1e3..1e3).prop_map(|(x, y)| Vec2::new(x, y))
     }
 
+    /// Five thirds are one rounding less by way of the reciprocal than by division.
+    #[test]
+    fn a_vector_is_divided_by_way_of_the_reciprocal() {
+        let reciprocal = 1.0 / 3.0;
+        assert_eq!(bits(over(Vec2::new(5.0, -7.0), 3.0)), bits(Vec2::new(reciprocal * 5.0, reciprocal * -7.0)));
+        assert!(over(Vec2::new(5.0, 0.0), 3.0).x < 5.0 / 3.0);
+        assert_eq!(over(Vec2::new(1.0, -1.0), 0.0), Vec2::new(f64::INFINITY, f64::NEG_INFINITY));
+    }
+
+    #[test]
+    fn a_vector_that_is_put_into_an_array_is_there() {
+        let mut array = [0.0; 6];
+        put(&mut array, 1, Vec2::new(2.0, 3.0));
+        assert_eq!((array, at(&array, 1)), ([0.0, 0.0, 2.0, 3.0, 0.0, 0.0], Vec2::new(2.0, 3.0)));
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig {
             rng_seed: RngSeed::Fixed(1),

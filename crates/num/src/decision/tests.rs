@@ -5,6 +5,7 @@ use super::{
     },
     Certainty, Certified, Level, LevelCounts, decide,
     exact::{ExactAnswer, exact_first},
+    range::slack,
 };
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -404,4 +405,10 @@ proptest! {
             }
         }
     }
+}
+
+#[test]
+fn without_a_bound_any_distance_is_enough() {
+    assert_eq!([slack(0.0, 0.0), slack(1.0, 0.0)], [f64::INFINITY; 2]);
+    assert_eq!(slack(-1.0, 2.0), 0.0);
 }

@@ -46,3 +46,14 @@ pub(super) fn zeros(a: f64, b: f64, c: f64) -> [Zero; 2] {
     let small = if large == 0.0 { 0.0 } else { (c / large) / a };
     [(small, 0.0), (large, 0.0)]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_has_its_zero_and_one_at_the_origin() {
+        assert_eq!(zeros(0.0, 2.0, 4.0), [(-2.0, 0.0), (0.0, 0.0)]);
+        assert_eq!(zeros(0.0, 0.0, 4.0), [(0.0, 0.0), (0.0, 0.0)]);
+    }
+}

@@ -2,7 +2,13 @@
 //! behind collisions.
 use crate::{
     assignments::probe_scenes,
-    diagnose::{explain, known::known, known::shown::{applicable, is_of_states}},
+    diagnose::{
+        explain,
+        known::{
+            known,
+            shown::{applicable, is_of_states},
+        },
+    },
     student::{self, Student, all_rows, find},
 };
 use fosssim_model::{
