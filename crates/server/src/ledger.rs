@@ -107,8 +107,8 @@ struct JobFacts {
 }
 
 async fn about(transaction: &mut Transaction, job: i64) -> Result<JobFacts, DbError> {
-    let statement =
-        "SELECT job.submission, job.campaign, job.payload, job.asked_by, coalesce(job.worker, job.failed_by, '') AS worker,
+    let statement = "SELECT job.submission, job.campaign, job.payload, job.asked_by,
+                coalesce(job.worker, job.failed_by, '') AS worker,
            submission.assignment, assignment.course,
            {now} - coalesce(job.started_at, {now}) AS took
         FROM job

@@ -152,7 +152,8 @@ impl Staff {
         let mut transaction = self.app.0.database.read().await?;
         // Of what older versions graded nobody may have looked yet.
         let statement = "SELECT result.id FROM submission JOIN result ON result.submission = submission.id
-            WHERE submission.assignment = ? AND coalesce(result.shown, 'unknown') <> '' AND result.code <> 'JE' LIMIT 1";
+            WHERE submission.assignment = ? AND coalesce(result.shown, 'unknown') <> '' AND result.code <> 'JE'
+            LIMIT 1";
         Ok(transaction.row(statement, values![assignment.id]).await?.is_some())
     }
 

@@ -145,7 +145,8 @@ impl Member {
         let settings = &assignment.settings;
         // A failure of the grader costs nobody a try.
         let statement = "SELECT {now} AS now, count(*) AS n,
-               count(CASE WHEN submission.created_at > {now} - ? AND submission.created_at <= {now} THEN 1 END) AS recent,
+               count(CASE WHEN submission.created_at > {now} - ? AND submission.created_at <= {now} THEN 1 END)
+                   AS recent,
                min(CASE WHEN submission.created_at > {now} - ? THEN submission.created_at END) AS oldest
             FROM submission
             LEFT JOIN grade ON grade.submission = submission.id
