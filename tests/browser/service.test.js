@@ -136,7 +136,7 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
 
   // The course says how it stands.
   await student.page.goto(`${address}/c/physics`);
-  assert.match(await student.page.getByRole("row", { name: /Milestone one/ }).innerText(), /wrong answer\s+Hand in\s+0 \/ 10\s+1\s+never/);
+  assert.match(await student.page.getByRole("row", { name: /Milestone one/ }).innerText(), /wrong answer\s+Hand in\s+: Milestone one\s+0 \/ 10\s+1\s+never/);
   await accessible(student.page);
   for (const width of [1440, 390]) {
     await student.page.setViewportSize({ width, height: 900 });
