@@ -83,8 +83,9 @@ fn shows_in_states(scene: &Scene, counts: &ByKind<usize>, row: &Row) -> bool {
             (_, Mistake::Step(mistake)) if is_of_acceleration(mistake) => !is_implicit,
             _ => true,
         },
-        Area::Penalty if matches!(scene.collision, Collision::Hybrid { .. }) => has_kind(second),
-        Area::Penalty | Area::NearPairs => matches!(scene.collision, Collision::Penalty { .. }) && has_kind(second),
+        Area::Penalty | Area::NearPairs => {
+            matches!(scene.collision, Collision::Penalty { .. } | Collision::Hybrid { .. }) && has_kind(second)
+        }
         _ => matches!(scene.collision, Collision::Simple { .. }),
     }
 }
