@@ -10,7 +10,8 @@
 //! changes, and shows them beside those of `instructions.txt`; with `store` behind it they are written there.
 //!
 //! `... -- growth` shows the cost of a pair and the memory from 10 to 3,000 particles, `... -- crowd` the instructions
-//! of a ball and step of a penalty scene from 100 to 100,000 balls.
+//! of a ball and step of a penalty scene from 100 to 100,000 balls, `... -- hits` those of `continuous-time` scenes with
+//! many hits in a step.
 #![forbid(unsafe_code)]
 use fosssim_judge::replay::{self, Options};
 use fosssim_model::{
@@ -34,6 +35,7 @@ fn main() {
         ["instructions", "store"] => return instructions(true),
         ["growth"] => return growth(),
         ["crowd"] => return crowd(),
+        ["hits"] => return hits(),
         _ => {}
     }
     let [rounds, what, files @ ..] = &arguments[..] else { return };
@@ -222,6 +224,67 @@ fn box_of(balls: u32, steps: u32) -> String {
         _ = write!(xml, r#"<particle m="1" px="{x}" py="{y}" vx="{vx}" vy="{vy}" fixed="0" radius="0.02"/>"#);
     }
     xml + "</scene>"
+}
+
+/// The cost of recording scenes of which each step has several hits.
+fn hits() {
+    println!("| scene | steps | hits | trace, MB | record, millions of instructions |\n|---|---:|---:|---:|---:|");
+    let file = std::env::temp_dir().join(format!("fosssim-hits-{}.xml", std::process::id()));
+    for (name, xml) in [("balls rest in a bowl", bowl()), ("a ring of edges rests on an edge", ring())] {
+        let scene = original::read(xml.as_bytes()).expect("a scene").scene;
+        let trace = record(&scene, Vec::new());
+        let (mut reader, mut frame, mut impulses) = (Reader::new(&trace[..], Layout::of(&scene)), Frame::default(), 0);
+        while reader.next(&mut frame).expect("a sound trace") {
+            impulses += frame.impulses.len();
+        }
+        std::fs::write(&file, xml).expect("a file");
+        let (steps, size) = (scene.steps(), trace.len() as f64 / 1e6);
+        let counted = counted("record", file.to_str().expect("a name in UTF-8")) / 1e6;
+        // Both records of a step have its impulses.
+        println!("| {name} | {steps} | {} | {size:.1} | {counted:.1} |", impulses / 2);
+    }
+    std::fs::remove_file(&file).expect("removed");
+}
+
+/// The beginning of a scene of `steps` steps of 0.01 seconds, with gravity and `continuous-time`.
+fn falling(steps: u32, restitution: f64) -> String {
+    format!(
+        r#"<scene><duration time="{}"/><integrator type="symplectic-euler" dt="0.01"/>
+        <collision type="continuous-time" COR="{restitution}"/><simplegravity fx="0" fy="-9.81"/>"#,
+        f64::from(steps) * 0.01
+    )
+}
+
+/// Four balls between two fixed edges that form a V.
+fn bowl() -> String {
+    let mut xml = falling(3000, 0.0);
+    for ball in 0..4 {
+        let (x, y) = (f64::from(ball) * 0.6 - 1.0, f64::from(ball) * 0.3 + 1.0);
+        _ = write!(xml, r#"<particle m="1" px="{x}" py="{y}" vx="0" vy="0" fixed="0" radius="0.25"/>"#);
+    }
+    for (x, y) in [(-3, 2), (0, 0), (3, 2)] {
+        _ = write!(xml, r#"<particle m="1" px="{x}" py="{y}" vx="0" vy="0" fixed="1" radius="0.1"/>"#);
+    }
+    xml + r#"<edge i="4" j="5" radius="0.1"/><edge i="5" j="6" radius="0.1"/></scene>"#
+}
+
+/// Eight balls in a ring of edges with springs, above a fixed edge.
+fn ring() -> String {
+    let mut xml = falling(1000, 0.5);
+    for ball in 0..8 {
+        let (y, x) = (f64::from(ball) * std::f64::consts::FRAC_PI_4).sin_cos();
+        let y = y + 1.2;
+        _ = write!(xml, r#"<particle m="1" px="{x}" py="{y}" vx="0.1" vy="0" fixed="0" radius="0.05"/>"#);
+    }
+    for x in [-3, 3] {
+        _ = write!(xml, r#"<particle m="1" px="{x}" py="0" vx="0" vy="0" fixed="1" radius="0.1"/>"#);
+    }
+    for edge in 0..8 {
+        let next = (edge + 1) % 8;
+        _ = write!(xml, r#"<edge i="{edge}" j="{next}" radius="0.05"/>"#);
+        _ = write!(xml, r#"<springforce edge="{edge}" k="300" l0="0.77" b="2"/>"#);
+    }
+    xml + r#"<edge i="8" j="9" radius="0.1"/></scene>"#
 }
 
 /// The cost of a pair, and the most memory that was used so far, in scenes of more and more particles.

@@ -54,6 +54,10 @@ impl<W: Write> Recorder<W> {
 
 impl<W: Write> Observer for Recorder<W> {
     fn begin_step(&mut self, _step: u32) {
+        // Between steps, since the records of one borrow the same list.
+        if self.writer.is_full() {
+            self.writer.hand_on(self.log.polynomials.all());
+        }
         if self.writer.borrows() {
             self.log.begin_step_behind();
         } else {
@@ -178,6 +182,21 @@ mod tests {
         assert!(bytes == expected);
         assert_eq!(written, WrittenTrace { records: 201, bytes: expected.len() as u64 });
         assert!(expected.len() > 1 << 21, "{}", expected.len());
+    }
+
+    /// However long a trace is, and wherever in a step there was enough to be written.
+    #[test]
+    fn memory_does_not_grow_with_the_trace() {
+        let mut recorder = Recorder::start(io::sink(), layout(), &state(0.0));
+        for step in 1..=10_000 {
+            recorder.begin_step(step);
+            let polynomials = if step <= 2 { 3_500 } else { 40 };
+            (0..polynomials).for_each(|_| recorder.log.polynomials.push(&[1.0, 2.0, 3.0]));
+            recorder.synchronised(&state(1.0));
+            recorder.end_step(step, &state(1.0));
+            let kept = recorder.log.polynomials.all().len();
+            assert!(kept < 400_000, "{kept} bytes are kept in step {step}");
+        }
     }
 
     #[test]

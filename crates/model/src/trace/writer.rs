@@ -71,11 +71,14 @@ impl<W: Write> Writer<W> {
             encode::count(&mut self.buffer, frame.polynomials.len());
             encode::polynomials(&mut self.buffer, &frame.polynomials);
         }
-        self.end(&[]);
+        self.written.records += 1;
+        if self.is_full() {
+            self.hand_on(&[]);
+        }
     }
 
     /// Writes one record whose lists are encoded already. While it [borrows](Self::borrows) the log keeps its
-    /// polynomials.
+    /// polynomials; once it is [full](Self::is_full) it takes two more records, then they must be handed on.
     pub(super) fn record(&mut self, state: &State, log: &Log) {
         self.begin(state);
         if self.layout.impulses {
@@ -92,7 +95,12 @@ impl<W: Write> Writer<W> {
                 self.listed += polynomials.len();
             }
         }
-        self.end(log.polynomials.all());
+        self.written.records += 1;
+    }
+
+    /// Whether there is enough to be handed on.
+    pub(super) fn is_full(&self) -> bool {
+        self.buffer.len() + self.listed >= PIECE || self.lists.len() + 2 > LISTS
     }
 
     /// Whether polynomials of the log are still to be written.
@@ -130,13 +138,6 @@ impl<W: Write> Writer<W> {
 
     fn begin(&mut self, state: &State) {
         encode::state(&mut self.buffer, state);
-    }
-
-    fn end(&mut self, polynomials: &[u8]) {
-        self.written.records += 1;
-        if self.buffer.len() + self.listed >= PIECE || self.lists.len() == LISTS {
-            self.hand_on(polynomials);
-        }
     }
 
     /// Writes what is gathered; the log has these polynomials.

@@ -57,30 +57,50 @@ pub(super) struct Group {
     pub half_planes: Vec<f64>,
     /// No coefficient has a larger modulus.
     pub largest: f64,
-    /// Whether a response has moved bodies in this pass: the next one would spoil what is computed of other particles.
-    has_moved: bool,
+    /// Bit by bit, the particles that a response has moved since their pairs were computed.
+    moved: u32,
+    /// Whether a response has moved an edge in this pass: the next one would spoil what is computed of other particles.
+    has_moved_edges: bool,
 }
 
 impl Group {
-    /// Forgets all pairs, at the start of a pass or when a response has moved bodies.
-    pub fn clear(&mut self, has_moved: bool) {
+    /// Forgets all pairs, at the start of a pass.
+    pub fn clear(&mut self) {
         self.particles = 0..0;
-        self.has_moved = has_moved;
+        self.has_moved_edges = false;
+    }
+
+    /// Forgets the pairs that depend on a particle which a response has moved: all of them if it is the end of an edge.
+    pub fn spoil(&mut self, particle: usize, is_end: bool) {
+        if is_end {
+            self.particles = 0..0;
+            self.has_moved_edges = true;
+        } else if self.particles.contains(&particle) {
+            self.moved |= 1 << (particle - self.particles.start);
+        }
     }
 
     /// Makes sure that the pairs of a particle with half-planes and with edges from `edge` on are computed.
     #[inline(always)]
     pub fn provide<S: Simd>(&mut self, simd: S, lists: &Lists, bodies: &Bodies, first: usize, edge: usize) {
-        if self.particles.contains(&first) {
-            return;
-        }
         let width = Lanes::<S>::COUNT;
         let edges = bodies.edges.len();
-        let is_alone = self.has_moved && edges > 0;
-        self.particles = first..first + if is_alone { 1 } else { width };
-        self.edges.resize((edges + width) * EDGE_ROW * width + BEHIND, 0.0);
-        self.half_planes.resize(bodies.points.len() * TWO_ROW * width, 0.0);
         let mut largest = Lanes::all(simd, 0.0);
+        let is_alone = if self.particles.contains(&first) {
+            let lane = 1 << (first - self.particles.start);
+            if self.moved & lane == 0 {
+                return;
+            }
+            self.moved &= !lane;
+            largest = Lanes::all(simd, self.largest);
+            true
+        } else {
+            self.particles = first..first + if self.has_moved_edges { 1 } else { width };
+            self.moved = 0;
+            self.edges.resize((edges + width) * EDGE_ROW * width + BEHIND, 0.0);
+            self.half_planes.resize(bodies.points.len() * TWO_ROW * width, 0.0);
+            self.has_moved_edges
+        };
         if is_alone {
             largest = self.with_edges(simd, lists, first, edge..edges, largest);
         } else {
@@ -108,7 +128,7 @@ impl Group {
         store_edges(simd, &pair, EDGE_ROW, &mut self.edges[begin..], largest)
     }
 
-    /// The same of the first particle with some edges.
+    /// The same of one of the particles with some edges.
     #[inline(always)]
     fn with_edges<S: Simd>(
         &mut self,
@@ -120,11 +140,12 @@ impl Group {
     ) -> Lanes<S> {
         let width = Lanes::<S>::COUNT;
         let (x, d, radius) = lists.particle(simd, first);
+        let lane = first - self.particles.start;
         let mut edge = edges.start;
         while edge < edges.end {
             let (motions, edge_radii) = lists.edges(simd, edge);
             let pair = particle_edge::coefficients(x, d, &motions, radius + edge_radii);
-            let begin = edge * EDGE_ROW * width;
+            let begin = (edge * width + lane) * EDGE_ROW;
             largest = store_edges(simd, &pair, EDGE_ROW * width, &mut self.edges[begin..], largest);
             edge += width;
         }

@@ -25,6 +25,20 @@ pub(super) struct Lists {
     has_moderate_constants: bool,
 }
 
+/// The effect of a response on the lists.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Refreshed {
+    /// The particle ends where it ended before, to the last bit.
+    Same,
+    /// It ends elsewhere.
+    Moved {
+        /// An edge ends in it.
+        is_end: bool,
+    },
+    /// Its displacement is too large for lanes, or no number.
+    TooLarge,
+}
+
 /// Two vectors and a number per lane.
 type Five<S> = (Plane<Lanes<S>>, Plane<Lanes<S>>, Lanes<S>);
 
@@ -48,21 +62,24 @@ impl Lists {
         self.has_moderate_constants && are_moderate(q_start) && are_moderate(displacements)
     }
 
-    /// Takes over the displacements of these particles; false as in [`Lists::prepare`].
-    pub fn refresh(&mut self, setting: Setting<'_>, moved: [usize; 3]) -> bool {
+    /// Takes over the displacement of a particle.
+    pub fn refresh(&mut self, setting: Setting<'_>, particle: usize) -> Refreshed {
         let Setting { bodies, displacements, .. } = setting;
-        let mut are_all_moderate = true;
-        for particle in moved {
-            let shift = at(displacements, particle);
-            put(&mut self.particles[2..4], particle, bodies.particles(), shift);
-            are_all_moderate &= are_moderate(&[shift.x, shift.y]);
+        let shift = at(displacements, particle);
+        let [_, _, dx, dy, _] = &self.particles;
+        if [dx[particle], dy[particle]].map(f64::to_bits) == [shift.x, shift.y].map(f64::to_bits) {
+            return Refreshed::Same;
         }
+        if !are_moderate(&[shift.x, shift.y]) {
+            return Refreshed::TooLarge;
+        }
+        put(&mut self.particles[2..4], particle, bodies.particles(), shift);
         if std::mem::replace(&mut self.has_edges, true) {
-            for particle in moved {
-                for &edge in &self.own_edges[particle] {
-                    let shift = [0, 1].map(|end| at(displacements, bodies.edges[edge][end]));
-                    put(&mut self.edges[2..4], edge, bodies.edges.len(), shift[0]);
-                    put(&mut self.edges[6..8], edge, bodies.edges.len(), shift[1]);
+            for &edge in &self.own_edges[particle] {
+                for (end, lists) in self.edges.chunks_exact_mut(4).enumerate() {
+                    if bodies.edges[edge][end] == particle {
+                        put(&mut lists[2..4], edge, bodies.edges.len(), shift);
+                    }
                 }
             }
         } else {
@@ -75,7 +92,7 @@ impl Lists {
             }
             repeat_last(&mut self.edges[..8], bodies.edges.len());
         }
-        are_all_moderate
+        Refreshed::Moved { is_end: !self.own_edges[particle].is_empty() }
     }
 
     /// Fills the lists of values that do not change while the scene is simulated.

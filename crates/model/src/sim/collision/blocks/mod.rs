@@ -17,7 +17,7 @@ use super::super::{
 };
 use fosssim_num::lanes::Instructions;
 use group::Group;
-use lists::Lists;
+use lists::{Lists, Refreshed};
 use rows::Pairs;
 
 /// The inputs of a pass.
@@ -52,14 +52,21 @@ impl Blocks {
 
     /// Prepares a pass. False where pairs have to be computed one by one.
     pub fn prepare(&mut self, setting: Setting<'_>) -> bool {
-        self.group.clear(false);
+        self.group.clear();
         self.lists.prepare(setting)
     }
 
     /// Takes over the displacements of these particles. False where the rest has to be computed one by one.
     pub fn refresh(&mut self, setting: Setting<'_>, moved: [usize; 3]) -> bool {
-        self.group.clear(true);
-        self.lists.refresh(setting, moved)
+        // Fixed particles stay, and so does all that is computed with them.
+        moved.into_iter().all(|particle| match self.lists.refresh(setting, particle) {
+            Refreshed::Same => true,
+            Refreshed::Moved { is_end } => {
+                self.group.spoil(particle, is_end);
+                true
+            }
+            Refreshed::TooLarge => false,
+        })
     }
 
     /// Goes on to the next hit and past it; none is left where there is none. Polynomials are appended to `bytes`.
