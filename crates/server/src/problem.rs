@@ -106,11 +106,11 @@ problems! {
         "mend the suite and upload it again; the assignment has the suite that it had";
     /// An upload with more bytes than allowed.
     too_large(most: u64): 413, "too-large", "Too large",
-        format!("more than the {most} bytes that are allowed"),
+        format!("more than the {} that are allowed", size(most)),
         "send less: no build folders, no traces in an archive of sources";
     /// Another request with more bytes than allowed.
     too_long(most: usize): 413, "too-large", "Too large",
-        format!("more than the {most} bytes that are allowed"),
+        format!("more than the {} that are allowed", size(most as u64)),
         "send less in one request";
     /// A method that the address does not take.
     wrong_method(method: &str): 405, "wrong-method", "Not done so",
@@ -145,6 +145,15 @@ problems! {
     fault(): 500, "fault", "The server failed",
         "something went wrong here",
         "try again, and tell the administrator: the log says more";
+}
+
+/// A size in bytes, in the unit that leaves few digits.
+pub(crate) fn size(bytes: u64) -> String {
+    match bytes {
+        few @ ..1024 => format!("{few} B"),
+        some @ ..1_048_576 => format!("{} KiB", (some + 512) / 1024),
+        many => format!("{} MiB", (many + 524_288) / 1_048_576),
+    }
 }
 
 impl From<DbError> for Problem {

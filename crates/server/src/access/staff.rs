@@ -59,7 +59,8 @@ impl Staff {
         view::note(transaction, &self.entry(kind, assignment, text)).await
     }
 
-    /// Makes an assignment, or changes it.
+    /// Makes an assignment, or changes it. Groups that another suite may hide were not meant when those of the last one
+    /// were published: they are withheld.
     ///
     /// # Errors
     /// When something in it makes no sense.
@@ -70,12 +71,25 @@ impl Staff {
         visible: Option<bool>,
         settings: Option<&Settings>,
     ) -> Result<Assignment, Problem> {
+        self.change_assignment(slug, title, visible, settings, true).await
+    }
+
+    /// The same; another suite is known to hide groups or not to.
+    async fn change_assignment(
+        &self,
+        slug: &str,
+        title: &str,
+        visible: Option<bool>,
+        settings: Option<&Settings>,
+        hides: bool,
+    ) -> Result<Assignment, Problem> {
         identity::check_slug("an assignment's name", slug)?;
         identity::check_title("a title", title)?;
         let mut transaction = self.app.0.database.begin().await?;
-        let statement = "SELECT visible, settings FROM assignment WHERE course = ? AND slug = ?";
+        let statement = "SELECT visible, settings, published_at FROM assignment WHERE course = ? AND slug = ?";
         let before = transaction.row(statement, values![self.course, slug]).await?;
         let was_visible = before.as_ref().map(|row| row.flag("visible")).transpose()?;
+        let was_published = before.as_ref().map(|row| row.maybe_int("published_at")).transpose()?.flatten().is_some();
         let visible = visible.or(was_visible).unwrap_or_default();
         let before = before.map(|row| row.text("settings")).transpose()?;
         let before = before.and_then(|text| Settings::read(&text).ok()).unwrap_or_default();
@@ -91,12 +105,14 @@ impl Staff {
         let statement = "INSERT INTO assignment (course, slug, title, visible, settings, created_at)
             VALUES (?, ?, ?, ?, ?, {now})
             ON CONFLICT (course, slug) DO UPDATE SET title = excluded.title, visible = excluded.visible,
-               settings = excluded.settings
+               settings = excluded.settings, published_at = CASE WHEN ? = 0 THEN assignment.published_at END
             RETURNING id, slug, title, visible, settings, published_at";
-        let row = transaction.one(statement, values![self.course, slug, title, visible, settings.text()]).await?;
-        let assignment = view::read_assignment(&row)?;
-        // Late submissions may be worth something else now.
-        if before.late_policy() != settings.late_policy() {
+        let is_same_suite = (&before.suite, &before.suite_archive) == (&settings.suite, &settings.suite_archive);
+        let withholds = was_published && hides && !is_same_suite;
+        let values = values![self.course, slug, title, visible, settings.text(), withholds];
+        let assignment = view::read_assignment(&transaction.one(statement, values).await?)?;
+        // Late submissions may be worth something else now, and platforms hear of what is shown.
+        if withholds || before.late_policy() != settings.late_policy() {
             score::send_all(&mut transaction, assignment.id, false).await?;
         }
         // A job that waits because nothing could be graded is tried by the new settings.
@@ -106,8 +122,14 @@ impl Staff {
         if !changes.is_empty() {
             text = format!("{text}: {changes}");
         }
+        if withholds {
+            text.push_str("; hidden groups are withheld");
+        }
         self.note(&mut transaction, "assignment", Some(assignment.id), &text).await?;
         transaction.commit().await?;
+        if withholds {
+            self.app.0.notifier.wake();
+        }
         Ok(assignment)
     }
 
@@ -129,19 +151,15 @@ impl Staff {
         view::read_assignment(&row)
     }
 
-    /// Stores an archive with a suite and makes it the assignment's. Submissions from now on are graded by it. Groups
-    /// that it hides were not meant when others were published.
+    /// Stores an archive with a suite and makes it the assignment's. Submissions from now on are graded by it.
     ///
     /// # Errors
     /// When there is no such assignment, or the store fails.
     pub async fn set_suite(&self, slug: &str, archive: &Path, hides: bool) -> Result<Assignment, Problem> {
         let assignment = self.assignment(slug).await?;
         let artefact = self.app.0.store.put_file(archive).await?;
-        if hides && assignment.published_at.is_some() {
-            self.publish(slug, false).await?;
-        }
         let settings = Settings { suite_archive: Some(artefact.digest.to_string()), ..assignment.settings };
-        self.set_assignment(slug, &assignment.title, None, Some(&settings)).await
+        self.change_assignment(slug, &assignment.title, None, Some(&settings), hides).await
     }
 
     /// Whether something that was handed in to an assignment was graded by a suite that hides groups.

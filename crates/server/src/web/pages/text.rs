@@ -1,7 +1,7 @@
 //! Values as people read them.
 use crate::{
     access::{RegradeState, Submission},
-    calendar,
+    calendar, problem,
     task::rounded,
 };
 
@@ -86,11 +86,7 @@ pub(super) fn is_accepted(submission: &Option<Submission>) -> bool {
 
 /// A size in bytes, in the unit that leaves few digits.
 pub(super) fn size(bytes: &(impl Copy + TryInto<u64>)) -> String {
-    match (*bytes).try_into().unwrap_or(0) {
-        few @ ..1024 => format!("{few} B"),
-        some @ ..1_048_576 => format!("{} KiB", (some + 512) / 1024),
-        many => format!("{} MiB", (many + 524_288) / 1_048_576),
-    }
+    problem::size((*bytes).try_into().unwrap_or(0))
 }
 
 /// Its points; a dash while there are none. Points by hand are of the whole grade: they have no maximum of the groups

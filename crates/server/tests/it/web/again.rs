@@ -1,7 +1,7 @@
 //! Submissions on which the grader fails: what students read of them, and how staff has them graded again.
 use crate::support::{
     engines::{Fresh, on_both_engines, run},
-    server::{Client, Server, program},
+    server::{Client, JSON, Server, program},
 };
 use std::{
     fs,
@@ -133,6 +133,15 @@ fn a_suite_that_can_t_work_is_refused() {
         assert!(published().is_i64(), "it hides nothing");
         admin.send("PUT", path, &[], &suite("[[group]]\nvisibility = 'hidden'")).expect(200);
         assert!(published().is_null());
+        // Nobody knows yet whether a suite that is named hides any.
+        for (change, remains) in [("another suite", false), ("the same suite", true)] {
+            admin.send("PUT", "/api/v1/courses/physics/assignments/m1/published", &[], b"").expect(200);
+            let named = br#"{"title": "Milestone one", "settings": {"suite": "course-2027"}}"#;
+            admin.send("PUT", "/api/v1/courses/physics/assignments/m1", JSON, named).expect(200);
+            assert_eq!(published().is_i64(), remains, "{change}");
+        }
+        let audit = admin.get("/api/v1/courses/physics/audit").expect(200).text();
+        assert!(audit.contains("; hidden groups are withheld"), "{audit}");
     });
 }
 
