@@ -481,3 +481,50 @@ fn fixed_particles_are_not_moved_by_a_response() {
     });
     assert_eq!(fair(&scene, &forged).verdict, FairVerdict::Rejected);
 }
+
+/// Decides about the pair with the edge as the reference does not.
+struct OtherWay;
+
+impl Steer for OtherWay {
+    fn decide(&mut self, pair: Pair, decision: Decision) -> Decision {
+        match decision {
+            _ if pair.kind != PairKind::ParticleEdge => decision,
+            Decision::Hit { .. } => Decision::Miss { time: Time::None },
+            // From the ball to its nearest point of the edge.
+            Decision::Miss { .. } => Decision::Hit { time: 0.0, normal: Vec2::new(0.6, -0.8) },
+        }
+    }
+}
+
+/// A ball ends a step of `simple` at a point of a slanted edge, as near as rounding allows: both decisions are right,
+/// and a contact has the normal of this point.
+#[test]
+fn a_ball_that_just_touches_an_edge_may_collide_or_not() {
+    let mut decided = [0, 0];
+    for off in -3_i32..=3 {
+        // Two fifths along the edge from the origin to (4, 3), and the radii's sum away from it.
+        let (x, y) = (1.6 - 0.6 + f64::from(off) * f64::EPSILON, 1.2 + 0.8);
+        let text = format!(
+            r#"<scene><duration time="1"/><integrator type="explicit-euler" dt="1"/><collision type="simple" COR="1"/>
+            <particle m="1" px="{}" py="{}" vx="0.6" vy="-0.8" fixed="0" radius="0.75"/>
+            <particle m="1" px="0" py="0" vx="0" vy="0" fixed="1" radius="0.1"/>
+            <particle m="1" px="4" py="3" vx="0" vy="0" fixed="1" radius="0.1"/>
+            <edge i="1" j="2" radius="0.25"/></scene>"#,
+            x - 0.6,
+            y + 0.8
+        );
+        let scene = scene(&text);
+        let contacts = |frames: &[Frame]| frames.last().expect("a record").impulses.len();
+        let mut frames = run(&scene, Steering(OtherWay));
+        let count = contacts(&frames);
+        assert_eq!(contacts(&run(&scene, ())), 1 - count);
+        decided[count] += 1;
+        assert_eq!(fair(&scene, &written(&scene, &frames)).verdict, FairVerdict::Accepted, "{text}");
+        for impulse in frames.iter_mut().flat_map(|frame| &mut frame.impulses) {
+            impulse.normal.x += 1e-9;
+        }
+        let is_rejected = fair(&scene, &written(&scene, &frames)).verdict == FairVerdict::Rejected;
+        assert_eq!(is_rejected, count == 1, "with another normal: {text}");
+    }
+    assert!(decided.iter().all(|count| *count > 0), "{decided:?}");
+}
