@@ -222,3 +222,22 @@ impl Steer for PerturbedRun<'_> {
         Resume::Synchronised
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Each repetition moves about half of all numbers up, and not those that another one does.
+    #[test]
+    fn signs_are_mixed() {
+        let of = |seed| {
+            let mut signs = Signs::of(seed);
+            std::array::from_fn::<_, 100, _>(|_| signs.next() > 0.0)
+        };
+        for seed in 1..=RUNS {
+            let ups = of(seed).iter().filter(|is_up| **is_up).count();
+            assert!((30..=70).contains(&ups), "{ups} of 100 with seed {seed}");
+            assert!((1..seed).all(|other| of(other) != of(seed)), "{seed}");
+        }
+    }
+}

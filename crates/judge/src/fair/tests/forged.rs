@@ -528,3 +528,22 @@ fn a_ball_that_just_touches_an_edge_may_collide_or_not() {
     }
     assert!(decided.iter().all(|count| *count > 0), "{decided:?}");
 }
+
+/// Nothing has collided before the first step.
+#[test]
+fn the_initial_record_has_no_lists() {
+    let scene = scene(BOUNCE);
+    let frames = run(&scene, ());
+    let later = frames.iter().find(|frame| !frame.impulses.is_empty()).expect("a contact");
+    for (impulses, polynomials) in [(true, false), (false, true), (true, true)] {
+        let forged = changed(&scene, |frames| {
+            if impulses {
+                frames[0].impulses.clone_from(&later.impulses);
+            }
+            if polynomials {
+                frames[0].polynomials.clone_from(&later.polynomials);
+            }
+        });
+        assert_eq!(fair(&scene, &forged).verdict, FairVerdict::Rejected, "{impulses} {polynomials}");
+    }
+}
