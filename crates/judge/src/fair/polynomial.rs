@@ -207,3 +207,36 @@ pub(super) fn wrong_polynomial(logged: &Logged<'_>, expected: &[Bounded], mismat
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fosssim_findings::Role;
+    use fosssim_model::sim::{Pair, Pass, Stage};
+
+    /// Whether polynomials that are right with factors between these, one after the other, are right with one.
+    fn are_right_with(bounds: &[[f64; 2]], factor: f64) -> bool {
+        let pair = Pair { kind: PairKind::ParticleParticle, first: 0, second: 1 };
+        let pass = Pass { stage: Stage::ContinuousTime, index: 0 };
+        let place = PolynomialPlace { pass, pair, role: Role::Overlap, index: 0 };
+        let mut judged = StepJudgement::default();
+        for factors in bounds {
+            let expected = [1e-14, 1.0, 2.0].map(Bounded::exact);
+            let logged = Logged { place, number: 0, list: &[1.0, 2.0] };
+            judged.pend(&logged, (Form::Either, false), &expected, *factors);
+        }
+        judged.pending.iter().all(|pending| pending.finding([factor, factor]).is_none())
+    }
+
+    #[test]
+    fn each_of_the_polynomials_bounds_the_factor() {
+        let (any, at_least_ten, at_most_half) = ([0.1, 1e3], [10.0, 1e3], [0.1, 0.5]);
+        assert!(are_right_with(&[any, any], 1.0));
+        for bound in [at_least_ten, at_most_half] {
+            for order in [[any, bound, any], [bound, any, any], [any, any, bound]] {
+                assert!(!are_right_with(&order, 1.0), "{order:?}");
+                assert!(are_right_with(&order, if bound == at_least_ten { 20.0 } else { 0.2 }), "{order:?}");
+            }
+        }
+    }
+}
