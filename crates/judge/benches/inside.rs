@@ -10,8 +10,8 @@
 //! changes, and shows them beside those of `instructions.txt`; with `store` behind it they are written there.
 //!
 //! `... -- growth` shows the cost of a pair and the memory from 10 to 3,000 particles, `... -- crowd` the instructions
-//! of a ball and step of a penalty scene from 100 to 100,000 balls, `... -- hits` those of `continuous-time` scenes with
-//! many hits in a step.
+//! of a ball and step of a penalty scene from 100 to 100,000 balls, `... -- hits` those of scenes with many hits in a
+//! step of `continuous-time`.
 #![forbid(unsafe_code)]
 use fosssim_judge::replay::{self, Options};
 use fosssim_model::{
