@@ -27,8 +27,8 @@ pub fn nearest<'c>(word: &str, names: impl Iterator<Item = &'c str>, most: usize
         let (known, known_last) = (plain(name), last(name));
         // A name that holds the whole of it is as near as one slip.
         let holds = typed.len() >= 3 && known.windows(typed.len()).any(|part| part == typed);
-        let of_last = distance(&typed_last, &known_last);
-        (if holds { 1 } else { of_last.min(distance(&typed, &known)) }, of_last)
+        let of_last = or_beginning(&typed_last, &known_last);
+        (if holds { 1 } else { of_last.min(or_beginning(&typed, &known)) }, of_last)
     };
     let mut near: Vec<_> = names.map(|name| (slips(name), name)).collect();
     // Stable: names that are as near stay in their order.
@@ -49,6 +49,18 @@ fn sorted(letters: &[char]) -> Vec<char> {
 
 /// Letters to insert, remove or replace.
 fn distance(one: &[char], other: &[char]) -> usize {
+    distances(one, other)[other.len()]
+}
+
+/// The same, or one more than to a beginning of the other: nobody types long names to their end.
+fn or_beginning(one: &[char], other: &[char]) -> usize {
+    let distances = distances(one, other);
+    let of_beginnings = distances.iter().min().map_or(0, |least| least + 1);
+    of_beginnings.min(distances[other.len()])
+}
+
+/// Letters to insert, remove or replace for each beginning of the other, from the empty one on.
+fn distances(one: &[char], other: &[char]) -> Vec<usize> {
     let mut row: Vec<usize> = (0..=other.len()).collect();
     for (number, letter) in one.iter().enumerate() {
         let mut diagonal = std::mem::replace(&mut row[0], number + 1);
@@ -58,7 +70,7 @@ fn distance(one: &[char], other: &[char]) -> usize {
             row[place + 1] = replaced.min(diagonal + 1).min(row[place] + 1);
         }
     }
-    row[other.len()]
+    row
 }
 
 #[cfg(test)]
@@ -82,6 +94,8 @@ mod tests {
             ("GeometricTests/rope-bridge", "ImpulsesTests/rope-bridge"),
             ("bridge", "ImpulsesTests/rope-bridge"),
             ("ball-betwen-walls", "GeometricTests/ball-between-walls"),
+            ("ball-bewteen", "GeometricTests/ball-between-walls"),
+            ("ContinousTimeTests/barley", "ContinuousTimeTests/barely-closing"),
         ] {
             assert_eq!(nearest(typed, NAMES.into_iter(), 1), [meant], "{typed}");
         }

@@ -170,6 +170,7 @@ fn slips_in_names_of_scenes_and_pairs_find_what_was_meant() {
         ("asset:ImpulsesTests/of-centre-on-turning-edge", "ImpulsesTests/off-centre-on-turning-edge"),
         ("asset:off-centre-on-turning-egde", "ImpulsesTests/off-centre-on-turning-edge"),
         ("asset:GeometricTests/nothing-colildes.xml", "GeometricTests/nothing-collides"),
+        ("asset:ContinuousTimeTests/spinning-egde", "ContinuousTimeTests/spinning-edge-sweeps-balls"),
     ] {
         let run = workspace.run(["check", typed, "trace.bin"]);
         let near = run.err().split("the nearest are ").nth(1).unwrap_or_default().to_owned();
