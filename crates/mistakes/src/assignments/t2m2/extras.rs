@@ -1,5 +1,5 @@
 //! Quantities that do not belong into a formula, and get there.
-use super::{Inputs, Subject, formulas::Letter};
+use super::{Inputs, Subject, formulas::Letter, inputs::root};
 use fosssim_num::bounded::{Bounded, Bounded2};
 
 /// Letters that do not belong into the formulas of a polynomial, but may stand there.
@@ -11,11 +11,6 @@ pub(crate) fn extras(subject: Subject) -> &'static [Letter] {
         Subject::EdgeApproach => &[],
         Subject::HalfPlaneOverlap | Subject::HalfPlaneApproach => HALF_PLANE_EXTRAS,
     }
-}
-
-fn root(square: Bounded) -> Bounded {
-    let value = square.value.sqrt();
-    Bounded { value, bound: value + if value > 0.0 { square.bound / value } else { 0.0 } }
 }
 
 fn length(vector: Bounded2) -> Bounded {

@@ -42,6 +42,12 @@ impl Inputs {
     }
 }
 
+/// The square root of a number that is not negative.
+pub(super) fn root(square: Bounded) -> Bounded {
+    let value = square.value.sqrt();
+    Bounded { value, bound: value + if value > 0.0 { square.bound / value } else { 0.0 } }
+}
+
 /// Differences that the formulas are made of. `12` is "1 minus 2"; 1 is the particle, 2 and 3 the edge's endpoints.
 impl Inputs {
     pub fn x12(&self) -> Bounded2 {

@@ -1,20 +1,15 @@
 //! Ways to write a polynomial down, by name.
 use super::{
     extras::extras,
-    formulas::{Formula, Letter, readings},
+    formulas::{Letter, readings},
 };
 use fosssim_findings::explanation::Reading;
-
-/// The formula of a way to write a polynomial down, if there is such a way.
-pub(crate) fn formula(reading: Reading) -> Option<&'static Formula> {
-    readings(reading.subject).get(reading.number)
-}
 
 /// The letter that a message calls so: one of the formula's own, or one that does not belong there and may stand
 /// there.
 #[must_use]
 pub fn letter(reading: Reading, name: &str) -> Option<&'static Letter> {
-    let own = formula(reading)?.letters.iter();
+    let own = readings(reading.subject).get(reading.number)?.letters.iter();
     own.chain(extras(reading.subject)).find(|letter| letter.name == name)
 }
 

@@ -1,6 +1,6 @@
 //! Misunderstandings that have a formula of their own.
-use super::{Inputs, Subject};
-use fosssim_num::bounded::{Bounded, Bounded2};
+use super::{Inputs, Subject, formulas::readings};
+use fosssim_num::bounded::Bounded;
 
 /// A wrong polynomial, highest power first.
 pub struct Special {
@@ -37,18 +37,10 @@ pub const SPECIALS: &[Special] = &[
         sentence: "The radii are not multiplied by the edge's squared length when the denominator is cleared",
         detail: "R^2 stands for R^2 (x32 + t d32).(x32 + t d32)",
         polynomial: |inputs| {
-            let square = |one: Bounded2, two: Bounded2| one.dot(two);
-            let (w0, w1, e0, e1) = (inputs.x12(), inputs.d12(), inputs.x32(), inputs.d32());
-            let (a, b, c) = (w0.dot(e0), w0.dot(e1) + w1.dot(e0), w1.dot(e1));
-            let (d, e, f) = (square(w0, w0), square(w0, w1), square(w1, w1));
-            let (g, h, i) = (square(e0, e0), square(e0, e1), square(e1, e1));
-            vec![
-                c * c - f * i,
-                2.0 * (b * c) - 2.0 * (e * i) - 2.0 * (f * h),
-                2.0 * (a * c) + b * b - d * i - f * g - 4.0 * (e * h),
-                2.0 * (a * b) - 2.0 * (d * h) - 2.0 * (e * g),
-                a * a - d * g + inputs.square,
-            ]
+            let quartic = &readings(Subject::EdgeOverlap)[0];
+            let mut list = quartic.polynomial(&Inputs { square: Bounded::exact(0.0), ..*inputs });
+            list[quartic.degree] = list[quartic.degree] + inputs.square;
+            list
         },
     },
     Special {
