@@ -9,7 +9,8 @@ use super::{
 pub struct Student {
     mistakes: [Option<Mistake>; Student::MOST],
     right_approach: bool,
-    change: Option<&'static Change>,
+    /// The student's change that the catalogue does not have.
+    pub(super) change: Option<&'static Change>,
     pub(super) mutation: Option<Mutation>,
 }
 
@@ -70,11 +71,6 @@ impl Student {
     #[must_use]
     pub fn with_mutation(self, mutation: Mutation) -> Self {
         Self { mutation: Some(mutation), ..self }
-    }
-
-    /// The student's change that the catalogue does not have.
-    pub(super) fn change(self) -> Option<&'static Change> {
-        self.change
     }
 
     /// Whether the particle-edge approach is mathematically right, not the supplied one.

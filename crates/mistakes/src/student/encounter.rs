@@ -13,11 +13,6 @@ pub struct MovingBody {
 }
 
 impl MovingBody {
-    /// A point that moves from `start` to `end`.
-    pub(super) fn new(start: Vec2, end: Vec2, radius: f64) -> Self {
-        Self { start, displacement: end - start, radius }
-    }
-
     /// Where its centre is at time `t`, a fraction of the step.
     pub fn at(&self, t: f64) -> Vec2 {
         self.start + t * self.displacement

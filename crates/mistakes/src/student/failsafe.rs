@@ -7,8 +7,7 @@ use fosssim_num::{
 use super::{
     Area, Mistake,
     hooks::{Change, Place, ZoneTurn},
-    objects::State,
-    objects::Zone,
+    objects::{State, Zone},
     rounding::single,
     world::World,
 };
@@ -39,7 +38,7 @@ pub fn perform(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
 fn stops(world: &World, zone: &Zone) -> bool {
     let mistake = world.student.mistake_in(HERE);
     let student = world.student;
-    let asked = student.items(Place::AskedWhetherFixed, Vec::from_iter(zone.particles.iter().copied()));
+    let asked = particles(world, Place::AskedWhetherFixed, zone);
     let fixed = student.holds(Place::FixedHolds, asked.into_iter().any(|particle| world.fixed(particle)));
     let half_plane = student.holds(Place::HalfPlaneHolds, zone.half_plane);
     let half_plane = half_plane && mistake != Some(Mistake::FailsafeHalfPlaneForgotten);
@@ -69,10 +68,9 @@ fn stop(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
             put(&mut state.x, particle, at(q_start, particle));
         }
         if !keeps(Place::StoppedVelocity, Mistake::FailsafeStopKeepsVelocity) {
-            let stopped = at(&state.v, particle) * 0.0;
-            let stopped = match world.student.change() {
+            let stopped = match world.student.change {
                 Some(Change::Stopped(change)) => change(at(&state.v, particle)),
-                _ => stopped,
+                _ => at(&state.v, particle) * 0.0,
             };
             put(&mut state.v, particle, stopped);
         }
@@ -101,7 +99,7 @@ impl<'a> Rigid<'a> {
         let mut rigid = Self { world, q_start, centre, shift, momentum: 0.0, angle: 0.0, inertia: 0.0 };
         rigid.translation(zone, state);
         rigid.rotation(zone, state);
-        if let Some(Change::Rigid(change)) = world.student.change() {
+        if let Some(Change::Rigid(change)) = world.student.change {
             let mut turn = rigid.turn(zone);
             change(&mut turn);
             (rigid.shift, rigid.angle) = (turn.shift, turn.angle);
@@ -273,7 +271,7 @@ impl<'a> Rigid<'a> {
                 Some(Mistake::FailsafePerpendicular) => Vec2::new(arm.y, arm.x),
                 _ => Vec2::new(-arm.y, arm.x),
             };
-            let x = match self.mistake() {
+            let mut x = match self.mistake() {
                 Some(Mistake::FailsafeNoCentre) => self.shift + cosine * arm + sine * across,
                 Some(Mistake::FailsafeRotationMatrix) => {
                     let turned = Vec2::new(cosine * arm.x - sine * arm.y, sine * arm.x + cosine * arm.y);
@@ -285,27 +283,20 @@ impl<'a> Rigid<'a> {
                     student.add_scaled(student.add_scaled(to, cosine, arm), sine, across)
                 }
             };
-            let h = self.world.scene.time_step;
-            match self.mistake() {
-                Some(Mistake::FailsafeVelocityKept) => {}
-                Some(Mistake::FailsafeVelocityNoStep) => put(&mut state.v, particle, x - start),
-                Some(Mistake::FailsafeVelocityAdded) => {
-                    let before = at(&state.v, particle);
-                    put(&mut state.v, particle, before + over(x - start, h));
-                }
-                Some(Mistake::FailsafeVelocityFromPrediction) => {
-                    put(&mut state.v, particle, over(x - at(&state.x, particle), h));
-                }
-                Some(Mistake::FailsafeVelocityOfCentre) => put(&mut state.v, particle, over(self.shift, h)),
-                _ => put(&mut state.v, particle, student.vector(Place::CarriedVelocity, over(x - start, h))),
+            let (h, before) = (self.world.scene.time_step, at(&state.v, particle));
+            let mut v = match self.mistake() {
+                Some(Mistake::FailsafeVelocityKept) => before,
+                Some(Mistake::FailsafeVelocityNoStep) => x - start,
+                Some(Mistake::FailsafeVelocityAdded) => before + over(x - start, h),
+                Some(Mistake::FailsafeVelocityFromPrediction) => over(x - at(&state.x, particle), h),
+                Some(Mistake::FailsafeVelocityOfCentre) => over(self.shift, h),
+                _ => student.vector(Place::CarriedVelocity, over(x - start, h)),
+            };
+            if let Some(Change::Moved(change)) = student.change {
+                change(start, &self.turn(zone), &mut x, &mut v);
             }
             put(&mut state.x, particle, x);
-            if let Some(Change::Moved(change)) = self.world.student.change() {
-                let (mut x, mut v) = (x, at(&state.v, particle));
-                change(start, &self.turn(zone), &mut x, &mut v);
-                put(&mut state.x, particle, x);
-                put(&mut state.v, particle, v);
-            }
+            put(&mut state.v, particle, v);
         }
     }
 }

@@ -3,7 +3,7 @@ use fosssim_model::scene::{Collision, CollisionDetection, Force};
 use fosssim_num::vector::{Vec2, at, length, over};
 
 use super::{
-    ForceMistake,
+    StepMistake,
     author::Student,
     penalty::{self, PenaltyLayer},
     world::{World, add, subtract},
@@ -15,30 +15,29 @@ pub fn gradient(world: &World, x: &[f64], v: &[f64]) -> Vec<f64> {
     for force in &world.scene.forces {
         add_gradient(world, force, x, v, &mut g);
     }
-    match world.scene.collision {
-        Collision::Penalty { stiffness: k, thickness: h, detection } => {
-            penalty::add_gradient(world, PenaltyLayer { k, h, detection }, x, v, &mut g);
-        }
-        Collision::Hybrid { stiffness: k, thickness: h, .. } => {
-            penalty::add_gradient(world, PenaltyLayer { k, h, detection: CollisionDetection::AllPairs }, x, v, &mut g);
-        }
-        _ => {}
-    }
+    let (k, h, detection) = match world.scene.collision {
+        Collision::Penalty { stiffness, thickness, detection } => (stiffness, thickness, detection),
+        Collision::Hybrid { stiffness, thickness, .. } => (stiffness, thickness, CollisionDetection::AllPairs),
+        _ => return g,
+    };
+    penalty::add_gradient(world, PenaltyLayer { k, h, detection }, x, v, &mut g);
     g
 }
 
 impl Student {
-    /// The value with the weight of the first of these mistakes that the student makes.
-    pub fn weighted(self, value: Vec2, weights: &[(ForceMistake, f64)]) -> Vec2 {
-        match weights.iter().find(|(mistake, _)| self.makes(*mistake)) {
-            Some((_, weight)) => *weight * value,
-            None => value,
-        }
+    /// The weight of the first of these mistakes that the student makes, else 1.
+    pub fn weight(self, weights: &[(StepMistake, f64)]) -> f64 {
+        weights.iter().find(|(mistake, _)| self.makes(*mistake)).map_or(1.0, |(_, weight)| *weight)
+    }
+
+    /// The value with such a weight.
+    fn weighted(self, value: Vec2, weights: &[(StepMistake, f64)]) -> Vec2 {
+        self.weight(weights) * value
     }
 
     /// Adds opposite forces to the two particles: `push` is the gradient's part of the second one. The mistakes: only
     /// the first one gets it, only the second one does, both get the same.
-    fn add_opposite(self, g: &mut [f64], (a, b): (usize, usize), push: Vec2, mistakes: [Option<ForceMistake>; 3]) {
+    fn add_opposite(self, g: &mut [f64], (a, b): (usize, usize), push: Vec2, mistakes: [Option<StepMistake>; 3]) {
         let [first_only, second_only, same_sign] = mistakes.map(|one| one.is_some_and(|one| self.makes(one)));
         if !second_only {
             subtract(g, a, push);
@@ -54,28 +53,28 @@ fn add_gradient(world: &World, force: &Force, x: &[f64], v: &[f64], g: &mut [f64
     match *force {
         Force::Spring { .. } => spring(world, force, x, v, g),
         Force::SimpleGravity { acceleration } => {
-            let last = count - usize::from(student.makes(ForceMistake::GravityLastMissing)).min(count);
+            let last = count - usize::from(student.makes(StepMistake::GravityLastMissing)).min(count);
             for i in 0..last {
-                let mass = if student.makes(ForceMistake::GravityNoMass) { 1.0 } else { world.masses[2 * i] };
-                let weights = [(ForceMistake::GravityMissing, 0.0), (ForceMistake::GravitySign, -1.0)];
+                let mass = if student.makes(StepMistake::GravityNoMass) { 1.0 } else { world.masses[2 * i] };
+                let weights = [(StepMistake::GravityMissing, 0.0), (StepMistake::GravitySign, -1.0)];
                 subtract(g, i, student.weighted(mass * acceleration, &weights));
             }
         }
         Force::Gravitation { first, second, constant } => gravitation(world, (first, second), constant, x, g),
         Force::Constant { force } => {
             for i in 0..count {
-                let force = if student.makes(ForceMistake::ConstantMass) { world.masses[2 * i] * force } else { force };
-                let weights = [(ForceMistake::ConstantMissing, 0.0), (ForceMistake::ConstantSign, -1.0)];
+                let force = if student.makes(StepMistake::ConstantMass) { world.masses[2 * i] * force } else { force };
+                let weights = [(StepMistake::ConstantMissing, 0.0), (StepMistake::ConstantSign, -1.0)];
                 subtract(g, i, student.weighted(force, &weights));
             }
         }
         Force::Drag { coefficient } => {
             for i in 0..count {
                 let weights = [
-                    (ForceMistake::DragMissing, 0.0),
-                    (ForceMistake::DragSign, -1.0),
-                    (ForceMistake::DragMass, world.masses[2 * i]),
-                    (ForceMistake::DragQuadratic, length(at(v, i))),
+                    (StepMistake::DragMissing, 0.0),
+                    (StepMistake::DragSign, -1.0),
+                    (StepMistake::DragMass, world.masses[2 * i]),
+                    (StepMistake::DragQuadratic, length(at(v, i))),
                 ];
                 add(g, i, student.weighted(coefficient * at(v, i), &weights));
             }
@@ -87,47 +86,47 @@ fn add_gradient(world: &World, force: &Force, x: &[f64], v: &[f64], g: &mut [f64
 fn spring(world: &World, force: &Force, x: &[f64], v: &[f64], g: &mut [f64]) {
     let Force::Spring { edge, stiffness, rest_length, damping } = *force else { return };
     let student = world.student;
-    let makes = |mistake: ForceMistake| student.makes(mistake);
+    let makes = |mistake: StepMistake| student.makes(mistake);
     let edge = world.scene.edges[edge];
     let (a, b) = (edge.first, edge.second);
     let d = at(x, b) - at(x, a);
     let l = length(d);
     let n = over(d, l);
-    let is_long = makes(ForceMistake::SpringDirection) || makes(ForceMistake::SpringDirectionEverywhere);
-    let along = if is_long || makes(ForceMistake::SpringElasticDirection) { d } else { n };
-    let stiffness = if makes(ForceMistake::SpringNoStiffness) { 1.0 } else { stiffness };
+    let is_long = makes(StepMistake::SpringDirection) || makes(StepMistake::SpringDirectionEverywhere);
+    let along = if is_long || makes(StepMistake::SpringElasticDirection) { d } else { n };
+    let stiffness = if makes(StepMistake::SpringNoStiffness) { 1.0 } else { stiffness };
     let stretch = match () {
-        () if makes(ForceMistake::SpringNoRestLength) => l,
-        () if makes(ForceMistake::SpringRestLengthSign) => l + rest_length,
-        () if makes(ForceMistake::SpringStretchSquared) => 0.5 * (l - rest_length) * (l - rest_length),
+        () if makes(StepMistake::SpringNoRestLength) => l,
+        () if makes(StepMistake::SpringRestLengthSign) => l + rest_length,
+        () if makes(StepMistake::SpringStretchSquared) => 0.5 * (l - rest_length) * (l - rest_length),
         () => l - rest_length,
     };
     let weights = [
-        (ForceMistake::SpringMissing, 0.0),
-        (ForceMistake::SpringElasticMissing, 0.0),
-        (ForceMistake::SpringElasticSign, -1.0),
-        (ForceMistake::SpringElasticHalved, 0.5),
-        (ForceMistake::SpringElasticDoubled, 2.0),
+        (StepMistake::SpringMissing, 0.0),
+        (StepMistake::SpringElasticMissing, 0.0),
+        (StepMistake::SpringElasticSign, -1.0),
+        (StepMistake::SpringElasticHalved, 0.5),
+        (StepMistake::SpringElasticDoubled, 2.0),
     ];
-    let ends = [ForceMistake::SpringFirstOnly, ForceMistake::SpringSecondOnly, ForceMistake::SpringSameSign].map(Some);
+    let ends = [StepMistake::SpringFirstOnly, StepMistake::SpringSecondOnly, StepMistake::SpringSameSign].map(Some);
     student.add_opposite(g, (a, b), student.weighted(stiffness * stretch * along, &weights), ends);
 
-    let along = if is_long || makes(ForceMistake::SpringDampingDirection) { d } else { n };
-    let damping = if makes(ForceMistake::SpringDampingNoCoefficient) { 1.0 } else { damping };
+    let along = if is_long || makes(StepMistake::SpringDampingDirection) { d } else { n };
+    let damping = if makes(StepMistake::SpringDampingNoCoefficient) { 1.0 } else { damping };
     let w = match () {
-        () if makes(ForceMistake::SpringDampingOneVelocity) => at(v, b),
-        () if makes(ForceMistake::SpringDampingVelocitySum) => at(v, b) + at(v, a),
+        () if makes(StepMistake::SpringDampingOneVelocity) => at(v, b),
+        () if makes(StepMistake::SpringDampingVelocitySum) => at(v, b) + at(v, a),
         () => at(v, b) - at(v, a),
     };
     let damped =
-        if makes(ForceMistake::SpringDampingAllDirections) { damping * w } else { damping * along.dot(&w) * along };
+        if makes(StepMistake::SpringDampingAllDirections) { damping * w } else { damping * along.dot(&w) * along };
     let weights = [
-        (ForceMistake::SpringMissing, 0.0),
-        (ForceMistake::SpringDampingMissing, 0.0),
-        (ForceMistake::SpringDampingSign, -1.0),
+        (StepMistake::SpringMissing, 0.0),
+        (StepMistake::SpringDampingMissing, 0.0),
+        (StepMistake::SpringDampingSign, -1.0),
     ];
     let damped = student.weighted(damped, &weights);
-    if makes(ForceMistake::SpringDampingFirstOnly) {
+    if makes(StepMistake::SpringDampingFirstOnly) {
         subtract(g, a, damped);
     } else {
         student.add_opposite(g, (a, b), damped, ends);
@@ -136,24 +135,24 @@ fn spring(world: &World, force: &Force, x: &[f64], v: &[f64], g: &mut [f64]) {
 
 fn gravitation(world: &World, (first, second): (usize, usize), constant: f64, x: &[f64], g: &mut [f64]) {
     let student = world.student;
-    let makes = |mistake: ForceMistake| student.makes(mistake);
+    let makes = |mistake: StepMistake| student.makes(mistake);
     let d = at(x, second) - at(x, first);
     let r = length(d);
     let n = over(d, r);
-    let constant = if makes(ForceMistake::GravitationNoConstant) { 1.0 } else { constant };
+    let constant = if makes(StepMistake::GravitationNoConstant) { 1.0 } else { constant };
     let (m1, m2) = match () {
-        () if makes(ForceMistake::GravitationNoMasses) => (1.0, 1.0),
-        () if makes(ForceMistake::GravitationOwnMass) => (world.masses[2 * first], world.masses[2 * first]),
+        () if makes(StepMistake::GravitationNoMasses) => (1.0, 1.0),
+        () if makes(StepMistake::GravitationOwnMass) => (world.masses[2 * first], world.masses[2 * first]),
         () => (world.masses[2 * second], world.masses[2 * first]),
     };
     let distances = match () {
-        () if makes(ForceMistake::GravitationDistanceOnce) => r,
-        () if makes(ForceMistake::GravitationDistanceCubed) => r * r * r,
+        () if makes(StepMistake::GravitationDistanceOnce) => r,
+        () if makes(StepMistake::GravitationDistanceCubed) => r * r * r,
         () => r * r,
     };
-    let weights = [(ForceMistake::GravitationMissing, 0.0), (ForceMistake::GravitationSign, -1.0)];
+    let weights = [(StepMistake::GravitationMissing, 0.0), (StepMistake::GravitationSign, -1.0)];
     let ends =
-        [ForceMistake::GravitationFirstOnly, ForceMistake::GravitationSecondOnly, ForceMistake::GravitationSameSign];
+        [StepMistake::GravitationFirstOnly, StepMistake::GravitationSecondOnly, StepMistake::GravitationSameSign];
     let pull = student.weighted(constant * m1 * m2 / distances * n, &weights);
     student.add_opposite(g, (first, second), pull, ends.map(Some));
 }
@@ -161,27 +160,27 @@ fn gravitation(world: &World, (first, second): (usize, usize), constant: f64, x:
 fn vortex(world: &World, force: &Force, x: &[f64], v: &[f64], g: &mut [f64]) {
     let Force::Vortex { first, second, strength, coupling } = *force else { return };
     let student = world.student;
-    let makes = |mistake: ForceMistake| student.makes(mistake);
+    let makes = |mistake: StepMistake| student.makes(mistake);
     let d = at(x, second) - at(x, first);
     let r = length(d);
-    let n = if makes(ForceMistake::VortexDirection) { d } else { over(d, r) };
+    let n = if makes(StepMistake::VortexDirection) { d } else { over(d, r) };
     let along = strength * n;
     let turning = match () {
-        () if makes(ForceMistake::VortexTurn) => Vec2::new(along.y, -along.x),
-        () if makes(ForceMistake::VortexAlong) => along,
+        () if makes(StepMistake::VortexTurn) => Vec2::new(along.y, -along.x),
+        () if makes(StepMistake::VortexAlong) => along,
         () => Vec2::new(-along.y, along.x),
     };
     let w = at(v, second) - at(v, first);
-    let weights = [(ForceMistake::VortexNoVelocity, 0.0), (ForceMistake::VortexVelocitySign, -1.0)];
+    let weights = [(StepMistake::VortexNoVelocity, 0.0), (StepMistake::VortexVelocitySign, -1.0)];
     let around = turning - student.weighted(w, &weights);
     let shared = match () {
-        () if makes(ForceMistake::VortexDistanceOnce) => over(around, r),
-        () if makes(ForceMistake::VortexNoDistance) => around,
-        () if makes(ForceMistake::VortexStrengthDivided) => over(turning, r * r) - w,
+        () if makes(StepMistake::VortexDistanceOnce) => over(around, r),
+        () if makes(StepMistake::VortexNoDistance) => around,
+        () if makes(StepMistake::VortexStrengthDivided) => over(turning, r * r) - w,
         () => over(around, r * r),
     };
-    let weights = [(ForceMistake::VortexMissing, 0.0), (ForceMistake::VortexSign, -1.0)];
+    let weights = [(StepMistake::VortexMissing, 0.0), (StepMistake::VortexSign, -1.0)];
     let push = student.weighted(coupling * shared, &weights);
-    let ends = [Some(ForceMistake::VortexFirstOnly), None, Some(ForceMistake::VortexSameSign)];
+    let ends = [Some(StepMistake::VortexFirstOnly), None, Some(StepMistake::VortexSameSign)];
     student.add_opposite(g, (first, second), -push, ends);
 }

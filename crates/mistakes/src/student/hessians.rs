@@ -2,7 +2,7 @@
 use fosssim_model::scene::Force;
 use fosssim_num::vector::{at, length, over};
 
-use super::{ForceMistake, StepMistake, author::Student, step_failure::StepFailure, world::World};
+use super::{StepMistake, author::Student, step_failure::StepFailure, world::World};
 
 /// A 2 x 2 block, `block[row][column]`.
 type Matrix2 = [[f64; 2]; 2];
@@ -60,12 +60,12 @@ pub fn system_matrix(world: &World, x: &[f64], v: &[f64]) -> Result<Vec<f64>, St
 /// Adds `block` on the diagonal blocks of particles `a` and `b`, and subtracts it beside the diagonal.
 fn add_pair(student: Student, matrix: &mut [f64], size: usize, (a, b): (usize, usize), block: &Matrix2) {
     let beside = match () {
-        () if student.makes(ForceMistake::JacobianDiagonalOnly) => [0.0, 0.0],
-        () if student.makes(ForceMistake::JacobianOffDiagonalSign) => [1.0, 1.0],
-        () if student.makes(ForceMistake::JacobianOneHalf) => [-1.0, 0.0],
+        () if student.makes(StepMistake::JacobianDiagonalOnly) => [0.0, 0.0],
+        () if student.makes(StepMistake::JacobianOffDiagonalSign) => [1.0, 1.0],
+        () if student.makes(StepMistake::JacobianOneHalf) => [-1.0, 0.0],
         () => [-1.0, -1.0],
     };
-    let second = if student.makes(ForceMistake::JacobianFirstOnly) { 0.0 } else { 1.0 };
+    let second = if student.makes(StepMistake::JacobianFirstOnly) { 0.0 } else { 1.0 };
     for (row_particle, column_particle, sign) in [(a, a, 1.0), (b, b, second), (a, b, beside[0]), (b, a, beside[1])] {
         for (row, entries) in block.iter().enumerate() {
             for (column, entry) in entries.iter().enumerate() {
@@ -80,15 +80,10 @@ fn block(entry: impl Fn(usize, usize) -> f64) -> Matrix2 {
 }
 
 impl Student {
-    /// The weight of the first of these mistakes that the student makes, else 1.
-    fn weight(self, weights: &[(ForceMistake, f64)]) -> f64 {
-        weights.iter().find(|(mistake, _)| self.makes(*mistake)).map_or(1.0, |(_, weight)| *weight)
-    }
-
-    /// The block with such a weight.
-    fn weighted_block(self, value: Matrix2, weights: &[(ForceMistake, f64)]) -> Matrix2 {
+    /// The block with the weight of the first of these mistakes that the student makes.
+    fn weighted_block(self, value: Matrix2, weights: &[(StepMistake, f64)]) -> Matrix2 {
         let weight = self.weight(weights);
-        if weight == 1.0 { value } else { block(|r, c| weight * value[r][c]) }
+        block(|r, c| weight * value[r][c])
     }
 }
 
@@ -110,15 +105,15 @@ fn add_position_hessian(
         Force::Gravitation { first, second, constant } => {
             let d = at(x, second) - at(x, first);
             let r = length(d);
-            let n = if student.makes(ForceMistake::JacobianGravitationDirection) { d } else { over(d, r) };
-            let cube = if student.makes(ForceMistake::JacobianGravitationDistance) { r * r } else { r * r * r };
+            let n = if student.makes(StepMistake::JacobianGravitationDirection) { d } else { over(d, r) };
+            let cube = if student.makes(StepMistake::JacobianGravitationDistance) { r * r } else { r * r * r };
             let scale = constant * world.masses[2 * second] * world.masses[2 * first] / cube;
             let weights =
-                [(ForceMistake::JacobianGravitationNoThree, 1.0), (ForceMistake::JacobianGravitationNoOuter, 0.0)];
+                [(StepMistake::JacobianGravitationNoThree, 1.0), (StepMistake::JacobianGravitationNoOuter, 0.0)];
             let three = weights.iter().find(|(mistake, _)| student.makes(*mistake)).map_or(3.0, |(_, weight)| *weight);
             let pull = block(|row, column| (IDENTITY[row][column] - three * n[row] * n[column]) * scale);
             let weights =
-                [(ForceMistake::JacobianGravitationMissing, 0.0), (ForceMistake::JacobianGravitationSign, -1.0)];
+                [(StepMistake::JacobianGravitationMissing, 0.0), (StepMistake::JacobianGravitationSign, -1.0)];
             let pull = student.weighted_block(pull, &weights);
             add_pair(student, matrix, x.len(), (first, second), &pull);
         }
@@ -132,26 +127,26 @@ fn add_position_hessian(
 fn elastic_block(world: &World, force: &Force, x: &[f64]) -> Matrix2 {
     let Force::Spring { edge, stiffness, rest_length, .. } = *force else { return Matrix2::default() };
     let student = world.student;
-    let makes = |mistake: ForceMistake| student.makes(mistake);
+    let makes = |mistake: StepMistake| student.makes(mistake);
     let edge = world.scene.edges[edge];
     let d = at(x, edge.second) - at(x, edge.first);
     let l = length(d);
-    let is_long = makes(ForceMistake::JacobianElasticDirection) || makes(ForceMistake::SpringDirectionEverywhere);
+    let is_long = makes(StepMistake::JacobianElasticDirection) || makes(StepMistake::SpringDirectionEverywhere);
     let n = if is_long { d } else { over(d, l) };
     let outer = block(|r, c| n[r] * n[c]);
-    let stretch = if makes(ForceMistake::JacobianElasticNoRestLength) { l } else { l - rest_length };
-    let inverse = if makes(ForceMistake::JacobianElasticNoLength) { 1.0 } else { 1.0 / l };
-    let removed = if makes(ForceMistake::JacobianElasticNoProjection) { Matrix2::default() } else { outer };
+    let stretch = if makes(StepMistake::JacobianElasticNoRestLength) { l } else { l - rest_length };
+    let inverse = if makes(StepMistake::JacobianElasticNoLength) { 1.0 } else { 1.0 / l };
+    let removed = if makes(StepMistake::JacobianElasticNoProjection) { Matrix2::default() } else { outer };
     let tangent = student
-        .weight(&[(ForceMistake::JacobianElasticNoTangent, 0.0), (ForceMistake::JacobianElasticTangentSign, -1.0)]);
-    let along = student.weight(&[(ForceMistake::JacobianElasticNoOuter, 0.0)]);
+        .weight(&[(StepMistake::JacobianElasticNoTangent, 0.0), (StepMistake::JacobianElasticTangentSign, -1.0)]);
+    let along = student.weight(&[(StepMistake::JacobianElasticNoOuter, 0.0)]);
     let elastic = block(|r, c| {
         (along * outer[r][c] + tangent * (stretch * (IDENTITY[r][c] - removed[r][c]) * inverse)) * stiffness
     });
     let weights = [
-        (ForceMistake::JacobianElasticMissing, 0.0),
-        (ForceMistake::JacobianElasticSign, -1.0),
-        (ForceMistake::JacobianElasticDoubled, 2.0),
+        (StepMistake::JacobianElasticMissing, 0.0),
+        (StepMistake::JacobianElasticSign, -1.0),
+        (StepMistake::JacobianElasticDoubled, 2.0),
     ];
     student.weighted_block(elastic, &weights)
 }
@@ -160,49 +155,49 @@ fn elastic_block(world: &World, force: &Force, x: &[f64]) -> Matrix2 {
 fn damping_block(world: &World, force: &Force, x: &[f64], v: &[f64]) -> Matrix2 {
     let Force::Spring { edge, damping, .. } = *force else { return Matrix2::default() };
     let student = world.student;
-    let makes = |mistake: ForceMistake| student.makes(mistake);
+    let makes = |mistake: StepMistake| student.makes(mistake);
     let edge = world.scene.edges[edge];
     let (a, b) = (edge.first, edge.second);
     let d = at(x, b) - at(x, a);
     let l = length(d);
-    let is_long = makes(ForceMistake::JacobianDampingDirection) || makes(ForceMistake::SpringDirectionEverywhere);
+    let is_long = makes(StepMistake::JacobianDampingDirection) || makes(StepMistake::SpringDirectionEverywhere);
     let n = if is_long { d } else { over(d, l) };
     let outer = block(|r, c| n[r] * n[c]);
     let w = at(v, b) - at(v, a);
     let mut damped =
-        if makes(ForceMistake::JacobianDampingNoOuter) { Matrix2::default() } else { block(|r, c| n[r] * w[c]) };
-    if !makes(ForceMistake::JacobianDampingNoScalar) {
+        if makes(StepMistake::JacobianDampingNoOuter) { Matrix2::default() } else { block(|r, c| n[r] * w[c]) };
+    if !makes(StepMistake::JacobianDampingNoScalar) {
         damped[0][0] += n.dot(&w);
         damped[1][1] += n.dot(&w);
     }
-    let factor = if makes(ForceMistake::JacobianDampingNoLength) { -damping } else { -damping / l };
-    let removed = if makes(ForceMistake::JacobianDampingNoProjection) { Matrix2::default() } else { outer };
+    let factor = if makes(StepMistake::JacobianDampingNoLength) { -damping } else { -damping / l };
+    let removed = if makes(StepMistake::JacobianDampingNoProjection) { Matrix2::default() } else { outer };
     let damped = block(|r, c| (damped[r][c] - (damped[r][0] * removed[0][c] + damped[r][1] * removed[1][c])) * factor);
-    let weights = [(ForceMistake::JacobianDampingMissing, 0.0), (ForceMistake::JacobianDampingSign, -1.0)];
+    let weights = [(StepMistake::JacobianDampingMissing, 0.0), (StepMistake::JacobianDampingSign, -1.0)];
     student.weighted_block(block(|r, c| -damped[r][c]), &weights)
 }
 
 fn add_velocity_hessian(world: &World, force: &Force, x: &[f64], matrix: &mut [f64]) {
     let student = world.student;
-    let makes = |mistake: ForceMistake| student.makes(mistake);
+    let makes = |mistake: StepMistake| student.makes(mistake);
     match *force {
         Force::Spring { edge, damping, .. } => {
             let edge = world.scene.edges[edge];
             let d = at(x, edge.second) - at(x, edge.first);
             let is_long =
-                makes(ForceMistake::JacobianVelocityDirection) || makes(ForceMistake::SpringDirectionEverywhere);
+                makes(StepMistake::JacobianVelocityDirection) || makes(StepMistake::SpringDirectionEverywhere);
             let n = if is_long { d } else { over(d, length(d)) };
-            let along = if makes(ForceMistake::JacobianVelocityIdentity) {
+            let along = if makes(StepMistake::JacobianVelocityIdentity) {
                 block(|r, c| damping * IDENTITY[r][c])
             } else {
                 block(|r, c| damping * n[r] * n[c])
             };
-            let weights = [(ForceMistake::JacobianVelocityMissing, 0.0), (ForceMistake::JacobianVelocitySign, -1.0)];
+            let weights = [(StepMistake::JacobianVelocityMissing, 0.0), (StepMistake::JacobianVelocitySign, -1.0)];
             let along = student.weighted_block(along, &weights);
             add_pair(student, matrix, x.len(), (edge.first, edge.second), &along);
         }
         Force::Drag { coefficient } => {
-            let weights = [(ForceMistake::JacobianDragMissing, 0.0), (ForceMistake::JacobianDragSign, -1.0)];
+            let weights = [(StepMistake::JacobianDragMissing, 0.0), (StepMistake::JacobianDragSign, -1.0)];
             let coefficient = coefficient * student.weight(&weights);
             for k in 0..x.len() {
                 matrix[k * x.len() + k] += coefficient;

@@ -3,8 +3,7 @@ use super::{
     Area, Mistake, detection, failsafe,
     hooks::{Change, Place},
     impulses,
-    objects::State,
-    objects::Zone,
+    objects::{State, Zone},
     step_failure::StepFailure,
     world::{StepLog, World},
     zones,
@@ -47,7 +46,7 @@ fn geometric(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLo
     let prediction = state.clone();
     let contacts = student.items(Place::FirstZoneContacts, detection::pass(world, q_start, &state.x, log)?);
     let mut zones = zones::merge(student, contacts.iter().map(|contact| zones::zone_of(world, contact)).collect());
-    let most_rounds = if let Some(Change::GeometricRounds(most)) = student.change() { *most } else { u32::MAX };
+    let most_rounds = if let Some(Change::GeometricRounds(most)) = student.change { *most } else { u32::MAX };
     let mut round = 0;
     if zones.is_empty() && student.makes(Mistake::GeometricStopsWhenEmpty) {
         return Ok(());
@@ -58,19 +57,14 @@ fn geometric(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLo
         if student.makes(Mistake::GeometricRestarts) {
             state.clone_from(&prediction);
         }
+        let mut chosen = student.items(Place::ZonesMoved { later: usize::from(round > 0) }, zones.clone());
         if student.makes(Mistake::GeometricNewZonesOnly) {
-            let new: Vec<Zone> = zones.iter().filter(|zone| !moved.contains(zone)).cloned().collect();
-            move_zones(world, q_start, &new, state);
-            moved.clone_from(&zones);
+            chosen.retain(|zone| !moved.contains(zone));
         } else if student.makes(Mistake::GeometricGrownStay) {
-            let is_new = |zone: &&Zone| moved.iter().all(|other| other.particles.is_disjoint(&zone.particles));
-            let new: Vec<Zone> = zones.iter().filter(is_new).cloned().collect();
-            move_zones(world, q_start, &new, state);
-            moved.clone_from(&zones);
-        } else {
-            let later = usize::from(round > 0);
-            move_zones(world, q_start, &student.items(Place::ZonesMoved { later }, zones.clone()), state);
+            chosen.retain(|zone| moved.iter().all(|other| other.particles.is_disjoint(&zone.particles)));
         }
+        move_zones(world, q_start, &chosen, state);
+        moved.clone_from(&zones);
         round += 1;
         if student.makes(Mistake::GeometricOneRound) || round >= most_rounds {
             return Ok(());
@@ -116,23 +110,15 @@ fn geometric(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLo
 }
 
 fn move_zones(world: &World, q_start: &[f64], zones: &[Zone], state: &mut State) {
+    let (first, last) = (zones.len().min(1), zones.len().saturating_sub(1));
+    let mut chosen: Vec<&Zone> = zones.iter().collect();
     match world.student.mistake_in(HERE) {
-        Some(Mistake::ZonesReversed) => {
-            zones.iter().rev().for_each(|zone| failsafe::perform(world, zone, q_start, state));
-        }
-        Some(Mistake::GeometricFirstZoneOnly) => {
-            zones.iter().take(1).for_each(|zone| failsafe::perform(world, zone, q_start, state));
-        }
-        Some(Mistake::GeometricLastZoneOnly) => {
-            zones.iter().rev().take(1).for_each(|zone| failsafe::perform(world, zone, q_start, state));
-        }
-        Some(Mistake::GeometricFirstZoneSkipped) => {
-            zones.iter().skip(1).for_each(|zone| failsafe::perform(world, zone, q_start, state));
-        }
-        Some(Mistake::GeometricLastZoneSkipped) => {
-            let but_one = zones.len().saturating_sub(1);
-            zones.iter().take(but_one).for_each(|zone| failsafe::perform(world, zone, q_start, state));
-        }
-        _ => zones.iter().for_each(|zone| failsafe::perform(world, zone, q_start, state)),
+        Some(Mistake::ZonesReversed) => chosen.reverse(),
+        Some(Mistake::GeometricFirstZoneOnly) => chosen.truncate(1),
+        Some(Mistake::GeometricLastZoneOnly) => drop(chosen.drain(..last)),
+        Some(Mistake::GeometricFirstZoneSkipped) => drop(chosen.drain(..first)),
+        Some(Mistake::GeometricLastZoneSkipped) => chosen.truncate(last),
+        _ => {}
     }
+    chosen.into_iter().for_each(|zone| failsafe::perform(world, zone, q_start, state));
 }

@@ -51,7 +51,7 @@ pub fn apply(
         }
         list.extend(found);
         let contacts = &list;
-        let enough = if let Some(Change::Enough(most)) = student.change() { *most } else { 0 };
+        let enough = if let Some(Change::Enough(most)) = student.change { *most } else { 0 };
         if student.holds(Place::RoundIsEmpty, contacts.len() <= enough) {
             if student.makes(Mistake::ImpulsesVelocityRestored) {
                 state.v.clone_from(&prediction.v);
@@ -78,7 +78,7 @@ pub fn apply(
 
 /// How many rounds this program allows itself.
 fn limit(world: &World, max_iterations: i32) -> i32 {
-    if let Some(Change::Limit(change)) = world.student.change() {
+    if let Some(Change::Limit(change)) = world.student.change {
         return change(max_iterations);
     }
     match world.student.mistake_in(&[Area::ImpulseLoop]) {
@@ -158,7 +158,7 @@ fn finish(
     state: &mut State,
     log: &mut StepLog,
 ) -> Result<bool, StepFailure> {
-    if let Some(Change::Failed(change)) = world.student.change() {
+    if let Some(Change::Failed(change)) = world.student.change {
         change(q_start, state);
     }
     match world.student.mistake_in(&[Area::ImpulseLoop]) {

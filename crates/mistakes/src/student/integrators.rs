@@ -99,17 +99,15 @@ fn step_of_velocities(world: &World) -> f64 {
 }
 
 fn explicit(world: &World, state: &mut State) {
-    let h = world.scene.time_step;
     let accelerations = accelerations(world, state);
-    state.x = world.student.sum(&state.x, h, &state.v);
+    state.x = world.student.sum(&state.x, world.scene.time_step, &state.v);
     state.v = world.student.sum(&state.v, step_of_velocities(world), &accelerations);
 }
 
 fn symplectic(world: &World, state: &mut State) {
-    let h = world.scene.time_step;
     let accelerations = accelerations(world, state);
     state.v = world.student.sum(&state.v, step_of_velocities(world), &accelerations);
-    state.x = world.student.sum(&state.x, h, &state.v);
+    state.x = world.student.sum(&state.x, world.scene.time_step, &state.v);
 }
 
 /// Clears the entries of fixed particles in a right-hand side.
@@ -199,13 +197,8 @@ fn implicit(world: &World, state: &mut State, solves: &mut u32) -> Result<(), St
 /// The length of a vector of even size, its squares summed over even and odd entries apart.
 fn norm(vector: &[f64]) -> f64 {
     let squares = |start: usize| {
-        vector
-            .iter()
-            .skip(start)
-            .step_by(2)
-            .map(|entry| entry * entry)
-            .reduce(|sum, square| sum + square)
-            .unwrap_or(0.0)
+        let squares = vector.iter().skip(start).step_by(2).map(|entry| entry * entry);
+        squares.reduce(|sum, square| sum + square).unwrap_or(0.0)
     };
     (squares(0) + squares(1)).sqrt()
 }

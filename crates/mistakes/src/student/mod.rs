@@ -37,7 +37,7 @@ mod zones;
 pub use crate::assignments::{
     all::{all_rows, find},
     rows::{Area, RowKind},
-    states::{ForceMistake, StepMistake},
+    states::StepMistake,
     t2m2::{CATALOGUE, Mistake, Row},
 };
 pub use author::Student;

@@ -31,6 +31,17 @@ pub enum Object {
     HalfPlane(usize),
 }
 
+impl Object {
+    /// The number of its kind, in traces and at places, and its index.
+    pub const fn numbers(self) -> (usize, usize) {
+        match self {
+            Self::Particle(index) => (0, index),
+            Self::Edge(index) => (1, index),
+            Self::HalfPlane(index) => (2, index),
+        }
+    }
+}
+
 /// A collision that detection found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {

@@ -8,7 +8,6 @@ use fosssim_num::vector::{Vec2, at, length, unit};
 use super::{
     Area, StepMistake,
     near_pairs::NearPairSearch,
-    objects::Object,
     world::{World, add, subtract},
 };
 
@@ -48,11 +47,8 @@ pub fn add_gradient(world: &World, layer: PenaltyLayer, x: &[f64], v: &[f64], g:
     // Such a force reaches pairs that are apart.
     if student.makes(StepMistake::PenaltyAlways) || student.makes(StepMistake::PenaltyEdgeUnclamped) {
         for pair in world.pairs() {
-            match pair.object {
-                Object::Particle(other) => visit(PairKind::ParticleParticle, (pair.particle, other)),
-                Object::Edge(edge) => visit(PairKind::ParticleEdge, (pair.particle, edge)),
-                Object::HalfPlane(plane) => visit(PairKind::ParticleHalfPlane, (pair.particle, plane)),
-            }
+            let (kind, other) = pair.object.numbers();
+            visit(PairKind::ALL[kind], (pair.particle, other));
         }
     } else {
         PenaltyPairs::new(&world.scene, layer.h, layer.detection)

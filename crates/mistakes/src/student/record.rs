@@ -4,7 +4,7 @@ use super::{
     Area, Mistake,
     author::Student,
     hooks::Place,
-    objects::{Contact, Object, State},
+    objects::{Contact, State},
     rounding::single,
     step::step,
     step_failure::StepFailure,
@@ -52,13 +52,9 @@ impl Record {
         if let Some(impulses) = &self.impulses {
             bytes.extend(integer(impulses.len()).to_le_bytes());
             for impulse in impulses {
-                let (kind, second) = match impulse.pair.object {
-                    Object::Particle(index) => (0, index),
-                    Object::Edge(index) => (1, index),
-                    Object::HalfPlane(index) => (2, index),
-                };
-                for value in [kind, integer(impulse.pair.particle), integer(second)] {
-                    bytes.extend(value.to_le_bytes());
+                let (kind, second) = impulse.pair.object.numbers();
+                for value in [kind, impulse.pair.particle, second] {
+                    bytes.extend(integer(value).to_le_bytes());
                 }
                 for value in [impulse.n.x, impulse.n.y, impulse.time] {
                     bytes.extend(value.to_le_bytes());

@@ -39,12 +39,15 @@ fn restitution(world: &World) -> f64 {
 /// Changes `result` so that `contact` does not happen. The impulse is computed from the motion from `q_start` to
 /// `predicted.x`, which may be an earlier state than the one that is changed.
 pub fn respond(world: &World, contact: &Contact, q_start: &[f64], predicted: &State, result: &mut State) {
-    let mut response = PairResponse::new(world, contact, q_start, predicted, result);
+    let (student, (kind, _)) = (world.student, contact.pair.object.numbers());
+    let u = if student.makes(Mistake::ResponseNotNormalised) { contact.n } else { unit(contact.n) };
+    let u = student.vector(Place::UnitVector { kind }, u);
+    let mut response = PairResponse { world, contact, q_start, predicted, result, u, bounce: bounce(world), kind };
     let particle = contact.pair.particle;
     match contact.pair.object {
         Object::Particle(other) => response.particle_particle(particle, other),
         Object::Edge(index) => {
-            let (edge, student, all) = (world.scene.edges[index], world.student, world.scene.particles.len());
+            let (edge, all) = (world.scene.edges[index], world.scene.particles.len());
             let first = student.index(Place::ResponseEnd { role: 1 }, edge.first, edge.second, all);
             let second = student.index(Place::ResponseEnd { role: 2 }, edge.second, edge.first, all);
             response.particle_edge(contact.time, [particle, first, second]);
@@ -67,25 +70,7 @@ struct PairResponse<'a> {
     kind: usize,
 }
 
-impl<'a> PairResponse<'a> {
-    fn new(
-        world: &'a World,
-        contact: &'a Contact,
-        q_start: &'a [f64],
-        predicted: &'a State,
-        result: &'a mut State,
-    ) -> Self {
-        let student = world.student;
-        let kind = match contact.pair.object {
-            Object::Particle(_) => 0,
-            Object::Edge(_) => 1,
-            Object::HalfPlane(_) => 2,
-        };
-        let u = if student.makes(Mistake::ResponseNotNormalised) { contact.n } else { unit(contact.n) };
-        let u = student.vector(Place::UnitVector { kind }, u);
-        Self { world, contact, q_start, predicted, result, u, bounce: bounce(world), kind }
-    }
-
+impl PairResponse<'_> {
     /// The particle's mean velocity over the step.
     fn velocity(&self, role: usize, particle: usize) -> Vec2 {
         let (student, kind) = (self.world.student, self.kind);
@@ -116,9 +101,9 @@ impl<'a> PairResponse<'a> {
         }
         let share = student.number(Place::VelocityChange { kind, role }, share);
         let moved = student.number(Place::PositionChange { kind, role }, moved);
-        if let Some(Change::Respond(change)) = student.change() {
+        if let Some(Change::Respond(change)) = student.change {
             let (velocity, position) = (sign * (share / inertia) * self.u, sign * (moved / inertia) * self.u);
-            return self.respond(particle, *change, velocity, position);
+            return self.respond(role, particle, *change, velocity, position);
         }
         let sign = if student.makes(Mistake::ResponseSign) { -sign } else { sign };
         let (share, moved) = if student.makes(Mistake::ResponseSinglePrecision) {
@@ -136,11 +121,7 @@ impl<'a> PairResponse<'a> {
     }
 
     /// Applies a mistake that the catalogue does not have to a change.
-    fn respond(&mut self, particle: usize, change: fn(&mut Share), velocity: Vec2, position: Vec2) {
-        let role = match self.contact.pair.object {
-            Object::Edge(index) if particle == self.world.scene.edges[index].second => 2,
-            _ => usize::from(particle != self.contact.pair.particle),
-        };
+    fn respond(&mut self, role: usize, particle: usize, change: fn(&mut Share), velocity: Vec2, position: Vec2) {
         let before = self.velocity(role, particle);
         let (pair, u, bounce) = (self.contact.pair, self.u, self.bounce);
         let mut share = Share { role, pair, u, velocity, position, before, bounce };
@@ -151,13 +132,8 @@ impl<'a> PairResponse<'a> {
 
     fn particle_particle(&mut self, one: usize, two: usize) {
         let h = self.world.scene.time_step;
-        let (mut m1, mut m2) = (self.mass(0, one, two), self.mass(1, two, one));
-        match self.world.student.mistake_in(HERE) {
-            Some(Mistake::ResponseMassesSwapped) => std::mem::swap(&mut m1, &mut m2),
-            Some(Mistake::ResponseEqualMasses) => (m1, m2) = (1.0, 1.0),
-            _ => {}
-        }
         let student = self.world.student;
+        let (m1, m2) = masses(student, self.mass(0, one, two), self.mass(1, two, one));
         let closing = self.velocity(1, two) - self.velocity(0, one);
         let impulse = self.bounce * student.dot(closing, self.u);
         let (mut inertia1, mut inertia2) = (1.0 + m1 / m2, m2 / m1 + 1.0);
@@ -181,13 +157,8 @@ impl<'a> PairResponse<'a> {
             |particle: usize, velocity: Vec2| student.add_scaled(at(self.q_start, particle), elapsed, velocity);
         let (y1, y2, y3) = (impact(one, v1), impact(two, v2), impact(three, v3));
         let along = y3 - y2;
-        let alpha = clamped_by(student, student.dot(y1 - y2, along) / student.dot(along, along));
-        let mut alpha = student.number(Place::ResponseAlpha, alpha);
-        match student.mistake_in(HERE) {
-            Some(Mistake::ResponseEdgeMiddle) => alpha = 0.5,
-            Some(Mistake::ResponseEdgeSwapped) => alpha = 1.0 - alpha,
-            _ => {}
-        }
+        let alpha = clamped(student, student.dot(y1 - y2, along) / student.dot(along, along));
+        let alpha = share_of_second(student, student.number(Place::ResponseAlpha, alpha));
         let beta = 1.0 - alpha;
         let edge_velocity = if student.makes(Mistake::ResponseEdgeStill) {
             Vec2::zeros()
@@ -231,9 +202,9 @@ impl<'a> PairResponse<'a> {
         }
         let h = self.world.scene.time_step;
         let mut speed = student.dot(self.velocity(0, one), self.u);
-        if let Some(Change::Respond(change)) = student.change() {
+        if let Some(Change::Respond(change)) = student.change {
             let velocity = -self.bounce * speed * self.u;
-            return self.respond(one, *change, velocity, h * velocity);
+            return self.respond(0, one, *change, velocity, h * velocity);
         }
         if student.makes(Mistake::ResponseSinglePrecision) {
             speed = single(speed);
@@ -256,14 +227,26 @@ impl<'a> PairResponse<'a> {
     }
 }
 
-/// The same as [`clamped`] in this student's program.
-fn clamped_by(student: Student, alpha: f64) -> f64 {
-    let positive = if student.holds(Place::ResponseClampLow, 0.0 < alpha) { alpha } else { 0.0 };
-    if student.holds(Place::ResponseClampHigh, positive < 1.0) { positive } else { 1.0 }
+/// The masses of two particles in this student's formulas.
+pub fn masses(student: Student, first: f64, second: f64) -> (f64, f64) {
+    match student.mistake_in(HERE) {
+        Some(Mistake::ResponseMassesSwapped) => (second, first),
+        Some(Mistake::ResponseEqualMasses) => (1.0, 1.0),
+        _ => (first, second),
+    }
 }
 
-/// Between 0 and 1; 0 when it is not a number.
-pub fn clamped(alpha: f64) -> f64 {
-    let positive = if 0.0 < alpha { alpha } else { 0.0 };
-    if positive < 1.0 { positive } else { 1.0 }
+/// The share of an edge's second end in this student's formulas.
+pub fn share_of_second(student: Student, alpha: f64) -> f64 {
+    match student.mistake_in(HERE) {
+        Some(Mistake::ResponseEdgeMiddle) => 0.5,
+        Some(Mistake::ResponseEdgeSwapped) => 1.0 - alpha,
+        _ => alpha,
+    }
+}
+
+/// Between 0 and 1 in this student's program; 0 when it is not a number.
+pub fn clamped(student: Student, alpha: f64) -> f64 {
+    let positive = if student.holds(Place::ResponseClampLow, 0.0 < alpha) { alpha } else { 0.0 };
+    if student.holds(Place::ResponseClampHigh, positive < 1.0) { positive } else { 1.0 }
 }

@@ -2,14 +2,12 @@
 use fosssim_num::vector::{Vec2, at, length, put, unit};
 
 use super::{
-    Area, Mistake, StepMistake,
-    objects::{Contact, Object, Pair, State},
-    response::{bounce, clamped},
+    Mistake, StepMistake,
+    author::Student,
+    objects::{Contact, Object, State},
+    response::{bounce, clamped, masses, share_of_second},
     world::{StepLog, World, add},
 };
-
-/// The parts of the assignment whose mistakes are made here.
-const HERE: &[Area] = &[Area::Response];
 
 /// Handles all pairs in order; each sees the velocities that the pairs before it left.
 pub fn handle(world: &World, state: &mut State, log: &mut StepLog) {
@@ -17,25 +15,17 @@ pub fn handle(world: &World, state: &mut State, log: &mut StepLog) {
     let start = student.makes(StepMistake::SimpleAllFromStart).then(|| state.v.clone());
     let pass = SimplePass { world, bounce: bounce(world), start };
     for pair in world.pairs() {
-        let left_out = match pair.object {
-            Object::Particle(_) => StepMistake::SimpleNoParticles,
-            Object::Edge(_) => StepMistake::SimpleNoEdges,
-            Object::HalfPlane(_) => StepMistake::SimpleNoHalfPlanes,
-        };
-        if student.makes(left_out) {
-            continue;
-        }
+        let one = pair.particle;
         let n = match pair.object {
-            Object::Particle(other) => pass.particle_particle(state, pair.particle, other),
-            Object::Edge(edge) => pass.particle_edge(state, pair.particle, edge),
-            Object::HalfPlane(plane) => pass.particle_half_plane(state, pair.particle, plane),
+            Object::Particle(_) if student.makes(StepMistake::SimpleNoParticles) => None,
+            Object::Edge(_) if student.makes(StepMistake::SimpleNoEdges) => None,
+            Object::HalfPlane(_) if student.makes(StepMistake::SimpleNoHalfPlanes) => None,
+            Object::Particle(other) => pass.particle_particle(state, one, other),
+            Object::Edge(edge) => pass.particle_edge(state, one, edge),
+            Object::HalfPlane(plane) => pass.particle_half_plane(state, one, plane),
         };
-        log.impulses.extend(n.map(|n| contact(pair, n)));
+        log.impulses.extend(n.map(|n| Contact { pair, n, time: 0.0 }));
     }
-}
-
-fn contact(pair: Pair, n: Vec2) -> Contact {
-    Contact { pair, n, time: 0.0 }
 }
 
 struct SimplePass<'a> {
@@ -94,12 +84,8 @@ impl SimplePass<'_> {
         }
         let u = self.unit(n);
         let impulse = self.bounce * (v2 - v1).dot(&u);
-        let (mut m1, mut m2) = (self.world.collision_mass(0, 0, one), self.world.collision_mass(0, 1, two));
-        match self.world.student.mistake_in(HERE) {
-            Some(Mistake::ResponseMassesSwapped) => std::mem::swap(&mut m1, &mut m2),
-            Some(Mistake::ResponseEqualMasses) => (m1, m2) = (1.0, 1.0),
-            _ => {}
-        }
+        let (m1, m2) = (self.world.collision_mass(0, 0, one), self.world.collision_mass(0, 1, two));
+        let (m1, m2) = masses(self.world.student, m1, m2);
         self.push(state, one, impulse / (1.0 + m1 / m2) * u);
         if !self.makes(Mistake::ResponseFirstOnly) {
             self.push(state, two, -(impulse / (m2 / m1 + 1.0) * u));
@@ -113,16 +99,13 @@ impl SimplePass<'_> {
         let [x1, x2, x3] = [one, two, three].map(|particle| at(&state.x, particle));
         let [v1, v2, v3] = [one, two, three].map(|particle| self.velocity(state, particle));
         let alpha = (x1 - x2).dot(&(x3 - x2)) / (x3 - x2).dot(&(x3 - x2));
-        let mut alpha = if self.makes(StepMistake::SimpleEdgeUnclamped) { alpha } else { clamped(alpha) };
+        let alpha =
+            if self.makes(StepMistake::SimpleEdgeUnclamped) { alpha } else { clamped(Student::default(), alpha) };
         let n = x2 + alpha * (x3 - x2) - x1;
         if !self.collides(n, self.reach(one, edge.radius), (v1 - v2 - alpha * (v3 - v2)).dot(&n)) {
             return None;
         }
-        match self.world.student.mistake_in(HERE) {
-            Some(Mistake::ResponseEdgeMiddle) => alpha = 0.5,
-            Some(Mistake::ResponseEdgeSwapped) => alpha = 1.0 - alpha,
-            _ => {}
-        }
+        let alpha = share_of_second(self.world.student, alpha);
         let u = self.unit(n);
         let of_edge = if self.makes(Mistake::ResponseEdgeStill) { Vec2::zeros() } else { v2 + alpha * (v3 - v2) };
         let impulse = self.bounce * (of_edge - v1).dot(&u);

@@ -67,7 +67,7 @@ impl World {
     #[must_use]
     pub fn of(&self, student: Student) -> Self {
         let mut changed = None;
-        if let Some(Change::Pairs(change)) = student.change() {
+        if let Some(Change::Pairs(change)) = student.change {
             change(changed.insert(pairs(&self.scene, student).collect()));
         } else if student.changes(Place::PairsOfPass) {
             changed = Some(student.items(Place::PairsOfPass, pairs(&self.scene, student).collect()));
@@ -107,26 +107,13 @@ impl World {
 
 /// Whether an edge joins two particles.
 fn are_connected(scene: &Scene, one: usize, two: usize) -> bool {
-    let joins = |edge: &fosssim_model::scene::Edge| {
-        (edge.first, edge.second) == (one, two) || (edge.first, edge.second) == (two, one)
-    };
-    scene.edges.iter().any(joins)
+    scene.edges.iter().any(|edge| [(one, two), (two, one)].contains(&(edge.first, edge.second)))
 }
 
 /// All pairs in the order of detection: per particle the later particles, the edges of which it is not an endpoint,
 /// the half-planes.
 fn pairs(scene: &Scene, student: Student) -> impl Iterator<Item = Pair> {
-    let planes_first = student.makes(Mistake::PairsHalfPlanesFirst);
-    let of = OfParticle {
-        scene,
-        student,
-        both_orders: student.makes(Mistake::PairsBothOrders),
-        neighbours_only: student.makes(Mistake::PairsNeighboursOnly),
-        fixed_skipped: student.makes(Mistake::PairsFixedSkipped),
-        connected_skipped: student.makes(Mistake::PairsConnectedSkipped),
-        endpoints_too: student.makes(Mistake::PairsEndpointsToo),
-        first_half_plane_only: student.makes(Mistake::PairsFirstHalfPlaneOnly),
-    };
+    let (planes_first, of) = (student.makes(Mistake::PairsHalfPlanesFirst), OfParticle { scene, student });
     let particles = 0..scene.particles.len();
     let before = if planes_first { particles.clone() } else { 0..0 };
     before.flat_map(move |particle| of.half_planes(particle)).chain(particles.flat_map(move |particle| {
@@ -135,29 +122,25 @@ fn pairs(scene: &Scene, student: Student) -> impl Iterator<Item = Pair> {
     }))
 }
 
-/// The pairs of one particle, and what a program does differently about them.
+/// The pairs of one particle.
 #[derive(Clone, Copy)]
 struct OfParticle<'a> {
     scene: &'a Scene,
     student: Student,
-    both_orders: bool,
-    neighbours_only: bool,
-    fixed_skipped: bool,
-    connected_skipped: bool,
-    endpoints_too: bool,
-    first_half_plane_only: bool,
 }
 
 impl<'a> OfParticle<'a> {
     fn particles(self, particle: usize) -> impl Iterator<Item = Pair> + use<'a> {
         let Scene { particles, .. } = self.scene;
-        let first = if self.both_orders { 0 } else { particle + 1 };
-        let last = if self.neighbours_only { particles.len().min(particle + 2) } else { particles.len() };
+        let makes = move |mistake: Mistake| self.student.makes(mistake);
+        let first = if makes(Mistake::PairsBothOrders) { 0 } else { particle + 1 };
+        let last =
+            if makes(Mistake::PairsNeighboursOnly) { particles.len().min(particle + 2) } else { particles.len() };
         let is_kept = move |other: &usize| {
             let both_fixed = particles[particle].fixed && particles[*other].fixed;
             *other != particle
-                && !(both_fixed && self.fixed_skipped)
-                && !(self.connected_skipped && are_connected(self.scene, particle, *other))
+                && !(both_fixed && makes(Mistake::PairsFixedSkipped))
+                && !(makes(Mistake::PairsConnectedSkipped) && are_connected(self.scene, particle, *other))
         };
         (first..last).filter(is_kept).map(move |other| Pair { particle, object: Object::Particle(other) })
     }
@@ -168,15 +151,20 @@ impl<'a> OfParticle<'a> {
             let is_endpoint = self.student.holds(Place::OwnFirstEnd, edge.first == particle)
                 || self.student.holds(Place::OwnSecondEnd, edge.second == particle);
             let is_still = [particle, edge.first, edge.second].into_iter().all(is_fixed);
-            let is_left_out = (is_endpoint && !self.endpoints_too) || (is_still && self.fixed_skipped);
+            let is_left_out = (is_endpoint && !self.student.makes(Mistake::PairsEndpointsToo))
+                || (is_still && self.student.makes(Mistake::PairsFixedSkipped));
             (!is_left_out).then_some(Pair { particle, object: Object::Edge(index) })
         })
     }
 
     fn half_planes(self, particle: usize) -> impl Iterator<Item = Pair> + use<'a> {
-        let is_left_out = self.scene.particles[particle].fixed && self.fixed_skipped;
-        let count = self.scene.half_planes.len().min(if self.first_half_plane_only { 1 } else { usize::MAX });
-        let count = if is_left_out { 0 } else { count };
-        (0..count).map(move |index| Pair { particle, object: Object::HalfPlane(index) })
+        let makes = |mistake: Mistake| self.student.makes(mistake);
+        let most = match () {
+            () if self.scene.particles[particle].fixed && makes(Mistake::PairsFixedSkipped) => 0,
+            () if makes(Mistake::PairsFirstHalfPlaneOnly) => 1,
+            () => usize::MAX,
+        };
+        (0..self.scene.half_planes.len().min(most))
+            .map(move |index| Pair { particle, object: Object::HalfPlane(index) })
     }
 }

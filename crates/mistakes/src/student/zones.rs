@@ -18,37 +18,28 @@ pub fn zone_of(world: &World, contact: &Contact) -> Zone {
     let one = contact.pair.particle;
     let mut particles = BTreeSet::from([one]);
     let mut half_plane = false;
-    let kind;
     match contact.pair.object {
-        Object::Particle(other) => {
-            kind = 0;
-            particles.insert(student.index(Place::ZoneOther, other, one, all));
-        }
+        Object::Particle(other) => particles.extend([student.index(Place::ZoneOther, other, one, all)]),
         Object::Edge(index) => {
-            kind = 1;
             let edge = world.scene.edges[index];
             let first = student.index(Place::ZoneEnd { role: 1 }, edge.first, edge.second, all);
             let second = student.index(Place::ZoneEnd { role: 2 }, edge.second, edge.first, all);
             match student.mistake_in(HERE) {
                 Some(Mistake::ZonesOneEndpoint) => particles.extend([edge.first]),
                 Some(Mistake::ZonesOtherEndpoint) => particles.extend([edge.second]),
-                Some(Mistake::ZonesNextParticle) => {
-                    particles.extend([edge.first, (edge.first + 1).min(world.scene.particles.len() - 1)]);
-                }
-                Some(Mistake::ZonesEdgeIndex) => particles.extend([index.min(world.scene.particles.len() - 1)]),
+                Some(Mistake::ZonesNextParticle) => particles.extend([edge.first, (edge.first + 1).min(all - 1)]),
+                Some(Mistake::ZonesEdgeIndex) => particles.extend([index.min(all - 1)]),
                 Some(Mistake::ZonesEdgeWithoutParticle) => particles = BTreeSet::from([edge.first, edge.second]),
                 _ => particles.extend([first, second]),
             }
             half_plane = student.makes(Mistake::ZonesFlagOfEdges);
         }
-        Object::HalfPlane(_) => {
-            kind = 2;
-            half_plane = !student.makes(Mistake::ZonesNoHalfPlaneFlag);
-        }
+        Object::HalfPlane(_) => half_plane = !student.makes(Mistake::ZonesNoHalfPlaneFlag),
     }
+    let (kind, _) = contact.pair.object.numbers();
     let half_plane = student.holds(Place::ZoneFlag { kind }, half_plane);
     let mut zone = Zone { particles, half_plane };
-    if let Some(Change::Zone(change)) = student.change() {
+    if let Some(Change::Zone(change)) = student.change {
         change(contact, &mut zone);
     }
     zone
@@ -62,12 +53,11 @@ pub fn merge(student: Student, zones: Vec<Zone>) -> Vec<Zone> {
         Some(Mistake::ZonesUnionFind) => return disjoint_sets(&zones),
         _ => {}
     }
-    if let Some(Change::Zones(change)) = student.change() {
-        let mut merged = merged(student, zones);
+    let mut merged = merged(student, zones);
+    if let Some(Change::Zones(change)) = student.change {
         change(&mut merged);
-        return merged;
     }
-    merged(student, zones)
+    merged
 }
 
 fn merged(student: Student, mut zones: Vec<Zone>) -> Vec<Zone> {
@@ -115,8 +105,7 @@ fn join(student: Student, zone: &mut Zone, other: Zone) {
 
 fn everything(zones: Vec<Zone>) -> Vec<Zone> {
     let whole = zones.into_iter().reduce(|mut whole, zone| {
-        whole.half_plane |= zone.half_plane;
-        whole.particles.extend(zone.particles);
+        join(Student::default(), &mut whole, zone);
         whole
     });
     whole.into_iter().collect()
@@ -155,21 +144,14 @@ fn root(parents: &[usize], mut particle: usize) -> usize {
 
 /// Whether two lists hold the same zones, in whatever order.
 pub fn equal(student: Student, old: &[Zone], new: &[Zone]) -> bool {
-    match student.mistake_in(HERE) {
-        Some(Mistake::ZonesEqualByCount) => old.len() == new.len(),
-        Some(Mistake::ZonesEqualNoFlag) => {
-            old.len() == new.len() && new.iter().all(|zone| old.iter().any(|other| other.particles == zone.particles))
-        }
-        Some(Mistake::ZonesEqualBySize) => {
-            old.len() == new.len()
-                && new.iter().all(|zone| old.iter().any(|other| other.particles.len() == zone.particles.len()))
-        }
+    let same = |one: &Zone, other: &Zone| match student.mistake_in(HERE) {
+        Some(Mistake::ZonesEqualByCount) => true,
+        Some(Mistake::ZonesEqualNoFlag) => one.particles == other.particles,
+        Some(Mistake::ZonesEqualBySize) => one.particles.len() == other.particles.len(),
         _ => {
-            let same = |one: &Zone, other: &Zone| {
-                student.holds(Place::SameParticles, one.particles == other.particles)
-                    && student.holds(Place::SameFlag, one.half_plane == other.half_plane)
-            };
-            old.len() == new.len() && new.iter().all(|zone| old.iter().any(|other| same(zone, other)))
+            student.holds(Place::SameParticles, one.particles == other.particles)
+                && student.holds(Place::SameFlag, one.half_plane == other.half_plane)
         }
-    }
+    };
+    old.len() == new.len() && new.iter().all(|zone| old.iter().any(|other| same(zone, other)))
 }

@@ -1,17 +1,11 @@
 //! Mistakes and variants of a student's program in collision handling, in its trace, and as a process.
 use super::super::{
     rows::{RowOf, rows},
-    states::{ForceMistake, StepMistake},
+    states::StepMistake,
 };
 
 /// A row of any table.
 pub type Row = RowOf<Mistake>;
-
-impl From<ForceMistake> for Mistake {
-    fn from(mistake: ForceMistake) -> Self {
-        Self::Force(mistake)
-    }
-}
 
 impl From<StepMistake> for Mistake {
     fn from(mistake: StepMistake) -> Self {
@@ -21,7 +15,7 @@ impl From<StepMistake> for Mistake {
 
 rows! {
     /// Something that a program does differently.
-    Mistake CATALOGUE [Force ForceMistake, Step StepMistake]
+    Mistake CATALOGUE [Step StepMistake]
     Wrong ParticleParticle {
         ParticleParticleEmpty "pp-empty": "The detection is left empty: it never asks the root finder." => "No polynomial reaches the root finder; overlap (quadratic) and approach (linear) are expected for each pair.";
         ParticleParticleZero "pp-zero": "The coefficients are left at zero." => "Every coefficient is 0; expected are -d21.d21, -2 x21.d21, (r1 + r2)^2 - x21.x21 and -d21.d21, -x21.d21.";

@@ -21,7 +21,7 @@ pub(super) fn applicable(scene: &Scene) -> impl Iterator<Item = &'static Row> {
 
 /// Whether the mistake is one of forces, integrators, penalties or simple responses.
 pub(super) const fn is_of_states(row: &Row) -> bool {
-    matches!(row.mistake, Mistake::Force(_) | Mistake::Step(_))
+    matches!(row.mistake, Mistake::Step(_))
 }
 
 /// Whether a program with this row may leave another trace than one without. Only what the scene does not have speaks

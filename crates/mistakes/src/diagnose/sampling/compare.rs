@@ -3,7 +3,7 @@
 //! Polynomials count up to a positive factor, as only their signs matter; contacts in any order; states and contact
 //! vectors relative to the size of the numbers around them. NaN equals nothing: any mistake may make it, so that it
 //! proves none.
-use crate::student::{Object, Record};
+use crate::student::{Contact, Record};
 use fosssim_model::{
     scene::{Integrator, Scene},
     sim::State,
@@ -78,12 +78,12 @@ impl Logged {
         let numbers = self.state.positions.iter().chain(&self.state.velocities).chain(&self.polynomials.coefficients);
         numbers.copied().chain(self.impulses.iter().flat_map(of_impulse))
     }
-}
 
-impl StepRecords {
-    /// Whether all numbers are finite.
-    pub fn is_finite(&self) -> bool {
-        self.end.values().chain(self.mid.iter().flat_map(Logged::values)).all(f64::is_finite)
+    /// Memory that it takes, in bytes.
+    pub fn bytes(&self) -> usize {
+        16 * self.state.positions.len()
+            + size_of::<LoggedImpulse>() * self.impulses.len()
+            + 8 * (self.polynomials.coefficients.len() + self.polynomials.ends.len())
     }
 }
 
@@ -94,6 +94,13 @@ pub struct StepRecords {
     pub mid: Option<Logged>,
     /// The end record.
     pub end: Logged,
+}
+
+impl StepRecords {
+    /// Whether all numbers are finite.
+    pub fn is_finite(&self) -> bool {
+        self.end.values().chain(self.mid.iter().flat_map(Logged::values)).all(f64::is_finite)
+    }
 }
 
 /// Where the records of a step part first.
@@ -124,26 +131,13 @@ impl From<Record> for Logged {
         let mut polynomials = PolynomialLog::default();
         record.polynomials.iter().flatten().for_each(|coefficients| polynomials.push(trim(coefficients)));
         #[expect(clippy::cast_possible_wrap, clippy::cast_possible_truncation, reason = "an index of the format")]
-        let impulse = |contact: &crate::student::Contact| {
-            let (kind, second) = match contact.pair.object {
-                Object::Particle(index) => (0, index as i32),
-                Object::Edge(index) => (1, index as i32),
-                Object::HalfPlane(index) => (2, index as i32),
-            };
-            let first = contact.pair.particle as i32;
+        let impulse = |contact: &Contact| {
+            let ((kind, second), first) = (contact.pair.object.numbers(), contact.pair.particle);
+            let [kind, first, second] = [kind, first, second].map(|number| number as i32);
             LoggedImpulse { kind, first, second, normal: contact.n, time: contact.time }
         };
         let impulses = record.impulses.iter().flatten().map(impulse).collect();
         Self { state: State { positions: record.x, velocities: record.v }, impulses, polynomials }
-    }
-}
-
-impl Logged {
-    /// Memory that it takes, in bytes.
-    pub fn bytes(&self) -> usize {
-        16 * self.state.positions.len()
-            + size_of::<LoggedImpulse>() * self.impulses.len()
-            + 8 * (self.polynomials.coefficients.len() + self.polynomials.ends.len())
     }
 }
 

@@ -20,55 +20,16 @@ pub trait Number:
 }
 
 /// A double whose products and sums are fused: one rounding instead of two.
-#[derive(Clone, Copy)]
-pub struct Fused(f64);
-
-impl From<f64> for Fused {
-    fn from(value: f64) -> Self {
-        Self(value)
-    }
-}
-
-impl Add for Fused {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        Self(self.0 + other.0)
-    }
-}
-
-impl Sub for Fused {
-    type Output = Self;
-
-    fn sub(self, other: Self) -> Self {
-        Self(self.0 - other.0)
-    }
-}
-
-impl Mul for Fused {
-    type Output = Self;
-
-    fn mul(self, other: Self) -> Self {
-        Self(self.0 * other.0)
-    }
-}
-
-impl Div for Fused {
-    type Output = Self;
-
-    fn div(self, other: Self) -> Self {
-        Self(self.0 / other.0)
-    }
-}
+pub type Fused = f64;
 
 impl Number for Fused {
     #[expect(clippy::disallowed_methods, reason = "a student's compiler fuses what it likes")]
     fn multiply_add(self, factor: Self, addend: Self) -> Self {
-        Self(self.0.mul_add(factor.0, addend.0))
+        self.mul_add(factor, addend)
     }
 
     fn rounded(self) -> f64 {
-        self.0
+        self
     }
 }
 

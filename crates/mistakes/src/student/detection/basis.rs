@@ -67,15 +67,17 @@ pub fn particle_half_plane(one: &MovingBody, point: Vec2, normal: Vec2) -> Vec<V
     vec![interpolated(2, |t| reach - away(t) * away(t)), interpolated(1, |t| speed * away(t))]
 }
 
+/// The overlap of a particle and an edge at one time.
+pub fn overlap([one, two, three]: &[MovingBody; 3], square: f64, t: f64) -> f64 {
+    let (along, beside) = (three.at(t) - two.at(t), one.at(t) - two.at(t));
+    let cross = along.x * beside.y - along.y * beside.x;
+    square * along.dot(&along) - cross * cross
+}
+
 /// Overlap, alpha > 0 and alpha < 1 of a particle and an edge, from values; the approach stays as supplied.
-pub fn particle_edge([one, two, three]: &[MovingBody; 3], square: f64) -> [Vec<f64>; 3] {
-    let overlap = |t| {
-        let (along, beside) = (three.at(t) - two.at(t), one.at(t) - two.at(t));
-        let cross = along.x * beside.y - along.y * beside.x;
-        square * along.dot(&along) - cross * cross
-    };
+pub fn particle_edge(bodies @ [one, two, three]: &[MovingBody; 3], square: f64) -> [Vec<f64>; 3] {
     [
-        interpolated(4, overlap),
+        interpolated(4, |t| overlap(bodies, square, t)),
         interpolated(2, |t| (one.at(t) - two.at(t)).dot(&(three.at(t) - two.at(t)))),
         interpolated(2, |t| (one.at(t) - three.at(t)).dot(&(two.at(t) - three.at(t)))),
     ]

@@ -1,13 +1,12 @@
 //! The last thing that happens to coefficients before the root finder gets them.
 use fosssim_num::polynomial::Polynomial;
 
-use super::trimmed;
 use crate::student::{Area, Mistake, author::Student, objects::Object, rounding::single};
 
 /// The parts of the assignment whose mistakes are made here.
 const HERE: &[Area] = &[Area::Handover];
 
-/// Hands the polynomials of one pair over: as they are, or as this student does.
+/// Hands the polynomials of one pair over, small leading coefficients dropped: as they are, or as this student does.
 pub fn hand_over(student: Student, object: Object, mut lists: Vec<Vec<f64>>) -> Vec<Polynomial> {
     // A detection that was left empty hands nothing over, whatever else the student gets wrong.
     if lists.is_empty() {
@@ -31,7 +30,7 @@ pub fn hand_over(student: Student, object: Object, mut lists: Vec<Vec<f64>>) -> 
         Some(Mistake::HandoverMonic) => lists.iter_mut().for_each(|list| divide_by_leading(list)),
         _ => {}
     }
-    trimmed(&lists)
+    lists.iter().map(|list| Polynomial::trimmed(list)).collect()
 }
 
 /// The positive factor of the correct variants that rescale their polynomials.

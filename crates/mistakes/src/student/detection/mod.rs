@@ -45,19 +45,15 @@ impl Encounter {
     fn new(world: &World, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Self {
         let frame = axes_of(world.student, pair);
         let (student, all) = (world.student, world.scene.particles.len());
-        let (kind, other) = match pair.object {
-            Object::Particle(other) => (0, other),
-            Object::Edge(_) => (1, pair.particle),
-            Object::HalfPlane(_) => (2, pair.particle),
-        };
+        let (kind, _) = pair.object.numbers();
+        let other = if let Object::Particle(other) = pair.object { other } else { pair.particle };
         let body = |role: usize, index: usize| {
             let start = frame.point(at(q_start, index), at(q_start, pair.particle));
             let end = frame.point(at(q_end, index), at(q_end, pair.particle));
             let partner = if role == 0 { other } else { pair.particle };
             let radius = student.index(Place::SeenRadius { kind, role }, index, partner, all);
-            let mut body = MovingBody::new(start, end, world.scene.particles[radius].radius);
-            body.displacement = student.vector(Place::SeenMotion { kind, role }, body.displacement);
-            body
+            let displacement = student.vector(Place::SeenMotion { kind, role }, end - start);
+            MovingBody { start, displacement, radius: world.scene.particles[radius].radius }
         };
         let particle = body(0, pair.particle);
         match pair.object {
@@ -170,17 +166,13 @@ pub fn detect(
     if student.makes(Mistake::ThroughBernstein) {
         lists.iter_mut().for_each(|list| *list = basis::through_bernstein(list));
     }
-    let kind = match pair.object {
-        Object::Particle(_) => 0,
-        Object::Edge(_) => 1,
-        Object::HalfPlane(_) => 2,
-    };
+    let (kind, _) = pair.object.numbers();
     for (polynomial, list) in lists.iter_mut().enumerate() {
         for (index, coefficient) in list.iter_mut().enumerate() {
             *coefficient = student.number(Place::Coefficient { kind, polynomial, index }, *coefficient);
         }
     }
-    if let Some(Change::Polynomials(change)) = student.change() {
+    if let Some(Change::Polynomials(change)) = student.change {
         change(&encounter, &mut lists);
     }
     let polynomials = handover::hand_over(student, pair.object, lists);
@@ -195,17 +187,17 @@ pub fn detect(
         return Err(StepFailure::Refused);
     }
     let mut searched = polynomials;
-    if let Some(Change::Searched(change)) = student.change() {
+    if let Some(Change::Searched(change)) = student.change {
         change(&mut searched);
     }
     let mut time = searched_time(&searched, log)?;
-    if let Some(Change::Time(change)) = student.change() {
+    if let Some(Change::Time(change)) = student.change {
         time = change(time);
     }
     if student.makes(Mistake::ContactTimeSingle) {
         time = single(time);
     }
-    let counts = match student.change() {
+    let counts = match student.change {
         Some(Change::Counts(counts)) => counts(&encounter, time),
         _ => within_step(student, time, world.scene.time_step),
     };
@@ -214,7 +206,7 @@ pub fn detect(
     }
     let n = axes_of(student, pair).back(encounter.contact_vector(student, time));
     let mut n = student.vector(Place::ContactVector { kind }, n);
-    if let Some(Change::Vector(change)) = student.change() {
+    if let Some(Change::Vector(change)) = student.change {
         n = change(&encounter, time, n);
     }
     if matches!(encounter, Encounter::Edge(..)) && length(n) == 0.0 {
@@ -248,7 +240,7 @@ pub fn pass(world: &World, q_start: &[f64], q_end: &[f64], log: &mut StepLog) ->
     for pair in world.pairs() {
         contacts.extend(detect(world, pair, q_start, q_end, log)?);
     }
-    if let Some(Change::Contacts(change)) = world.student.change() {
+    if let Some(Change::Contacts(change)) = world.student.change {
         change(&mut contacts);
     }
     Ok(contacts)
@@ -292,17 +284,6 @@ fn rejected(student: Student, encounter: &Encounter, time: f64) -> bool {
 
 /// Whether the particles' paths stay far apart, judged by bounding circles. Nobody asked for this.
 fn out_of_reach(encounter: &Encounter) -> bool {
-    let far = |one: &MovingBody, other: &MovingBody| {
-        length(other.start - one.start)
-            > one.radius + other.radius + length(one.displacement) + length(other.displacement)
-    };
-    match encounter {
-        Encounter::Particles(one, two) => far(one, two),
-        _ => false,
-    }
-}
-
-/// The polynomials for the root finder, small leading coefficients dropped.
-fn trimmed(lists: &[Vec<f64>]) -> Vec<Polynomial> {
-    lists.iter().map(|list| Polynomial::trimmed(list)).collect()
+    let Encounter::Particles(one, two) = encounter else { return false };
+    length(two.start - one.start) > one.radius + two.radius + length(one.displacement) + length(two.displacement)
 }

@@ -37,18 +37,18 @@ pub fn polynomials(student: Student, bodies: &[MovingBody; 3], edge_radius: f64)
     }
     let bodies = &seen(student, bodies);
     let square = reach_squared(student, bodies[0].radius, edge_radius);
-    let dots = DotProducts::new(bodies);
+    let dots = dot_products(bodies);
     let overlap = match mistake {
         Some(Mistake::WideArithmetic) => arithmetic::particle_edge::<Wide>(bodies, edge_radius).swap_remove(0),
         Some(Mistake::FactorisedQuartic | Mistake::FactorisedAll) => factorised::quartic(bodies, square),
         Some(Mistake::InterpolatedQuartic) => interpolated(bodies, square),
-        Some(Mistake::RearrangedParticleEdge) => rearranged(&dots, square),
-        _ => quartic(student, &dots, square),
+        Some(Mistake::RearrangedParticleEdge) => rearranged(dots, square),
+        _ => quartic(student, dots, square),
     };
     vec![
         overlap,
-        alpha_above_zero(student, bodies, &dots),
-        alpha_below_one(student, bodies, &dots),
+        alpha_above_zero(student, bodies, dots),
+        alpha_below_one(student, bodies, dots),
         quintic::approach(student, bodies),
     ]
 }
@@ -95,43 +95,22 @@ fn reach_squared(student: Student, particle: f64, edge: f64) -> f64 {
     }
 }
 
-/// The dot products of the quartic, with the letters of the derivation.
-pub struct DotProducts {
-    a: f64,
-    b: f64,
-    c: f64,
-    d: f64,
-    e: f64,
-    f: f64,
-    g: f64,
-    h: f64,
-    i: f64,
-}
+/// The dot products of the quartic, of a particle (1) and an edge (2, 3): the letters `a` to `i` of the derivation.
+type DotProducts = [f64; 9];
 
-impl DotProducts {
-    /// The nine dot products of a particle (1) and an edge (2, 3).
-    pub fn new([one, two, three]: &[MovingBody; 3]) -> Self {
-        let (x12, x32, x21) = (one.start - two.start, three.start - two.start, two.start - one.start);
-        let d12 = one.displacement - two.displacement;
-        let d32 = three.displacement - two.displacement;
-        let d21 = two.displacement - one.displacement;
-        Self {
-            a: x12.dot(&x32),
-            b: x12.dot(&d32) + d12.dot(&x32),
-            c: d12.dot(&d32),
-            d: x21.dot(&x21),
-            e: d21.dot(&x21),
-            f: d21.dot(&d21),
-            g: x32.dot(&x32),
-            h: d32.dot(&x32),
-            i: d32.dot(&d32),
-        }
-    }
+fn dot_products([one, two, three]: &[MovingBody; 3]) -> DotProducts {
+    let (x12, x32, x21) = (one.start - two.start, three.start - two.start, two.start - one.start);
+    let d12 = one.displacement - two.displacement;
+    let d32 = three.displacement - two.displacement;
+    let d21 = two.displacement - one.displacement;
+    let (a, b, c) = (x12.dot(&x32), x12.dot(&d32) + d12.dot(&x32), d12.dot(&d32));
+    let (d, e, f) = (x21.dot(&x21), d21.dot(&x21), d21.dot(&d21));
+    let (g, h, i) = (x32.dot(&x32), d32.dot(&x32), d32.dot(&d32));
+    [a, b, c, d, e, f, g, h, i]
 }
 
 /// The overlap with the line: `(r1 + re)^2 |x32|^2 - |x21|^2 |x32|^2 + (x12.x32)^2` along the motion.
-fn quartic(student: Student, dots: &DotProducts, s: f64) -> Vec<f64> {
-    let &DotProducts { a, b, c, d, e, f, g, h, i } = dots;
+fn quartic(student: Student, [a, b, c, d, e, f, g, h, i]: DotProducts, s: f64) -> Vec<f64> {
     let mistake = student.mistake_in(FORMULAS);
     let t4 = match mistake {
         Some(Mistake::ParticleEdgeQuarticNoFi) => c * c,
@@ -180,8 +159,7 @@ fn quartic(student: Student, dots: &DotProducts, s: f64) -> Vec<f64> {
 }
 
 /// The same quartic with other parentheses.
-fn rearranged(dots: &DotProducts, s: f64) -> Vec<f64> {
-    let &DotProducts { a, b, c, d, e, f, g, h, i } = dots;
+fn rearranged([a, b, c, d, e, f, g, h, i]: DotProducts, s: f64) -> Vec<f64> {
     vec![
         c * c - i * f,
         2.0 * (b * c - (e * i + h * f)),
@@ -193,12 +171,7 @@ fn rearranged(dots: &DotProducts, s: f64) -> Vec<f64> {
 
 /// The same quartic from its values at five times.
 fn interpolated(bodies: &[MovingBody; 3], s: f64) -> Vec<f64> {
-    let value = |t: f64| {
-        let [x1, x2, x3] = bodies.map(|body| body.at(t));
-        let (along, beside) = (x3 - x2, x1 - x2);
-        let cross = along.x * beside.y - along.y * beside.x;
-        s * along.dot(&along) - cross * cross
-    };
+    let value = |t: f64| basis::overlap(bodies, s, t);
     let (low2, low1, middle, high1, high2) = (value(-2.0), value(-1.0), value(0.0), value(1.0), value(2.0));
     let even1 = (high1 + low1) / 2.0 - middle;
     let even2 = (high2 + low2) / 2.0 - middle;
@@ -209,8 +182,8 @@ fn interpolated(bodies: &[MovingBody; 3], s: f64) -> Vec<f64> {
     vec![t4, t3, even1 - t4, odd1 - t3, middle]
 }
 
-fn alpha_above_zero(student: Student, bodies: &[MovingBody; 3], dots: &DotProducts) -> Vec<f64> {
-    let &DotProducts { a, b, c, .. } = dots;
+fn alpha_above_zero(student: Student, bodies: &[MovingBody; 3], dots: DotProducts) -> Vec<f64> {
+    let [a, b, c, ..] = dots;
     match student.mistake_in(FORMULAS) {
         Some(Mistake::AlphaLowSlopeSign) => vec![c, -b, a],
         Some(Mistake::AlphaLowNegated) => vec![-c, -b, -a],
@@ -226,8 +199,8 @@ fn alpha_above_zero(student: Student, bodies: &[MovingBody; 3], dots: &DotProduc
     }
 }
 
-fn alpha_below_one(student: Student, bodies: &[MovingBody; 3], dots: &DotProducts) -> Vec<f64> {
-    let &DotProducts { a, b, c, g, h, i, .. } = dots;
+fn alpha_below_one(student: Student, bodies: &[MovingBody; 3], dots: DotProducts) -> Vec<f64> {
+    let [a, b, c, _, _, _, g, h, i] = dots;
     let [one, two, three] = bodies;
     let (x13, x23) = (one.start - three.start, two.start - three.start);
     let d13 = one.displacement - three.displacement;
