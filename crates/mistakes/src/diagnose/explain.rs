@@ -76,24 +76,19 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
             explanation.claims = claims.filter(is_of_kind).cloned().collect();
         }
     }
-    let alone = known.len() == 1;
-    for explanation in &mut known {
-        let is_formula = find(&explanation.key).is_some_and(|row| is_formula(row.area));
-        if alone && is_formula && explanation.is_complete() {
-            // The same mistake in other words, with its terms and an example of its own.
-            for own in std::mem::take(&mut polynomials) {
-                if own.is_unexplained() || !own.is_complete() {
-                    continue;
-                }
-                // The remedy stays last. The same mistake by the same name has been said.
-                let remedy = explanation.details.len().saturating_sub(1);
-                let is_said = explanation.key.ends_with(&own.key);
-                let lines = own.details.into_iter().filter(|_| !is_said);
-                explanation.details.splice(remedy..remedy, lines);
-                if let Some(example) = own.example {
-                    explanation.example = Some(example);
-                }
+    if let [explanation] = &mut known[..]
+        && find(&explanation.key).is_some_and(|row| is_formula(row.area))
+        && explanation.is_complete()
+    {
+        // The same mistake in other words, with its terms and an example of its own.
+        let is_told = |own: &Explanation| !own.is_unexplained() && own.is_complete();
+        for own in std::mem::take(&mut polynomials).into_iter().filter(is_told) {
+            // The remedy stays last. The same mistake by the same name has been said.
+            let remedy = explanation.details.len().saturating_sub(1);
+            if !explanation.key.ends_with(&own.key) {
+                explanation.details.splice(remedy..remedy, own.details);
             }
+            explanation.example = own.example.or(explanation.example.take());
         }
     }
     if known.iter().any(Explanation::is_complete) {

@@ -43,7 +43,9 @@ pub(super) fn explain(scene: &Scene, scan: &Scan) -> Option<Explanation> {
     if !is_explicit || !is_soft || scene.particles.len() > MOST_PARTICLES {
         return None;
     }
-    let programs = programs(scene);
+    // For each term that the scene has, a program with nothing else.
+    let programs: Vec<(ForceTerm, World)> =
+        ForceTerm::ALL.into_iter().filter_map(|term| Some((term, program(scene, term)?))).collect();
     let steps: Vec<&KeptStep> =
         scan.wrong.iter().take(MOST_STEPS).chain(scan.right.iter().take(MOST_STEPS / 4)).collect();
     // One step is no evidence.
@@ -83,11 +85,7 @@ fn simple(weight: f64) -> WrongWeight {
     }
 }
 
-/// For each term that the scene has, a program with nothing else.
-fn programs(scene: &Scene) -> Vec<(ForceTerm, World)> {
-    ForceTerm::ALL.into_iter().filter_map(|term| Some((term, program(scene, term)?))).collect()
-}
-
+/// The program with nothing but this term; nothing where the scene does not have it.
 fn program(scene: &Scene, term: ForceTerm) -> Option<World> {
     let only = |change: fn(&Force) -> Option<Force>| {
         let forces: Vec<Force> = scene.forces.iter().filter_map(change).collect();

@@ -302,12 +302,9 @@ fn keep_earliest_stage(open: &mut Vec<Vec<Explanation>>) {
     let Some(earliest) = open.iter().flatten().filter_map(Explanation::stage).min() else { return };
     let is_of_it = |one: &Explanation| one.stage() == Some(earliest);
     let observed = open.iter().filter(|list| list.iter().any(is_of_it)).count();
-    let mut weak: Vec<&'static str> = Vec::new();
-    for row in CATALOGUE.iter().filter(|row| stage_of(row.area).is_some_and(|stage| stage >= earliest)) {
-        if open.iter().filter(|list| names_completely(list, row.id)).count() < observed {
-            weak.push(row.id);
-        }
-    }
+    let late = CATALOGUE.iter().filter(|row| stage_of(row.area).is_some_and(|stage| stage >= earliest));
+    let explained = |row: &Row| open.iter().filter(|list| names_completely(list, row.id)).count();
+    let weak: Vec<&str> = late.filter(|row| explained(row) < observed).map(|row| row.id).collect();
     // An explanation that says what is wrong with the stage speaks for those that only say that something is.
     let is_said = open.iter().flatten().any(|one| is_of_it(one) && !one.is_vague());
     // In another order, polynomials of one pair stand where those of another are looked for.
@@ -407,14 +404,9 @@ fn unfinished(traces: &[Vec<Explanation>]) -> Option<Explanation> {
     let rows: Vec<&Row> = CATALOGUE.iter().filter(is_told).filter(is_likeliest).filter(is_seen_again).collect();
     let of_rows = || told.iter().filter(|one| rows.iter().any(|row| row.id == one.key));
     (!rows.is_empty()).then(|| Explanation {
-        key: Explanation::UNFINISHED.to_owned(),
-        about: About::Unfinished,
-        details: Vec::new(),
         reproduced: of_rows().map(|one| one.reproduced).sum(),
         samples: of_rows().map(|one| one.samples).sum(),
-        example: None,
         same_as: rows.iter().map(|row| row.id.to_owned()).collect(),
-        denies: Vec::new(),
-        claims: Vec::new(),
+        ..Explanation::about(Explanation::UNFINISHED, About::Unfinished)
     })
 }

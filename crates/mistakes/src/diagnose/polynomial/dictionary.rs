@@ -38,7 +38,7 @@ impl Dictionary {
         match longest {
             1 => lists.extend((0..letters.len()).map(|one| vec![one])),
             2 => {
-                lists.extend(products_of_two(0..own));
+                lists.extend(products_of_two(own));
                 lists.extend((0..own).map(|one| vec![one]));
                 lists.extend(foreign_products(subject, own));
             }
@@ -74,9 +74,8 @@ impl Dictionary {
     }
 }
 
-fn products_of_two(range: std::ops::Range<usize>) -> impl Iterator<Item = Vec<usize>> {
-    let end = range.end;
-    range.flat_map(move |one| (one..end).map(move |two| vec![one, two]))
+fn products_of_two(count: usize) -> impl Iterator<Item = Vec<usize>> {
+    (0..count).flat_map(move |one| (one..count).map(move |two| vec![one, two]))
 }
 
 fn products_of_three(count: usize) -> impl Iterator<Item = Vec<usize>> {

@@ -34,16 +34,8 @@ fn digits(case: &Case) -> usize {
 
 fn given(motion: &PairMotion) -> Vec<ExampleValue> {
     match motion {
-        PairMotion::Particles { centres, radii } => {
-            let mut list = moving(centres);
-            list.extend([number(Input::R1, radii[0]), number(Input::R2, radii[1])]);
-            list
-        }
-        PairMotion::Edge { centre, ends, radii } => {
-            let mut list = moving(&[*centre, ends[0], ends[1]]);
-            list.extend([number(Input::R1, radii[0]), number(Input::Re, radii[1])]);
-            list
-        }
+        PairMotion::Particles { centres, radii } => moving(centres, [Input::R1, Input::R2], radii),
+        PairMotion::Edge { centre, ends, radii } => moving(&[*centre, ends[0], ends[1]], [Input::R1, Input::Re], radii),
         PairMotion::HalfPlane { centre, radius, point, normal } => vec![
             vector(Input::X, centre.start),
             vector(Input::Dx, centre.shift),
@@ -54,12 +46,11 @@ fn given(motion: &PairMotion) -> Vec<ExampleValue> {
     }
 }
 
-fn moving(points: &[PointMotion]) -> Vec<ExampleValue> {
-    let starts =
-        [Input::X1, Input::X2, Input::X3].into_iter().zip(points).map(|(input, point)| vector(input, point.start));
-    let moves =
-        [Input::Dx1, Input::Dx2, Input::Dx3].into_iter().zip(points).map(|(input, point)| vector(input, point.shift));
-    starts.chain(moves).collect()
+fn moving(points: &[PointMotion], names: [Input; 2], radii: &[f64; 2]) -> Vec<ExampleValue> {
+    let starts = [Input::X1, Input::X2, Input::X3].into_iter().zip(points.iter().map(|point| point.start));
+    let moves = [Input::Dx1, Input::Dx2, Input::Dx3].into_iter().zip(points.iter().map(|point| point.shift));
+    let vectors = starts.chain(moves).map(|(input, value)| vector(input, value));
+    vectors.chain(names.into_iter().zip(radii).map(|(input, value)| number(input, *value))).collect()
 }
 
 fn vector(input: Input, value: Vec2) -> ExampleValue {

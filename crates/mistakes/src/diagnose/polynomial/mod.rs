@@ -2,11 +2,11 @@
 //!
 //! Pure functions over samples: the inputs of a detection and what the submission logged. A guess counts by how many
 //! samples it reproduces to round-off, right ones included. Guesses are, from simple to intricate: the whole list of
-//! coefficients (`structure`: reversed, negated, cut, exchanged), the inputs (`inputs`: end positions, radii squared
-//! apart), misunderstandings with a formula of their own (`specials`), one letter of a formula (`slips`), and the terms
-//! of single coefficients (`terms`: sparse least squares over the products of dot products, with weights that are
-//! multiples of 1/4). Correct polynomials are those of collisions.md 2, up to a positive factor each; the quintic may
-//! be the supplied one or the mathematically right one.
+//! coefficients (`structure`: reversed, negated, cut, exchanged), the inputs (end positions, radii squared apart),
+//! misunderstandings with a formula of their own, one letter of a formula (`slips`), and the terms of single
+//! coefficients (`terms`: sparse least squares over the products of dot products, with weights that are multiples of
+//! 1/4). Correct polynomials are those of collisions.md 2, up to a positive factor each; the quintic may be the supplied
+//! one or the mathematically right one.
 //!
 //! It reads no trace, judges nothing and never looks at decisions or responses.
 mod compare;
@@ -14,7 +14,6 @@ mod dictionary;
 mod example;
 mod slips;
 mod sparse;
-mod specials;
 mod structure;
 mod study;
 mod terms;
@@ -33,10 +32,11 @@ use crate::assignments::t2m2::{
     Subject,
     exchanges::{EXCHANGES, Exchange},
     formulas::readings,
+    specials::{SPECIALS, Special},
 };
 use crate::student::{Area, CATALOGUE, Row, RowKind, Student, polynomials_of};
 use fosssim_model::sim::PairKind;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use study::{Candidate, PolynomialStudy};
 
 /// The greatest number of guesses about a polynomial that are kept besides the one that is told.
@@ -95,7 +95,7 @@ fn missing(samples: &[Sample]) -> Option<Explanation> {
         subjects.extend(Subject::of(kind).iter().skip(logged));
     }
     (!subjects.is_empty()).then(|| Explanation {
-        details: distinct(details.into_iter()),
+        details: distinct(details, MOST_OTHERS),
         reproduced: count,
         samples: count,
         ..Explanation::about("missing-polynomials", About::Polynomials { subjects, found: OfPolynomials::Missing })
@@ -126,7 +126,7 @@ impl Suspect<'_> {
     /// The explanation of this polynomial for itself; it has a guess.
     fn alone(&self) -> Explanation {
         let (best, others) = (&self.candidates[0], self.full());
-        let claims = std::iter::once(claim(self.study.subject, best)).chain(self.claims(others)).collect();
+        let claims = std::iter::once(claim(self.study.subject, best)).chain(self.claims(others));
         let samples = self.study.cases.len() as u64;
         let equal = |other: &&Candidate| {
             let is_likely = other.cost <= best.cost + AS_LIKELY;
@@ -134,15 +134,16 @@ impl Suspect<'_> {
         };
         let found = OfPolynomials::Guess(best.guess.clone());
         Explanation {
-            key: best.guess.key().to_owned(),
-            about: About::Polynomials { subjects: vec![self.study.subject], found },
             details: best.details.iter().cloned().map(|one| detail(one, &[self.study.subject])).collect(),
             reproduced: best.reproduced as u64,
             samples,
             example: example::smallest(&self.study).map(|(_, example)| example),
-            same_as: distinct(self.candidates.iter().filter(equal).map(|other| other.guess.key().to_owned())),
-            denies: Vec::new(),
-            claims: distinct_words(claims),
+            same_as: distinct(
+                self.candidates.iter().filter(equal).map(|other| other.guess.key().to_owned()),
+                MOST_OTHERS,
+            ),
+            claims: distinct(claims, usize::MAX),
+            ..Explanation::about(best.guess.key(), About::Polynomials { subjects: vec![self.study.subject], found })
         }
     }
 }
@@ -188,12 +189,6 @@ fn known_makers(study: &PolynomialStudy<'_>) -> Vec<String> {
     CATALOGUE.iter().filter(is_formula).filter(makes).map(|row| format!("{:?}/{}/", study.subject, row.id)).collect()
 }
 
-/// Each word once, in their order.
-fn distinct_words(all: Vec<String>) -> Vec<String> {
-    let mut seen = BTreeSet::new();
-    all.into_iter().filter(|word| seen.insert(word.clone())).collect()
-}
-
 /// A line of the exact form of a guess about these polynomials.
 fn detail(mut detail: PolynomialDetail, subjects: &[Subject]) -> Detail {
     if let PolynomialDetail::Exchange { of_edges, .. } = &mut detail {
@@ -206,7 +201,7 @@ fn detail(mut detail: PolynomialDetail, subjects: &[Subject]) -> Detail {
 fn candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     let mut all = structure::candidates(study);
     all.extend(exchanged_inputs(study));
-    all.extend(specials::candidates(study));
+    all.extend(misunderstandings(study));
     all.extend(slips::candidates(study));
     all.extend(terms::candidates(study));
     // A guess that reproduces no more than the right formula is no explanation.
@@ -229,10 +224,23 @@ fn exchanged_inputs(study: &PolynomialStudy) -> Vec<Candidate> {
             details: vec![PolynomialDetail::Exchange { key: exchange.key.into(), of_edges: false }],
             cost: exchange.cost + if scaled { 1.5 } else { 0.0 },
             reproduced,
-            general: true,
         })
     };
     EXCHANGES.iter().filter(|exchange| exchange.concerns(study.subject.kind())).filter_map(of).collect()
+}
+
+/// Misunderstandings that have a formula of their own.
+fn misunderstandings(study: &PolynomialStudy) -> Vec<Candidate> {
+    let of = |special: &Special| {
+        let (reproduced, scaled) = study.count(|case| (special.polynomial)(&case.inputs))?;
+        Some(Candidate {
+            guess: Guess::Special(special.key.into()),
+            details: vec![PolynomialDetail::Special(special.key.into())],
+            cost: if scaled { 3.5 } else { 2.5 },
+            reproduced,
+        })
+    };
+    SPECIALS.iter().filter(|special| special.subject == study.subject).filter_map(of).collect()
 }
 
 /// A polynomial that is right but for more round-off than the rules allow, and that nothing explains better.
@@ -258,10 +266,10 @@ fn unexplained(hopeless: &[Suspect]) -> Option<Explanation> {
         suspect.study.differences(subject).into_iter().map(Detail::Polynomial)
     };
     Some(Explanation {
-        details: distinct(hopeless.iter().flat_map(lines)),
+        details: distinct(hopeless.iter().flat_map(lines), MOST_OTHERS),
         samples: hopeless.iter().map(|suspect| suspect.study.cases.len() as u64).sum(),
         example: example::smallest(&first.study).map(|(_, example)| example),
-        claims: distinct_words(hopeless.iter().flat_map(|suspect| suspect.claims(std::iter::empty())).collect()),
+        claims: distinct(hopeless.iter().flat_map(|suspect| suspect.claims(std::iter::empty())), usize::MAX),
         ..Explanation::about(
             Explanation::UNEXPLAINED,
             About::Polynomials {
@@ -278,7 +286,7 @@ fn best_shared_key(open: &[Suspect]) -> Option<String> {
     let mut keys: BTreeMap<&str, (usize, f64)> = BTreeMap::new();
     for suspect in open {
         let mut seen: Vec<&str> = Vec::new();
-        for candidate in suspect.full().filter(|candidate| candidate.general) {
+        for candidate in suspect.full().filter(|candidate| candidate.guess.is_general()) {
             let key = candidate.guess.key();
             if !seen.contains(&key) {
                 seen.push(key);
@@ -305,23 +313,21 @@ fn shared(covered: &[Suspect], key: &str) -> Explanation {
     let details = guesses.iter().flat_map(|guess| &guess.details).map(|one| detail(one.clone(), &subjects));
     let found = OfPolynomials::Guess(guesses[0].guess.clone());
     Explanation {
-        key: key.to_owned(),
-        details: distinct(details),
-        about: About::Polynomials { subjects, found },
+        details: distinct(details, MOST_OTHERS),
         reproduced: samples,
         samples,
         example: examples.min_by_key(|(digits, _)| *digits).map(|(_, example)| example),
-        same_as: distinct(others.map(str::to_owned)),
-        denies: Vec::new(),
-        claims: distinct_words(covered.iter().flat_map(|suspect| suspect.claims(suspect.full())).collect()),
+        same_as: distinct(others.map(str::to_owned), MOST_OTHERS),
+        claims: distinct(covered.iter().flat_map(|suspect| suspect.claims(suspect.full())), usize::MAX),
+        ..Explanation::about(key, About::Polynomials { subjects, found })
     }
 }
 
-/// The first few different ones, in their order.
-fn distinct<T: PartialEq>(all: impl Iterator<Item = T>) -> Vec<T> {
+/// The first different ones, in their order, no more than `most`.
+fn distinct<T: PartialEq>(all: impl IntoIterator<Item = T>, most: usize) -> Vec<T> {
     let mut list: Vec<T> = Vec::new();
     for one in all {
-        if !list.contains(&one) && list.len() < MOST_OTHERS {
+        if !list.contains(&one) && list.len() < most {
             list.push(one);
         }
     }

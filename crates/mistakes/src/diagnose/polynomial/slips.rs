@@ -92,7 +92,6 @@ fn in_formula(study: &PolynomialStudy, formula: &Formula, reading: Reading) -> V
                 details: vec![PolynomialDetail::StandsFor { reading, letter: letter.name.into(), stand }],
                 cost: trial.cost() + if rescaled { 2.0 } else { 0.0 } + 0.1 * reading.number as f64,
                 reproduced,
-                general: false,
             });
         }
     }

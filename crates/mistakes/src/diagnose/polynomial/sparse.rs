@@ -72,20 +72,9 @@ impl DesignMatrix {
         }
         let fits: Vec<f64> = self.unit.iter().map(|column| dot(column, target)).collect();
         let problem = Problem { columns: self, fits: &fits, square };
-        let sizes = [
-            (1, self.indices.len()),
-            (2, self.indices.len()),
-            (
-                3,
-                if self.indices.len() > MOST_FOR_TRIPLES {
-                    self.likely.min(MOST_FOR_TRIPLES)
-                } else {
-                    self.indices.len()
-                },
-            ),
-            (4, self.likely.min(MOST_FOR_QUADRUPLES)),
-        ];
-        for (size, among) in sizes {
+        let all = self.indices.len();
+        let of_triples = if all > MOST_FOR_TRIPLES { self.likely.min(MOST_FOR_TRIPLES) } else { all };
+        for (size, among) in [(1, all), (2, all), (3, of_triples), (4, self.likely.min(MOST_FOR_QUADRUPLES))] {
             let mut accepted = Vec::new();
             problem.search(&mut Partial::default(), 0, among, size, &mut |chosen| {
                 if let Some(support) = self.solved(chosen, &fits)
@@ -98,19 +87,12 @@ impl DesignMatrix {
                 return accepted;
             }
         }
-        let pursued = self.pursue(target, &fits);
-        pursued.into_iter().filter(|support| accept(support)).take(1).collect()
+        let pursued = [self.likely, self.indices.len()].map(|among| self.pursue(target, &fits, among));
+        pursued.into_iter().flatten().find(|support| accept(support)).into_iter().collect()
     }
 
-    /// Matching pursuit, among the likely columns and among all.
-    fn pursue(&self, target: &[f64], fits: &[f64]) -> Vec<Support> {
-        [self.likely, self.indices.len()]
-            .into_iter()
-            .filter_map(|among| self.pursue_among(target, fits, among))
-            .collect()
-    }
-
-    fn pursue_among(&self, target: &[f64], fits: &[f64], among: usize) -> Option<Support> {
+    /// Matching pursuit, among the first columns.
+    fn pursue(&self, target: &[f64], fits: &[f64], among: usize) -> Option<Support> {
         let square = dot(target, target);
         let mut chosen: Vec<usize> = Vec::new();
         let mut residual = target.to_vec();

@@ -28,7 +28,7 @@ pub(super) fn candidates(study: &PolynomialStudy) -> Vec<Candidate> {
 
 fn general(guess: ListGuess, detail: Option<PolynomialDetail>, cost: f64, reproduced: usize) -> Candidate {
     let details = detail.into_iter().collect();
-    Candidate { guess: Guess::List(guess), details, cost, reproduced, general: true }
+    Candidate { guess: Guess::List(guess), details, cost, reproduced }
 }
 
 /// Properties that need no prediction.
@@ -88,20 +88,19 @@ fn reversed(list: &[Bounded]) -> Vec<Bounded> {
 
 fn predicted(
     study: &PolynomialStudy,
-    mut candidate: Candidate,
+    guess: ListGuess,
+    detail: Option<PolynomialDetail>,
+    cost: f64,
     predict: impl Fn(&Case) -> Vec<Bounded>,
 ) -> Option<Candidate> {
     let (reproduced, scaled) = study.count(predict)?;
-    candidate.reproduced = reproduced;
-    candidate.cost += if scaled { 1.0 } else { 0.0 };
-    Some(candidate)
+    Some(general(guess, detail, cost + if scaled { 1.0 } else { 0.0 }, reproduced))
 }
 
 /// The polynomial's own coefficients in another order or with another sign.
 fn rearrangements(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     let mut check = |guess, cost, change: &dyn Fn(&[Bounded]) -> Vec<Bounded>| {
-        let candidate = general(guess, None, cost, 0);
-        found.extend(predicted(study, candidate, |case| change(&case.expected)));
+        found.extend(predicted(study, guess, None, cost, |case| change(&case.expected)));
     };
     check(ListGuess::Reversed, 1.0, &reversed);
     check(ListGuess::Negated, 1.0, &negated);
@@ -117,10 +116,10 @@ fn other_polynomials(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
         }
         let formula = &readings(other)[0];
         let detail = || Some(PolynomialDetail::InPlaceOf { stands: other, belongs: study.subject });
-        let candidate = general(ListGuess::OtherPolynomial, detail(), 1.5, 0);
-        found.extend(predicted(study, candidate, |case| formula.polynomial(&case.inputs)));
-        let candidate = general(ListGuess::OtherPolynomialNegated, detail(), 3.0, 0);
-        found.extend(predicted(study, candidate, |case| negated(&formula.polynomial(&case.inputs))));
+        let formed = |case: &Case| formula.polynomial(&case.inputs);
+        found.extend(predicted(study, ListGuess::OtherPolynomial, detail(), 1.5, formed));
+        let negative = |case: &Case| negated(&formed(case));
+        found.extend(predicted(study, ListGuess::OtherPolynomialNegated, detail(), 3.0, negative));
     }
 }
 
@@ -128,14 +127,11 @@ fn other_polynomials(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
 fn cuts(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     for length in 1..=study.subject.degree() {
         let guess = if length == 1 { ListGuess::ConstantOnly } else { ListGuess::Cut };
-        let detail = PolynomialDetail::LastOnly(length);
-        let candidate = general(guess, Some(detail), 2.0 + 0.01 * length as f64, 0);
-        found.extend(predicted(study, candidate, |case| {
-            let missing = case.expected.len() - length;
-            case.expected[missing..].to_vec()
-        }));
-        let candidate = general(ListGuess::CutEnd, Some(PolynomialDetail::FirstOnly(length)), 2.5, 0);
-        found.extend(predicted(study, candidate, |case| case.expected[..length].to_vec()));
+        let (last, first) = (PolynomialDetail::LastOnly(length), PolynomialDetail::FirstOnly(length));
+        let end = |case: &Case| case.expected[case.expected.len() - length..].to_vec();
+        found.extend(predicted(study, guess, Some(last), 2.0 + 0.01 * length as f64, end));
+        let beginning = |case: &Case| case.expected[..length].to_vec();
+        found.extend(predicted(study, ListGuess::CutEnd, Some(first), 2.5, beginning));
     }
 }
 
@@ -149,8 +145,7 @@ fn scaled_displacements(study: &PolynomialStudy) -> Option<Candidate> {
     }
     let factor = Bounded { value: factor, bound: 16.0 * factor };
     let detail = PolynomialDetail::Displacements(factor.value);
-    let candidate = general(ListGuess::DisplacementScale, Some(detail), 3.0, 0);
-    predicted(study, candidate, |case| {
+    predicted(study, ListGuess::DisplacementScale, Some(detail), 3.0, |case| {
         let mut power = Bounded::exact(1.0);
         let mut list = reversed(&case.expected);
         for coefficient in &mut list {

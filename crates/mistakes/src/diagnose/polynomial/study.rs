@@ -65,8 +65,6 @@ pub(super) struct Candidate {
     pub cost: f64,
     /// How many samples it reproduces.
     pub reproduced: usize,
-    /// Whether other polynomials may share it.
-    pub general: bool,
 }
 
 impl<'a> PolynomialStudy<'a> {
@@ -235,12 +233,11 @@ impl<'a> PolynomialStudy<'a> {
     /// of them could be right.
     fn agreement(&self, scale: impl Fn(usize) -> f64) -> f64 {
         let agreeing = |(index, case): (usize, &Case)| {
-            (0..case.expected.len())
-                .filter(|&power| is_sure(expected_at(&case.expected, power)) && power < case.logged.len())
-                .filter(|&power| {
-                    coefficient_matches(expected_at(&case.expected, power), logged_at(case.logged, power), scale(index))
-                })
-                .count()
+            let agrees = |power: &usize| {
+                let (expected, logged) = (expected_at(&case.expected, *power), logged_at(case.logged, *power));
+                logged.is_some() && is_sure(expected) && coefficient_matches(expected, logged, scale(index))
+            };
+            (0..case.expected.len()).filter(agrees).count()
         };
         self.cases.iter().enumerate().map(agreeing).sum::<usize>() as f64
     }

@@ -54,13 +54,9 @@ pub(super) fn candidates(study: &PolynomialStudy) -> Vec<Candidate> {
 }
 
 fn candidate(study: &PolynomialStudy, formula: &'static Formula, reading: Reading) -> Option<Candidate> {
-    let fitting = Fitting::new(study, formula);
-    let mut guesses = Vec::new();
-    for power in (0..=formula.degree).rev() {
-        if fitting.is_wrong(power) {
-            guesses.push(fitting.explain(power));
-        }
-    }
+    let fitting = Fitting::new(study, formula, reading);
+    let wrong = (0..=formula.degree).rev().filter(|&power| fitting.is_wrong(power));
+    let guesses: Vec<FormulaGuess> = wrong.map(|power| fitting.explain(power)).collect();
     // A polynomial of which nothing is known needs no candidate.
     guesses.iter().find(|guess| !matches!(guess.edit, Edit::Unknown))?;
     let holds = |index: usize| {
@@ -72,16 +68,12 @@ fn candidate(study: &PolynomialStudy, formula: &'static Formula, reading: Readin
                 coefficient_matches(predicted, logged_at(case.logged, power), case.scale)
             })
     };
-    let (right, wrong): (Vec<usize>, Vec<usize>) =
-        (0..study.cases.len()).filter(|&index| holds(index)).partition(|&index| study.cases[index].right);
-    let reproduced = right.len() + wrong.len();
-    let telling = Telling { dictionary: &fitting.dictionary, formula, reading };
+    let reproduced = (0..study.cases.len()).filter(|&index| holds(index)).count();
     Some(Candidate {
-        guess: telling.guess(&guesses),
-        details: guesses.iter().flat_map(|guess| telling.details(guess)).collect(),
+        guess: fitting.guess(&guesses),
+        details: guesses.iter().flat_map(|guess| fitting.details(guess)).collect(),
         cost: guesses.iter().map(|guess| guess.cost).sum::<f64>() + 0.1 * reading.number as f64,
         reproduced,
-        general: false,
     })
 }
 
@@ -89,17 +81,18 @@ fn candidate(study: &PolynomialStudy, formula: &'static Formula, reading: Readin
 struct Fitting<'a> {
     study: &'a PolynomialStudy<'a>,
     formula: &'static Formula,
+    reading: Reading,
     dictionary: Dictionary,
     expected: Vec<Vec<Bounded>>,
     products: Vec<Vec<Bounded>>,
 }
 
 impl<'a> Fitting<'a> {
-    fn new(study: &'a PolynomialStudy<'a>, formula: &'static Formula) -> Self {
+    fn new(study: &'a PolynomialStudy<'a>, formula: &'static Formula, reading: Reading) -> Self {
         let dictionary = Dictionary::new(study.subject, formula);
         let expected = study.cases.iter().map(|case| formula.polynomial(&case.inputs)).collect();
         let products = study.cases.iter().map(|case| dictionary.values(&case.inputs)).collect();
-        Self { study, formula, dictionary, expected, products }
+        Self { study, formula, reading, dictionary, expected, products }
     }
 
     fn case(&self, index: usize) -> &Case<'a> {
@@ -264,13 +257,7 @@ fn snapped(support: &Support) -> Option<Vec<(usize, f64)>> {
 }
 
 /// Guesses as what is told of them.
-struct Telling<'a> {
-    dictionary: &'a Dictionary,
-    formula: &'a Formula,
-    reading: Reading,
-}
-
-impl Telling<'_> {
+impl Fitting<'_> {
     fn weights(&self, power: usize, (product, change): (usize, f64)) -> (f64, f64) {
         let expected = self.dictionary.weight(self.formula, power, product);
         (expected, expected + change)
@@ -310,11 +297,8 @@ impl Telling<'_> {
         };
         let weight = |change: &(usize, f64)| self.weight(power, *change);
         let own = changes.iter().map(|change| PolynomialDetail::Weight(weight(change)));
-        let others = guess
-            .alternatives
-            .iter()
-            .map(|alternative| PolynomialDetail::Alternative(alternative.iter().map(weight).collect()));
-        own.chain(others).collect()
+        let all = |changes: &Vec<(usize, f64)>| PolynomialDetail::Alternative(changes.iter().map(weight).collect());
+        own.chain(guess.alternatives.iter().map(all)).collect()
     }
 
     fn weight(&self, power: usize, change: (usize, f64)) -> Weight {
