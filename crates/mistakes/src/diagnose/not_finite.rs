@@ -6,12 +6,12 @@ use super::{
     Explanation,
     about::About,
     fault::{NanStage, NotFinite},
-    sampling::{Capture, Reference, Source, StepFrames, StepReader},
+    sampling::{Capture, Reference, Source, StepFrames, StepReader, bodies},
 };
 use fosssim_judge::kept::KeptTrace;
 use fosssim_model::{
     scene::{Collision, Integrator, Scene},
-    sim::{Pair, PairKind, State, pairs},
+    sim::{Pair, State, pairs},
     trace::{LenientFrame, LoggedImpulse, PolynomialLog},
 };
 
@@ -110,21 +110,20 @@ fn stage(scene: &Scene, frames: &StepFrames) -> Option<(NanStage, f64)> {
     let StepFrames { mid, end, .. } = frames;
     let polynomial = wild_polynomial(&end.polynomials);
     let state = wild_value(&end.state);
+    let of_state = if end.impulses.is_empty() { NanStage::Motion } else { NanStage::Responses };
     match scene.collision {
         Collision::None | Collision::Penalty { .. } => Some((NanStage::Motion, state?)),
         Collision::Simple { .. } => {
             let of_contact = end.impulses.iter().find_map(wild_impulse).map(|value| (NanStage::ContactVectors, value));
-            let of_state = if end.impulses.is_empty() { NanStage::Motion } else { NanStage::Responses };
             of_contact.or_else(|| Some((of_state, state?)))
         }
-        Collision::ContinuousTime { .. } => in_one_pass(scene, end, polynomial).or_else(|| {
-            let of_state = if end.impulses.is_empty() { NanStage::Motion } else { NanStage::Responses };
-            Some((of_state, wild_value(&mid.state).or(state)?))
-        }),
+        Collision::ContinuousTime { .. } => {
+            in_one_pass(scene, end, polynomial).or_else(|| Some((of_state, wild_value(&mid.state).or(state)?)))
+        }
         Collision::Hybrid { .. } => {
             let pass: usize = pairs(scene).counts().iter().map(|(kind, count)| count * kind.polynomials()).sum();
             let middle = mid.polynomials.len();
-            let kind = |index: usize| kind_at(scene, index % pass.max(1));
+            let kind = |index: usize| pair_at(scene, index % pass.max(1)).map(|(_, pair)| pair.kind);
             match polynomial {
                 Some((index, value)) if index < middle.min(pass) => Some((NanStage::Detection(kind(index)), value)),
                 Some((index, value)) if index < middle => Some((NanStage::ImpulseRounds, value)),
@@ -141,59 +140,32 @@ fn stage(scene: &Scene, frames: &StepFrames) -> Option<(NanStage, f64)> {
 /// The stage in the one pass of `continuous-time`, where each contact is resolved before the next pair is looked at.
 fn in_one_pass(scene: &Scene, end: &LenientFrame, polynomial: Option<(usize, f64)>) -> Option<(NanStage, f64)> {
     let all = pairs(scene);
-    let place = |contact: &LoggedImpulse| {
-        all.iter().position(|pair| {
-            (pair.kind.code(), pair.first.cast_signed(), pair.second.cast_signed())
-                == (contact.kind, contact.first, contact.second)
-        })
-    };
+    let place = |contact: &LoggedImpulse| contact.pair().and_then(|pair| all.iter().position(|one| one == pair));
     let contact = end.impulses.iter().find_map(|contact| Some((place(contact), wild_impulse(contact)?)));
     let Some((index, value)) = polynomial else { return contact.map(|(_, value)| (NanStage::ContactVectors, value)) };
-    let mut first = 0;
-    let at = all.iter().position(|pair| {
-        first += pair.kind.polynomials();
-        index < first
-    });
-    if let (Some((Some(place), value)), Some(at)) = (contact, at)
+    let Some((at, pair)) = pair_at(scene, index) else { return Some((NanStage::Detection(None), value)) };
+    if let Some((Some(place), value)) = contact
         && place < at
     {
         return Some((NanStage::ContactVectors, value));
     }
-    let Some(pair) = at.and_then(|at| all.iter().nth(at)) else { return Some((NanStage::Detection(None), value)) };
     // A response before it in the pass has moved its bodies to where no numbers are.
     let own = bodies(scene, pair);
     let has_moved = |contact: &LoggedImpulse| {
-        let is_earlier = place(contact).zip(at).is_some_and(|(place, at)| place < at);
-        let other = contact.kind().and_then(|kind| {
-            Some(Pair { kind, first: contact.first.try_into().ok()?, second: contact.second.try_into().ok()? })
-        });
-        is_earlier && other.is_some_and(|other| bodies(scene, other).iter().any(|body| own.contains(body)))
+        place(contact).is_some_and(|place| place < at)
+            && contact.pair().is_some_and(|other| bodies(scene, other).iter().any(|body| own.contains(body)))
     };
     let is_moved = end.impulses.iter().any(has_moved);
     Some((if is_moved { NanStage::Responses } else { NanStage::Detection(Some(pair.kind)) }, value))
 }
 
-/// The kind of the pair to which a polynomial of a pass belongs.
-fn kind_at(scene: &Scene, index: usize) -> Option<PairKind> {
+/// The pair to which a polynomial of a pass belongs, with its place in the pass.
+fn pair_at(scene: &Scene, index: usize) -> Option<(usize, Pair)> {
     let mut first = 0;
-    let is_there = |pair: &Pair| {
+    pairs(scene).iter().enumerate().find(|(_, pair)| {
         first += pair.kind.polynomials();
         index < first
-    };
-    pairs(scene).iter().find(is_there).map(|pair| pair.kind)
-}
-
-/// The particles of a pair.
-fn bodies(scene: &Scene, pair: Pair) -> Vec<u32> {
-    let edge = || scene.edges.get(pair.second as usize);
-    match pair.kind {
-        PairKind::ParticleParticle => vec![pair.first, pair.second],
-        PairKind::ParticleEdge => {
-            let ends = edge().into_iter().flat_map(|edge| [edge.first as u32, edge.second as u32]);
-            std::iter::once(pair.first).chain(ends).collect()
-        }
-        PairKind::ParticleHalfPlane => vec![pair.first],
-    }
+    })
 }
 
 /// Explanations with the one that says where numbers end: first, unless a proven mistake is the cause. That mistake

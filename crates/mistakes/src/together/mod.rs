@@ -1,5 +1,4 @@
 //! The likely mistakes of one submission, as its scenes tell them together.
-#![forbid(unsafe_code)]
 
 use crate::diagnose::{is_named_in, settled, several};
 use fosssim_findings::{

@@ -9,10 +9,7 @@ use crate::{
     student::{Mistake, Row},
 };
 use fosssim_model::scene::Scene;
-use std::collections::BTreeSet;
 
-/// Wrong steps that are tried first, one of each sort.
-const PROBES: usize = 8;
 /// Steps on which all rows are tried when none reproduces everything.
 const PARTIAL: usize = 16;
 /// Polynomials that may be computed in all; about a microsecond each.
@@ -25,21 +22,16 @@ pub(super) struct Score {
     pub(super) samples: u64,
 }
 
-/// A program with one mistake.
-struct Candidate {
-    row: &'static Row,
-    program: Program,
-}
+/// A row, and the program with its mistake alone.
+type Candidate = (&'static Row, Program);
 
 /// All programs, and the steps in the order in which they are tried.
 pub(super) struct Candidates<'a> {
     candidates: Vec<Candidate>,
-    /// Wrong steps: first one of each sort, the cheapest first, then the others.
-    wrong: Vec<&'a KeptStep>,
-    probes: usize,
-    /// The first divergence.
-    first: Option<&'a KeptStep>,
-    right: Vec<&'a KeptStep>,
+    scan: &'a Scan,
+    probes: Vec<&'a KeptStep>,
+    /// The wrong steps that are no probes.
+    others: Vec<&'a KeptStep>,
     trials: Trials<'a>,
 }
 
@@ -49,21 +41,11 @@ impl<'a> Candidates<'a> {
     /// `correct` is the program that the mistakes are added to.
     pub(super) fn new(reference: &'a Reference<'_>, scene: &Scene, scan: &'a Scan, correct: Correct) -> Self {
         let trials = Trials::new(reference, scene, correct);
-        let candidates = applicable(scene).map(|row| Candidate { row, program: trials.program(&[row]) }).collect();
-        let mut signatures = BTreeSet::new();
-        let (mut probes, mut others) = (Vec::new(), Vec::new());
-        for sample in &scan.wrong {
-            if probes.len() < PROBES && signatures.insert(sample.signature) {
-                probes.push(sample);
-            } else {
-                others.push(sample);
-            }
-        }
-        probes.sort_by_key(|sample| sample.records.end.polynomials.len());
-        let number = probes.len();
-        probes.append(&mut others);
-        let (first, right) = (scan.wrong.first(), scan.right.iter().collect());
-        Self { candidates, wrong: probes, probes: number, first, right, trials }
+        let candidates = applicable(scene).map(|row| (row, trials.program(&[row]))).collect();
+        let probes = scan.probes();
+        let is_probe = |sample: &KeptStep| probes.iter().any(|probe| std::ptr::eq(*probe, sample));
+        let others = scan.wrong.iter().filter(|sample| !is_probe(sample)).collect();
+        Self { candidates, scan, probes, others, trials }
     }
 
     /// The rows that reproduce the most, all of them equally many wrong steps, in the order of the catalogue. Empty
@@ -77,8 +59,7 @@ impl<'a> Candidates<'a> {
     fn complete(&self) -> Vec<Score> {
         let mut left: Vec<&Candidate> = self.candidates.iter().collect();
         let mut samples = 0;
-        let steps = self.wrong[..self.probes].iter().chain(&self.right).chain(&self.wrong[self.probes..]);
-        for sample in steps {
+        for sample in self.probes.iter().copied().chain(&self.scan.right).chain(self.others.iter().copied()) {
             if self.exhausted() && samples > 0 {
                 break;
             }
@@ -88,15 +69,16 @@ impl<'a> Candidates<'a> {
             }
             samples += u64::from(sample.difference.is_some());
         }
-        left.iter().map(|candidate| Score { row: candidate.row, reproduced: samples, samples }).collect()
+        left.iter().map(|(row, _)| Score { row, reproduced: samples, samples }).collect()
     }
 
     /// The rows that reproduce the most wrong steps, half of them at least, and all right ones.
     fn partial(&self) -> Vec<Score> {
         self.trials.restart();
-        let stride = self.wrong.len().div_ceil(PARTIAL).max(1);
-        let spread: Vec<&KeptStep> = self.wrong.iter().step_by(stride).copied().collect();
-        let rest = self.wrong.iter().enumerate().filter(|(index, _)| !index.is_multiple_of(stride));
+        let wrong = [self.probes.as_slice(), &self.others].concat();
+        let stride = wrong.len().div_ceil(PARTIAL).max(1);
+        let spread: Vec<&KeptStep> = wrong.iter().step_by(stride).copied().collect();
+        let rest = wrong.iter().enumerate().filter(|(index, _)| !index.is_multiple_of(stride));
         let rest: Vec<&KeptStep> = rest.map(|(_, sample)| *sample).collect();
         let mut left: Vec<(&Candidate, usize)> = self.candidates.iter().map(|candidate| (candidate, 0)).collect();
         let mut tried = 0;
@@ -115,17 +97,13 @@ impl<'a> Candidates<'a> {
         // A mistake that does not make the first divergence is not the one to look for.
         left.retain(|(candidate, reproduced)| {
             2 * reproduced >= tried
-                && self.first.is_none_or(|first| self.reproduces(candidate, first))
-                && self.right.iter().all(|sample| self.reproduces(candidate, sample))
+                && self.scan.wrong.first().is_none_or(|first| self.reproduces(candidate, first))
+                && self.scan.right.iter().all(|sample| self.reproduces(candidate, sample))
         });
         let most = left.iter().map(|(_, reproduced)| *reproduced).max().unwrap_or(0);
         left.retain(|(_, reproduced)| *reproduced == most && most > 0);
-        let score = |(candidate, reproduced): (&Candidate, usize)| Score {
-            row: candidate.row,
-            reproduced: reproduced as u64,
-            samples: tried as u64,
-        };
-        left.into_iter().map(score).collect()
+        let (reproduced, samples) = (most as u64, tried as u64);
+        left.into_iter().map(|((row, _), _)| Score { row, reproduced, samples }).collect()
     }
 
     fn exhausted(&self) -> bool {
@@ -133,17 +111,15 @@ impl<'a> Candidates<'a> {
     }
 
     /// Whether this program logs in this step what the submission did.
-    fn reproduces(&self, candidate: &Candidate, sample: &KeptStep) -> bool {
-        match candidate.row.mistake {
+    fn reproduces(&self, (row, program): &Candidate, sample: &KeptStep) -> bool {
+        match row.mistake {
             Mistake::LogPolynomialsKept if sample.difference.is_some() => return sample.context.polynomials_kept,
             Mistake::LogImpulsesKept if sample.difference.is_some() => return sample.context.impulses_kept,
-            Mistake::LogNan | Mistake::LogNanContacts if sample.context.logs_nan => {
-                return logs_nan(candidate.row, sample);
-            }
+            Mistake::LogNan | Mistake::LogNanContacts if sample.context.logs_nan => return logs_nan(row, sample),
             Mistake::LogSinglePrecision if sample.difference.is_some() => return sample.context.single_precision,
             _ => {}
         }
-        self.trials.reached(&candidate.program, sample) >= 1.0
+        self.trials.reached(program, sample) >= 1.0
     }
 }
 

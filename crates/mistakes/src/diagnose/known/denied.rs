@@ -1,7 +1,7 @@
 //! Mistakes that a trace denies, whatever else is wrong with it: its stages are not empty, its zones do not stop.
 use crate::{
     diagnose::sampling::{KeptStep, Logged, PLAIN, ROUND_OFF, Scan, StepDifference, state_difference},
-    student::{CATALOGUE, Mistake},
+    student::{CATALOGUE, Mistake, Row},
 };
 use fosssim_model::{
     scene::{Collision, Scene},
@@ -15,17 +15,17 @@ pub(super) fn denied(scene: &Scene, scan: &Scan) -> Vec<String> {
     let samples = || scan.wrong.iter().chain(&scan.right);
     let kinds: Vec<PairKind> = samples().flat_map(|sample| right_kinds(scene, sample)).collect();
     let is_hybrid = matches!(scene.collision, Collision::Hybrid { .. });
-    let is_done = |mistake: Mistake| match mistake {
-        Mistake::ParticleParticleEmpty => kinds.contains(&PairKind::ParticleParticle),
-        Mistake::ParticleEdgeEmpty => kinds.contains(&PairKind::ParticleEdge),
-        Mistake::HalfPlaneEmpty => kinds.contains(&PairKind::ParticleHalfPlane),
+    let is_done = |row: &&Row| match row.mistake {
+        Mistake::ParticleParticleEmpty | Mistake::ParticleEdgeEmpty | Mistake::HalfPlaneEmpty => {
+            row.kind_of_pair().is_some_and(|kind| kinds.contains(&kind))
+        }
         Mistake::ImpulsesEmpty | Mistake::ImpulsesEmptySuccess => is_hybrid && samples().any(has_rounds),
         Mistake::GeometricEmpty => is_hybrid && samples().any(|sample| has_passes(sample) || moves(sample)),
         Mistake::FailsafeEmpty => is_hybrid && samples().any(moves),
         Mistake::FailsafeAlwaysStops => is_hybrid && samples().any(|sample| moves(sample) && moves_on(sample)),
         _ => false,
     };
-    CATALOGUE.iter().filter(|row| is_done(row.mistake)).map(|row| row.id.to_owned()).collect()
+    CATALOGUE.iter().filter(is_done).map(|row| row.id.to_owned()).collect()
 }
 
 /// The kinds of pairs whose first polynomials of the step are right.

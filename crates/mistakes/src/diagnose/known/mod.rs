@@ -30,7 +30,7 @@ use super::{
     sampling::{ROUND_OFF, Reference, Sampled, Scan, Source, first_difference, sampled},
 };
 use crate::student::{Mistake, Row, RowKind, StepLog, World, find};
-use candidates::{Candidates, Score};
+use candidates::Candidates;
 use fosssim_model::{scene::Scene, trace::Layout};
 use resimulate::{Correct, resimulate};
 use several::Several;
@@ -94,25 +94,22 @@ fn of_wrong_steps(reference: &mut Reference<'_>, scene: &Scene, scan: &mut Scan)
     if scan.wrong.is_empty() {
         return (Vec::new(), true);
     }
-    let supplied = best(reference, scene, scan, Correct::Supplied);
-    if supplied.complete {
-        return (supplied.explanation.into_iter().collect(), true);
+    let mut partly = None;
+    for correct in [Correct::Supplied, Correct::RightApproach] {
+        // The fair rules accept the right approach, too; behind it may be a mistake of another kind.
+        if correct == Correct::RightApproach && !take_right_approach(scan, scene) {
+            break;
+        }
+        let (explanation, is_complete) = best(reference, scene, scan, correct);
+        if is_complete {
+            return (explanation.into_iter().collect(), true);
+        }
+        if let Some(several) = several::several(reference, scene, scan, correct) {
+            return (together(reference, scene, scan, correct, &several), true);
+        }
+        partly = partly.or(explanation);
     }
-    if let Some(several) = several::several(reference, scene, scan, Correct::Supplied) {
-        return (together(reference, scene, scan, Correct::Supplied, &several), true);
-    }
-    // The fair rules accept the right approach as well as the supplied one; behind it may be a mistake of another kind.
-    if !take_right_approach(scan, scene) {
-        return (supplied.explanation.into_iter().collect(), scan.wrong.is_empty());
-    }
-    let right = best(reference, scene, scan, Correct::RightApproach);
-    if right.complete {
-        return (right.explanation.into_iter().collect(), true);
-    }
-    if let Some(several) = several::several(reference, scene, scan, Correct::RightApproach) {
-        return (together(reference, scene, scan, Correct::RightApproach, &several), true);
-    }
-    (supplied.explanation.or(right.explanation).into_iter().collect(), false)
+    (partly.into_iter().collect(), scan.wrong.is_empty())
 }
 
 /// Sees the same steps as a program does whose particle-edge approach is mathematically right: many that were wrong
@@ -147,44 +144,34 @@ fn together(
     correct: Correct,
     several: &Several,
 ) -> Vec<Explanation> {
-    let counts = (several.samples, several.samples);
-    let mut all: Vec<Explanation> = several.rows.iter().map(|row| explain(row, counts)).collect();
+    let of_row = |(row, others): (&&'static Row, &Vec<&'static Row>)| {
+        let rivals = several.rivals.iter().filter(|_| is_empty_stage(row));
+        let same_as = others.iter().chain(rivals).map(|other| other.id.to_owned()).collect();
+        Explanation { same_as, ..explain(row, (several.samples, several.samples)) }
+    };
+    let mut all: Vec<Explanation> = several.rows.iter().zip(&several.same_as).map(of_row).collect();
     if let Some(first) = all.first_mut() {
         first.example = scan.wrong.first().map(|sample| example::example(reference, scene, correct, sample));
-    }
-    for (explanation, others) in all.iter_mut().zip(&several.same_as) {
-        explanation.same_as = others.iter().map(|row| row.id.to_owned()).collect();
-    }
-    for (explanation, row) in all.iter_mut().zip(&several.rows) {
-        if is_empty_stage(row) {
-            explanation.same_as.extend(several.rivals.iter().map(|rival| rival.id.to_owned()));
-        }
     }
     all
 }
 
-/// The catalogue's best explanation of a trace.
-#[derive(Debug, Default)]
-struct Found {
-    /// The mistake; `None` when no row reproduces the steps, or a correct variant does.
-    explanation: Option<Explanation>,
-    /// Whether a row reproduces all steps.
-    complete: bool,
-}
-
-/// Tries the catalogue on the kept steps.
-fn best(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan, correct: Correct) -> Found {
+/// The mistake that reproduces most of the kept steps, and whether a row reproduces all of them. No mistake where no row
+/// reproduces enough, or where a correct variant does.
+fn best(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan, correct: Correct) -> (Option<Explanation>, bool) {
     let mut scores = Candidates::new(reference, scene, scan, correct).best();
     scores.sort_by_key(|score| plausibility(score.row));
-    let (Some(best), Some(first)) = (scores.first(), scan.wrong.first()) else { return Found::default() };
+    let (Some(best), Some(first)) = (scores.first(), scan.wrong.first()) else { return (None, false) };
     let complete = best.reproduced == best.samples;
     if scores.iter().any(|score| score.row.kind == RowKind::Variant) {
-        return Found { explanation: None, complete };
+        return (None, complete);
     }
-    let mut explanation = explain(best.row, (best.reproduced, best.samples));
-    explanation.example = Some(example::example(reference, scene, correct, first));
-    explanation.same_as = scores[1..].iter().map(|score: &Score| score.row.id.to_owned()).collect();
-    Found { explanation: Some(explanation), complete }
+    let explanation = Explanation {
+        example: Some(example::example(reference, scene, correct, first)),
+        same_as: scores[1..].iter().map(|score| score.row.id.to_owned()).collect(),
+        ..explain(best.row, (best.reproduced, best.samples))
+    };
+    (Some(explanation), complete)
 }
 
 /// Smaller is likelier, among mistakes that a trace can't tell apart: work that was not done at all comes first, and

@@ -6,19 +6,12 @@
 use super::{plausibility, resimulate::Correct, shown::applicable, trials::Trials};
 use crate::{
     diagnose::sampling::{KeptStep, Reference, Scan},
-    student::{Area, Mistake, Row, RowKind, find},
+    student::{Area, Mistake, Row, RowKind},
 };
-use fosssim_model::{
-    scene::Scene,
-    sim::{PairKind, pairs},
-    trace::Layout,
-};
-use std::collections::BTreeSet;
+use fosssim_model::{scene::Scene, sim::pairs, trace::Layout};
 
 /// The greatest number of mistakes in a set, besides empty stages.
 const MOST: usize = 3;
-/// Wrong steps on which rows are compared, one of each sort.
-const PROBES: usize = 8;
 /// Polynomials that may be computed in all; about a microsecond each.
 const WORK: u64 = 700_000;
 
@@ -60,20 +53,14 @@ pub(in crate::diagnose) fn is_empty_stage(row: &Row) -> bool {
 struct Search<'a> {
     scene: &'a Scene,
     trials: Trials<'a>,
-    wrong: Vec<&'a KeptStep>,
+    scan: &'a Scan,
+    /// Wrong steps on which rows are compared.
     probes: Vec<&'a KeptStep>,
-    right: Vec<&'a KeptStep>,
 }
 
 impl<'a> Search<'a> {
     fn new(reference: &'a Reference<'_>, scene: &'a Scene, scan: &'a Scan, correct: Correct) -> Self {
-        let mut signatures = BTreeSet::new();
-        // The first divergence has to be reproduced, whatever it is.
-        let is_probe = |kept: &&KeptStep| signatures.insert(kept.signature);
-        let mut probes: Vec<&KeptStep> = scan.wrong.iter().filter(is_probe).take(PROBES).collect();
-        probes.sort_by_key(|kept| kept.records.end.polynomials.len());
-        let (wrong, right) = (scan.wrong.iter().collect(), scan.right.iter().collect());
-        Self { scene, trials: Trials::new(reference, scene, correct), wrong, probes, right }
+        Self { scene, trials: Trials::new(reference, scene, correct), scan, probes: scan.probes() }
     }
 
     #[expect(clippy::cast_precision_loss, reason = "a handful")]
@@ -106,13 +93,15 @@ impl<'a> Search<'a> {
             return None;
         }
         for (index, others) in alike.iter_mut().enumerate() {
-            let with = |other: &Row| -> Vec<&'static Row> {
-                let other = find(other.id);
-                set.iter().enumerate().filter_map(|(at, row)| if at == index { other } else { Some(*row) }).collect()
+            let with = |other: &'static Row| {
+                let mut set = set.clone();
+                set[index] = other;
+                set
             };
             let is_last = index + 1 == set.len();
-            others
-                .retain(|other| !is_empty_stage(set[index]) && (is_last || self.progress(&with(other)) >= self.goal()));
+            others.retain(|other| {
+                !is_empty_stage(set[index]) && (is_last || self.progress(&with(*other)) >= self.goal())
+            });
         }
         Some(Several { rows: set, same_as: alike, rivals: Vec::new(), samples })
     }
@@ -154,7 +143,7 @@ impl<'a> Search<'a> {
     /// numbers of polynomials are those of whole passes, should another mistake hide it.
     fn starts(&self) -> Vec<Vec<&'static Row>> {
         let mut starts = vec![self.empty_stages()];
-        let counts: Vec<usize> = self.wrong.iter().map(|sample| sample.records.end.polynomials.len()).collect();
+        let counts: Vec<usize> = self.scan.wrong.iter().map(|sample| sample.records.end.polynomials.len()).collect();
         let fits =
             |pass: usize| counts.iter().all(|&count| if pass == 0 { count == 0 } else { count.is_multiple_of(pass) });
         let sizes = self.sizes();
@@ -162,40 +151,22 @@ impl<'a> Search<'a> {
         if fits(all) {
             return starts;
         }
-        let mut sets: Vec<Vec<&'static Row>> = Vec::new();
-        for bits in 1..1_u32 << sizes.len() {
-            let empty = |index: &usize| bits >> index & 1 == 1;
-            let left: usize = (0..sizes.len()).filter(|index| !empty(index)).map(|index| sizes[index].1).sum();
-            if fits(left) {
-                sets.push((0..sizes.len()).filter(empty).map(|index| sizes[index].0).collect());
-            }
-        }
-        sets.sort_by_key(Vec::len);
-        starts.extend(sets.into_iter().take(MOST));
+        let mut sets = subsets(&sizes);
+        sets.retain(|set| !set.is_empty() && fits(all - set.iter().map(|(_, size)| size).sum::<usize>()));
+        starts.extend(sets.into_iter().take(MOST).map(|set| set.into_iter().map(|(row, _)| row).collect()));
         starts
     }
 
     /// The detections that the scene asks for when they are left empty, and how many polynomials a pass of each logs.
     fn sizes(&self) -> Vec<(&'static Row, usize)> {
         let counts = pairs(self.scene).counts();
-        let of = |row: &'static Row| {
-            let kind = match row.mistake {
-                Mistake::ParticleParticleEmpty => PairKind::ParticleParticle,
-                Mistake::ParticleEdgeEmpty => PairKind::ParticleEdge,
-                Mistake::HalfPlaneEmpty => PairKind::ParticleHalfPlane,
-                _ => return (row, 0),
-            };
-            (row, counts[kind] * kind.polynomials())
-        };
-        self.stages().into_iter().map(of).filter(|(_, size)| *size > 0).collect()
+        let size = |row: &Row| row.kind_of_pair().map_or(0, |kind| counts[kind] * kind.polynomials());
+        self.stages().into_iter().map(|row| (row, size(row))).filter(|(_, size)| *size > 0).collect()
     }
 
     /// The smallest set of stages whose emptiness carries furthest; nothing where none does.
     fn empty_stages(&self) -> Vec<&'static Row> {
-        let rows = self.stages();
-        let mut sets: Vec<Vec<&'static Row>> = (0..1_u32 << rows.len())
-            .map(|bits| (0..rows.len()).filter(|bit| bits >> bit & 1 == 1).map(|bit| rows[bit]).collect())
-            .collect();
+        let mut sets = subsets(&self.stages());
         // Of the loop one reading is enough, and nobody sees a failsafe that is never called.
         sets.retain(|set: &Vec<&Row>| {
             let has = |mistake| set.iter().any(|row| row.mistake == mistake);
@@ -203,7 +174,6 @@ impl<'a> Search<'a> {
             let unseen = has(Mistake::GeometricEmpty) && has(Mistake::FailsafeEmpty);
             !loops && !unseen
         });
-        sets.sort_by_key(Vec::len);
         let mut best = (self.progress(&[]), Vec::new());
         for set in sets.into_iter().skip(1) {
             if self.trials.exceed(WORK / 2) {
@@ -256,7 +226,7 @@ impl<'a> Search<'a> {
     fn confirmed(&self, set: &[&'static Row]) -> Option<u64> {
         let program = self.trials.program(set);
         let mut samples = 0;
-        for sample in self.right.iter().chain(&self.wrong) {
+        for sample in self.scan.right.iter().chain(&self.scan.wrong) {
             if self.trials.exceed(2 * WORK) && samples > 0 {
                 break;
             }
@@ -267,4 +237,12 @@ impl<'a> Search<'a> {
         }
         (samples > 0).then_some(samples)
     }
+}
+
+/// All sets of these, the smallest first.
+fn subsets<T: Copy>(all: &[T]) -> Vec<Vec<T>> {
+    let of_bits = |bits: u32| (0..all.len()).filter(|bit| bits >> bit & 1 == 1).map(|bit| all[bit]).collect();
+    let mut sets: Vec<Vec<T>> = (0..1 << all.len()).map(of_bits).collect();
+    sets.sort_by_key(Vec::len);
+    sets
 }

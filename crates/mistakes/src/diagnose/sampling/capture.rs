@@ -1,5 +1,5 @@
 //! The results of the reference in one step, kept in the form in which a trace holds them.
-use super::compare::{Logged, StepRecords};
+use super::compare::StepRecords;
 use fosssim_model::{
     assignments::ImpulseList,
     scene::Collision,
@@ -99,7 +99,7 @@ impl Observer for Capture {
 
     fn synchronised(&mut self, state: &State) {
         let StepRecords { mid: Some(mid), end } = &mut self.records else { return };
-        copy_state(&mut mid.state, state);
+        mid.state.clone_from(state);
         mid.impulses.clone_from(&end.impulses);
         mid.polynomials.coefficients.clone_from(&end.polynomials.coefficients);
         mid.polynomials.ends.clone_from(&end.polynomials.ends);
@@ -116,12 +116,6 @@ impl Observer for Capture {
     }
 
     fn end_step(&mut self, _step: u32, state: &State) {
-        let end: &mut Logged = &mut self.records.end;
-        copy_state(&mut end.state, state);
+        self.records.end.state.clone_from(state);
     }
-}
-
-fn copy_state(target: &mut State, source: &State) {
-    target.positions.clone_from(&source.positions);
-    target.velocities.clone_from(&source.velocities);
 }

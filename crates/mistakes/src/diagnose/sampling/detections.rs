@@ -9,7 +9,7 @@ use fosssim_judge::fair::{compare::compare, formulas};
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{ByKind, Decision, Observer, Pair, PairKind, PairMotion, Pass, Resume, Stage, State, Steer, pairs},
-    trace::{Layout, LenientFrame, LoggedImpulse, PolynomialLog},
+    trace::{Layout, LenientFrame, PolynomialLog},
 };
 use fosssim_num::polynomial::Polynomial;
 
@@ -28,6 +28,19 @@ pub struct Sample {
     /// first and without the small leading coefficients that the course's library drops. Fewer lists: the last
     /// polynomials are missing.
     pub polynomials: Vec<Vec<f64>>,
+}
+
+/// The particles of a pair, in the order of the assignment; no end of an edge that the scene does not have.
+pub fn bodies(scene: &Scene, pair: Pair) -> Vec<usize> {
+    let (first, second) = (pair.first as usize, pair.second as usize);
+    match pair.kind {
+        PairKind::ParticleParticle => vec![first, second],
+        PairKind::ParticleEdge => {
+            let ends = scene.edges.get(second).map(|edge| [edge.first, edge.second]);
+            std::iter::once(first).chain(ends.into_iter().flatten()).collect()
+        }
+        PairKind::ParticleHalfPlane => vec![first],
+    }
 }
 
 /// The greatest number of wrong and of right detections kept of each kind of pair.
@@ -71,10 +84,6 @@ impl<'a> Detections<'a> {
     }
 }
 
-/// How many of its polynomials each detection logs, by kind of pair; all of them as a rule.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Sizes(ByKind<usize>);
-
 /// The observer of one step.
 struct Gatherer<'a> {
     scene: &'a Scene,
@@ -82,7 +91,8 @@ struct Gatherer<'a> {
     mid: &'a LenientFrame,
     log: &'a PolynomialLog,
     kinds: &'a mut ByKind<OfKind>,
-    sizes: Option<Sizes>,
+    /// How many of its polynomials each detection logs; all of them as a rule.
+    sizes: Option<ByKind<usize>>,
     /// The pass's number and the next polynomial in the list, for passes that are looked at.
     next: Option<(u32, usize)>,
 }
@@ -90,24 +100,21 @@ struct Gatherer<'a> {
 impl Gatherer<'_> {
     /// Whether the submission lists a contact of this pair, which only `continuous-time` does.
     fn is_hit(&self, pair: Pair) -> bool {
-        let is_pair = |impulse: &LoggedImpulse| {
-            (impulse.kind, impulse.first, impulse.second)
-                == (pair.kind.code(), pair.first.cast_signed(), pair.second.cast_signed())
-        };
-        matches!(self.scene.collision, Collision::ContinuousTime { .. }) && self.mid.impulses.iter().any(is_pair)
+        matches!(self.scene.collision, Collision::ContinuousTime { .. })
+            && self.mid.impulses.iter().any(|impulse| impulse.pair() == Some(pair))
     }
 }
 
 /// How many polynomials each detection logs so that the lists consist of whole passes: all of them if that fits, else
 /// as many as possible. `None` when nothing fits. `pairs` are those of one pass.
-fn sizes(pairs: ByKind<usize>, before: usize, all: usize) -> Option<Sizes> {
+fn sizes(pairs: ByKind<usize>, before: usize, all: usize) -> Option<ByKind<usize>> {
     let fits = |sizes: &ByKind<usize>| {
         let pass: usize = pairs.iter().map(|(kind, pairs)| pairs * sizes[kind]).sum();
         pass > 0 && before.is_multiple_of(pass) && all.is_multiple_of(pass) && all > 0
     };
     let full = ByKind::from_fn(PairKind::polynomials);
     if fits(&full) {
-        return Some(Sizes(full));
+        return Some(full);
     }
     let there: Vec<PairKind> = PairKind::ALL.into_iter().filter(|kind| pairs[*kind] > 0).collect();
     // Kinds without a pair have one choice.
@@ -126,7 +133,7 @@ fn sizes(pairs: ByKind<usize>, before: usize, all: usize) -> Option<Sizes> {
     // Which of two detections is empty numbers alone can't tell, and a wrong guess would make everything look wrong.
     let is_rival = |other: ByKind<usize>| changes(&other) == changes(&first) && is_empty(&other);
     let is_open = is_empty(&first) && fitting.any(is_rival);
-    (!is_open).then_some(Sizes(first))
+    (!is_open).then_some(first)
 }
 
 impl Observer for Gatherer<'_> {
@@ -147,7 +154,7 @@ impl Observer for Gatherer<'_> {
 
 impl Steer for Gatherer<'_> {
     fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], _polynomials: &mut [Polynomial]) {
-        let (Some((pass, index)), Some(Sizes(sizes))) = (self.next, self.sizes) else { return };
+        let (Some((pass, index)), Some(sizes)) = (self.next, self.sizes) else { return };
         let size = sizes[pair.kind];
         let lists = index..index + size;
         // Polynomials behind a contact of the submission's own depend on a response that is not logged.

@@ -12,7 +12,7 @@ pub use compare::{
     Logged, PLAIN, ROUND_OFF, StepDifference, StepRecords, Tolerance, first_difference, same_formula, same_impulse,
     same_polynomial, state_difference,
 };
-pub use detections::{Detections, Sample};
+pub use detections::{Detections, Sample, bodies};
 pub use reference::Reference;
 pub use scan::{KeptStep, Scan, Scanner};
 pub use source::{Source, StepFrames, StepReader};

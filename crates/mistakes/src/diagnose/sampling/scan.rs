@@ -12,7 +12,7 @@ use fosssim_model::{
     sim::State,
     trace::{Layout, LenientFrame},
 };
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Steps that are kept, wrong and right.
 const MOST_WRONG: usize = 200;
@@ -22,6 +22,8 @@ const FIRST_ALIKE: u32 = 8;
 const ALIKE: u32 = 16;
 /// Right steps that look alike.
 const RIGHT_ALIKE: u32 = 3;
+/// Wrong steps that are tried first.
+const PROBES: usize = 8;
 /// Memory that kept steps may take, in bytes.
 const MEMORY: usize = 24 << 20;
 
@@ -71,6 +73,16 @@ impl Scan {
     pub fn keep_fewer_right(&mut self) {
         self.right.truncate(MOST_RIGHT);
     }
+
+    /// Wrong steps to be tried first: one of each sort, the cheapest first. The first divergence is among them, which
+    /// has to be reproduced, whatever it is.
+    pub fn probes(&self) -> Vec<&KeptStep> {
+        let mut signatures = BTreeSet::new();
+        let is_probe = |kept: &&KeptStep| signatures.insert(kept.signature);
+        let mut probes: Vec<&KeptStep> = self.wrong.iter().filter(is_probe).take(PROBES).collect();
+        probes.sort_by_key(|kept| kept.records.end.polynomials.len());
+        probes
+    }
 }
 
 /// Looks at the steps of a trace, one after the other.
@@ -78,7 +90,6 @@ pub struct Scanner {
     has_mid: bool,
     round_off: Tolerance,
     capture: Capture,
-    actual: StepRecords,
     scan: Scan,
     seen: BTreeMap<(bool, u64), u32>,
     memory: usize,
@@ -91,7 +102,6 @@ impl Scanner {
             has_mid: Layout::of(scene).polynomials,
             round_off: Tolerance::of(scene),
             capture: Capture::new(&scene.collision),
-            actual: StepRecords::default(),
             scan: Scan::default(),
             seen: BTreeMap::new(),
             memory: 0,
@@ -111,17 +121,14 @@ impl Scanner {
         {
             return;
         }
-        self.actual.end.clone_from_frame(end);
-        if self.has_mid {
-            self.actual.mid.get_or_insert_default().clone_from_frame(mid);
-        }
-        let logs_nan = !self.actual.is_finite();
-        if logs_nan && !self.logs_nan() {
+        let actual = StepRecords { mid: self.has_mid.then(|| mid.into()), end: end.into() };
+        let logs_nan = !actual.is_finite();
+        if logs_nan && !self.logs_nan(&actual) {
             // Values that follow from NaN speak neither for a mistake nor against one.
             return;
         }
-        let difference = first_difference(&self.capture.records, &self.actual, &self.round_off);
-        let signature = self.signature(difference);
+        let difference = first_difference(&self.capture.records, &actual, &self.round_off);
+        let signature = self.signature(difference, &actual);
         let count = self.seen.entry((difference.is_some(), signature)).or_default();
         let number = *count;
         *count += 1;
@@ -134,21 +141,14 @@ impl Scanner {
         if !wanted || (self.memory > MEMORY && !self.scan.wrong.is_empty()) {
             return;
         }
-        let context = difference.map_or(Context::default(), |_| Context { logs_nan, ..self.context(before) });
-        let kept = KeptStep {
-            step,
-            before: before.state.clone(),
-            records: self.actual.clone(),
-            difference,
-            context,
-            signature,
-        };
+        let context = difference.map_or(Context::default(), |_| Context { logs_nan, ..self.context(before, &actual) });
+        let kept = KeptStep { step, before: before.state.clone(), records: actual, difference, context, signature };
         self.memory += kept.bytes();
         if difference.is_some() { self.scan.wrong.push(kept) } else { self.scan.right.push(kept) }
     }
 
     /// Steps with the same number look alike: the same events in the reference, the same first difference.
-    fn signature(&self, difference: Option<StepDifference>) -> u64 {
+    fn signature(&self, difference: Option<StepDifference>, actual: &StepRecords) -> u64 {
         let first = match difference {
             None => 0,
             Some(StepDifference::Polynomial(index)) => match self.capture.place(index) {
@@ -165,14 +165,14 @@ impl Scanner {
             Some(StepDifference::EndState(_)) => 5,
             Some(StepDifference::MidLists) => 6,
         };
-        let logged = self.actual.end.impulses.iter().fold(0, |bits, impulse| bits | 1 << impulse.kind.clamp(0, 3));
+        let logged = actual.end.impulses.iter().fold(0, |bits, impulse| bits | 1 << impulse.kind.clamp(0, 3));
         u64::from(self.capture.events()) | first << 32 | logged << 48
     }
 
-    fn context(&self, before: &LenientFrame) -> Context {
-        let (expected, actual) = (&self.capture.records, &self.actual);
+    fn context(&self, before: &LenientFrame, actual: &StepRecords) -> Context {
+        let expected = &self.capture.records;
         Context {
-            polynomials_kept: self.right_without(before, |records, previous| {
+            polynomials_kept: self.right_without(before, actual, |records, previous| {
                 let kept = previous.polynomials.len();
                 let theirs = &mut records.polynomials;
                 let begins = theirs.len() >= kept
@@ -185,7 +185,7 @@ impl Scanner {
                 }
                 begins
             }),
-            impulses_kept: self.right_without(before, |records, previous| {
+            impulses_kept: self.right_without(before, actual, |records, previous| {
                 let begins = records.impulses.starts_with(&previous.impulses);
                 if begins {
                     records.impulses.drain(..previous.impulses.len());
@@ -201,12 +201,12 @@ impl Scanner {
 
     /// Whether contacts were found and resolved rightly though only NaN is logged in their place, so that just the
     /// logging is wrong.
-    fn logs_nan(&self) -> bool {
+    fn logs_nan(&self, actual: &StepRecords) -> bool {
         let without_lists = |records: &StepRecords| {
             let bare = |logged: &Logged| Logged { state: logged.state.clone(), ..Logged::default() };
             StepRecords { mid: records.mid.as_ref().map(bare), end: bare(&records.end) }
         };
-        let (expected, actual) = (&self.capture.records, &self.actual);
+        let expected = &self.capture.records;
         let has_lengths = |ours: &Logged, theirs: &Logged| {
             (ours.polynomials.len(), ours.impulses.len()) == (theirs.polynomials.len(), theirs.impulses.len())
         };
@@ -220,20 +220,15 @@ impl Scanner {
     }
 
     /// Whether the step is right once `strip` has taken the lists of the step before off its records.
-    fn right_without(&self, before: &LenientFrame, strip: impl Fn(&mut Logged, &LenientFrame) -> bool) -> bool {
-        let mut records = self.actual.clone();
+    fn right_without(
+        &self,
+        before: &LenientFrame,
+        actual: &StepRecords,
+        strip: impl Fn(&mut Logged, &LenientFrame) -> bool,
+    ) -> bool {
+        let mut records = actual.clone();
         let stripped = records.mid.as_mut().is_none_or(|mid| strip(mid, before)) && strip(&mut records.end, before);
         stripped && first_difference(&self.capture.records, &records, &self.round_off).is_none()
-    }
-}
-
-impl Logged {
-    fn clone_from_frame(&mut self, frame: &LenientFrame) {
-        self.state.positions.clone_from(&frame.state.positions);
-        self.state.velocities.clone_from(&frame.state.velocities);
-        self.impulses.clone_from(&frame.impulses);
-        self.polynomials.coefficients.clone_from(&frame.polynomials.coefficients);
-        self.polynomials.ends.clone_from(&frame.polynomials.ends);
     }
 }
 

@@ -3,21 +3,18 @@
 use super::{
     ALIKE, Explanation, common_value,
     events::{Hit, StepFacts},
-    observation, ratios,
+    observation, range, ratios,
 };
 use crate::diagnose::{
     StageDetail, StageFault, WrongDecisions, WrongVectors,
     sampling::{ROUND_OFF, same_impulse, same_polynomial},
 };
-use fosssim_model::{
-    sim::{PairKind, Stage},
-    trace::LoggedImpulse,
-};
+use fosssim_model::{sim::PairKind, trace::LoggedImpulse};
 use fosssim_num::vector::{Vec2, length};
 
 /// The pairs of the first pass in another order: all its polynomials are there.
 pub(super) fn order(facts: &[StepFacts]) -> Option<Explanation> {
-    let wrong: Vec<&StepFacts> = facts.iter().filter(|facts| facts.has_wrong_formula).collect();
+    let wrong: Vec<&StepFacts> = facts.iter().filter(|facts| facts.has_wrong_formula()).collect();
     let permuted = wrong.iter().filter(|facts| is_permuted(facts)).count();
     (permuted > 0 && 2 * permuted > wrong.len())
         .then(|| observation(StageFault::Order, vec![StageDetail::Order], permuted))
@@ -62,8 +59,7 @@ fn is_permuted(facts: &StepFacts) -> bool {
         last = number;
         at += end - first;
     }
-    let follows_contacts = matches!(facts.passes.first().map(|pass| pass.stage), Some(Stage::ContinuousTime));
-    let is_spoilt = follows_contacts && !facts.hits.is_empty() && 3 * found >= 2 * pairs && 3 * moved >= found;
+    let is_spoilt = facts.is_continuous() && !facts.hits.is_empty() && 3 * found >= 2 * pairs && 3 * moved >= found;
     misplaced > 0 && (found == pairs || is_spoilt)
 }
 
@@ -84,11 +80,7 @@ struct ContactStage {
 /// The fault in the contacts of `continuous-time`, whose polynomials are right.
 pub(super) fn detection(facts: &[StepFacts]) -> Option<Explanation> {
     let mut contacts = ContactStage::default();
-    for facts in facts {
-        if matches!(facts.passes.first().map(|pass| pass.stage), Some(Stage::ContinuousTime)) {
-            contacts.look(facts);
-        }
-    }
+    facts.iter().filter(|facts| facts.is_continuous()).for_each(|facts| contacts.look(facts));
     // A wrong time may make decisions wrong, too.
     contacts.times().or_else(|| contacts.decisions()).or_else(|| contacts.vectors())
 }
@@ -97,10 +89,8 @@ impl ContactStage {
     /// Looks at contacts up to the first that is not the expected one; those behind it depend on that.
     fn look(&mut self, facts: &StepFacts) {
         let place = |theirs: &LoggedImpulse| {
-            facts.detections.iter().position(|(pair, _)| {
-                (pair.kind.code(), pair.first.cast_signed(), pair.second.cast_signed())
-                    == (theirs.kind, theirs.first, theirs.second)
-            })
+            let theirs = theirs.pair()?;
+            facts.detections.iter().position(|(pair, _)| *pair == theirs)
         };
         // With more or fewer polynomials than a pass has, nobody knows which of them a contact belongs to.
         let is_whole = facts.actual.end.polynomials.len() == facts.expected.end.polynomials.len();
@@ -159,32 +149,25 @@ impl ContactStage {
     }
 
     fn decisions(&self) -> Option<Explanation> {
-        let (wrong, listed) = match (self.missed.len(), self.superfluous.len()) {
-            (0, 0) => return None,
-            (_, 0) => (WrongDecisions::Missed, &self.missed),
-            (0, _) => (WrongDecisions::Superfluous, &self.superfluous),
-            _ => {
-                let all: Vec<(PairKind, f64)> = self.missed.iter().chain(&self.superfluous).copied().collect();
-                let fault = StageFault::Decisions { kind: only_kind(&all), wrong: WrongDecisions::Both };
-                return Some(observation(fault, Vec::new(), all.len()));
-            }
+        let wrong = match (self.missed.is_empty(), self.superfluous.is_empty()) {
+            (true, true) => return None,
+            (false, true) => WrongDecisions::Missed,
+            (true, false) => WrongDecisions::Superfluous,
+            (false, false) => WrongDecisions::Both,
         };
-        let mut details = Vec::new();
-        let kind = only_kind(listed);
-        let rivals: Vec<f64> = self
-            .right
-            .iter()
-            .filter(|(other, _)| kind.is_none_or(|kind| kind == *other))
-            .map(|(_, time)| *time)
-            .collect();
-        let impacts = |right: bool, times: &[f64]| {
-            let (low, high) = range(times.iter().copied());
-            StageDetail::Impacts { right, count: times.len(), low, high }
+        let listed = [self.missed.as_slice(), &self.superfluous].concat();
+        let kind = only_kind(&listed);
+        let is_rival = |(other, _): &&(PairKind, f64)| kind.is_none_or(|kind| kind == *other);
+        let rivals: Vec<(PairKind, f64)> = self.right.iter().filter(is_rival).copied().collect();
+        let impacts = |right: bool, contacts: &[(PairKind, f64)]| {
+            let (low, high) = range(contacts.iter().map(|(_, time)| *time));
+            StageDetail::Impacts { right, count: contacts.len(), low, high }
         };
-        details.push(impacts(false, &listed.iter().map(|(_, time)| *time).collect::<Vec<_>>()));
-        if !rivals.is_empty() {
-            details.push(impacts(true, &rivals));
-        }
+        let details = match wrong {
+            WrongDecisions::Both => Vec::new(),
+            _ if rivals.is_empty() => vec![impacts(false, &listed)],
+            _ => vec![impacts(false, &listed), impacts(true, &rivals)],
+        };
         Some(observation(StageFault::Decisions { kind, wrong }, details, listed.len()))
     }
 
@@ -203,29 +186,24 @@ impl ContactStage {
             size > 0.0 && theirs.dot(ours).abs() <= ALIKE * size
         };
         let part = |(_, ours, theirs): &(PairKind, Vec2, Vec2)| length(*theirs - *ours) / length(*ours);
+        let is_zero = |(_, ours, theirs): &(PairKind, Vec2, Vec2)| length(*theirs) <= INEXACT * length(*ours);
         let parts = || self.vectors.iter().map(part);
-        if parts().all(|part| part <= INEXACT) {
-            let fault = StageFault::ContactVectors { kind: only_kind(&listed), wrong: WrongVectors::Inexact };
-            let most = parts().fold(0.0, f64::max);
-            return Some(observation(fault, vec![StageDetail::VectorsOff(most)], listed.len()));
-        }
-        if self.vectors.iter().all(|(_, ours, theirs)| length(*theirs) <= INEXACT * length(*ours)) {
-            let fault = StageFault::ContactVectors { kind: only_kind(&listed), wrong: WrongVectors::Zero };
-            return Some(observation(fault, Vec::new(), listed.len()));
-        }
-        let wrong = if self.vectors.iter().all(right_angle) {
-            WrongVectors::Perpendicular
-        } else if self.vectors.iter().any(off) {
-            WrongVectors::Direction
-        } else if along.iter().all(|&ratio| ratio < 0.0) {
-            WrongVectors::Reversed
-        } else if along.iter().all(|&ratio| ratio > 0.0) {
-            WrongVectors::Length
-        } else {
-            WrongVectors::Direction
+        let wrong = match () {
+            () if parts().all(|part| part <= INEXACT) => WrongVectors::Inexact,
+            () if self.vectors.iter().all(is_zero) => WrongVectors::Zero,
+            () if self.vectors.iter().all(right_angle) => WrongVectors::Perpendicular,
+            () if self.vectors.iter().any(off) => WrongVectors::Direction,
+            () if along.iter().all(|&ratio| ratio < 0.0) => WrongVectors::Reversed,
+            () if along.iter().all(|&ratio| ratio > 0.0) => WrongVectors::Length,
+            () => WrongVectors::Direction,
+        };
+        let details = match wrong {
+            WrongVectors::Inexact => vec![StageDetail::VectorsOff(parts().fold(0.0, f64::max))],
+            WrongVectors::Zero => Vec::new(),
+            _ => vec![StageDetail::Vectors(ratios(&along))],
         };
         let fault = StageFault::ContactVectors { kind: only_kind(&listed), wrong };
-        Some(observation(fault, vec![StageDetail::Vectors(ratios(&along))], listed.len()))
+        Some(observation(fault, details, listed.len()))
     }
 
     fn times(&self) -> Option<Explanation> {
@@ -249,8 +227,4 @@ impl ContactStage {
 fn only_kind(listed: &[(PairKind, f64)]) -> Option<PairKind> {
     let first = listed.first()?.0;
     listed.iter().all(|(kind, _)| *kind == first).then_some(first)
-}
-
-fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }

@@ -1,7 +1,7 @@
 //! The reference's work in a step from the submission's own state, event by event.
 use crate::diagnose::sampling::{
-    Capture, KeptStep, Logged, ROUND_OFF, Reference, StepRecords, first_difference, same_formula, same_polynomial,
-    state_difference,
+    Capture, KeptStep, Logged, ROUND_OFF, Reference, StepRecords, first_difference, same_formula, same_impulse,
+    same_polynomial, state_difference,
 };
 use fosssim_judge::fair::formulas::BoundedPairMotion;
 use fosssim_model::{
@@ -77,10 +77,6 @@ impl StepEvents<'_> {
 }
 
 impl Observer for StepEvents<'_> {
-    fn begin_step(&mut self, _step: u32) {
-        self.heard = Events::default();
-    }
-
     fn begin_pass(&mut self, pass: Pass) {
         let first = self.heard.polynomials;
         self.heard.passes.push(PassFacts { stage: pass.stage, first, end: Vec::new() });
@@ -125,8 +121,6 @@ impl Steer for NoCollisions {
 pub(super) struct StepFacts {
     /// Whether anything differs.
     pub(super) is_wrong: bool,
-    /// Whether a polynomial is wrong that depends on nothing but the state before the step.
-    pub(super) has_wrong_formula: bool,
     pub(super) before: State,
     /// Where the integrator alone leads.
     pub(super) prediction: State,
@@ -142,6 +136,44 @@ pub(super) struct StepFacts {
 }
 
 impl StepFacts {
+    /// The facts of a step; none where the reference has no result.
+    pub(super) fn of(reference: &mut Reference<'_>, scene: &Scene, kept: &KeptStep) -> Option<Self> {
+        let prediction = reference.step(kept.step, &kept.before, &mut Steering(NoCollisions))?.clone();
+        let mut observers = (Capture::new(&scene.collision), StepEvents { scene, heard: Events::default() });
+        reference.step(kept.step, &kept.before, &mut observers)?;
+        let (capture, StepEvents { heard: events, .. }) = observers;
+        let (mut expected, actual) = (capture.records, kept.records.clone());
+        take_other_forms(&mut expected, &actual, &events.other_forms);
+        let (ours, theirs) = (&expected.end.polynomials, &actual.end.polynomials);
+        let is_right = |(ours, theirs): &(&[f64], &[f64])| same_polynomial(ours, theirs, &ROUND_OFF);
+        let right_polynomials = ours.iter().zip(theirs.iter()).take_while(is_right).count();
+        let is_wrong = first_difference(&expected, &actual, &ROUND_OFF).is_some();
+        let (before, Events { hits, passes, zones, detections, .. }) = (kept.before.clone(), events);
+        Some(Self {
+            is_wrong,
+            before,
+            prediction,
+            expected,
+            actual,
+            right_polynomials,
+            hits,
+            passes,
+            zones,
+            detections,
+        })
+    }
+
+    /// Whether contacts are resolved as they are found, in the one pass of `continuous-time`.
+    pub(super) fn is_continuous(&self) -> bool {
+        self.passes.first().is_some_and(|pass| pass.stage == Stage::ContinuousTime)
+    }
+
+    /// Whether the impulse list is the expected one.
+    pub(super) fn has_right_impulses(&self) -> bool {
+        let (ours, theirs) = (&self.expected.end.impulses, &self.actual.end.impulses);
+        ours.len() == theirs.len() && ours.iter().zip(theirs).all(|(one, other)| same_impulse(one, other, &ROUND_OFF))
+    }
+
     /// How many polynomials a pass logs.
     pub(super) fn pass_size(&self) -> usize {
         self.passes.get(1).map_or(self.expected.end.polynomials.len(), |pass| pass.first)
@@ -187,37 +219,19 @@ impl StepFacts {
             })
         })
     }
-}
 
-impl StepFacts {
-    /// The facts of a step; none where the reference has no result.
-    pub(super) fn of(reference: &mut Reference<'_>, scene: &Scene, kept: &KeptStep) -> Option<Self> {
-        let prediction = reference.step(kept.step, &kept.before, &mut Steering(NoCollisions))?.clone();
-        let mut observers = (Capture::new(&scene.collision), StepEvents { scene, heard: Events::default() });
-        reference.step(kept.step, &kept.before, &mut observers)?;
-        let (capture, StepEvents { heard: events, .. }) = observers;
-        let (mut expected, actual) = (capture.records, kept.records.clone());
-        take_other_forms(&mut expected, &actual, &events.other_forms);
-        let (ours, theirs) = (&expected.end.polynomials, &actual.end.polynomials);
-        let differing =
-            ours.iter().zip(theirs.iter()).position(|(ours, theirs)| !same_polynomial(ours, theirs, &ROUND_OFF));
-        let right_polynomials = differing.unwrap_or(ours.len().min(theirs.len()));
-        let is_wrong = first_difference(&expected, &actual, &ROUND_OFF).is_some();
-        let mut facts = Self {
-            is_wrong,
-            has_wrong_formula: false,
-            before: kept.before.clone(),
-            prediction,
-            expected,
-            actual,
-            right_polynomials,
-            hits: events.hits,
-            passes: events.passes,
-            zones: events.zones,
-            detections: events.detections,
-        };
-        facts.has_wrong_formula = differing.is_some_and(|index| index < facts.certain_polynomials());
-        Some(facts)
+    /// Whether a polynomial is wrong that depends on nothing but the state before the step.
+    pub(super) fn has_wrong_formula(&self) -> bool {
+        let (ours, theirs) = (self.expected.end.polynomials.len(), self.actual.end.polynomials.len());
+        self.right_polynomials < ours.min(theirs).min(self.certain_polynomials())
+    }
+
+    /// How many polynomials depend on nothing but the state before the step: those of the first pass, in
+    /// `continuous-time` up to the first contact's own.
+    fn certain_polynomials(&self) -> usize {
+        let contact = self.hits.first().filter(|_| self.is_continuous());
+        let behind = contact.and_then(|hit| self.detections.get(hit.place + 1));
+        behind.map_or(self.pass_size(), |(_, first)| *first)
     }
 }
 
@@ -247,18 +261,4 @@ fn take_other_forms(expected: &mut StepRecords, actual: &StepRecords, others: &[
         mid.polynomials = replaced(&mid.polynomials);
     }
     expected.end.polynomials = replaced(&expected.end.polynomials);
-}
-
-impl StepFacts {
-    /// How many polynomials depend on nothing but the state before the step: those of the first pass, in
-    /// `continuous-time` up to the first contact's own.
-    pub(super) fn certain_polynomials(&self) -> usize {
-        let all = self.pass_size();
-        match self.passes.first().map(|pass| pass.stage) {
-            Some(Stage::ContinuousTime) => {
-                self.hits.first().and_then(|hit| self.detections.get(hit.place + 1)).map_or(all, |(_, first)| *first)
-            }
-            _ => all,
-        }
-    }
 }

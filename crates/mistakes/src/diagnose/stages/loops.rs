@@ -1,13 +1,11 @@
 //! The impulse rounds of `hybrid`: how many there are, which positions they look at, and what they hand over.
 //!
 //! The polynomials of a round say where particles were when it began: what the round before left.
-use super::{
-    ALIKE, Explanation,
-    events::StepFacts,
-    observation,
-    responses::{Responses, bodies_of},
+use super::{ALIKE, Explanation, events::StepFacts, observation, responses::Responses};
+use crate::diagnose::{
+    LoopEnd, Quantity, StageDetail, StageFault, WrongGeometric, WrongNumber,
+    sampling::{ROUND_OFF, bodies},
 };
-use crate::diagnose::{LoopEnd, Quantity, StageDetail, StageFault, WrongGeometric, WrongNumber, sampling::ROUND_OFF};
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{Pair, Stage},
@@ -153,8 +151,8 @@ impl SecondPass {
         let Some(second) = facts.passes.get(1) else { return };
         let first: Vec<Pair> = facts.hits.iter().filter(|hit| hit.pass == 0).map(|hit| hit.pair).collect();
         for pair in &first {
-            let own = bodies_of(scene, *pair);
-            let touches = |other: &Pair| other != pair && bodies_of(scene, *other).iter().any(|one| own.contains(one));
+            let own = bodies(scene, *pair);
+            let touches = |other: &Pair| other != pair && bodies(scene, *other).iter().any(|one| own.contains(one));
             let leads_to = |positions: &[f64]| facts.detects(scene, 1, positions, |other| other == *pair);
             self.contacts += 1;
             if leads_to(&second.end) {

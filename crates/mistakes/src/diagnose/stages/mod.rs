@@ -56,7 +56,7 @@ pub(super) fn explain<'a>(
     if let Some(order) = contacts::order(&facts) {
         return Some(order);
     }
-    if facts.iter().any(|facts| facts.has_wrong_formula) {
+    if facts.iter().any(|facts| facts.has_wrong_formula()) {
         return None;
     }
     let responses = responses::Responses::new(scene, &facts);
@@ -86,7 +86,10 @@ fn common_value(values: &[f64]) -> Option<f64> {
 
 /// The one on which they agree, else their range.
 fn ratios(values: &[f64]) -> Ratios {
-    let (low, high) =
-        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &r| (low.min(r), high.max(r)));
+    let (low, high) = range(values.iter().copied());
     common_value(values).map_or(Ratios::Between(low, high), Ratios::All)
+}
+
+fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }

@@ -4,13 +4,10 @@ use super::{
     events::{Hit, StepFacts},
     observation, ratios,
 };
-use crate::diagnose::{
-    Amount, Changed, Quantity, StageDetail, StageFault, WrongResponses,
-    sampling::{ROUND_OFF, same_impulse},
-};
+use crate::diagnose::{Amount, Changed, Quantity, StageDetail, StageFault, WrongResponses, sampling::bodies};
 use fosssim_model::{
     scene::{Collision, Scene},
-    sim::{Pair, PairKind, Stage, State},
+    sim::{PairKind, Stage, State},
 };
 use fosssim_num::vector::{Vec2, at, length, unit};
 use std::collections::BTreeMap;
@@ -44,7 +41,7 @@ impl Responses {
         for facts in facts {
             for (hit, expected, actual) in isolated(scene, facts) {
                 let mut changes: Vec<(Changed, Change)> = Vec::new();
-                for (body, particle) in bodies(scene, hit).into_iter().enumerate() {
+                for (body, particle) in bodies(scene, hit.pair).into_iter().enumerate() {
                     for quantity in [Quantity::Position, Quantity::Velocity] {
                         let states = [&facts.prediction, expected, actual];
                         let change = change(particle, quantity, states, unit(hit.normal));
@@ -52,8 +49,7 @@ impl Responses {
                     }
                 }
                 let is_nothing = |change: &Change| !change.across && change.ratio.is_none_or(|ratio| ratio == 0.0);
-                let is_seen = facts.passes.first().is_some_and(|pass| pass.stage == Stage::ContinuousTime);
-                if !is_seen && changes.iter().all(|(_, change)| is_nothing(change)) {
+                if !facts.is_continuous() && changes.iter().all(|(_, change)| is_nothing(change)) {
                     all.unresolved += 1;
                     continue;
                 }
@@ -118,20 +114,14 @@ fn isolated<'a>(scene: &'a Scene, facts: &'a StepFacts) -> Vec<(&'a Hit, &'a Sta
     let rounds = facts.passes.iter().filter(|pass| !matches!(pass.stage, Stage::Geometric { .. })).count();
     let hits = || facts.hits.iter().filter(move |hit| hit.pass < rounds);
     let is_alone = |hit: &&Hit| {
-        let own = bodies(scene, hit);
+        let own = bodies(scene, hit.pair);
         let touches =
-            |other: &Hit| other.place != hit.place && bodies(scene, other).iter().any(|one| own.contains(one));
+            |other: &Hit| other.place != hit.place && bodies(scene, other.pair).iter().any(|one| own.contains(one));
         !hits().any(touches) && is_final(scene, facts, hit)
     };
     let (expected, actual) = match facts.passes.first().map(|pass| pass.stage) {
-        Some(Stage::ContinuousTime) => {
-            let (ours, theirs) = (&facts.expected.end.impulses, &facts.actual.end.impulses);
-            let same = ours.iter().zip(theirs).all(|(ours, theirs)| same_impulse(ours, theirs, &ROUND_OFF));
-            if ours.len() != theirs.len() || !same {
-                return Vec::new();
-            }
-            (&facts.expected.end.state, &facts.actual.end.state)
-        }
+        Some(Stage::ContinuousTime) if !facts.has_right_impulses() => return Vec::new(),
+        Some(Stage::ContinuousTime) => (&facts.expected.end.state, &facts.actual.end.state),
         Some(Stage::Impulses { .. }) => {
             let Some((expected, actual)) = facts.middles() else { return Vec::new() };
             // The state that a loop hands over when its rounds run out is another question.
@@ -150,7 +140,7 @@ fn isolated<'a>(scene: &'a Scene, facts: &'a StepFacts) -> Vec<(&'a Hit, &'a Sta
 /// positions that the loop hands over.
 fn is_final(scene: &Scene, facts: &StepFacts, hit: &Hit) -> bool {
     let (Some((passes, _)), Some((_, middle))) = (facts.logged_passes(), facts.middles()) else { return true };
-    matches!(facts.passes.first().map(|pass| pass.stage), Some(Stage::ContinuousTime))
+    facts.is_continuous()
         || (hit.pass + 1..passes)
             .all(|pass| facts.detects(scene, pass, &middle.state.positions, |pair| pair == hit.pair))
 }
@@ -158,30 +148,14 @@ fn is_final(scene: &Scene, facts: &StepFacts, hit: &Hit) -> bool {
 /// Steps with several contacts, all of which are right though the state is not.
 fn of_many(facts: &[StepFacts]) -> Option<Explanation> {
     let is_right = |facts: &&StepFacts| {
-        let (ours, theirs) = (&facts.expected.end.impulses, &facts.actual.end.impulses);
         facts.is_wrong
-            && facts.passes.first().map(|pass| pass.stage) == Some(Stage::ContinuousTime)
-            && !ours.is_empty()
-            && ours.len() == theirs.len()
+            && facts.is_continuous()
+            && !facts.expected.end.impulses.is_empty()
             && facts.right_polynomials >= facts.expected.end.polynomials.len()
-            && ours.iter().zip(theirs).all(|(ours, theirs)| same_impulse(ours, theirs, &ROUND_OFF))
+            && facts.has_right_impulses()
     };
     let count = facts.iter().filter(is_right).count();
     (count > 0).then(|| observation(StageFault::ManyContacts, Vec::new(), count))
-}
-
-fn bodies(scene: &Scene, hit: &Hit) -> Vec<usize> {
-    bodies_of(scene, hit.pair)
-}
-
-/// The bodies of a pair, in the order of the assignment.
-pub(super) fn bodies_of(scene: &Scene, pair: Pair) -> Vec<usize> {
-    let (first, second) = (pair.first as usize, pair.second as usize);
-    match pair.kind {
-        PairKind::ParticleParticle => vec![first, second],
-        PairKind::ParticleEdge => vec![first, scene.edges[second].first, scene.edges[second].second],
-        PairKind::ParticleHalfPlane => vec![first],
-    }
 }
 
 fn change(particle: usize, quantity: Quantity, states: [&State; 3], u: Vec2) -> Change {

@@ -6,7 +6,7 @@ use super::{
     ALIKE, Explanation, common_value,
     events::StepFacts,
     loops, observation, ratios,
-    zones::{Fate, FirstRound, Group, SMALL, centre, near},
+    zones::{Fate, FirstRound, Group, SMALL, centre, near, spin},
 };
 use crate::diagnose::{StageDetail, StageFault, WrongMotion, WrongPositions, WrongZoneRounds, WrongZones};
 use fosssim_model::{
@@ -14,7 +14,6 @@ use fosssim_model::{
     sim::State,
 };
 use fosssim_num::vector::{Vec2, at, length, over};
-use std::collections::BTreeMap;
 
 /// A turn by less is none.
 const LITTLE_TURN: f64 = 1e-6;
@@ -142,7 +141,7 @@ fn velocities(scene: &Scene, ends: &[&StepFacts]) -> Explanation {
 /// The fates of the zones of first rounds.
 #[derive(Default)]
 struct Moved {
-    fates: BTreeMap<Fate, usize>,
+    fates: Vec<Fate>,
     /// Velocities of zones that have to stop, over what they were.
     stopped: Vec<f64>,
     has_stopped_otherwise: bool,
@@ -160,10 +159,10 @@ impl Moved {
             if !first.is_seen(zone) && (first.is_at_rest(zone) || !first.is_split(zone)) {
                 continue;
             }
-            let fate = if first.is_seen(zone) { first.fate(zone) } else { Fate::NotMerged };
-            *self.fates.entry(fate).or_default() += 1;
+            let fate = if first.is_seen(zone) { first.fate(zone) } else { Fate::Wrong(WrongZones::NotMerged) };
+            self.fates.push(fate);
             match fate {
-                Fate::KeptVelocities => self.kept(&first, zone),
+                Fate::Wrong(WrongZones::KeepVelocities) => self.kept(&first, zone),
                 Fate::Bent if zone.stops(scene) => self.bent_stops += 1,
                 Fate::Bent | Fate::Rigid => {
                     let is_one = first.contacts_of(zone).len() < 2;
@@ -189,36 +188,33 @@ impl Moved {
     }
 
     fn count(&self, fate: Fate) -> usize {
-        self.fates.get(&fate).copied().unwrap_or(0)
+        self.fates.iter().filter(|one| **one == fate).count()
     }
 
     fn explain(&self) -> Option<Explanation> {
-        let all: usize = self.fates.values().sum();
+        let all = self.fates.len();
         let wrong = all - self.count(Fate::Right);
-        let told = |fault: WrongZones, count: usize| {
-            Some(observation(StageFault::Zones(fault), vec![StageDetail::OfZones { count, of: all }], wrong))
-        };
+        let count = |fault: WrongZones| self.count(Fate::Wrong(fault));
         // Fates that prove the failsafe right come first.
-        for (fate, fault) in [
-            (Fate::NotMerged, WrongZones::NotMerged),
-            (Fate::Joined, WrongZones::Joined),
-            (Fate::Others, WrongZones::Others),
-            (Fate::Partly, WrongZones::Partly),
-            (Fate::Unmoved, WrongZones::Unmoved),
-            (Fate::Stopped, WrongZones::Stop),
-            (Fate::PartlyStopped, WrongZones::PartlyStopped),
-            (Fate::MovedOn, WrongZones::MoveOn),
-            (Fate::KeptPositions, WrongZones::KeepPositions),
-        ] {
-            if self.count(fate) > 0 {
-                return told(fault, self.count(fate));
-            }
-        }
-        if self.count(Fate::KeptVelocities) > 0 {
-            let stopped = (!self.has_stopped_otherwise && !self.stopped.is_empty())
-                .then(|| StageDetail::Stopped(ratios(&self.stopped)));
-            let fault = StageFault::Zones(WrongZones::KeepVelocities);
-            return Some(observation(fault, stopped.into_iter().collect(), wrong));
+        let faults = [
+            WrongZones::NotMerged,
+            WrongZones::Joined,
+            WrongZones::Others,
+            WrongZones::Partly,
+            WrongZones::Unmoved,
+            WrongZones::Stop,
+            WrongZones::PartlyStopped,
+            WrongZones::MoveOn,
+            WrongZones::KeepPositions,
+            WrongZones::KeepVelocities,
+        ];
+        if let Some(fault) = faults.into_iter().find(|fault| count(*fault) > 0) {
+            let details = match fault {
+                WrongZones::KeepVelocities if self.has_stopped_otherwise || self.stopped.is_empty() => Vec::new(),
+                WrongZones::KeepVelocities => vec![StageDetail::Stopped(ratios(&self.stopped))],
+                _ => vec![StageDetail::OfZones { count: count(fault), of: all }],
+            };
+            return Some(observation(StageFault::Zones(fault), details, wrong));
         }
         if wrong == 0 || self.bent_stops > 0 {
             return (wrong > 0).then(|| observation(StageFault::AfterRounds, Vec::new(), wrong));
@@ -344,19 +340,4 @@ fn turn(zone: &Group, start: &State, from: Vec2, end: &State, to: Vec2) -> f64 {
         along += was.dot(&is);
     }
     f64::atan2(across, along)
-}
-
-/// The angle by which the failsafe turns a zone, radians: its angular momentum over its moment of inertia, both of the
-/// motion from the start of the step to what the rounds left (simulation of rigid bodies: the assignment's section
-/// 3.7).
-fn spin(scene: &Scene, zone: &Group, start: &State, middle: &State) -> f64 {
-    let (from, to) = (centre(scene, zone, start), centre(scene, zone, middle));
-    let (mut momentum, mut inertia) = (0.0, 0.0);
-    for &one in &zone.particles {
-        let mass = scene.particles[one].mass;
-        let (arm, moved) = (at(&start.positions, one) - from, at(&middle.positions, one) - to);
-        momentum += mass * (arm.x * moved.y - arm.y * moved.x);
-        inertia += mass * arm.dot(&arm);
-    }
-    momentum / inertia
 }

@@ -1,6 +1,7 @@
 //! The fate of one impact zone in the first round of the geometric part: the particles that were moved as one body show
 //! which zones there were.
 use super::events::StepFacts;
+use crate::diagnose::{WrongZones, sampling::bodies};
 use fosssim_model::{
     scene::Scene,
     sim::{PairKind, Stage, State},
@@ -48,30 +49,12 @@ impl Group {
 }
 
 /// The fate of a zone.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Fate {
     /// The expected one.
     Right,
-    /// Its contacts were moved one after the other, or not all together.
-    NotMerged,
-    /// It was moved together with other zones.
-    Joined,
-    /// It was moved together with particles of no zone.
-    Others,
-    /// Some of its particles were moved alone.
-    Partly,
-    /// Nothing.
-    Unmoved,
-    /// It went back to its start though it should move.
-    Stopped,
-    /// It moved on as a rigid body though it should stop.
-    MovedOn,
-    /// Some of its particles went back to their start, others did not.
-    PartlyStopped,
-    /// It lost its velocity, but did not go back to its start.
-    KeptPositions,
-    /// It went back to its start, but kept velocity.
-    KeptVelocities,
+    /// It was not moved or stopped as it should be.
+    Wrong(WrongZones),
     /// It moved as one rigid body, otherwise than it should.
     Rigid,
     /// Its particles did not keep their distances, or did not stop.
@@ -109,7 +92,7 @@ impl<'a> FirstRound<'a> {
         let zones = zones.map(|zone| Group::of(zone.particles.clone(), zone.half_plane)).collect();
         let contacts = facts.hits.iter().filter(|hit| hit.pass == first).map(|hit| {
             let is_half_plane = hit.pair.kind == PairKind::ParticleHalfPlane;
-            Group::of(super::responses::bodies_of(scene, hit.pair), is_half_plane)
+            Group::of(bodies(scene, hit.pair), is_half_plane)
         });
         let (contacts, end) = (contacts.collect(), &facts.actual.end.state);
         let (middle, second, rounds) = (&middle.state, loop_passes + 1, passes.max(2) - 1);
@@ -118,8 +101,7 @@ impl<'a> FirstRound<'a> {
 
     /// Whether the end of the step shows where the first round left these particles.
     pub(super) fn is_seen(&self, group: &Group) -> bool {
-        let is_own =
-            |pair| super::responses::bodies_of(self.scene, pair).iter().all(|one| group.particles.contains(one));
+        let is_own = |pair| bodies(self.scene, pair).iter().all(|one| group.particles.contains(one));
         self.rounds == 1 || self.facts.detects(self.scene, self.second, &self.end.positions, is_own)
     }
 
@@ -185,13 +167,13 @@ impl<'a> FirstRound<'a> {
             return Fate::Right;
         }
         if self.are_at(self.middle, all) {
-            return Fate::Unmoved;
+            return Fate::Wrong(WrongZones::Unmoved);
         }
         let mut stopped = self.middle.clone();
         perform(self.scene, zone, true, &self.facts.before, &mut stopped);
         let stops = zone.stops(self.scene);
         if !stops && self.are_at(&stopped, all) {
-            return Fate::Stopped;
+            return Fate::Wrong(WrongZones::Stop);
         }
         if let Some(fate) = self.other_zones(zone) {
             return fate;
@@ -202,7 +184,7 @@ impl<'a> FirstRound<'a> {
     /// Whether other zones than this one, each moved as it should be, lead where its particles are.
     fn other_zones(&self, zone: &Group) -> Option<Fate> {
         if self.is_split(zone) {
-            return Some(Fate::NotMerged);
+            return Some(Fate::Wrong(WrongZones::NotMerged));
         }
         let others: Vec<&Group> = self.zones.iter().filter(|other| *other != zone).collect();
         let is_joined = |groups: &[&Group]| {
@@ -212,7 +194,7 @@ impl<'a> FirstRound<'a> {
         let mut with_all = others.clone();
         with_all.insert(0, zone);
         if others.iter().any(|other| is_joined(&[zone, other])) || (others.len() > 1 && is_joined(&with_all)) {
-            return Some(Fate::Joined);
+            return Some(Fate::Wrong(WrongZones::Joined));
         }
         let foreign = self.foreign();
         if zone.particles.len() > MOST_PARTICLES {
@@ -233,12 +215,13 @@ impl<'a> FirstRound<'a> {
             // A particle that stays where it should be anyway was not left out.
             let is_left = || left.iter().any(|&one| !self.is_at(&self.expected(zone), one));
             if is_left() && [false, zone.half_plane].iter().any(|flag| leads_there(&Group::of(part.clone(), *flag))) {
-                return Some(if zone.stops(self.scene) { Fate::PartlyStopped } else { Fate::Partly });
+                let wrong = if zone.stops(self.scene) { WrongZones::PartlyStopped } else { WrongZones::Partly };
+                return Some(Fate::Wrong(wrong));
             }
             if !foreign.is_empty() {
                 let with = Group::of([part.clone(), foreign.clone()].concat(), zone.half_plane);
                 if leads_there(&with) {
-                    return Some(Fate::Others);
+                    return Some(Fate::Wrong(WrongZones::Others));
                 }
             }
         }
@@ -284,17 +267,17 @@ impl<'a> FirstRound<'a> {
         let mut free = self.middle.clone();
         perform(self.scene, zone, false, &self.facts.before, &mut free);
         if self.are_at(&free, &zone.particles) {
-            return Fate::MovedOn;
+            return Fate::Wrong(WrongZones::MoveOn);
         }
         let is_back = |one: &usize| near(at(&self.end.positions, *one), at(&stopped.positions, *one));
         let rests = |one: &usize| length(at(&self.end.velocities, *one)) <= SMALL;
         let all = || zone.particles.iter();
         if all().all(is_back) {
-            Fate::KeptVelocities
+            Fate::Wrong(WrongZones::KeepVelocities)
         } else if all().all(rests) {
-            Fate::KeptPositions
+            Fate::Wrong(WrongZones::KeepPositions)
         } else if all().any(|one| is_back(one) && rests(one) && !self.is_at(self.middle, *one)) {
-            Fate::PartlyStopped
+            Fate::Wrong(WrongZones::PartlyStopped)
         } else {
             Fate::Bent
         }
@@ -327,14 +310,7 @@ fn perform(scene: &Scene, group: &Group, stops: bool, start: &State, state: &mut
         return;
     }
     let (centre, to) = (centre(scene, group, start), centre(scene, group, state));
-    let (mut momentum, mut inertia) = (0.0, 0.0);
-    for one in all() {
-        let arm = at(&start.positions, one) - centre;
-        let moved = at(&state.positions, one) - at(&start.positions, one) - (to - centre);
-        momentum += scene.particles[one].mass * (arm.x * moved.y - arm.y * moved.x);
-        inertia += scene.particles[one].mass * arm.dot(&arm);
-    }
-    let angle = momentum / inertia;
+    let angle = spin(scene, group, start, state);
     for one in all() {
         let arm = at(&start.positions, one) - centre;
         let across = Vec2::new(-arm.y, arm.x);
@@ -342,6 +318,20 @@ fn perform(scene: &Scene, group: &Group, stops: bool, start: &State, state: &mut
         put(&mut state.positions, one, x);
         put(&mut state.velocities, one, over(x - at(&start.positions, one), scene.time_step));
     }
+}
+
+/// The angle by which the failsafe turns a group, radians: its angular momentum over its moment of inertia, both of the
+/// motion from the start of the step to this state (collisions.md 5).
+pub(super) fn spin(scene: &Scene, group: &Group, start: &State, state: &State) -> f64 {
+    let (centre, to) = (centre(scene, group, start), centre(scene, group, state));
+    let (mut momentum, mut inertia) = (0.0, 0.0);
+    for &one in &group.particles {
+        let arm = at(&start.positions, one) - centre;
+        let moved = at(&state.positions, one) - at(&start.positions, one) - (to - centre);
+        momentum += scene.particles[one].mass * (arm.x * moved.y - arm.y * moved.x);
+        inertia += scene.particles[one].mass * arm.dot(&arm);
+    }
+    momentum / inertia
 }
 
 /// The centre of mass of a group.
