@@ -5,12 +5,25 @@ pub mod rows;
 pub mod states;
 pub mod t2m2;
 
-use fosssim_model::{assignments::Assignment, scene::Scene};
-use t2m2::probes;
+use fosssim_model::{
+    assignments::Assignment,
+    scene::{self, Scene},
+};
 
 /// The probe scenes of an assignment, each with a name that can be a file's. They make every part of a program's work
 /// visible, together with the scenes of its suite.
+///
+/// # Panics
+/// When one is not sound; a test reads them all.
 #[must_use]
 pub fn probe_scenes(assignment: Assignment) -> Vec<(String, Scene)> {
-    if assignment == Assignment::T2M2 { probes::scenes() } else { states::probes::scenes(assignment) }
+    let read = |&(name, text): &(&str, &str)| {
+        let loaded = scene::read(name, text.as_bytes()).unwrap_or_else(|problems| panic!("{name}: {problems}"));
+        (name.to_owned(), loaded.scene)
+    };
+    let probes = match assignment {
+        Assignment::T2M2 => t2m2::probes::PROBES,
+        _ => states::probes::of(assignment),
+    };
+    probes.iter().map(read).collect()
 }

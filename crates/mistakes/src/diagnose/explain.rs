@@ -111,10 +111,9 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
         // Where pairs come in another order, polynomials of one are not those of another.
         polynomials.clear();
     }
-    known.iter_mut().for_each(explain_letters);
-    polynomials.iter_mut().for_each(explain_letters);
     let mut all = known;
     all.append(&mut polynomials);
+    all.iter_mut().for_each(explain_letters);
     all.extend(forces);
     all.extend(stage);
     // A stable sort: among equals the known mistake stays first.

@@ -11,10 +11,9 @@
 //! whatever a program adds to a time or to the approach as a margin shows.
 //!
 //! This runs nothing and never judges. The scenes are the same every time.
-use fosssim_model::scene::{self, Scene};
-
-/// Names and texts: polynomials first, then contacts and responses, the impulse rounds, zones.
-const PROBES: [(&str, &str); 25] = [
+/// Names and texts: polynomials first, then contacts and responses, the impulse rounds, zones. Each is sound for both
+/// readers, and reads back unchanged.
+pub(crate) const PROBES: &[(&str, &str)] = &[
     ("drift-of-particles", include_str!("probes/drift-of-particles.xml")),
     ("drift-of-edges", include_str!("probes/drift-of-edges.xml")),
     ("slanted-half-planes", include_str!("probes/slanted-half-planes.xml")),
@@ -41,15 +40,3 @@ const PROBES: [(&str, &str); 25] = [
     ("zones-turn-little-and-far", include_str!("probes/zones-turn-little-and-far.xml")),
     ("zones-under-drag", include_str!("probes/zones-under-drag.xml")),
 ];
-
-/// The scenes. Each is sound for [`scene::read`] and for the original's reader, and reads back unchanged.
-///
-/// # Panics
-/// When one is not sound; a test reads them all.
-pub(crate) fn scenes() -> Vec<(String, Scene)> {
-    let read = |(name, text): (&str, &str)| {
-        let loaded = scene::read(name, text.as_bytes()).unwrap_or_else(|problems| panic!("{name}: {problems}"));
-        (name.to_owned(), loaded.scene)
-    };
-    PROBES.into_iter().map(read).collect()
-}

@@ -99,9 +99,8 @@ impl<'a> Search<'a> {
                 set
             };
             let is_last = index + 1 == set.len();
-            others.retain(|other| {
-                !is_empty_stage(set[index]) && (is_last || self.progress(&with(*other)) >= self.goal())
-            });
+            others
+                .retain(|other| !is_empty_stage(set[index]) && (is_last || self.progress(&with(other)) >= self.goal()));
         }
         Some(Several { rows: set, same_as: alike, rivals: Vec::new(), samples })
     }

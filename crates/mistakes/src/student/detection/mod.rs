@@ -35,6 +35,9 @@ use frame::Axes;
 
 fosssim_model::drops_leading!();
 
+/// The parts of the assignment whose mistakes are made in contact vectors.
+const VECTORS: &[Area] = &[Area::ContactVector, Area::Handover];
+
 /// The steps that the root searches of one pair usually take at most.
 const USUAL_SEARCH: u64 = 128;
 

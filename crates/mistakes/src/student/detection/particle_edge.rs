@@ -2,6 +2,7 @@
 use fosssim_num::vector::Vec2;
 
 use super::{
+    VECTORS,
     arithmetic::{self, Fused},
     basis, factorised, quintic,
     wide::Wide,
@@ -15,9 +16,6 @@ use crate::student::{
 
 /// The parts of the assignment whose mistakes are made in the polynomials.
 const FORMULAS: &[Area] = &[Area::ParticleEdge, Area::Handover, Area::ContactVector];
-
-/// Those of the contact vectors.
-const VECTORS: &[Area] = &[Area::ContactVector, Area::Handover];
 
 /// Overlap (quartic), alpha > 0 (quadratic), alpha < 1 (quadratic), approach (quintic).
 pub fn polynomials(student: Student, bodies: &[MovingBody; 3], edge_radius: f64) -> Vec<Vec<f64>> {

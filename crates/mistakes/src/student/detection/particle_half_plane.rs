@@ -2,7 +2,7 @@
 use fosssim_num::vector::{Vec2, unit};
 
 use super::{
-    MovingBody,
+    MovingBody, VECTORS,
     arithmetic::{self, Fused},
     basis,
     wide::Wide,
@@ -11,9 +11,6 @@ use crate::student::{Area, Mistake, author::Student};
 
 /// The parts of the assignment whose mistakes are made in the polynomials.
 const FORMULAS: &[Area] = &[Area::ParticleHalfPlane, Area::Handover, Area::ContactVector];
-
-/// Those of the contact vectors.
-const VECTORS: &[Area] = &[Area::ContactVector, Area::Handover];
 
 /// Overlap (quadratic) and approach (linear).
 pub fn polynomials(student: Student, one: &MovingBody, point: Vec2, normal: Vec2) -> Vec<Vec<f64>> {
