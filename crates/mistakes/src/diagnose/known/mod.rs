@@ -156,7 +156,7 @@ fn together(
     all
 }
 
-/// The mistake that reproduces most of the kept steps, and whether a row reproduces all of them. No mistake where no row
+/// The mistake that reproduces most of the kept steps, and whether a row reproduces all of them. None where no row
 /// reproduces enough, or where a correct variant does.
 fn best(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan, correct: Correct) -> (Option<Explanation>, bool) {
     let mut scores = Candidates::new(reference, scene, scan, correct).best();
