@@ -73,7 +73,20 @@ pub fn apply(
     if student.makes(Mistake::ImpulsesOneLeftSucceeds) && list.len() == 1 {
         return Ok(true);
     }
-    finish(world, q_start, &prediction, state, log)
+    if let Some(Change::Failed(change)) = student.change {
+        change(q_start, state);
+    }
+    // All rounds found contacts: a correct program does nothing more.
+    match student.mistake_in(&[Area::ImpulseLoop]) {
+        Some(Mistake::ImpulsesDetectAfterLast) => {
+            return Ok(detection::pass(world, q_start, &state.x, log)?.is_empty());
+        }
+        Some(Mistake::ImpulsesReset) => state.clone_from(&prediction),
+        Some(Mistake::ImpulsesVelocityRestored) => state.v.clone_from(&prediction.v),
+        Some(Mistake::ImpulsesAlwaysSucceed | Mistake::ImpulsesInverted) => return Ok(true),
+        _ => {}
+    }
+    Ok(false)
 }
 
 /// How many rounds this program allows itself.
@@ -148,27 +161,4 @@ fn cap(world: &World, before: &State, state: &mut State) {
             put(&mut state.x, particle, at(&before.x, particle) + share * moved);
         }
     }
-}
-
-/// The end of the rounds when all found contacts: nothing more, in a correct program.
-fn finish(
-    world: &World,
-    q_start: &[f64],
-    prediction: &State,
-    state: &mut State,
-    log: &mut StepLog,
-) -> Result<bool, StepFailure> {
-    if let Some(Change::Failed(change)) = world.student.change {
-        change(q_start, state);
-    }
-    match world.student.mistake_in(&[Area::ImpulseLoop]) {
-        Some(Mistake::ImpulsesDetectAfterLast) => {
-            return Ok(detection::pass(world, q_start, &state.x, log)?.is_empty());
-        }
-        Some(Mistake::ImpulsesReset) => state.clone_from(prediction),
-        Some(Mistake::ImpulsesVelocityRestored) => state.v.clone_from(&prediction.v),
-        Some(Mistake::ImpulsesAlwaysSucceed | Mistake::ImpulsesInverted) => return Ok(true),
-        _ => {}
-    }
-    Ok(false)
 }

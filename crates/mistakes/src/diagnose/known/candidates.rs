@@ -60,7 +60,7 @@ impl<'a> Candidates<'a> {
         let mut left: Vec<&Candidate> = self.candidates.iter().collect();
         let mut samples = 0;
         for sample in self.probes.iter().copied().chain(&self.scan.right).chain(self.others.iter().copied()) {
-            if self.exhausted() && samples > 0 {
+            if self.trials.exceed(WORK) && samples > 0 {
                 break;
             }
             left.retain(|candidate| self.reproduces(candidate, sample));
@@ -83,7 +83,7 @@ impl<'a> Candidates<'a> {
         let mut left: Vec<(&Candidate, usize)> = self.candidates.iter().map(|candidate| (candidate, 0)).collect();
         let mut tried = 0;
         for (number, sample) in spread.iter().chain(&rest).enumerate() {
-            if self.exhausted() {
+            if self.trials.exceed(WORK) {
                 break;
             }
             tried = number + 1;
@@ -104,10 +104,6 @@ impl<'a> Candidates<'a> {
         left.retain(|(_, reproduced)| *reproduced == most && most > 0);
         let (reproduced, samples) = (most as u64, tried as u64);
         left.into_iter().map(|((row, _), _)| Score { row, reproduced, samples }).collect()
-    }
-
-    fn exhausted(&self) -> bool {
-        self.trials.exceed(WORK)
     }
 
     /// Whether this program logs in this step what the submission did.

@@ -139,14 +139,10 @@ impl<'a> PolynomialStudy<'a> {
                 *(if case.right { &mut right } else { &mut wrong }) += 1;
             }
         }
-        self.is_supported(wrong, right).then_some(wrong + right)
-    }
-
-    /// Whether these numbers of wrong and right samples are enough. A mistake that reproduces all wrong ones may be
-    /// made under a condition, so right samples don't speak against it.
-    pub fn is_supported(&self, wrong: usize, right: usize) -> bool {
         let all_right = self.cases.len() - self.wrong;
-        wrong == self.wrong || (2 * wrong >= self.wrong && all_right - right <= all_right / SPARED)
+        // A mistake that reproduces all wrong ones may be made under a condition: right ones don't speak against it.
+        let is_enough = wrong == self.wrong || (2 * wrong >= self.wrong && all_right - right <= all_right / SPARED);
+        is_enough.then_some(wrong + right)
     }
 
     /// How many samples the right formula reproduces within the tolerance of a guess.

@@ -6,7 +6,7 @@ use super::{
     study::{Candidate, Case, PolynomialStudy, median, spread},
 };
 use crate::assignments::t2m2::{Reading, formulas::Formula};
-use crate::diagnose::{self, CoefficientGuess, PolynomialDetail, Weight};
+use crate::diagnose::{CoefficientGuess, Guess, PolynomialDetail, Weight};
 use fosssim_num::bounded::Bounded;
 
 /// The number of wrong samples of a fit, which uses half as many right ones.
@@ -70,7 +70,10 @@ fn candidate(study: &PolynomialStudy, formula: &'static Formula, reading: Readin
     };
     let reproduced = (0..study.cases.len()).filter(|&index| holds(index)).count();
     Some(Candidate {
-        guess: fitting.guess(&guesses),
+        guess: Guess::Coefficients {
+            powers: guesses.iter().map(|guess| guess.power).collect(),
+            wrong: fitting.wrong(&guesses),
+        },
         details: guesses.iter().flat_map(|guess| fitting.details(guess)).collect(),
         cost: guesses.iter().map(|guess| guess.cost).sum::<f64>() + 0.1 * reading.number as f64,
         reproduced,
@@ -261,11 +264,6 @@ impl Fitting<'_> {
     fn weights(&self, power: usize, (product, change): (usize, f64)) -> (f64, f64) {
         let expected = self.dictionary.weight(self.formula, power, product);
         (expected, expected + change)
-    }
-
-    fn guess(&self, guesses: &[FormulaGuess]) -> diagnose::Guess {
-        let powers = guesses.iter().map(|guess| guess.power).collect();
-        diagnose::Guess::Coefficients { powers, wrong: self.wrong(guesses) }
     }
 
     fn wrong(&self, guesses: &[FormulaGuess]) -> CoefficientGuess {

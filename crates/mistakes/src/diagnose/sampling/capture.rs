@@ -18,8 +18,9 @@ pub struct Capture {
     pub records: StepRecords,
     /// The pairs in the order of detection, with the pass and the index of their first polynomial.
     pub detections: Vec<(Pair, Pass, usize)>,
-    /// The events of the step, as bits (see [`Capture::events`]).
-    events: u32,
+    /// The events of the step: one bit per kind of pair that collided and stage in which it did, per number of rounds,
+    /// per kind of zone. Zero when nothing collided.
+    pub events: u32,
 }
 
 impl Capture {
@@ -35,12 +36,6 @@ impl Capture {
         let after = self.detections.partition_point(|&(_, _, first)| first <= index);
         let &(pair, pass, first) = self.detections.get(after.checked_sub(1)?)?;
         (index < self.records.end.polynomials.len()).then_some((pair, pass, index - first))
-    }
-
-    /// The events of the step: one bit per kind of pair that collided and stage in which it did, per number of rounds,
-    /// per kind of zone. Zero when nothing collided.
-    pub fn events(&self) -> u32 {
-        self.events
     }
 
     fn event(&mut self, bit: u32) {

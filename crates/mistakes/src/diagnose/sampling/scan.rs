@@ -166,7 +166,7 @@ impl Scanner {
             Some(StepDifference::MidLists) => 6,
         };
         let logged = actual.end.impulses.iter().fold(0, |bits, impulse| bits | 1 << impulse.kind.clamp(0, 3));
-        u64::from(self.capture.events()) | first << 32 | logged << 48
+        u64::from(self.capture.events) | first << 32 | logged << 48
     }
 
     fn context(&self, before: &LenientFrame, actual: &StepRecords) -> Context {
@@ -214,7 +214,7 @@ impl Scanner {
         let is_meant = end.polynomials.coefficients.iter().all(|value| value.is_nan())
             || end.impulses.iter().all(|contact| contact.normal.x.is_nan() && contact.normal.y.is_nan());
         is_meant
-            && self.capture.events() != 0
+            && self.capture.events != 0
             && has_lengths(&expected.end, &actual.end)
             && first_difference(&without_lists(expected), &without_lists(actual), &self.round_off).is_none()
     }

@@ -244,7 +244,7 @@ struct MotionErrors {
 
 impl MotionErrors {
     fn motion(&mut self, scene: &Scene, first: &FirstRound<'_>, zone: &Group) {
-        let (start, expected, end) = (first.start(), first.expected(zone), first.end);
+        let (start, expected, end) = (&first.facts.before, first.expected(zone), first.end);
         let [from, ours, theirs] = [start, &expected, end].map(|state| centre(scene, zone, state));
         let (should, does) = (ours - from, theirs - from);
         if length(should) > SMALL {

@@ -64,7 +64,7 @@ pub(super) enum Fate {
 /// The first round of the geometric part of a step whose middle, and whose first geometric pass, are right.
 pub(super) struct FirstRound<'a> {
     scene: &'a Scene,
-    facts: &'a StepFacts,
+    pub(super) facts: &'a StepFacts,
     pub(super) middle: &'a State,
     /// The end of the step: what the first round leaves of the zones that are looked at.
     pub(super) end: &'a State,
@@ -292,10 +292,6 @@ impl<'a> FirstRound<'a> {
             (was - is).abs() <= SMALL * (1.0 + was)
         });
         if is_rigid { Fate::Rigid } else { Fate::Bent }
-    }
-
-    pub(super) const fn start(&self) -> &State {
-        &self.facts.before
     }
 }
 
