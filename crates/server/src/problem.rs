@@ -147,6 +147,14 @@ problems! {
         "try again, and tell the administrator: the log says more";
 }
 
+/// Refuses where something does not hold.
+///
+/// # Errors
+/// The words about it.
+pub(crate) fn ensure<E>(holds: bool, otherwise: E) -> Result<(), E> {
+    if holds { Ok(()) } else { Err(otherwise) }
+}
+
 /// A size in bytes, in the unit that leaves few digits.
 pub(crate) fn size(bytes: u64) -> String {
     match bytes {

@@ -1,10 +1,14 @@
 //! The asker of a request, told from the secrets that it shows.
 use super::{
     Admin, App, Member, Person, Remote, Staff, Visitor,
-    account::Account,
     identity::{self, Seen},
+    view::Account,
 };
-use crate::{db::read_row, problem::Problem, values};
+use crate::{
+    db::read_row,
+    problem::{Problem, ensure},
+    values,
+};
 use std::{net::IpAddr, time::Instant};
 
 /// The secrets that a request shows of its asker.
@@ -51,8 +55,7 @@ impl App {
 
     /// Anybody.
     pub fn visitor(&self, secrets: Secrets) -> Visitor {
-        let Secrets { session, browser, address, .. } = secrets;
-        Visitor { app: self.clone(), session, browser, address }
+        Visitor { app: self.clone(), secrets }
     }
 
     /// Somebody who is signed in.
@@ -97,9 +100,7 @@ impl Person {
         let row = transaction.row(statement, values![self.account.id, slug]).await?;
         let Some(row) = row else { return Err(Problem::not_found("course")) };
         let role = row.maybe_text("role")?;
-        if role.is_none() && !self.account.is_admin {
-            return Err(Problem::not_found("course"));
-        }
+        ensure(role.is_some() || self.account.is_admin, Problem::not_found("course"))?;
         let row = &row;
         Ok(read_row!(row => Member {
             course = "id", slug, title;
