@@ -96,6 +96,10 @@ problems! {
     conflict(detail: impl Into<String>, remedy: &str): 409, "conflict", "Not possible now",
         detail,
         remedy;
+    /// One's own account is not one's own to shut or to change so.
+    own_account(): 409, "conflict", "Not possible now",
+        "this is your own account",
+        "ask another administrator";
     /// The upload is no submission.
     unusable(detail: impl Into<String>): 422, "unusable-upload", "This can't be graded",
         detail,

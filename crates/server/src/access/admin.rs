@@ -68,9 +68,7 @@ impl Admin {
     pub async fn set_account(&self, login: &str, name: &str, is_admin: bool) -> Result<Link, Problem> {
         identity::check_slug("a login", login)?;
         identity::check_title("a name", name)?;
-        if login == self.account.login && !is_admin {
-            return Err(Problem::conflict("this is your own account", "ask another administrator"));
-        }
+        ensure(is_admin || login != self.account.login, Problem::own_account())?;
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "SELECT id, login, name, is_admin FROM account WHERE login = ? {for update}";
         let was: Option<Account> = transaction.find(statement, values![login]).await?;
@@ -94,9 +92,7 @@ impl Admin {
     /// # Errors
     /// When there is none, or it is one's own.
     pub async fn disable_account(&self, login: &str) -> Result<(), Problem> {
-        if login == self.account.login {
-            return Err(Problem::conflict("this is your own account", "ask another administrator"));
-        }
+        ensure(login != self.account.login, Problem::own_account())?;
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "UPDATE account SET disabled_at = {now} WHERE login = ? AND disabled_at IS NULL RETURNING id";
         let row = transaction.row(statement, values![login]).await?.ok_or_else(|| Problem::not_found("account"))?;

@@ -54,7 +54,6 @@ pub use person::{CourseOf, Person};
 pub use platform::{RosterRead, ScoreInfo};
 pub use regrade::{Change, Doing, Regrade, RegradeState};
 pub use remote::Remote;
-pub use request::Secrets;
 pub use settings::Settings;
 pub(crate) use settings::{moment, moment_schema};
 pub use staff::{Staff, Standing};
@@ -62,7 +61,7 @@ pub use submit::{Accepted, Upload};
 pub use suites::{Suites, is_file_name};
 pub use suspicion::Suspicion;
 pub use view::{Account, Assignment, Course, Event, Graded, History, Mark, Queue, QueueWorker, Submission};
-pub use visitor::Visitor;
+pub use visitor::{Secrets, Visitor};
 
 use crate::{
     db::Database,

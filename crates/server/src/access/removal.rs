@@ -8,7 +8,7 @@ use super::{
 use crate::{
     db::{DbError, Transaction},
     lti::score,
-    problem::Problem,
+    problem::{Problem, ensure},
     values,
 };
 
@@ -172,9 +172,7 @@ impl Admin {
     /// # Errors
     /// When there is no such account, or it is one's own.
     pub async fn remove_person(&self, login: &str) -> Result<(), Problem> {
-        if login == self.account.login {
-            return Err(Problem::conflict("this is your own account", "ask another administrator"));
-        }
+        ensure(login != self.account.login, Problem::own_account())?;
         let mut transaction = self.app.0.database.begin().await?;
         let row = transaction.row("SELECT id FROM account WHERE login = ?", values![login]).await?;
         let Some(row) = row else { return Err(Problem::not_found("account")) };

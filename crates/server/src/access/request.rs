@@ -1,6 +1,6 @@
 //! The asker of a request, told from the secrets that it shows.
 use super::{
-    Admin, App, Member, Person, Remote, Staff, Visitor,
+    Admin, App, Member, Person, Remote, Secrets, Staff, Visitor,
     identity::{self, Seen},
     view::Account,
 };
@@ -9,20 +9,7 @@ use crate::{
     problem::{Problem, ensure},
     values,
 };
-use std::{net::IpAddr, time::Instant};
-
-/// The secrets that a request shows of its asker.
-#[derive(Clone, Default)]
-pub struct Secrets {
-    /// A token.
-    pub bearer: Option<String>,
-    /// The secret of a browser's session.
-    pub session: Option<String>,
-    /// The word of a browser that comes from a learning platform.
-    pub browser: Option<String>,
-    /// Where the request comes from.
-    pub address: Option<IpAddr>,
-}
+use std::time::Instant;
 
 impl App {
     /// The owner of these secrets.

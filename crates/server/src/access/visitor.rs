@@ -1,12 +1,26 @@
 //! Anybody.
 use super::{
-    App, NewSecret, Secrets,
+    App, NewSecret,
     identity::{self, Way},
 };
 use crate::{
     db,
     problem::{Problem, ensure},
 };
+use std::net::IpAddr;
+
+/// The secrets that a request shows of its asker.
+#[derive(Clone, Default)]
+pub struct Secrets {
+    /// A token.
+    pub bearer: Option<String>,
+    /// The secret of a browser's session.
+    pub session: Option<String>,
+    /// The word of a browser that comes from a learning platform.
+    pub browser: Option<String>,
+    /// Where the request comes from.
+    pub address: Option<IpAddr>,
+}
 
 /// Somebody who need not be signed in.
 pub struct Visitor {
