@@ -96,6 +96,10 @@ problems! {
     conflict(detail: impl Into<String>, remedy: &str): 409, "conflict", "Not possible now",
         detail,
         remedy;
+    /// One's own account is not one's own to shut or to change so.
+    own_account(): 409, "conflict", "Not possible now",
+        "this is your own account",
+        "ask another administrator";
     /// The upload is no submission.
     unusable(detail: impl Into<String>): 422, "unusable-upload", "This can't be graded",
         detail,
@@ -145,6 +149,14 @@ problems! {
     fault(): 500, "fault", "The server failed",
         "something went wrong here",
         "try again, and tell the administrator: the log says more";
+}
+
+/// Refuses where something does not hold.
+///
+/// # Errors
+/// The words about it.
+pub(crate) fn ensure<E>(holds: bool, otherwise: E) -> Result<(), E> {
+    if holds { Ok(()) } else { Err(otherwise) }
 }
 
 /// A size in bytes, in the unit that leaves few digits.

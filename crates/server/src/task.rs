@@ -53,6 +53,11 @@ impl Form {
     /// Every one.
     pub const ALL: [Self; 3] = [Self::Program, Self::Sources, Self::Traces];
 
+    /// The one of this name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|form| form.name() == name)
+    }
+
     /// The thing to hand in, in words.
     pub fn words(self) -> &'static str {
         match self {
@@ -80,6 +85,16 @@ pub enum Suite {
     Named(String),
     /// An archive with a `suite.toml` and its scenes.
     Archive(Digest),
+}
+
+impl Suite {
+    /// Its name, or the beginning of its digest.
+    pub fn short(&self) -> String {
+        match self {
+            Self::Named(name) => name.clone(),
+            Self::Archive(digest) => digest.short().to_owned(),
+        }
+    }
 }
 
 /// The result of a grading: as the grader tells it (`F` are files of its own), as a worker brings it and as the service

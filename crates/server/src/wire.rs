@@ -33,7 +33,7 @@ pub(crate) struct Alive {
 
 /// The rules that a worker is to know.
 #[derive(Serialize, Deserialize, ToSchema)]
-pub(crate) struct Manners {
+pub struct Manners {
     /// How often to say that it is alive, in milliseconds.
     pub(crate) tick_every: u64,
 }

@@ -1,13 +1,12 @@
 //! Administrators.
 use super::{
-    App, NewSecret, TokenInfo,
-    account::Account,
-    identity::{self, Way},
-    view::{self, Course, Entry, Event, Queue},
+    App, NewSecret,
+    identity::{self, Link, NewToken, TokenInfo, Way},
+    view::{self, Account, Course, Entry, Event, Queue},
 };
 use crate::{
-    db::{DbError, FromRow, Transaction},
-    problem::Problem,
+    db::{DbError, Transaction},
+    problem::{Problem, ensure},
     values,
 };
 
@@ -15,6 +14,17 @@ use crate::{
 pub struct Admin {
     pub(crate) account: Account,
     pub(crate) app: App,
+}
+
+/// Makes a course of this name and title, and returns its number.
+pub(super) async fn make_course(transaction: &mut Transaction, (slug, title): (&str, &str)) -> Result<i64, Problem> {
+    identity::check_slug("a course's name", slug)?;
+    identity::check_title("a title", title)?;
+    let statement = "INSERT INTO course (slug, title, created_at) VALUES (?, ?, {now})
+        ON CONFLICT (slug) DO NOTHING RETURNING id";
+    let made = transaction.row(statement, values![slug, title]).await?;
+    let made = made.ok_or_else(|| Problem::conflict("there is a course of this name", "give it another name"))?;
+    Ok(made.int("id")?)
 }
 
 impl Admin {
@@ -33,15 +43,8 @@ impl Admin {
     /// # Errors
     /// When there is one of this name.
     pub async fn new_course(&self, slug: &str, title: &str) -> Result<Course, Problem> {
-        identity::check_slug("a course's name", slug)?;
-        identity::check_title("a title", title)?;
         let mut transaction = self.app.0.database.begin().await?;
-        let statement =
-            "INSERT INTO course (slug, title, created_at) VALUES (?, ?, {now}) ON CONFLICT (slug) DO NOTHING";
-        let made = transaction.execute(statement, values![slug, title]).await?;
-        if made == 0 {
-            return Err(Problem::conflict("there is a course of this name", "give it another name"));
-        }
+        make_course(&mut transaction, (slug, title)).await?;
         self.note(&mut transaction, "course", &format!("{slug} ({title})")).await?;
         transaction.commit().await?;
         Ok(Course { slug: slug.to_owned(), title: title.to_owned() })
@@ -62,22 +65,18 @@ impl Admin {
     ///
     /// # Errors
     /// When a name is none.
-    pub async fn set_account(&self, login: &str, name: &str, is_admin: bool) -> Result<NewSecret, Problem> {
+    pub async fn set_account(&self, login: &str, name: &str, is_admin: bool) -> Result<Link, Problem> {
         identity::check_slug("a login", login)?;
         identity::check_title("a name", name)?;
-        if login == self.account.login && !is_admin {
-            return Err(Problem::conflict("this is your own account", "ask another administrator"));
-        }
+        ensure(is_admin || login != self.account.login, Problem::own_account())?;
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "SELECT id, login, name, is_admin FROM account WHERE login = ? {for update}";
-        let was = transaction.row(statement, values![login]).await?;
-        let was = was.as_ref().map(Account::from_row).transpose()?;
+        let was: Option<Account> = transaction.find(statement, values![login]).await?;
         let statement = "INSERT INTO account (login, name, is_admin, created_at) VALUES (?, ?, ?, {now})
             ON CONFLICT (login) DO UPDATE SET name = excluded.name, is_admin = excluded.is_admin,
                disabled_at = NULL
             RETURNING id";
-        let row = transaction.one(statement, values![login, name, is_admin]).await?;
-        let account = row.int("id")?;
+        let account = transaction.one(statement, values![login, name, is_admin]).await?.int("id")?;
         if was.is_some_and(|was| was.is_admin != is_admin) {
             identity::end_all(&mut transaction, account).await?;
         }
@@ -85,7 +84,7 @@ impl Admin {
         let text = format!("{login}{}; a link to sign in", if is_admin { " is an administrator" } else { "" });
         self.note(&mut transaction, "account", &text).await?;
         transaction.commit().await?;
-        Ok(link)
+        Ok(Link { link: Some(self.app.welcome_address(&link)) })
     }
 
     /// Shuts an account: it can't sign in any more, and what it handed in stays.
@@ -93,17 +92,13 @@ impl Admin {
     /// # Errors
     /// When there is none, or it is one's own.
     pub async fn disable_account(&self, login: &str) -> Result<(), Problem> {
-        if login == self.account.login {
-            return Err(Problem::conflict("this is your own account", "ask another administrator"));
-        }
+        ensure(login != self.account.login, Problem::own_account())?;
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "UPDATE account SET disabled_at = {now} WHERE login = ? AND disabled_at IS NULL RETURNING id";
-        let row = transaction.row(statement, values![login]).await?;
-        let Some(row) = row else { return Err(Problem::not_found("account")) };
+        let row = transaction.row(statement, values![login]).await?.ok_or_else(|| Problem::not_found("account"))?;
         identity::end_all(&mut transaction, row.int("id")?).await?;
         self.note(&mut transaction, "account", &format!("{login} is shut")).await?;
-        transaction.commit().await?;
-        Ok(())
+        Ok(transaction.commit().await?)
     }
 
     /// The tokens of workers.
@@ -121,15 +116,13 @@ impl Admin {
     ///
     /// # Errors
     /// When its name is none.
-    pub async fn new_worker_token(&self, name: &str) -> Result<(TokenInfo, NewSecret), Problem> {
+    pub async fn new_worker_token(&self, name: &str) -> Result<NewToken, Problem> {
         identity::check_slug("a worker's name", name)?;
         let mut transaction = self.app.0.database.begin().await?;
-        let (id, secret) = identity::new_token(&mut transaction, None, name, Some(self.account.id), Way::Own).await?;
-        let row = transaction.one("SELECT id, name, created_at FROM token WHERE id = ?", values![id]).await?;
-        let info = TokenInfo::from_row(&row)?;
-        self.note(&mut transaction, "worker token", &format!("{name} ({id})")).await?;
+        let token = identity::new_token(&mut transaction, None, name, self.account.id, Way::Own).await?;
+        self.note(&mut transaction, "worker token", &format!("{name} ({})", token.info.id)).await?;
         transaction.commit().await?;
-        Ok((info, secret))
+        Ok(token)
     }
 
     /// Revokes a token of workers.
@@ -140,12 +133,9 @@ impl Admin {
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "UPDATE token SET revoked_at = {now} WHERE id = ? AND account IS NULL AND revoked_at IS NULL";
         let revoked = transaction.execute(statement, values![id]).await?;
-        if revoked == 0 {
-            return Err(Problem::not_found("token"));
-        }
+        ensure(revoked > 0, Problem::not_found("token"))?;
         self.note(&mut transaction, "worker token", &format!("{id} is revoked")).await?;
-        transaction.commit().await?;
-        Ok(())
+        Ok(transaction.commit().await?)
     }
 
     /// The queue and the workers.
@@ -182,14 +172,11 @@ impl App {
         transaction.execute(statement, values![]).await?;
         let statement = "SELECT account.id FROM account JOIN sign_in_link ON sign_in_link.account = account.id
             WHERE account.is_admin = 1 AND sign_in_link.used_at IS NOT NULL";
-        let known = transaction.row(statement, values![]).await?;
-        if known.is_some() {
+        if transaction.row(statement, values![]).await?.is_some() {
             return Ok(None);
         }
-        let account = transaction
-            .one("SELECT id FROM account WHERE login = 'admin' AND is_admin = 1", values![])
-            .await?
-            .int("id")?;
+        let statement = "SELECT id FROM account WHERE login = 'admin' AND is_admin = 1";
+        let account = transaction.one(statement, values![]).await?.int("id")?;
         let link = identity::new_link(&mut transaction, account, None, Way::Own).await?;
         transaction.commit().await?;
         Ok(Some(link))
@@ -202,8 +189,8 @@ impl App {
     pub async fn admin_link(&self, login: &str) -> Result<NewSecret, Problem> {
         let mut transaction = self.0.database.begin().await?;
         let statement = "SELECT id FROM account WHERE login = ? AND is_admin = 1 AND disabled_at IS NULL";
-        let row = transaction.row(statement, values![login]).await?;
-        let Some(row) = row else { return Err(Problem::not_found("administrator")) };
+        let row =
+            transaction.row(statement, values![login]).await?.ok_or_else(|| Problem::not_found("administrator"))?;
         let link = identity::new_link(&mut transaction, row.int("id")?, None, Way::Own).await?;
         transaction.commit().await?;
         Ok(link)

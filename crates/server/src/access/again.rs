@@ -2,35 +2,42 @@
 use super::{
     Staff,
     bulk::{enqueue_replaced, resume},
-    view,
+    view::{self, Entry},
 };
-use crate::{problem::Problem, values};
+use crate::{
+    problem::{Problem, ensure},
+    values,
+};
+use serde::Serialize;
+use utoipa::ToSchema;
+
+/// The submissions that are graded again.
+#[derive(Serialize, ToSchema)]
+pub struct Again {
+    /// How many submissions.
+    pub jobs: i64,
+}
 
 impl Staff {
     /// Grades a submission once more, by the assignment's settings as they are.
     ///
     /// # Errors
     /// When there is none of this number, it is being graded, or its bytes are not kept any longer.
-    pub async fn grade_again(&self, id: i64) -> Result<i64, Problem> {
+    pub async fn grade_again(&self, id: i64) -> Result<Again, Problem> {
         let submission = self.submission(id).await?;
         let assignment = self.assignment(&submission.assignment).await?;
-        if submission.removed_at.is_some() {
-            return Err(Problem::removed());
-        }
+        ensure(submission.removed_at.is_none(), Problem::removed())?;
         let mut transaction = self.begin().await?;
         transaction.row("SELECT id FROM submission WHERE id = ? {for update}", values![id]).await?;
         let statement = "UPDATE job SET replaced = 1 WHERE submission = ? AND campaign IS NULL AND replaced = 0
             AND state IN ('done', 'buried', 'cancelled')";
         let replaced = transaction.execute(statement, values![id]).await?;
-        if replaced == 0 {
-            return Err(Problem::conflict("it is being graded", "wait for its grade"));
-        }
+        ensure(replaced > 0, Problem::conflict("it is being graded", "wait for its grade"))?;
         let jobs = enqueue_replaced(&mut transaction, &assignment, self.account.id, id..=id).await?;
-        let mut entry = self.entry("graded again", Some(assignment.id), "one submission");
-        entry.submission = Some(id);
-        view::note(&mut transaction, &entry).await?;
+        let entry = self.entry("graded again", Some(assignment.id), "one submission");
+        view::note(&mut transaction, &Entry { submission: Some(id), ..entry }).await?;
         self.app.0.notifier.commit(transaction).await?;
-        Ok(jobs)
+        Ok(Again { jobs })
     }
 
     /// Grades all submissions of an assignment, or of all assignments of the course, on which the grader failed once
@@ -38,7 +45,7 @@ impl Staff {
     ///
     /// # Errors
     /// When there is no such assignment.
-    pub async fn grade_errors_again(&self, assignment: Option<&str>) -> Result<i64, Problem> {
+    pub async fn grade_errors_again(&self, assignment: Option<&str>) -> Result<Again, Problem> {
         let assignments = match assignment {
             Some(slug) => vec![self.assignment(slug).await?],
             None => self.assignments().await?,
@@ -62,6 +69,6 @@ impl Staff {
             self.app.0.notifier.commit(transaction).await?;
             jobs += found;
         }
-        Ok(jobs)
+        Ok(Again { jobs })
     }
 }

@@ -1,7 +1,7 @@
 //! Jobs for many submissions at once, made by the database.
 use super::view::Assignment;
 use crate::{
-    db::{DbError, Transaction, Value},
+    db::{Transaction, Value},
     problem::Problem,
     task::{Form, Input},
     values,
@@ -22,9 +22,7 @@ pub(super) fn pieces(assignment: &Assignment) -> Result<[String; 5], Problem> {
     let any = crate::store::Artefact { digest: crate::store::Digest::of(b""), size: 0 };
     let task = assignment.settings.task(Input { form: Form::Program, name: String::new(), artefact: any });
     let mut task = serde_json::to_value(task).map_err(|_| Problem::fault())?;
-    if let Some(fields) = task.as_object_mut() {
-        fields.remove("submission");
-    }
+    task.as_object_mut().and_then(|fields| fields.remove("submission"));
     let rest = task.to_string();
     Ok([
         r#"{"submission":{"form":""#.to_owned(),
@@ -47,54 +45,39 @@ pub(super) async fn enqueue_replaced(
     values.extend(pieces.into_iter().map(Value::from));
     values.extend([by, assignment.id, *ids.start(), *ids.end()].map(Value::from));
     // A second apart: uploads that come meanwhile are graded in between.
-    let jobs = transaction
-        .execute(
-            concat!(
-                "INSERT INTO job (lane, submission, fair_key, payload, state, rank, run_after, enqueued_at, asked_by)
-                 SELECT 'grading', submission.id, CAST(? AS TEXT), ",
-                payload!(),
-                ", 'waiting', {now} + 1000 * row_number() OVER (ORDER BY submission.id), {now}, {now},
-                    CAST(? AS {int}) FROM submission WHERE submission.assignment = ? AND submission.id BETWEEN ? AND ?
-                    AND submission.removed_at IS NULL
-                    AND EXISTS (SELECT 1 FROM job WHERE job.submission = submission.id AND job.replaced = 1)
-                    AND NOT EXISTS (SELECT 1 FROM job WHERE job.submission = submission.id AND job.campaign IS NULL
-                        AND job.replaced = 0)"
-            ),
-            &values,
-        )
-        .await?;
-    Ok(i64::try_from(jobs).unwrap_or(i64::MAX))
+    let statement = concat!(
+        "INSERT INTO job (lane, submission, fair_key, payload, state, rank, run_after, enqueued_at, asked_by)
+         SELECT 'grading', submission.id, CAST(? AS TEXT), ",
+        payload!(),
+        ", 'waiting', {now} + 1000 * row_number() OVER (ORDER BY submission.id), {now}, {now},
+            CAST(? AS {int}) FROM submission WHERE submission.assignment = ? AND submission.id BETWEEN ? AND ?
+            AND submission.removed_at IS NULL
+            AND EXISTS (SELECT 1 FROM job WHERE job.submission = submission.id AND job.replaced = 1)
+            AND NOT EXISTS (SELECT 1 FROM job WHERE job.submission = submission.id AND job.campaign IS NULL
+                AND job.replaced = 0)"
+    );
+    Ok(i64::try_from(transaction.execute(statement, &values).await?).unwrap_or(i64::MAX))
 }
 
 /// Goes on with the jobs of an assignment that wait for staff, by its settings as they are; how many these are.
 pub(super) async fn resume(transaction: &mut Transaction, assignment: &Assignment) -> Result<i64, Problem> {
     let statement = "SELECT id FROM assignment WHERE id = ? AND paused_at IS NOT NULL";
-    let paused = transaction.row(statement, values![assignment.id]).await?;
-    if paused.is_none() {
+    if transaction.row(statement, values![assignment.id]).await?.is_none() {
         return Ok(0);
     }
     let mut values: Vec<Value> = vec![assignment.id.into()];
     values.extend(pieces(assignment)?.into_iter().map(Value::from));
-    let jobs = transaction
-        .execute(
-            concat!(
-                "WITH paused AS (SELECT id FROM job WHERE lane = 'paused' AND state = 'waiting'
-                    AND submission IN (SELECT id FROM submission WHERE assignment = ?) ORDER BY id {for update})
-                 UPDATE job SET lane = 'grading', failures = 0, failed_by = NULL, run_after = {now}, payload =
-                    CASE WHEN campaign IS NOT NULL THEN payload ELSE (SELECT ",
-                payload!(),
-                " FROM submission WHERE submission.id = job.submission) END
-                 WHERE id IN (SELECT id FROM paused)"
-            ),
-            &values,
-        )
-        .await?;
-    forget(transaction, assignment.id).await?;
-    Ok(i64::try_from(jobs).unwrap_or(i64::MAX))
-}
-
-async fn forget(transaction: &mut Transaction, assignment: i64) -> Result<(), DbError> {
+    let statement = concat!(
+        "WITH paused AS (SELECT id FROM job WHERE lane = 'paused' AND state = 'waiting'
+            AND submission IN (SELECT id FROM submission WHERE assignment = ?) ORDER BY id {for update})
+         UPDATE job SET lane = 'grading', failures = 0, failed_by = NULL, run_after = {now}, payload =
+            CASE WHEN campaign IS NOT NULL THEN payload ELSE (SELECT ",
+        payload!(),
+        " FROM submission WHERE submission.id = job.submission) END
+         WHERE id IN (SELECT id FROM paused)"
+    );
+    let jobs = transaction.execute(statement, &values).await?;
     let statement = "UPDATE assignment SET paused_at = NULL, paused_fault = NULL WHERE id = ?";
-    transaction.execute(statement, values![assignment]).await?;
-    Ok(())
+    transaction.execute(statement, values![assignment.id]).await?;
+    Ok(i64::try_from(jobs).unwrap_or(i64::MAX))
 }

@@ -6,7 +6,7 @@ use super::{
     view::{self, Assignment, Entry},
 };
 use crate::{
-    db::{Database, DbError, Row, Transaction, Value},
+    db::{Database, DbError, FromRow, Row, Transaction, Value},
     lti::score,
     problem::Problem,
     queue::{Notifier, Turn},
@@ -93,7 +93,7 @@ async fn step(database: &Database, wanted: Option<i64>) -> Result<Step, Problem>
     let campaign = Campaign {
         id: row.int("id")?,
         cursor: row.int("cursor")?,
-        assignment: Assignment { settings: Settings::read(&row.text("settings")?)?, ..view::read_assignment(&of)? },
+        assignment: Assignment { settings: Settings::read(&row.text("settings")?)?, ..Assignment::from_row(&of)? },
         course: of.int("course")?,
         reason: row.text("reason")?,
         by: row.int("by")?,
@@ -116,13 +116,11 @@ fn batch(row: &Row) -> Result<Option<(i64, i64)>, DbError> {
 
 async fn advance(transaction: &mut Transaction, campaign: i64, last: i64, count: i64) -> Result<(), DbError> {
     let statement = "UPDATE campaign SET cursor = ?, done = done + ? WHERE id = ?";
-    transaction.execute(statement, values![last, count, campaign]).await?;
-    Ok(())
+    transaction.execute(statement, values![last, count, campaign]).await.map(drop)
 }
 
 async fn finish(transaction: &mut Transaction, campaign: i64) -> Result<(), DbError> {
-    transaction.execute("UPDATE campaign SET doing = NULL WHERE id = ?", values![campaign]).await?;
-    Ok(())
+    transaction.execute("UPDATE campaign SET doing = NULL WHERE id = ?", values![campaign]).await.map(drop)
 }
 
 /// Enqueues submissions that the regrade does not know yet.
@@ -135,25 +133,20 @@ async fn begin(transaction: &mut Transaction, campaign: &Campaign) -> Result<(),
     let from = turn.next(transaction).await?;
     let mut values: Vec<Value> = vec![campaign.id.into(), turn.key().into()];
     values.extend(pieces(&campaign.assignment)?.into_iter().map(Value::from));
-    values.push(from.into());
-    values.push(turn.spacing_millis().into());
+    values.extend([from, turn.spacing_millis()].map(Value::from));
     values.extend([campaign.assignment.id, campaign.cursor, last, campaign.id].map(Value::from));
     // The plus keeps SQLite from looking through all jobs of the regrade for each submission.
-    transaction
-        .execute(
-            concat!(
-                "INSERT INTO job (lane, submission, campaign, fair_key, payload, state, rank, run_after, enqueued_at)
-                 SELECT 'grading', submission.id, CAST(? AS {int}), CAST(? AS TEXT), ",
-                payload!(),
-                ", 'waiting', ? + ? * (row_number() OVER (ORDER BY submission.id) - 1), {now}, {now}
-                 FROM submission
-                 WHERE submission.assignment = ? AND submission.id > ? AND submission.id <= ?
-                    AND submission.removed_at IS NULL
-                    AND NOT EXISTS (SELECT 1 FROM job WHERE job.submission = submission.id AND +job.campaign = ?)"
-            ),
-            &values,
-        )
-        .await?;
+    let statement = concat!(
+        "INSERT INTO job (lane, submission, campaign, fair_key, payload, state, rank, run_after, enqueued_at)
+         SELECT 'grading', submission.id, CAST(? AS {int}), CAST(? AS TEXT), ",
+        payload!(),
+        ", 'waiting', ? + ? * (row_number() OVER (ORDER BY submission.id) - 1), {now}, {now}
+         FROM submission
+         WHERE submission.assignment = ? AND submission.id > ? AND submission.id <= ?
+            AND submission.removed_at IS NULL
+            AND NOT EXISTS (SELECT 1 FROM job WHERE job.submission = submission.id AND +job.campaign = ?)"
+    );
+    transaction.execute(statement, &values).await?;
     Ok(advance(transaction, campaign.id, last, count).await?)
 }
 
@@ -170,17 +163,14 @@ async fn apply(transaction: &mut Transaction, campaign: &Campaign) -> Result<(),
     let Some((last, count)) = batch(&row)? else {
         return Ok(decided(transaction, campaign, "applied", "applied").await?);
     };
+    let &Campaign { id, cursor, by, course, .. } = campaign;
     let statement =
         "INSERT INTO grade_change (submission, old_result, new_result, changed_by, campaign, reason, changed_at)
         SELECT result.submission, grade.result, result.id, CAST(? AS {int}), CAST(? AS {int}), CAST(? AS TEXT), {now}
         FROM result LEFT JOIN grade ON grade.submission = result.submission
         WHERE result.campaign = ? AND result.id > ? AND result.id <= ? AND result.code <> ?";
-    transaction
-        .execute(
-            statement,
-            values![campaign.by, campaign.id, &campaign.reason, campaign.id, campaign.cursor, last, JUDGE_ERROR],
-        )
-        .await?;
+    let values = values![by, id, &campaign.reason, id, cursor, last, JUDGE_ERROR];
+    transaction.execute(statement, values).await?;
     let statement = "INSERT INTO event (happened_at, kind, actor, course, assignment, submission, text)
         SELECT {now}, 'grade changed', CAST(? AS {int}), CAST(? AS {int}), CAST(? AS {int}), result.submission,
            CAST(? AS TEXT)
@@ -189,28 +179,15 @@ async fn apply(transaction: &mut Transaction, campaign: &Campaign) -> Result<(),
         WHERE result.campaign = ? AND result.id > ? AND result.id <= ? AND result.code <> ?
            AND (old.id IS NULL OR old.code <> result.code
                OR coalesce(old.points, '') <> coalesce(result.points, ''))";
-    transaction
-        .execute(
-            statement,
-            values![
-                campaign.by,
-                campaign.course,
-                campaign.assignment.id,
-                &campaign.reason,
-                campaign.id,
-                campaign.cursor,
-                last,
-                JUDGE_ERROR
-            ],
-        )
-        .await?;
+    let values = values![by, course, campaign.assignment.id, &campaign.reason, id, cursor, last, JUDGE_ERROR];
+    transaction.execute(statement, values).await?;
     let statement = "INSERT INTO grade (submission, result, set_at)
         SELECT submission, id, {now} FROM result
         WHERE campaign = ? AND id > ? AND id <= ? AND code <> ?
         ON CONFLICT (submission) DO UPDATE SET result = excluded.result, set_at = excluded.set_at";
-    transaction.execute(statement, values![campaign.id, campaign.cursor, last, JUDGE_ERROR]).await?;
-    score::changed_by(transaction, campaign.id, campaign.cursor, last).await?;
-    Ok(advance(transaction, campaign.id, last, count).await?)
+    transaction.execute(statement, values![id, cursor, last, JUDGE_ERROR]).await?;
+    score::changed_by(transaction, id, cursor, last).await?;
+    Ok(advance(transaction, id, last, count).await?)
 }
 
 async fn decided(
@@ -245,36 +222,22 @@ async fn undo(transaction: &mut Transaction, campaign: &Campaign) -> Result<(), 
     let row = results(transaction, campaign).await?;
     let Some((last, count)) = batch(&row)? else { return Ok(undone(transaction, campaign).await?) };
     let reason = format!("regrade {} was taken back", campaign.id);
-    transaction
-        .execute(
-            undo!(
-                "INSERT INTO grade_change (submission, old_result, new_result, changed_by, reason, changed_at)
-                 SELECT applied.submission, applied.new_result, applied.old_result, CAST(? AS {int}), CAST(? AS TEXT),
-                    {now} FROM ",
-                "applied.old_result IS NOT NULL"
-            ),
-            values![campaign.by, reason, campaign.id, campaign.cursor, last],
-        )
-        .await?;
-    transaction
-        .execute(
-            undo!(
-                "DELETE FROM grade WHERE submission IN (SELECT applied.submission FROM ",
-                "applied.old_result IS NULL)"
-            ),
-            values![campaign.id, campaign.cursor, last],
-        )
-        .await?;
-    transaction
-        .execute(
-            undo!(
-                "INSERT INTO grade (submission, result, set_at) SELECT applied.submission, applied.old_result, {now} FROM ",
-                "applied.old_result IS NOT NULL
-                 ON CONFLICT (submission) DO UPDATE SET result = excluded.result, set_at = excluded.set_at"
-            ),
-            values![campaign.id, campaign.cursor, last],
-        )
-        .await?;
+    let statement = undo!(
+        "INSERT INTO grade_change (submission, old_result, new_result, changed_by, reason, changed_at)
+         SELECT applied.submission, applied.new_result, applied.old_result, CAST(? AS {int}), CAST(? AS TEXT),
+            {now} FROM ",
+        "applied.old_result IS NOT NULL"
+    );
+    transaction.execute(statement, values![campaign.by, reason, campaign.id, campaign.cursor, last]).await?;
+    let statement =
+        undo!("DELETE FROM grade WHERE submission IN (SELECT applied.submission FROM ", "applied.old_result IS NULL)");
+    transaction.execute(statement, values![campaign.id, campaign.cursor, last]).await?;
+    let statement = undo!(
+        "INSERT INTO grade (submission, result, set_at) SELECT applied.submission, applied.old_result, {now} FROM ",
+        "applied.old_result IS NOT NULL
+         ON CONFLICT (submission) DO UPDATE SET result = excluded.result, set_at = excluded.set_at"
+    );
+    transaction.execute(statement, values![campaign.id, campaign.cursor, last]).await?;
     score::changed_by(transaction, campaign.id, campaign.cursor, last).await?;
     Ok(advance(transaction, campaign.id, last, count).await?)
 }

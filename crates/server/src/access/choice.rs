@@ -1,13 +1,12 @@
 //! The choices of staff who came from a platform: which course theirs is here, and which assignment a link leads to.
 use super::{
-    Member, Person, identity,
-    launch::{self, Pending},
+    Member, Person, admin, launch,
     view::{self, Assignment, Course, Entry},
 };
 use crate::{
-    db::{DbError, FromRow, Transaction, from_row},
+    db::DbError,
     lti::{self, LtiRole},
-    problem::Problem,
+    problem::{Problem, ensure},
     values,
 };
 
@@ -52,16 +51,6 @@ pub enum Chosen {
     },
 }
 
-/// A course of a platform that is known here.
-struct Place {
-    id: i64,
-    course: i64,
-    slug: String,
-    title: String,
-}
-
-from_row! { Place { id, course, slug, title } }
-
 impl Person {
     /// The choices.
     ///
@@ -70,7 +59,7 @@ impl Person {
     pub async fn choice(&self, secret: &str) -> Result<Choice, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let pending = launch::pending(&mut transaction, self.account.id, secret).await?;
-        let Some(place) = place(&mut transaction, &pending).await? else {
+        let Some(place) = launch::place(&mut transaction, pending.platform.id, &pending.arrival).await? else {
             let context = &pending.arrival.context;
             let title = context.title.clone().or(context.label.clone()).unwrap_or_else(|| context.id.clone());
             let title: String = title.chars().filter(|c| !c.is_control()).take(200).collect();
@@ -88,11 +77,11 @@ impl Person {
         };
         let statement =
             "SELECT id, slug, title, visible, settings, published_at FROM assignment WHERE course = ? ORDER BY id";
-        let rows = transaction.rows(statement, values![place.course]).await?;
+        let assignments = transaction.all(statement, values![place.course]).await?;
         Ok(Choice::Assignment {
             course: Course { slug: place.slug, title: place.title },
             title: pending.arrival.resource.and_then(|resource| resource.title),
-            assignments: rows.iter().map(view::read_assignment).collect::<Result<_, Problem>>()?,
+            assignments,
         })
     }
 
@@ -103,67 +92,38 @@ impl Person {
     pub async fn choose_course(&self, secret: &str, known: Option<&str>, new: (&str, &str)) -> Result<(), Problem> {
         let mut transaction = self.app.0.database.begin().await?;
         let pending = launch::pending(&mut transaction, self.account.id, secret).await?;
-        if place(&mut transaction, &pending).await?.is_some() {
+        if launch::place(&mut transaction, pending.platform.id, &pending.arrival).await?.is_some() {
             return Ok(());
         }
         let course = match known {
-            Some(slug) => transaction
-                .row(
-                    "SELECT course.id FROM course
-                     JOIN member ON member.course = course.id AND member.account = ? AND member.role = 'staff'
-                     WHERE course.slug = ?",
-                    values![self.account.id, slug],
-                )
-                .await?
-                .ok_or_else(|| Problem::not_found("course"))?
-                .int("id")?,
-            None => self.new_course(&mut transaction, new).await?,
+            Some(slug) => {
+                let statement = "SELECT course.id FROM course
+                    JOIN member ON member.course = course.id AND member.account = ? AND member.role = 'staff'
+                    WHERE course.slug = ?";
+                let found = transaction.row(statement, values![self.account.id, slug]).await?;
+                found.ok_or_else(|| Problem::not_found("course"))?.int("id")?
+            }
+            None => admin::make_course(&mut transaction, new).await?,
         };
         let arrival = &pending.arrival;
         let title = arrival.context.title.as_deref().unwrap_or(&arrival.context.id);
         let statement =
             "INSERT INTO platform_course (platform, deployment, context, title, course, memberships, created_at)
             VALUES (?, ?, ?, ?, ?, ?, {now}) RETURNING id";
-        let made = transaction
-            .one(
-                statement,
-                values![
-                    pending.platform.id,
-                    &arrival.deployment,
-                    &arrival.context.id,
-                    title,
-                    course,
-                    arrival.memberships.clone()
-                ],
-            )
-            .await?
-            .int("id")?;
+        let (platform, memberships) = (pending.platform.id, arrival.memberships.as_deref());
+        let values = values![platform, &arrival.deployment, &arrival.context.id, title, course, memberships];
+        let made = transaction.one(statement, values).await?.int("id")?;
         // This session was begun by the platform's word, and ended all others of an account that was a student's.
         let statement = "INSERT INTO platform_member (platform_course, account) VALUES (?, ?)
             ON CONFLICT (platform_course, account) DO NOTHING";
         transaction.execute(statement, values![made, self.account.id]).await?;
         let statement = "INSERT INTO member (course, account, role, platform, created_at) VALUES (?, ?, ?, ?, {now})
             ON CONFLICT (course, account) DO NOTHING";
-        transaction
-            .execute(statement, values![course, self.account.id, LtiRole::Staff.name(), pending.platform.id])
-            .await?;
+        transaction.execute(statement, values![course, self.account.id, LtiRole::Staff.name(), platform]).await?;
         let text = format!("{} of {} is this course", arrival.context.id, pending.platform.name);
         let entry = Entry { course: Some(course), ..Entry::new("platform", self.account.id, &text) };
         view::note(&mut transaction, &entry).await?;
-        transaction.commit().await?;
-        Ok(())
-    }
-
-    async fn new_course(&self, transaction: &mut Transaction, (slug, title): (&str, &str)) -> Result<i64, Problem> {
-        identity::check_slug("a course's name", slug)?;
-        identity::check_title("a title", title)?;
-        let statement = "INSERT INTO course (slug, title, created_at) VALUES (?, ?, {now})
-            ON CONFLICT (slug) DO NOTHING RETURNING id";
-        let made = transaction.row(statement, values![slug, title]).await?;
-        let Some(made) = made else {
-            return Err(Problem::conflict("there is a course of this name", "give it another name"));
-        };
-        Ok(made.int("id")?)
+        Ok(transaction.commit().await?)
     }
 
     /// Makes the link lead to an assignment; of a link that the platform asks for, the answer that it waits for.
@@ -173,17 +133,15 @@ impl Person {
     pub async fn choose_assignment(&self, secret: &str, slug: &str) -> Result<Chosen, Problem> {
         let mut transaction = self.app.0.database.begin().await?;
         let pending = launch::pending(&mut transaction, self.account.id, secret).await?;
-        let Some(place) = place(&mut transaction, &pending).await? else { return Err(Problem::not_found("course")) };
+        let place = launch::place(&mut transaction, pending.platform.id, &pending.arrival).await?;
+        let place = place.ok_or_else(|| Problem::not_found("course"))?;
         let statement = "SELECT account FROM member WHERE course = ? AND account = ? AND role = 'staff'";
         let staff = transaction.row(statement, values![place.course, self.account.id]).await?;
-        if staff.is_none() {
-            return Err(Problem::not_allowed("this is for the course's staff"));
-        }
+        ensure(staff.is_some(), Problem::not_allowed("this is for the course's staff"))?;
         let statement =
             "SELECT id, slug, title, visible, settings, published_at FROM assignment WHERE course = ? AND slug = ?";
-        let row = transaction.row(statement, values![place.course, slug]).await?;
-        let Some(row) = row else { return Err(Problem::not_found("assignment")) };
-        let assignment = view::read_assignment(&row)?;
+        let found: Option<Assignment> = transaction.find(statement, values![place.course, slug]).await?;
+        let assignment = found.ok_or_else(|| Problem::not_found("assignment"))?;
         let arrival = &pending.arrival;
         let text = format!("a link of {} leads to {}", pending.platform.name, assignment.slug);
         let (course, assignment_id) = (Some(place.course), Some(assignment.id));
@@ -206,16 +164,6 @@ impl Person {
         let origins = pending.platform.origins(over_http);
         Ok(Chosen::Answer { address: address.into(), origins, token })
     }
-}
-
-async fn place(transaction: &mut Transaction, pending: &Pending) -> Result<Option<Place>, DbError> {
-    let arrival = &pending.arrival;
-    let statement = "SELECT platform_course.id, platform_course.course, course.slug, course.title FROM platform_course
-        JOIN course ON course.id = platform_course.course
-        WHERE platform_course.platform = ? AND platform_course.deployment = ? AND platform_course.context = ?";
-    let row =
-        transaction.row(statement, values![pending.platform.id, &arrival.deployment, &arrival.context.id]).await?;
-    row.as_ref().map(Place::from_row).transpose()
 }
 
 /// A name for addresses, to begin with.

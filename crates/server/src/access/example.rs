@@ -1,6 +1,6 @@
 //! A course to try the service with: made on a fresh server when the person who starts it asks for it.
 use super::{
-    App, NewSecret, Settings,
+    App, NewSecret, Settings, admin,
     identity::{self, Way},
 };
 use crate::{problem::Problem, values};
@@ -25,8 +25,7 @@ impl App {
                 return Err(Problem::conflict("this server has courses already", "start it without --example"));
             }
             let settings = Settings::default().checked(&self.suites)?;
-            let statement = "INSERT INTO course (slug, title, created_at) VALUES (?, ?, {now}) RETURNING id";
-            let course = transaction.one(statement, values![COURSE.0, COURSE.1]).await?.int("id")?;
+            let course = admin::make_course(&mut transaction, COURSE).await?;
             let statement = "INSERT INTO assignment (course, slug, title, visible, settings, created_at)
                 VALUES (?, ?, ?, 1, ?, {now})";
             transaction.execute(statement, values![course, ASSIGNMENT.0, ASSIGNMENT.1, settings.text()]).await?;

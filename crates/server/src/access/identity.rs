@@ -1,14 +1,15 @@
 //! Tokens, sessions and links that sign in. Each is 256 random bits; the database has the digest only.
+use super::view::Account;
 use crate::{
-    db::{DbError, FromRow, Transaction},
+    db::{DbError, FromRow, Transaction, from_row},
     problem::Problem,
     secret::{hex, random_hex},
     values,
 };
+use serde::Serialize;
 use sha2::{Digest as _, Sha256};
 use std::fmt;
-
-use super::account::Account;
+use utoipa::ToSchema;
 
 /// How long a session lasts after it was last seen.
 const SESSION: i64 = 14 * 24 * 3600 * 1000;
@@ -51,15 +52,33 @@ impl fmt::Debug for NewSecret {
     }
 }
 
-/// A new session: goes into a cookie.
-#[derive(Debug, Clone)]
-pub struct Session(pub(super) NewSecret);
+/// A token, without its secret.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct TokenInfo {
+    /// Its number.
+    pub id: i64,
+    /// Its name.
+    pub name: String,
+    /// When it was made, in milliseconds since 1970.
+    pub created_at: i64,
+}
 
-impl Session {
-    /// The content of the cookie.
-    pub fn secret(&self) -> &str {
-        self.0.reveal()
-    }
+from_row! { TokenInfo { id, name, created_at } }
+
+/// A token with its secret, which is shown this once.
+#[derive(Serialize, ToSchema)]
+pub struct NewToken {
+    #[serde(flatten)]
+    pub(super) info: TokenInfo,
+    /// The secret itself.
+    pub token: String,
+}
+
+/// A link that signs in once, good for a week.
+#[derive(Serialize, ToSchema)]
+pub struct Link {
+    /// The link; nothing where the account was there before.
+    pub link: Option<String>,
 }
 
 /// How somebody came in.
@@ -132,12 +151,11 @@ pub(super) async fn account_of_session(
 /// Lets a session last from now on.
 pub(super) async fn session_seen(transaction: &mut Transaction, session: &str) -> Result<(), DbError> {
     let statement = "UPDATE session SET seen_at = {now}, expires_at = {now} + ? WHERE digest = ?";
-    transaction.execute(statement, values![SESSION, digest(session)]).await?;
-    Ok(())
+    transaction.execute(statement, values![SESSION, digest(session)]).await.map(drop)
 }
 
-/// Begins a session.
-pub(super) async fn begin_session(transaction: &mut Transaction, account: i64, way: Way) -> Result<Session, DbError> {
+/// Begins a session, whose secret goes into a cookie.
+pub(super) async fn begin_session(transaction: &mut Transaction, account: i64, way: Way) -> Result<NewSecret, DbError> {
     let secret = NewSecret::new("");
     let token = if let Way::Token(token) = way { Some(token) } else { None };
     let expired =
@@ -146,13 +164,12 @@ pub(super) async fn begin_session(transaction: &mut Transaction, account: i64, w
     let statement = "INSERT INTO session (digest, account, created_at, seen_at, expires_at, vouched, token)
         VALUES (?, ?, {now}, {now}, {now} + ?, ?, ?)";
     transaction.execute(statement, values![secret.digest(), account, SESSION, way == Way::Vouched, token]).await?;
-    Ok(Session(secret))
+    Ok(secret)
 }
 
 /// Ends a session.
 pub(super) async fn end_session(transaction: &mut Transaction, session: &str) -> Result<(), DbError> {
-    transaction.execute("DELETE FROM session WHERE digest = ?", values![digest(session)]).await?;
-    Ok(())
+    transaction.execute("DELETE FROM session WHERE digest = ?", values![digest(session)]).await.map(drop)
 }
 
 /// Makes a link that signs in once; earlier ones of the account that were not used are void. Whether it is vouched for
@@ -174,8 +191,7 @@ pub(super) async fn new_link(
 /// Whether a link would sign somebody in.
 pub(super) async fn is_link(transaction: &mut Transaction, link: &str) -> Result<bool, DbError> {
     let statement = "SELECT account FROM sign_in_link WHERE digest = ? AND used_at IS NULL AND expires_at > {now}";
-    let row = transaction.row(statement, values![digest(link)]).await?;
-    Ok(row.is_some())
+    Ok(transaction.row(statement, values![digest(link)]).await?.is_some())
 }
 
 /// Uses up a link, and says whose it was, and how they come in.
@@ -194,8 +210,7 @@ pub(super) async fn use_link(transaction: &mut Transaction, link: &str) -> Resul
 
 /// Ends all sessions of an account.
 pub(super) async fn end_sessions(transaction: &mut Transaction, account: i64) -> Result<(), DbError> {
-    transaction.execute("DELETE FROM session WHERE account = ?", values![account]).await?;
-    Ok(())
+    transaction.execute("DELETE FROM session WHERE account = ?", values![account]).await.map(drop)
 }
 
 /// Ends every way into an account: it may do more from now on, or nothing at all.
@@ -204,8 +219,7 @@ pub(super) async fn end_all(transaction: &mut Transaction, account: i64) -> Resu
     transaction.execute("UPDATE account SET password = NULL, managed_by = NULL WHERE id = ?", values![account]).await?;
     transaction.execute("DELETE FROM sign_in_link WHERE account = ? AND used_at IS NULL", values![account]).await?;
     let statement = "UPDATE token SET revoked_at = {now} WHERE account = ? AND revoked_at IS NULL";
-    transaction.execute(statement, values![account]).await?;
-    Ok(())
+    transaction.execute(statement, values![account]).await.map(drop)
 }
 
 /// The account is its person's own from now on. What was begun or made by links of a course's staff ends, who may have
@@ -223,8 +237,7 @@ pub(super) async fn end_vouched(
     let statement = "DELETE FROM sign_in_link WHERE account = ? AND vouched = 1 AND used_at IS NULL";
     transaction.execute(statement, values![account]).await?;
     let statement = "UPDATE token SET revoked_at = {now} WHERE account = ? AND vouched = 1 AND revoked_at IS NULL";
-    transaction.execute(statement, values![account]).await?;
-    Ok(())
+    transaction.execute(statement, values![account]).await.map(drop)
 }
 
 /// Whether an account is more than a student anywhere: staff can't sign in as it, and could not before.
@@ -241,14 +254,14 @@ pub(super) async fn new_token(
     transaction: &mut Transaction,
     account: Option<i64>,
     name: &str,
-    by: Option<i64>,
+    by: i64,
     way: Way,
-) -> Result<(i64, NewSecret), DbError> {
+) -> Result<NewToken, DbError> {
     let secret = NewSecret::new(if account.is_some() { PERSON } else { WORKER });
     let statement = "INSERT INTO token (account, name, digest, created_by, created_at, vouched)
-        VALUES (?, ?, ?, ?, {now}, ?) RETURNING id";
+        VALUES (?, ?, ?, ?, {now}, ?) RETURNING id, name, created_at";
     let row = transaction.one(statement, values![account, name, secret.digest(), by, way == Way::Vouched]).await?;
-    Ok((row.int("id")?, secret))
+    Ok(NewToken { info: TokenInfo::from_row(&row)?, token: secret.reveal().to_owned() })
 }
 
 /// Whether a character has no look of its own, or turns the letters around it.

@@ -1,7 +1,9 @@
 //! A whole class by a table: name, login, e-mail address and role of each, as spreadsheets write it (CSV).
-use super::{NewSecret, Staff, identity};
+use super::{MemberLinks, Staff, members::check_member};
 use crate::problem::Problem;
+use serde::Serialize;
 use std::collections::BTreeSet;
+use utoipa::ToSchema;
 
 /// The longest list.
 const MOST: usize = 5000;
@@ -14,25 +16,19 @@ const COLUMNS: [&[&str]; 4] = [
     &["role"],
 ];
 
-/// A line of the table, and what became of it.
-#[derive(Debug, Clone)]
-pub struct Imported {
-    /// Its number.
-    pub line: u64,
-    /// Their name.
-    pub name: String,
-    /// The name of their account.
-    pub login: String,
-    /// Where to send the link; not kept.
-    pub email: String,
-    /// `student` or `staff`.
-    pub role: String,
-    /// The fault of the line.
-    pub error: Option<String>,
-    /// A link that signs in once.
-    pub link: Option<NewSecret>,
-    /// A link to accept by.
-    pub invitation: Option<NewSecret>,
+/// A line of a table of members, and what became of it.
+#[derive(Serialize, ToSchema)]
+pub struct MemberLine {
+    pub(crate) line: u64,
+    pub(crate) name: String,
+    pub(crate) login: String,
+    // Where to send the link; not kept.
+    pub(crate) email: String,
+    pub(crate) role: String,
+    /// The error in the line; then nothing was done about any.
+    pub(crate) error: Option<String>,
+    #[serde(flatten)]
+    pub(crate) links: MemberLinks,
 }
 
 /// Which column a heading names: "E-mail address" is "email".
@@ -62,7 +58,7 @@ fn headings(words: &[String]) -> Result<Option<[Option<usize>; 4]>, Problem> {
 }
 
 /// Reads a table; what is wrong with a line is told with it.
-fn read(text: &str) -> Result<Vec<Imported>, Problem> {
+fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
     let first = text.lines().next().unwrap_or_default();
     // Spreadsheets of other countries separate by something else.
     let delimiter = *b";\t,".iter().max_by_key(|c| first.bytes().filter(|byte| byte == *c).count()).unwrap_or(&b',');
@@ -97,22 +93,14 @@ fn read(text: &str) -> Result<Vec<Imported>, Problem> {
         let (name, login, email) = (field(0), field(1).to_lowercase(), field(2));
         let role =
             Some(field(3).to_lowercase()).filter(|role| !role.is_empty()).unwrap_or_else(|| "student".to_owned());
-        let checked = identity::check_slug("a login", &login)
-            .and_then(|()| identity::check_title("a name", &name))
-            .and_then(|()| match role.as_str() {
-                "student" | "staff" => Ok(()),
-                _ => Err(Problem::invalid("a role is student or staff")),
-            })
-            .and_then(|()| match logins.insert(login.clone()) {
-                true => Ok(()),
-                false => Err(Problem::invalid("this login is in the table twice")),
-            })
-            .and_then(|()| match beside {
-                true => Err(Problem::invalid("there is more in this line than name, login, email and role")),
-                false => Ok(()),
-            });
-        let error = checked.err().map(|problem| problem.detail);
-        lines.push(Imported { line, name, login, email, role, error, link: None, invitation: None });
+        let checked = check_member(&login, &name, &role);
+        let error = match checked {
+            Err(problem) => Some(problem.detail),
+            Ok(()) if !logins.insert(login.clone()) => Some("this login is in the table twice".to_owned()),
+            Ok(()) if beside => Some("there is more in this line than name, login, email and role".to_owned()),
+            Ok(()) => None,
+        };
+        lines.push(MemberLine { line, name, login, email, role, error, links: MemberLinks::default() });
         if lines.len() > MOST {
             return Err(Problem::invalid(format!("a table has at most {MOST} lines")));
         }
@@ -125,18 +113,17 @@ impl Staff {
     ///
     /// # Errors
     /// When it is no table.
-    pub async fn import(&self, text: &str, preview: bool) -> Result<Vec<Imported>, Problem> {
+    pub async fn import(&self, text: &str, preview: bool) -> Result<Vec<MemberLine>, Problem> {
         let mut lines = read(text)?;
         if preview || lines.iter().any(|line| line.error.is_some()) {
             return Ok(lines);
         }
         let mut transaction = self.begin().await?;
         // In one order, whatever the table's: two that import at once do not wait for each other.
-        let mut in_order: Vec<&mut Imported> = lines.iter_mut().collect();
+        let mut in_order: Vec<&mut MemberLine> = lines.iter_mut().collect();
         in_order.sort_by(|one, other| one.login.cmp(&other.login));
         for line in in_order {
-            let added = self.add(&mut transaction, &line.login, &line.name, &line.role).await?;
-            (line.link, line.invitation) = (added.link, added.invitation);
+            line.links = self.add(&mut transaction, &line.login, &line.name, &line.role).await?;
         }
         transaction.commit().await?;
         Ok(lines)

@@ -26,6 +26,8 @@ pub struct Invitation {
 
 /// An invitation as it is kept.
 struct Kept {
+    /// The digest of its link.
+    digest: String,
     course: i64,
     invitation: Invitation,
 }
@@ -38,7 +40,7 @@ impl Person {
     pub async fn invitations(&self) -> Result<Vec<Invitation>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let kept = self.kept(&mut transaction).await?;
-        Ok(kept.into_iter().map(|(_, kept)| kept.invitation).collect())
+        Ok(kept.into_iter().map(|kept| kept.invitation).collect())
     }
 
     /// The course to which a link invites.
@@ -68,9 +70,9 @@ impl Person {
     /// When there is no such invitation, or it is not certain that it is the person.
     pub async fn answer_invitation(&self, course: &str, accept: bool) -> Result<(), Problem> {
         let mut transaction = self.app.0.database.begin().await?;
-        let kept = self.kept(&mut transaction).await?.into_iter();
-        let found = kept.map(|(_, kept)| kept).find(|kept| kept.invitation.course.slug == course);
-        let Some(kept) = found else { return Err(Problem::not_found("invitation")) };
+        let mut kept = self.kept(&mut transaction).await?.into_iter();
+        let kept = kept.find(|kept| kept.invitation.course.slug == course);
+        let kept = kept.ok_or_else(|| Problem::not_found("invitation"))?;
         if accept {
             let session = self.lately_at_browser()?;
             if session.is_vouched {
@@ -84,8 +86,7 @@ impl Person {
         self.at_browser()?;
         self.forget(&mut transaction, &kept).await?;
         self.note_answer(&mut transaction, &kept, "declined").await?;
-        transaction.commit().await?;
-        Ok(())
+        Ok(transaction.commit().await?)
     }
 
     async fn join(&self, mut transaction: Transaction, kept: Kept, session: &str) -> Result<Course, Problem> {
@@ -99,8 +100,7 @@ impl Person {
 
     async fn forget(&self, transaction: &mut Transaction, kept: &Kept) -> Result<(), DbError> {
         let statement = "DELETE FROM invitation WHERE course = ? AND account = ?";
-        transaction.execute(statement, values![kept.course, self.account.id]).await?;
-        Ok(())
+        transaction.execute(statement, values![kept.course, self.account.id]).await.map(drop)
     }
 
     async fn note_answer(&self, transaction: &mut Transaction, kept: &Kept, answer: &str) -> Result<(), DbError> {
@@ -111,12 +111,12 @@ impl Person {
 
     async fn by_secret(&self, transaction: &mut Transaction, secret: &str) -> Result<Kept, Problem> {
         let digest = identity::digest(secret);
-        let found = self.kept(transaction).await?.into_iter().find(|(kept, _)| *kept == digest);
-        found.map(|(_, kept)| kept).ok_or_else(|| Problem::not_found("invitation"))
+        let found = self.kept(transaction).await?.into_iter().find(|kept| kept.digest == digest);
+        found.ok_or_else(|| Problem::not_found("invitation"))
     }
 
-    /// Their invitations with the digests of the links.
-    async fn kept(&self, transaction: &mut Transaction) -> Result<Vec<(String, Kept)>, Problem> {
+    /// Their invitations.
+    async fn kept(&self, transaction: &mut Transaction) -> Result<Vec<Kept>, DbError> {
         let statement =
             "SELECT invitation.digest, invitation.course, invitation.role, course.slug, course.title, inviter.login
             FROM invitation JOIN course ON course.id = invitation.course
@@ -126,9 +126,9 @@ impl Person {
         let read = |row: &Row| {
             let course = Course::from_row(row)?;
             let invitation = Invitation { course, role: row.text("role")?, by: row.text("login")? };
-            Ok((row.text("digest")?, Kept { course: row.int("course")?, invitation }))
+            Ok(Kept { digest: row.text("digest")?, course: row.int("course")?, invitation })
         };
-        Ok(rows.iter().map(read).collect::<Result<_, DbError>>()?)
+        rows.iter().map(read).collect()
     }
 }
 
@@ -136,6 +136,5 @@ impl Person {
 pub(super) async fn enrol(transaction: &mut Transaction, course: i64, account: i64, role: &str) -> Result<(), DbError> {
     let statement = "INSERT INTO member (course, account, role, created_at) VALUES (?, ?, ?, {now})
         ON CONFLICT (course, account) DO UPDATE SET role = excluded.role, platform = NULL";
-    transaction.execute(statement, values![course, account, role]).await?;
-    Ok(())
+    transaction.execute(statement, values![course, account, role]).await.map(drop)
 }

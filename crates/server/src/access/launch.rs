@@ -1,15 +1,17 @@
 //! Coming from a learning platform: the platform is asked who it is (SEC 5.1.1), answers once, and they are signed in
 //! as who they are here, in the course that belongs to theirs there.
 use super::{
-    App, NewSecret, Session, Visitor,
+    App, NewSecret, Visitor,
     identity::{self, Way},
+    view::{self, Entry},
 };
 use crate::{
-    db::{DbError, Row, Transaction},
-    lti::{Arrival, LtiRole, Message, Platform, Refused, score},
-    problem::Problem,
+    db::{DbError, FromRow, Transaction, from_row},
+    lti::{Arrival, LtiPerson, LtiRole, Message, Platform, Refused, score},
+    problem::{Problem, ensure},
     values,
 };
+use serde::Deserialize;
 use std::time::Instant;
 use url::Url;
 
@@ -23,16 +25,20 @@ const CHOICE: i64 = 3600 * 1000;
 const LOGINS: u32 = 3000;
 
 /// The words of a platform about somebody who wants to come (LTI 4.1, SEC 5.1.1.1).
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Deserialize)]
 pub struct LoginRequest {
     /// Its issuer.
-    pub issuer: String,
-    /// Its name for this service, where it says so.
-    pub client: Option<String>,
+    pub iss: String,
     /// Sent back as they are.
-    pub hint: String,
-    /// The same about the message.
-    pub message_hint: Option<String>,
+    pub login_hint: String,
+    /// Where they want to go.
+    pub target_link_uri: Option<String>,
+    /// Sent back as they are, about the message.
+    pub lti_message_hint: Option<String>,
+    /// Its name for this service, where it says so.
+    pub client_id: Option<String>,
+    /// The deployment.
+    pub lti_deployment_id: Option<String>,
 }
 
 /// The next step of a browser.
@@ -48,7 +54,7 @@ pub struct LoginAnswer {
 #[derive(Debug, Clone)]
 pub struct Launched {
     /// Their session.
-    pub session: Session,
+    pub session: NewSecret,
     /// A path of this service.
     pub to: String,
 }
@@ -85,35 +91,29 @@ impl Visitor {
         let mut transaction = self.app.0.database.read().await?;
         let statement = "SELECT id, name, settings FROM platform
             WHERE issuer = ? AND disabled_at IS NULL AND (CAST(? AS TEXT) IS NULL OR client = ?) ORDER BY id LIMIT 2";
-        let rows = transaction
-            .rows(statement, values![&request.issuer, request.client.as_deref(), request.client.as_deref()])
-            .await?;
+        let client = request.client_id.as_deref();
+        let rows = transaction.rows(statement, values![&request.iss, client, client]).await?;
         match rows.as_slice() {
-            [row] => Ok(Platform::read(row)?),
+            [row] => Ok(Platform::from_row(row)?),
             [] => Err(Problem::refused_launch("no administrator has registered this platform")),
             _ => Err(Problem::refused_launch("the platform is registered several times, and does not say which it is")),
         }
     }
 
-    /// Begins a sign-in: remembers what is asked, and says where to ask it. `browser` is what this browser showed
-    /// before.
+    /// Begins a sign-in: remembers what is asked, and says where to ask it.
     ///
     /// # Errors
     /// When there are too many, or the database does not answer.
-    pub async fn begin_login(
-        &self,
-        platform: &Platform,
-        request: &LoginRequest,
-        browser: Option<&str>,
-    ) -> Result<LoginAnswer, Problem> {
+    pub async fn begin_login(&self, platform: &Platform, request: &LoginRequest) -> Result<LoginAnswer, Problem> {
         // Accounts have numbers above zero.
         if !self.app.0.throttle.pass(-platform.id, LOGINS, Instant::now()) {
             return Err(Problem::too_many("too many people come from this platform at this moment"));
         }
         let (state, nonce) = (NewSecret::new(""), NewSecret::new(""));
         // One word for several windows of a browser.
-        let known = browser.filter(|word| word.len() == 64 && word.bytes().all(|c| c.is_ascii_hexdigit()));
-        let browser = known.map_or_else(|| NewSecret::new("").reveal().to_owned(), str::to_owned);
+        let is_word = |word: &String| word.len() == 64 && word.bytes().all(|c| c.is_ascii_hexdigit());
+        let known = self.secrets.browser.clone().filter(is_word);
+        let browser = known.unwrap_or_else(|| NewSecret::new("").reveal().to_owned());
         let settings = &platform.settings;
         let mut address = Url::parse(&settings.login_url).map_err(|_| Problem::fault())?;
         address
@@ -124,10 +124,10 @@ impl Visitor {
             .append_pair("prompt", "none")
             .append_pair("client_id", &settings.client_id)
             .append_pair("redirect_uri", &self.app.launch_address())
-            .append_pair("login_hint", &request.hint)
+            .append_pair("login_hint", &request.login_hint)
             .append_pair("state", state.reveal())
             .append_pair("nonce", nonce.reveal());
-        if let Some(hint) = &request.message_hint {
+        if let Some(hint) = &request.lti_message_hint {
             address.query_pairs_mut().append_pair("lti_message_hint", hint);
         }
         let mut transaction = self.app.0.database.begin().await?;
@@ -136,9 +136,8 @@ impl Visitor {
         transaction.execute(expired, values![]).await?;
         let statement =
             "INSERT INTO platform_login (state, nonce, browser, platform, expires_at) VALUES (?, ?, ?, ?, {now} + ?)";
-        transaction
-            .execute(statement, values![state.digest(), nonce.digest(), identity::digest(&browser), platform.id, LOGIN])
-            .await?;
+        let values = values![state.digest(), nonce.digest(), identity::digest(&browser), platform.id, LOGIN];
+        transaction.execute(statement, values).await?;
         transaction.commit().await?;
         Ok(LoginAnswer { address: address.into(), browser })
     }
@@ -147,21 +146,20 @@ impl Visitor {
     ///
     /// # Errors
     /// When the answer is none of ours, none of the platform's, or nobody may come by it.
-    pub async fn launch(&self, state: &str, token: &str, browser: Option<&str>) -> Result<Launched, Problem> {
-        let (platform, nonce) = self.use_login(state, browser).await?;
+    pub async fn launch(&self, state: &str, token: &str) -> Result<Launched, Problem> {
+        let (platform, nonce) = self.use_login(state).await?;
         let message = self.app.lti.receive(&platform, token, &nonce).await?;
-        let Some(role) = message.role else {
+        let Some(role) = message.person.role else {
             return Err(Problem::refused_launch("the platform says that you neither learn nor teach in this course"));
         };
         let mut transaction = self.app.0.database.begin().await?;
         let launched = arrive(&mut transaction, &platform, &message, role).await?;
-        transaction.commit().await?;
-        self.app.0.notifier.wake();
+        self.app.0.notifier.commit(transaction).await?;
         Ok(launched)
     }
 
     /// Uses up a sign-in: which platform was asked, and the digest of the nonce.
-    async fn use_login(&self, state: &str, browser: Option<&str>) -> Result<(Platform, String), Problem> {
+    async fn use_login(&self, state: &str) -> Result<(Platform, String), Problem> {
         let unknown = || Problem::refused_launch("this sign-in is unknown, used, or was begun too long ago");
         let mut transaction = self.app.0.database.read().await?;
         let statement =
@@ -172,7 +170,7 @@ impl Visitor {
         let row = transaction.row(statement, values![identity::digest(state)]).await?;
         drop(transaction);
         let row = row.ok_or_else(unknown)?;
-        let Some(browser) = browser else {
+        let Some(browser) = &self.secrets.browser else {
             return Err(Problem::refused_launch("your browser did not send the cookie of this sign-in"));
         };
         // Begun in another browser: somebody wants to sign this one in as somebody else.
@@ -183,11 +181,31 @@ impl Visitor {
         let used =
             transaction.execute("DELETE FROM platform_login WHERE state = ?", values![identity::digest(state)]).await?;
         transaction.commit().await?;
-        if used == 0 {
-            return Err(unknown());
-        }
-        Ok((Platform::read(&row)?, row.text("nonce")?))
+        ensure(used > 0, unknown())?;
+        Ok((Platform::from_row(&row)?, row.text("nonce")?))
     }
+}
+
+/// A course of a platform that is known here.
+pub(super) struct Place {
+    pub(super) id: i64,
+    pub(super) course: i64,
+    pub(super) slug: String,
+    pub(super) title: String,
+}
+
+from_row! { Place { id, course, slug, title } }
+
+/// The course here from which somebody comes there.
+pub(super) async fn place(
+    transaction: &mut Transaction,
+    platform: i64,
+    arrival: &Arrival,
+) -> Result<Option<Place>, DbError> {
+    let statement = "SELECT platform_course.id, platform_course.course, course.slug, course.title FROM platform_course
+        JOIN course ON course.id = platform_course.course
+        WHERE platform_course.platform = ? AND platform_course.deployment = ? AND platform_course.context = ?";
+    transaction.find(statement, values![platform, &arrival.deployment, &arrival.context.id]).await
 }
 
 /// Finds or makes the account, brings its role up to date, and says where it is to go.
@@ -198,29 +216,20 @@ async fn arrive(
     role: LtiRole,
 ) -> Result<Launched, Problem> {
     let arrival = &message.arrival;
-    let statement = "SELECT platform_course.id, platform_course.course, course.slug FROM platform_course
-        JOIN course ON course.id = platform_course.course
-        WHERE platform_course.platform = ? AND platform_course.deployment = ? AND platform_course.context = ?";
-    let place = transaction.row(statement, values![platform.id, &arrival.deployment, &arrival.context.id]).await?;
     let staff = role == LtiRole::Staff;
-    let Some(place) = place else {
-        if !staff {
-            return Err(Problem::refused_launch("this course is not connected with the grading server yet"));
-        }
-        let account = account(transaction, platform, message).await?;
+    let Some(Place { id, course, slug, .. }) = place(transaction, platform.id, arrival).await? else {
+        ensure(staff, Problem::refused_launch("this course is not connected with the grading server yet"))?;
+        let account = account(transaction, platform, &message.person).await?;
         return choose(transaction, platform, arrival, account).await;
     };
-    let account = account(transaction, platform, message).await?;
-    let (id, course, slug) = (place.int("id")?, place.int("course")?, place.text("slug")?);
+    let account = account(transaction, platform, &message.person).await?;
     if let Some(memberships) = &arrival.memberships {
         let statement = "UPDATE platform_course SET memberships = ? WHERE id = ?";
         transaction.execute(statement, values![memberships, id]).await?;
     }
     enrol(transaction, platform.id, id, course, account, role).await?;
     let Some(resource) = &arrival.resource else {
-        if !staff {
-            return Err(Problem::refused_launch("links are made by who teaches the course"));
-        }
+        ensure(staff, Problem::refused_launch("links are made by who teaches the course"))?;
         return choose(transaction, platform, arrival, account).await;
     };
     let statement = "SELECT platform_link.id, assignment.slug FROM platform_link
@@ -277,8 +286,7 @@ pub(super) async fn make_link(
 pub(super) async fn columns(transaction: &mut Transaction, link: i64, arrival: &Arrival) -> Result<(), DbError> {
     let statement =
         "UPDATE platform_link SET line_item = coalesce(CAST(? AS TEXT), line_item), line_items = ? WHERE id = ?";
-    transaction.execute(statement, values![arrival.line_item.clone(), arrival.line_items.clone(), link]).await?;
-    Ok(())
+    transaction.execute(statement, values![arrival.line_item.clone(), arrival.line_items.clone(), link]).await.map(drop)
 }
 
 /// Signs staff in, and has them choose: a course, an assignment, or a link.
@@ -304,13 +312,10 @@ async fn choose(
     Ok(Launched { session, to: format!("/lti/choose/{}", secret.reveal()) })
 }
 
-async fn account(transaction: &mut Transaction, platform: &Platform, message: &Message) -> Result<i64, Problem> {
-    let person = Newcomer { subject: &message.subject, name: message.name.as_deref(), email: message.email.as_deref() };
+async fn account(transaction: &mut Transaction, platform: &Platform, person: &LtiPerson) -> Result<i64, Problem> {
     let account = find_or_make(transaction, platform, person).await?;
     let row = transaction.one("SELECT is_admin, disabled_at FROM account WHERE id = ?", values![account]).await?;
-    if row.maybe_int("disabled_at")?.is_some() {
-        return Err(Problem::refused_launch("your account here is shut"));
-    }
+    ensure(row.maybe_int("disabled_at")?.is_none(), Problem::refused_launch("your account here is shut"))?;
     // Otherwise anybody who runs a platform could do everything here.
     if row.flag("is_admin")? {
         return Err(Problem::refused_launch("you are an administrator here, and sign in here yourself"));
@@ -318,24 +323,16 @@ async fn account(transaction: &mut Transaction, platform: &Platform, message: &M
     Ok(account)
 }
 
-/// Somebody as a platform tells of them.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Newcomer<'a> {
-    pub(super) subject: &'a str,
-    pub(super) name: Option<&'a str>,
-    pub(super) email: Option<&'a str>,
-}
-
 /// The account of somebody, made when they are new; their name as the platform has it. Never one that is there already
 /// under the same name or address: these are words that people choose for themselves.
 pub(super) async fn find_or_make(
     transaction: &mut Transaction,
     platform: &Platform,
-    person: Newcomer<'_>,
+    person: &LtiPerson,
 ) -> Result<i64, DbError> {
-    let name = person.name.map(tidy).filter(|name| !name.is_empty());
+    let name = person.name.as_deref().map(tidy).filter(|name| !name.is_empty());
     let statement = "SELECT account FROM platform_account WHERE issuer = ? AND subject = ?";
-    let known = transaction.row(statement, values![&platform.settings.issuer, person.subject]).await?;
+    let known = transaction.row(statement, values![&platform.settings.issuer, &person.subject]).await?;
     if let Some(row) = known {
         let account = row.int("account")?;
         if let Some(name) = name {
@@ -344,7 +341,8 @@ pub(super) async fn find_or_make(
         }
         return Ok(account);
     }
-    let base = login_of(person.email.and_then(|email| email.split('@').next()).or(name.as_deref()).unwrap_or_default());
+    let mailbox = person.email.as_deref().and_then(|email| email.split('@').next());
+    let base = login_of(mailbox.or(name.as_deref()).unwrap_or_default());
     for number in 1.. {
         let login = match number {
             1 => base.clone(),
@@ -357,7 +355,7 @@ pub(super) async fn find_or_make(
         let Some(made) = made else { continue };
         let account = made.int("id")?;
         let statement = "INSERT INTO platform_account (issuer, subject, account, created_at) VALUES (?, ?, ?, {now})";
-        transaction.execute(statement, values![&platform.settings.issuer, person.subject, account]).await?;
+        transaction.execute(statement, values![&platform.settings.issuer, &person.subject, account]).await?;
         return Ok(account);
     }
     Err(DbError::Other("no login is free".to_owned()))
@@ -411,9 +409,7 @@ pub(super) async fn enrol(
     transaction.execute(statement, values![course, account, role.name(), platform]).await?;
     let login = transaction.one("SELECT login FROM account WHERE id = ?", values![account]).await?.text("login")?;
     let text = format!("{login} is {}, says a learning platform", role.name());
-    let statement = "INSERT INTO event (happened_at, kind, actor, course, text) VALUES ({now}, 'member', ?, ?, ?)";
-    transaction.execute(statement, values![account, course, text]).await?;
-    Ok(())
+    view::note(transaction, &Entry { course: Some(course), ..Entry::new("member", account, &text) }).await
 }
 
 /// The choice that staff has to make, and for whom it is.
@@ -427,10 +423,10 @@ pub(super) async fn pending(transaction: &mut Transaction, account: i64, secret:
     let statement = "SELECT platform.id, platform.name, platform.settings, platform_choice.arrival FROM platform_choice
         JOIN platform ON platform.id = platform_choice.platform AND platform.disabled_at IS NULL
         WHERE platform_choice.digest = ? AND platform_choice.account = ? AND platform_choice.expires_at > {now}";
-    let row: Option<Row> = transaction.row(statement, values![identity::digest(secret), account]).await?;
-    let Some(row) = row else { return Err(Problem::not_found("choice")) };
+    let row = transaction.row(statement, values![identity::digest(secret), account]).await?;
+    let row = row.ok_or_else(|| Problem::not_found("choice"))?;
     let arrival = serde_json::from_str(&row.text("arrival")?).map_err(|_| Problem::fault())?;
-    Ok(Pending { platform: Platform::read(&row)?, arrival })
+    Ok(Pending { platform: Platform::from_row(&row)?, arrival })
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Decisions of staff about a student's work: other points, a comment, more time; and requests of students.
 use super::{
     Member, Staff, identity,
-    view::{self, Assignment, Submission},
+    view::{self, Assignment, Entry, Submission},
 };
 use crate::{
     calendar,
@@ -105,12 +105,10 @@ impl Staff {
             Some(points) => format!("{points} points: {comment}"),
             None => format!("the grader's points: {comment}"),
         };
-        let mut entry = self.entry("marked", None, &text);
-        entry.submission = Some(id);
-        view::note(&mut transaction, &entry).await?;
+        let entry = self.entry("marked", None, &text);
+        view::note(&mut transaction, &Entry { submission: Some(id), ..entry }).await?;
         score::changed(&mut transaction, id).await?;
-        transaction.commit().await?;
-        self.app.0.notifier.wake();
+        self.app.0.notifier.commit(transaction).await?;
         self.submission(id).await
     }
 
@@ -119,14 +117,12 @@ impl Staff {
     /// # Errors
     /// When there is no such assignment.
     pub async fn requests(&self, slug: &str) -> Result<Vec<Request>, Problem> {
-        let mut transaction = self.app.0.database.read().await?;
-        let assignment = self.find_assignment(&mut transaction, slug).await?;
+        let (mut transaction, assignment) = self.read_at(slug).await?;
         let statement = "SELECT mark.submission, mark.request, account.login FROM mark
             JOIN submission ON submission.id = mark.submission JOIN account ON account.id = submission.account
             WHERE submission.assignment = ? AND mark.requested_at > coalesce(mark.marked_at, 0)
             ORDER BY mark.requested_at";
-        let requests = transaction.all(statement, values![assignment.id]).await?;
-        Ok(requests)
+        Ok(transaction.all(statement, values![assignment.id]).await?)
     }
 
     /// All that a student handed in to an assignment.
@@ -134,8 +130,7 @@ impl Staff {
     /// # Errors
     /// When they are no member and handed nothing in.
     pub async fn work(&self, slug: &str, login: &str) -> Result<Work, Problem> {
-        let mut transaction = self.app.0.database.read().await?;
-        let assignment = self.find_assignment(&mut transaction, slug).await?;
+        let (mut transaction, assignment) = self.read_at(slug).await?;
         let account = self.student(&mut transaction, &assignment, login).await?;
         Ok(Work {
             login: login.to_owned(),
@@ -187,9 +182,7 @@ impl Staff {
         let until = due_at.map_or("as all others".to_owned(), |due| format!("until {} UTC", calendar::minute(due)));
         let text = format!("{login} hands in {until}");
         self.note(&mut transaction, "extension", Some(assignment.id), &text).await?;
-        transaction.commit().await?;
-        self.app.0.notifier.wake();
-        Ok(())
+        Ok(self.app.0.notifier.commit(transaction).await?)
     }
 }
 
@@ -214,8 +207,7 @@ impl Member {
             ON CONFLICT (submission) DO UPDATE SET request = coalesce(mark.request, '') || excluded.request,
                requested_at = excluded.requested_at";
         transaction.execute(statement, values![id, text]).await?;
-        transaction.commit().await?;
-        Ok(())
+        Ok(transaction.commit().await?)
     }
 
     /// How an assignment stands, for staff.
@@ -232,8 +224,7 @@ impl Member {
                 WHERE asked.assignment = ? AND mark.requested_at > coalesce(mark.marked_at, 0)) AS requests,
             (SELECT count(*) FROM suspicion WHERE assignment = ? AND state = 'open') AS suspicions
             FROM submission WHERE submission.assignment = ?";
-        let all = transaction.all(statement, values![assignment.id, assignment.id, assignment.id]).await?;
-        Ok(all.into_iter().next())
+        Ok(transaction.find(statement, values![assignment.id, assignment.id, assignment.id]).await?)
     }
 
     /// Until when this member may hand in.

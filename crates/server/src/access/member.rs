@@ -1,8 +1,7 @@
 //! A member of a course: a student, or staff who tries something out. They see their own submissions; staff sees all.
 use super::{
     App,
-    account::Account,
-    view::{self, Assignment, Course, History, Submission},
+    view::{self, Account, Assignment, Entry, History, Submission},
 };
 use crate::{
     db::{DbError, Transaction},
@@ -23,17 +22,17 @@ const SHOWN: &str = "report.html";
 pub struct Member {
     pub(crate) account: Account,
     pub(super) course: i64,
-    pub(super) slug: String,
-    pub(super) title: String,
+    pub(crate) slug: String,
+    pub(crate) title: String,
     pub(crate) is_staff: bool,
     pub(crate) is_archived: bool,
     pub(crate) app: App,
 }
 
 impl Member {
-    /// The course.
-    pub fn course(&self) -> Course {
-        Course { slug: self.slug.clone(), title: self.title.clone() }
+    /// An entry of the course's audit log.
+    pub(super) fn entry<'a>(&self, kind: &'static str, assignment: Option<i64>, text: &'a str) -> Entry<'a> {
+        Entry { course: Some(self.course), assignment, ..Entry::new(kind, self.account.id, text) }
     }
 
     /// The assignments that they may see.
@@ -44,8 +43,7 @@ impl Member {
         let mut transaction = self.app.0.database.read().await?;
         let statement = "SELECT id, slug, title, visible, settings, published_at FROM assignment
             WHERE course = ? AND (visible = 1 OR ? = 1) ORDER BY id";
-        let rows = transaction.rows(statement, values![self.course, self.is_staff]).await?;
-        rows.iter().map(view::read_assignment).collect()
+        Ok(transaction.all(statement, values![self.course, self.is_staff]).await?)
     }
 
     /// One of them.
@@ -53,8 +51,14 @@ impl Member {
     /// # Errors
     /// When there is none.
     pub async fn assignment(&self, slug: &str) -> Result<Assignment, Problem> {
+        Ok(self.read_at(slug).await?.1)
+    }
+
+    /// A transaction that reads, and the assignment that it found.
+    pub(super) async fn read_at(&self, slug: &str) -> Result<(Transaction, Assignment), Problem> {
         let mut transaction = self.app.0.database.read().await?;
-        self.find_assignment(&mut transaction, slug).await
+        let assignment = self.find_assignment(&mut transaction, slug).await?;
+        Ok((transaction, assignment))
     }
 
     pub(super) async fn find_assignment(
@@ -64,8 +68,8 @@ impl Member {
     ) -> Result<Assignment, Problem> {
         let statement = "SELECT id, slug, title, visible, settings, published_at FROM assignment
             WHERE course = ? AND slug = ? AND (visible = 1 OR ? = 1)";
-        let row = transaction.row(statement, values![self.course, slug, self.is_staff]).await?;
-        row.as_ref().map_or_else(|| Err(Problem::not_found("assignment")), view::read_assignment)
+        let found = transaction.find(statement, values![self.course, slug, self.is_staff]).await?;
+        found.ok_or_else(|| Problem::not_found("assignment"))
     }
 
     /// Their own submissions to an assignment, newest first.
@@ -73,8 +77,7 @@ impl Member {
     /// # Errors
     /// When there is no such assignment.
     pub async fn submissions(&self, assignment: &str) -> Result<Vec<Submission>, Problem> {
-        let mut transaction = self.app.0.database.read().await?;
-        let assignment = self.find_assignment(&mut transaction, assignment).await?;
+        let (mut transaction, assignment) = self.read_at(assignment).await?;
         let mut submissions = view::submissions_of(&mut transaction, assignment.id, self.account.id).await?;
         for submission in &mut submissions {
             if !self.is_staff {

@@ -1,12 +1,12 @@
 //! The people in a course: members, and those who are invited.
 use super::{
     NewSecret, Staff,
-    identity::{self, Way},
+    identity::{self, Link, Way},
     invitation,
 };
 use crate::{
     db::{DbError, Transaction, from_row},
-    problem::Problem,
+    problem::{Problem, ensure},
     values,
 };
 use serde::Serialize;
@@ -25,16 +25,23 @@ pub struct MemberInfo {
     pub is_invited: bool,
 }
 
-/// The secrets that the person who added a member hands on to them.
-#[derive(Debug, Clone, Default)]
-pub struct Added {
-    /// A link that signs in once: where the account is new, or has to be entered anew.
-    pub link: Option<NewSecret>,
-    /// A link to accept by, signed in as before: where nothing changes until then.
-    pub invitation: Option<NewSecret>,
+/// The links that are to be handed on to a new member.
+#[derive(Default, Serialize, ToSchema)]
+pub struct MemberLinks {
+    /// A link that signs in once, good for a week; nothing where the account was there before.
+    pub link: Option<String>,
+    /// A link to accept by, for anybody who has an account of their own: they open it, signed in as ever.
+    pub invitation: Option<String>,
 }
 
 from_row! { MemberInfo { login, name, role, is_invited } }
+
+/// Whether these are names and a role.
+pub(super) fn check_member(login: &str, name: &str, role: &str) -> Result<(), Problem> {
+    identity::check_slug("a login", login)?;
+    identity::check_title("a name", name)?;
+    if matches!(role, "student" | "staff") { Ok(()) } else { Err(Problem::invalid("a role is student or staff")) }
+}
 
 impl Staff {
     /// The course's members, and who is invited.
@@ -48,8 +55,7 @@ impl Staff {
             UNION ALL SELECT account.login, invitation.name, invitation.role, CAST(1 AS {int}) FROM invitation
             JOIN account ON account.id = invitation.account WHERE invitation.course = ?
             ORDER BY 1, 4";
-        let members = transaction.all(statement, values![self.course, self.course]).await?;
-        Ok(members)
+        Ok(transaction.all(statement, values![self.course, self.course]).await?)
     }
 
     /// Makes somebody a member, or changes what they are; makes the account when there is none, and a link for it that
@@ -58,16 +64,12 @@ impl Staff {
     ///
     /// # Errors
     /// When a name is none.
-    pub async fn set_member(&self, login: &str, name: &str, role: &str) -> Result<Added, Problem> {
-        identity::check_slug("a login", login)?;
-        identity::check_title("a name", name)?;
-        if !matches!(role, "student" | "staff") {
-            return Err(Problem::invalid("a role is student or staff"));
-        }
+    pub async fn set_member(&self, login: &str, name: &str, role: &str) -> Result<MemberLinks, Problem> {
+        check_member(login, name, role)?;
         let mut transaction = self.app.0.database.begin().await?;
-        let added = self.add(&mut transaction, login, name, role).await?;
+        let links = self.add(&mut transaction, login, name, role).await?;
         transaction.commit().await?;
-        Ok(added)
+        Ok(links)
     }
 
     pub(super) async fn add(
@@ -76,17 +78,17 @@ impl Staff {
         login: &str,
         name: &str,
         role: &str,
-    ) -> Result<Added, Problem> {
-        let (course, by) = (self.course, &self.account);
-        let mut added = Added::default();
+    ) -> Result<MemberLinks, Problem> {
+        let course = self.course;
+        let mut links = MemberLinks::default();
         let statement = "INSERT INTO account (login, name, managed_by, created_at) VALUES (?, ?, ?, {now})
             ON CONFLICT (login) DO NOTHING RETURNING id";
         let made = transaction.row(statement, values![login, name, course]).await?;
         if let Some(made) = made {
             let account = made.int("id")?;
-            added.link = Some(identity::new_link(transaction, account, Some(by.id), self.way()).await?);
+            links.link = self.link(transaction, account, self.way()).await?;
             self.enter(transaction, account, login, role).await?;
-            return Ok(added);
+            return Ok(links);
         }
         let found =
             transaction.one("SELECT id, managed_by FROM account WHERE login = ? {for update}", values![login]).await?;
@@ -95,23 +97,24 @@ impl Staff {
         let was = transaction.row(statement, values![course, account]).await?;
         let was = was.map(|row| row.text("role")).transpose()?;
         if was.as_deref() == Some(role) {
-            return Ok(added);
+            return Ok(links);
         }
         self.check_left(transaction, login, role).await?;
         let gains_nothing = role == "student" && (was.is_some() || managed_by == Some(course));
-        if !by.is_admin && !gains_nothing {
-            added.invitation = Some(self.invite(transaction, account, (login, name), role).await?);
-            return Ok(added);
+        if !self.account.is_admin && !gains_nothing {
+            let secret = self.invite(transaction, account, (login, name), role).await?;
+            links.invitation = Some(self.app.invitation_address(&secret));
+            return Ok(links);
         }
         if role == "staff" && !identity::is_trusted(transaction, account).await? {
             identity::end_all(transaction, account).await?;
-            added.link = Some(identity::new_link(transaction, account, Some(by.id), Way::Own).await?);
+            links.link = self.link(transaction, account, Way::Own).await?;
         } else if managed_by.is_some_and(|other| other != course) {
             identity::end_vouched(transaction, account, None).await?;
-            added.link = Some(identity::new_link(transaction, account, Some(by.id), Way::Own).await?);
+            links.link = self.link(transaction, account, Way::Own).await?;
         }
         self.enter(transaction, account, login, role).await?;
-        Ok(added)
+        Ok(links)
     }
 
     /// Whether somebody of the course's staff is left when they are something else.
@@ -129,6 +132,12 @@ impl Staff {
         if self.account.is_admin { Way::Own } else { Way::Vouched }
     }
 
+    /// Makes a link that signs somebody in once.
+    async fn link(&self, transaction: &mut Transaction, account: i64, way: Way) -> Result<Option<String>, DbError> {
+        let secret = identity::new_link(transaction, account, Some(self.account.id), way).await?;
+        Ok(Some(self.app.welcome_address(&secret)))
+    }
+
     async fn enter(&self, transaction: &mut Transaction, account: i64, login: &str, role: &str) -> Result<(), DbError> {
         invitation::enrol(transaction, self.course, account, role).await?;
         self.note(transaction, "member", None, &format!("{login} is {role}")).await
@@ -142,19 +151,13 @@ impl Staff {
         let mut transaction = self.app.0.database.begin().await?;
         self.check_left(&mut transaction, login, "out").await?;
         let statement = "DELETE FROM member WHERE course = ? AND account = (SELECT id FROM account WHERE login = ?)";
-        let mut removed = transaction.execute(statement, values![self.course, login]).await?;
-        removed += transaction
-            .execute(
-                "DELETE FROM invitation WHERE course = ? AND account = (SELECT id FROM account WHERE login = ?)",
-                values![self.course, login],
-            )
-            .await?;
-        if removed == 0 {
-            return Err(Problem::not_found("member"));
-        }
+        let removed = transaction.execute(statement, values![self.course, login]).await?;
+        let statement =
+            "DELETE FROM invitation WHERE course = ? AND account = (SELECT id FROM account WHERE login = ?)";
+        let taken_back = transaction.execute(statement, values![self.course, login]).await?;
+        ensure(removed + taken_back > 0, Problem::not_found("member"))?;
         self.note(&mut transaction, "member", None, &format!("{login} is out")).await?;
-        transaction.commit().await?;
-        Ok(())
+        Ok(transaction.commit().await?)
     }
 
     /// A new link that signs a student in once. Staff makes it for accounts that are this course's alone: made here, in
@@ -163,7 +166,7 @@ impl Staff {
     ///
     /// # Errors
     /// When the account is more than that, or no member.
-    pub async fn new_link(&self, login: &str) -> Result<NewSecret, Problem> {
+    pub async fn new_link(&self, login: &str) -> Result<Link, Problem> {
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "SELECT account.id, account.is_admin, account.managed_by, member.role
             FROM account JOIN member ON member.account = account.id
@@ -175,10 +178,10 @@ impl Staff {
             let detail = "this account is its person's own: more than a student of this course, or with a password";
             return Err(Problem::not_allowed(detail));
         }
-        let link = identity::new_link(&mut transaction, row.int("id")?, Some(self.account.id), self.way()).await?;
+        let link = self.link(&mut transaction, row.int("id")?, self.way()).await?;
         self.note(&mut transaction, "link", None, &format!("a new link for {login}")).await?;
         transaction.commit().await?;
-        Ok(link)
+        Ok(Link { link })
     }
 
     /// Invites somebody; an earlier invitation is void. The secret is for them alone.
@@ -194,9 +197,8 @@ impl Staff {
             VALUES (?, ?, ?, ?, ?, ?, {now})
             ON CONFLICT (course, account) DO UPDATE SET name = excluded.name, role = excluded.role,
                digest = excluded.digest, invited_by = excluded.invited_by, created_at = excluded.created_at";
-        transaction
-            .execute(statement, values![self.course, account, name, role, secret.digest(), self.account.id])
-            .await?;
+        let values = values![self.course, account, name, role, secret.digest(), self.account.id];
+        transaction.execute(statement, values).await?;
         self.note(transaction, "member", None, &format!("{login} is invited as {role}")).await?;
         Ok(secret)
     }

@@ -3,17 +3,14 @@
 //! their own submissions, its [`Staff`], an [`Admin`], and a [`Remote`] worker with the jobs that it holds. A handler
 //! says whom it serves by the type it takes, and one that forgets to has nothing to read from.
 
-mod account;
 mod admin;
 mod again;
-mod beside;
 mod bulk;
 mod campaign;
 mod choice;
 mod counts;
 mod example;
 mod failed;
-mod file_name;
 mod identity;
 mod import;
 mod invitation;
@@ -38,35 +35,33 @@ mod throttle;
 mod view;
 mod visitor;
 
-pub use account::Account;
 pub use admin::Admin;
+pub use again::Again;
 pub use campaign::run as work_on_regrades;
 pub use choice::{Choice, Chosen};
 pub use counts::Counts;
 pub use failed::{AttemptChange, FailedScenes};
-pub use file_name::is_file_name;
-pub use identity::{NewSecret, Session};
-pub use import::Imported;
+pub use identity::{Link, NewSecret, NewToken, TokenInfo};
+pub use import::MemberLine;
 pub use invitation::Invitation;
 pub use launch::{Launched, LoginAnswer, LoginRequest};
 pub use limits::{Transfer, TransferLimits};
 pub use mark::{Overview, Request, Work};
 pub use member::Member;
-pub use members::{Added, MemberInfo};
+pub use members::{MemberInfo, MemberLinks};
 pub use password::Passwords;
-pub use person::{CourseOf, Person, TokenInfo};
+pub use person::{CourseOf, Person};
 pub use platform::{RosterRead, ScoreInfo};
 pub use regrade::{Change, Doing, Regrade, RegradeState};
 pub use remote::Remote;
-pub use request::Secrets;
 pub use settings::Settings;
 pub(crate) use settings::{moment, moment_schema};
 pub use staff::{Staff, Standing};
 pub use submit::{Accepted, Upload};
-pub use suites::Suites;
+pub use suites::{Suites, is_file_name};
 pub use suspicion::Suspicion;
-pub use view::{Assignment, Course, Event, Graded, History, Mark, Queue, QueueWorker, Submission};
-pub use visitor::Visitor;
+pub use view::{Account, Assignment, Course, Event, Graded, History, Mark, Queue, QueueWorker, Submission};
+pub use visitor::{Secrets, Visitor};
 
 use crate::{
     db::Database,

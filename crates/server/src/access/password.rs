@@ -5,11 +5,11 @@
 //! run at one time. Wrong ones slow down the address that they come from, and never the person: from another address
 //! the right one goes on working.
 use super::{
-    App, Person, Session, Visitor,
+    App, NewSecret, Person, Throttle, Visitor,
     identity::{self, Way},
 };
 use crate::{
-    problem::Problem,
+    problem::{Problem, ensure},
     secret::{hex, random_hex},
     values,
 };
@@ -17,7 +17,6 @@ use argon2::{Algorithm, Argon2, Params, Version};
 use std::{
     hash::{DefaultHasher, Hash, Hasher},
     net::{IpAddr, Ipv6Addr},
-    sync::Arc,
     time::{Duration, Instant},
 };
 use tokio::sync::Semaphore;
@@ -26,7 +25,7 @@ use tokio::sync::Semaphore;
 const COST: (u32, u32, u32) = (19 * 1024, 2, 1);
 
 /// Digests that are computed at one time: more would only cost memory.
-const AT_ONE_TIME: usize = 2;
+static ROOM: Semaphore = Semaphore::const_new(2);
 
 /// How long somebody waits for their turn.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -41,16 +40,9 @@ const TRIES_OF_ADDRESS: u32 = 60;
 const LENGTH: std::ops::RangeInclusive<usize> = 10..=200;
 
 /// The parts that passwords need: none of them is there on a server that does not allow passwords.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Passwords {
-    room: Arc<Semaphore>,
-    tries: super::Throttle,
-}
-
-impl Default for Passwords {
-    fn default() -> Self {
-        Self { room: Arc::new(Semaphore::new(AT_ONE_TIME)), tries: super::Throttle::default() }
-    }
+    tries: Throttle,
 }
 
 /// The digest of a password with a salt.
@@ -75,23 +67,20 @@ fn is_kept(password: &str, kept: Option<&str>) -> Result<bool, Problem> {
     Ok(differs == 0 && digest.len() == kept.len())
 }
 
-impl Passwords {
-    /// Does something with a password when it is its turn, away from the threads that must not wait.
-    async fn work<T: Send + 'static>(
-        &self,
-        work: impl FnOnce() -> Result<T, Problem> + Send + 'static,
-    ) -> Result<T, Problem> {
-        let turn = tokio::time::timeout(PATIENCE, self.room.clone().acquire_owned()).await;
-        let turn = turn.map_err(|_| Problem::unavailable("too many sign in at this moment"))?;
-        let turn = turn.map_err(|_| Problem::fault())?;
-        let done = tokio::task::spawn_blocking(move || {
-            let done = work();
-            drop(turn);
-            done
-        });
-        done.await.map_err(|_| Problem::fault())?
-    }
+/// Does something with a password when it is its turn, away from the threads that must not wait.
+async fn in_turn<T: Send + 'static>(work: impl FnOnce() -> Result<T, Problem> + Send + 'static) -> Result<T, Problem> {
+    let turn = tokio::time::timeout(PATIENCE, ROOM.acquire()).await;
+    let turn = turn.map_err(|_| Problem::unavailable("too many sign in at this moment"))?;
+    let turn = turn.map_err(|_| Problem::fault())?;
+    let done = tokio::task::spawn_blocking(move || {
+        let done = work();
+        drop(turn);
+        done
+    });
+    done.await.map_err(|_| Problem::fault())?
+}
 
+impl Passwords {
     /// Counts a try to be somebody, also somebody who does not exist, until it turns out to be right.
     fn try_of(&self, address: Option<IpAddr>, login: &str) -> Result<Try<'_>, Problem> {
         let network = address.map(network);
@@ -151,19 +140,16 @@ impl Visitor {
     /// # Errors
     /// When it is not the account's, there is no such account, or there were too many tries. Which of the first two,
     /// nobody learns.
-    pub async fn sign_in_by_password(&self, login: &str, password: &str) -> Result<Session, Problem> {
+    pub async fn sign_in_by_password(&self, login: &str, password: &str) -> Result<NewSecret, Problem> {
         let passwords = self.app.passwords()?;
-        let attempt = passwords.try_of(self.address, login)?;
+        let attempt = passwords.try_of(self.secrets.address, login)?;
         let mut transaction = self.app.0.database.read().await?;
         let statement = "SELECT id, password FROM account WHERE login = ? AND disabled_at IS NULL";
         let row = transaction.row(statement, values![login]).await?;
         drop(transaction);
-        let kept = match &row {
-            Some(row) => row.maybe_text("password")?,
-            None => None,
-        };
+        let kept = row.as_ref().map(|row| row.maybe_text("password")).transpose()?.flatten();
         let (given, of_account) = (password.to_owned(), kept.clone());
-        let right = passwords.work(move || is_kept(&given, of_account.as_deref())).await?;
+        let right = in_turn(move || is_kept(&given, of_account.as_deref())).await?;
         let (true, Some(row)) = (right, row) else { return Err(Problem::wrong_password()) };
         attempt.was_right();
         let account = row.int("id")?;
@@ -171,9 +157,7 @@ impl Visitor {
         // It may have been changed, or the account shut, while the digest was computed.
         let statement = "SELECT id FROM account WHERE id = ? AND password = ? AND disabled_at IS NULL {for update}";
         let still = transaction.row(statement, values![account, kept]).await?;
-        if still.is_none() {
-            return Err(Problem::wrong_password());
-        }
+        ensure(still.is_some(), Problem::wrong_password())?;
         let session = identity::begin_session(&mut transaction, account, Way::Own).await?;
         transaction.commit().await?;
         Ok(session)
@@ -202,24 +186,20 @@ impl Person {
         }
         let attempt = passwords.try_of(self.address, &self.account.login)?;
         let (old, new, of_account) = (old.to_owned(), new.to_owned(), kept.clone());
-        let digest = passwords
-            .work(move || match of_account {
-                Some(kept) if !is_kept(&old, Some(&kept))? => Err(Problem::wrong_password()),
-                _ => digest(&new, &random_hex()),
-            })
-            .await?;
+        let digest = in_turn(move || match of_account {
+            Some(kept) if !is_kept(&old, Some(&kept))? => Err(Problem::wrong_password()),
+            _ => digest(&new, &random_hex()),
+        });
+        let digest = digest.await?;
         attempt.was_right();
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "UPDATE account SET password = ? WHERE id = ? AND coalesce(password, '') = ?";
         let changed =
             transaction.execute(statement, values![digest, self.account.id, kept.unwrap_or_default()]).await?;
-        if changed == 0 {
-            return Err(Problem::conflict("the password was changed meanwhile", "sign in again"));
-        }
+        ensure(changed > 0, Problem::conflict("the password was changed meanwhile", "sign in again"))?;
         identity::end_sessions(&mut transaction, self.account.id).await?;
         identity::end_vouched(&mut transaction, self.account.id, None).await?;
-        transaction.commit().await?;
-        Ok(())
+        Ok(transaction.commit().await?)
     }
 }
 

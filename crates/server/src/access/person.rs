@@ -1,12 +1,11 @@
 //! Somebody who is signed in.
 use super::{
-    App, NewSecret,
-    account::Account,
-    identity::{self, Seen, Way},
-    view::Course,
+    App,
+    identity::{self, NewToken, Seen, TokenInfo, Way},
+    view::{Account, Course},
 };
 use crate::{
-    db::{DbError, FromRow, Row, from_row},
+    db::{DbError, FromRow, Row},
     problem::Problem,
     values,
 };
@@ -24,17 +23,6 @@ pub struct CourseOf {
     pub role: String,
     /// Whether it is put away: nobody hands in any more.
     pub is_archived: bool,
-}
-
-/// A token, without its secret.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
-pub struct TokenInfo {
-    /// Its number.
-    pub id: i64,
-    /// Its name.
-    pub name: String,
-    /// When it was made, in milliseconds since 1970.
-    pub created_at: i64,
 }
 
 /// Somebody who is signed in.
@@ -101,7 +89,7 @@ impl Person {
     ///
     /// # Errors
     /// When its name is none, there are too many, or they did not sign in lately.
-    pub async fn new_token(&self, name: &str) -> Result<(TokenInfo, NewSecret), Problem> {
+    pub async fn new_token(&self, name: &str) -> Result<NewToken, Problem> {
         identity::check_title("a token's name", name)?;
         let way = if self.lately_at_browser()?.is_vouched { Way::Vouched } else { Way::Own };
         let mut transaction = self.app.0.database.begin().await?;
@@ -110,12 +98,9 @@ impl Person {
         if count.int("n")? >= 50 {
             return Err(Problem::conflict("an account has at most 50 tokens", "revoke those that nobody uses"));
         }
-        let (id, secret) =
-            identity::new_token(&mut transaction, Some(self.account.id), name, Some(self.account.id), way).await?;
-        let row = transaction.one("SELECT id, name, created_at FROM token WHERE id = ?", values![id]).await?;
-        let info = TokenInfo::from_row(&row)?;
+        let token = identity::new_token(&mut transaction, Some(self.account.id), name, self.account.id, way).await?;
         transaction.commit().await?;
-        Ok((info, secret))
+        Ok(token)
     }
 
     /// Revokes one of their tokens.
@@ -129,8 +114,4 @@ impl Person {
         transaction.commit().await?;
         if revoked == 0 { Err(Problem::not_found("token")) } else { Ok(()) }
     }
-}
-
-from_row! {
-    TokenInfo { id, name, created_at }
 }

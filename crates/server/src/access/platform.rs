@@ -1,12 +1,12 @@
 //! Platforms, as administrators register them, and what staff sees and does of them.
 use super::{
-    Admin, App, Staff,
-    launch::{Newcomer, enrol, find_or_make},
+    Admin, App, Staff, identity,
+    launch::{enrol, find_or_make},
 };
 use crate::{
-    db::{DbError, Row, Transaction, read_row},
+    db::{DbError, FromRow, Row, Transaction, read_row},
     lti::{self, Platform, PlatformWish, score},
-    problem::Problem,
+    problem::{Problem, ensure},
     values,
 };
 use serde::Serialize;
@@ -48,10 +48,7 @@ impl App {
     /// # Errors
     /// When something in it makes no sense.
     pub async fn set_platform(&self, name: &str, wish: &PlatformWish) -> Result<Platform, Problem> {
-        super::identity::check_slug("a platform's name", name)?;
-        wish.check(self.lti.over_http())?;
-        let mut transaction = self.0.database.begin().await?;
-        let platform = write(&mut transaction, name, wish).await?;
+        let (transaction, platform) = write(self, name, wish).await?;
         transaction.commit().await?;
         Ok(platform)
     }
@@ -65,7 +62,11 @@ impl App {
     }
 }
 
-async fn write(transaction: &mut Transaction, name: &str, wish: &PlatformWish) -> Result<Platform, Problem> {
+/// Writes a platform, in a transaction that is still to be committed.
+async fn write(app: &App, name: &str, wish: &PlatformWish) -> Result<(Transaction, Platform), Problem> {
+    identity::check_slug("a platform's name", name)?;
+    wish.check(app.lti.over_http())?;
+    let mut transaction = app.0.database.begin().await?;
     let statement = "SELECT name FROM platform WHERE issuer = ? AND client = ? AND name <> ?";
     let taken = transaction.row(statement, values![&wish.issuer, &wish.client_id, name]).await?;
     if let Some(taken) = taken {
@@ -83,7 +84,7 @@ async fn write(transaction: &mut Transaction, name: &str, wish: &PlatformWish) -
            disabled_at = NULL
         RETURNING id, name, settings";
     let row = transaction.one(statement, values![name, &wish.issuer, &wish.client_id, text]).await?;
-    Ok(Platform::read(&row)?)
+    Ok((transaction, Platform::from_row(&row)?))
 }
 
 impl Admin {
@@ -94,8 +95,7 @@ impl Admin {
     pub async fn platforms(&self) -> Result<Vec<Platform>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let statement = "SELECT id, name, settings FROM platform WHERE disabled_at IS NULL ORDER BY name";
-        let rows = transaction.rows(statement, values![]).await?;
-        Ok(rows.iter().map(Platform::read).collect::<Result<_, DbError>>()?)
+        Ok(transaction.all(statement, values![]).await?)
     }
 
     /// Registers a platform, or changes it.
@@ -103,10 +103,7 @@ impl Admin {
     /// # Errors
     /// When something in it makes no sense.
     pub async fn set_platform(&self, name: &str, wish: &PlatformWish) -> Result<Platform, Problem> {
-        super::identity::check_slug("a platform's name", name)?;
-        wish.check(self.app.lti.over_http())?;
-        let mut transaction = self.app.0.database.begin().await?;
-        let platform = write(&mut transaction, name, wish).await?;
+        let (mut transaction, platform) = write(&self.app, name, wish).await?;
         let text = format!("{name}: {}, client {}", wish.issuer, wish.client_id);
         self.note(&mut transaction, "platform", &text).await?;
         transaction.commit().await?;
@@ -121,12 +118,9 @@ impl Admin {
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "UPDATE platform SET disabled_at = {now} WHERE name = ? AND disabled_at IS NULL";
         let shut = transaction.execute(statement, values![name]).await?;
-        if shut == 0 {
-            return Err(Problem::not_found("platform"));
-        }
+        ensure(shut > 0, Problem::not_found("platform"))?;
         self.note(&mut transaction, "platform", &format!("{name} is shut")).await?;
-        transaction.commit().await?;
-        Ok(())
+        Ok(transaction.commit().await?)
     }
 
     /// Makes a new key, which signs from an hour on; the one before it is told of until the next.
@@ -137,8 +131,7 @@ impl Admin {
         lti::new_key(&self.app.0.database).await?;
         let mut transaction = self.app.0.database.begin().await?;
         self.note(&mut transaction, "platform", "a new key for learning platforms").await?;
-        transaction.commit().await?;
-        Ok(())
+        Ok(transaction.commit().await?)
     }
 }
 
@@ -165,7 +158,7 @@ impl Staff {
         }
         let mut read = RosterRead::default();
         for row in &places {
-            let (place, platform) = (row.int("place")?, Platform::read(row)?);
+            let (place, platform) = (row.int("place")?, Platform::from_row(row)?);
             let address = row.text("memberships")?;
             let told = lti::fetch_roster(&app.lti.client, &app.0.database, &platform, &address).await;
             let told = told.map_err(|fault| {
@@ -182,16 +175,14 @@ impl Staff {
         &self,
         place: i64,
         platform: &Platform,
-        told: &[lti::RosterMember],
+        told: &[lti::LtiPerson],
     ) -> Result<RosterRead, Problem> {
         let course = self.course;
         let mut transaction = self.begin().await?;
         let mut present = BTreeSet::new();
         for person in told {
             let Some(role) = person.role else { continue };
-            let newcomer =
-                Newcomer { subject: &person.subject, name: person.name.as_deref(), email: person.email.as_deref() };
-            let account = find_or_make(&mut transaction, platform, newcomer).await?;
+            let account = find_or_make(&mut transaction, platform, person).await?;
             let row =
                 transaction.one("SELECT is_admin, disabled_at FROM account WHERE id = ?", values![account]).await?;
             present.insert(account);
@@ -230,8 +221,7 @@ impl Staff {
     /// # Errors
     /// When there is no such assignment.
     pub async fn scores(&self, slug: &str) -> Result<Vec<ScoreInfo>, Problem> {
-        let mut transaction = self.app.0.database.read().await?;
-        let assignment = self.find_assignment(&mut transaction, slug).await?;
+        let (mut transaction, assignment) = self.read_at(slug).await?;
         let statement = "SELECT platform.name AS platform, account.login, platform_score.content, platform_score.stamp,
                platform_score.sent_at, platform_score.fault
             FROM platform_score
@@ -258,8 +248,7 @@ impl Staff {
         let count = score::send_all(&mut transaction, assignment.id, true).await?;
         let text = format!("{count} scores of {slug} are sent again");
         self.note(&mut transaction, "scores", Some(assignment.id), &text).await?;
-        transaction.commit().await?;
-        self.app.0.notifier.wake();
+        self.app.0.notifier.commit(transaction).await?;
         Ok(count)
     }
 }

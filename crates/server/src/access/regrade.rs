@@ -3,8 +3,8 @@
 //! for an answer.
 use super::{Settings, Staff, campaign, view::Assignment};
 use crate::{
-    db::{DbError, Row, Transaction, read_row},
-    problem::Problem,
+    db::{DbError, FromRow, Row, Transaction, read_row},
+    problem::{Problem, ensure},
     task::{JUDGE_ERROR, Task},
     values,
 };
@@ -98,6 +98,18 @@ pub struct Change {
     pub why: Vec<String>,
 }
 
+/// Regrades without their changes; what follows says which.
+macro_rules! regrades {
+    ($which:literal) => {
+        concat!(
+            "SELECT campaign.id, campaign.state, campaign.reason, campaign.settings, campaign.created_at,
+                campaign.doing, campaign.done, campaign.total, account.login
+             FROM campaign JOIN account ON account.id = campaign.started_by WHERE ",
+            $which
+        )
+    };
+}
+
 impl Staff {
     /// Begins a regrade of all submissions to an assignment, by other settings if there are any.
     ///
@@ -110,17 +122,15 @@ impl Staff {
         let mut transaction = self.begin().await?;
         transaction.one("SELECT id FROM assignment WHERE id = ? {for update}", values![assignment.id]).await?;
         let statement = "SELECT id FROM campaign WHERE assignment = ? AND state = 'open'";
-        let open = transaction.row(statement, values![assignment.id]).await?;
-        if open.is_some() {
+        if transaction.row(statement, values![assignment.id]).await?.is_some() {
             return Err(Problem::conflict("another regrade is open", "apply or discard it first"));
         }
         let statement =
             "INSERT INTO campaign (assignment, state, reason, settings, started_by, created_at, doing, total)
             VALUES (?, 'open', ?, ?, ?, {now}, 'begin',
                (SELECT count(*) FROM submission WHERE assignment = ? AND removed_at IS NULL)) RETURNING id, total";
-        let campaign = transaction
-            .one(statement, values![assignment.id, reason, settings.text(), self.account.id, assignment.id])
-            .await?;
+        let values = values![assignment.id, reason, settings.text(), self.account.id, assignment.id];
+        let campaign = transaction.one(statement, values).await?;
         let (campaign, count) = (campaign.int("id")?, campaign.int("total")?);
         let text = format!("regrade {campaign} of {count} submissions: {reason}");
         self.note(&mut transaction, "regrade", Some(assignment.id), &text).await?;
@@ -141,14 +151,9 @@ impl Staff {
     /// # Errors
     /// When there is no such assignment.
     pub async fn regrades(&self, slug: &str) -> Result<Vec<Regrade>, Problem> {
-        let mut transaction = self.app.0.database.read().await?;
-        let assignment = self.find_assignment(&mut transaction, slug).await?;
-        let statement = "SELECT campaign.id, campaign.state, campaign.reason, campaign.settings, campaign.created_at,
-               campaign.doing, campaign.done, campaign.total, account.login
-            FROM campaign JOIN account ON account.id = campaign.started_by
-            WHERE campaign.assignment = ? ORDER BY campaign.id DESC LIMIT 100";
-        let rows = transaction.rows(statement, values![assignment.id]).await?;
-        rows.iter().map(read_regrade).collect()
+        let (mut transaction, assignment) = self.read_at(slug).await?;
+        let statement = regrades!("campaign.assignment = ? ORDER BY campaign.id DESC LIMIT 100");
+        Ok(transaction.all(statement, values![assignment.id]).await?)
     }
 
     /// A regrade and what it would change, or did, for submissions after one.
@@ -156,8 +161,7 @@ impl Staff {
     /// # Errors
     /// When there is none of this number.
     pub async fn show_regrade(&self, slug: &str, id: i64, after: Option<i64>) -> Result<Regrade, Problem> {
-        let mut transaction = self.app.0.database.read().await?;
-        let assignment = self.find_assignment(&mut transaction, slug).await?;
+        let (mut transaction, assignment) = self.read_at(slug).await?;
         find(&mut transaction, &assignment, id, after.unwrap_or(0)).await
     }
 
@@ -194,9 +198,7 @@ impl Staff {
             ));
         }
         let waiting = row.int("waiting")?;
-        if waiting > 0 {
-            return Err(Problem::conflict(format!("{waiting} submissions are not graded yet"), "wait"));
-        }
+        ensure(waiting == 0, Problem::conflict(format!("{waiting} submissions are not graded yet"), "wait"))?;
         // From now on submissions are graded by these settings; the grades of others change one after the other.
         let statement =
             "UPDATE campaign SET settings_before = (SELECT settings FROM assignment WHERE id = ?) WHERE id = ?";
@@ -255,27 +257,26 @@ impl Staff {
     }
 }
 
-fn read_regrade(row: &Row) -> Result<Regrade, Problem> {
-    Ok(read_row!(row => Regrade {
-        id, reason, by = "login", created_at;
-        state: match row.text("state")?.as_str() {
-            "applied" => RegradeState::Applied,
-            "discarded" => RegradeState::Discarded,
-            _ => RegradeState::Open,
-        },
-        settings: Settings::read(&row.text("settings")?)?,
-        submissions: 0,
-        left: 0,
-        failed: 0,
-        doing: row.maybe_text("doing")?.map(|what| doing(row, what)).transpose()?,
-        changed: 0,
-        changes: Vec::new(),
-        next: None,
-    }))
-}
-
-fn doing(row: &Row, what: String) -> Result<Doing, DbError> {
-    Ok(Doing { what, done: row.int("done")?, total: row.int("total")? })
+impl FromRow for Regrade {
+    fn from_row(row: &Row) -> Result<Self, DbError> {
+        let doing = |what| Ok::<_, DbError>(Doing { what, done: row.int("done")?, total: row.int("total")? });
+        Ok(read_row!(row => Self {
+            id, reason, by = "login", created_at;
+            state: match row.text("state")?.as_str() {
+                "applied" => RegradeState::Applied,
+                "discarded" => RegradeState::Discarded,
+                _ => RegradeState::Open,
+            },
+            settings: Settings::read(&row.text("settings")?)?,
+            submissions: 0,
+            left: 0,
+            failed: 0,
+            doing: row.maybe_text("doing")?.map(doing).transpose()?,
+            changed: 0,
+            changes: Vec::new(),
+            next: None,
+        }))
+    }
 }
 
 /// The jobs of a regrade whose results differ from what counts, or counted before it was applied.
@@ -300,13 +301,9 @@ macro_rules! changes {
 }
 
 async fn find(transaction: &mut Transaction, assignment: &Assignment, id: i64, after: i64) -> Result<Regrade, Problem> {
-    let statement = "SELECT campaign.id, campaign.state, campaign.reason, campaign.settings, campaign.created_at,
-           campaign.doing, campaign.done, campaign.total, account.login
-        FROM campaign JOIN account ON account.id = campaign.started_by
-        WHERE campaign.id = ? AND campaign.assignment = ?";
-    let row = transaction.row(statement, values![id, assignment.id]).await?;
-    let Some(row) = row else { return Err(Problem::not_found("regrade")) };
-    let mut regrade = read_regrade(&row)?;
+    let statement = regrades!("campaign.id = ? AND campaign.assignment = ?");
+    let found: Option<Regrade> = transaction.find(statement, values![id, assignment.id]).await?;
+    let mut regrade = found.ok_or_else(|| Problem::not_found("regrade"))?;
     let count = |number: i64| usize::try_from(number).unwrap_or(0);
     let statement = "SELECT count(*) AS n, count(CASE WHEN state IN ('waiting', 'running') THEN 1 END) AS waiting
         FROM job WHERE campaign = ?";
@@ -319,27 +316,26 @@ async fn find(transaction: &mut Transaction, assignment: &Assignment, id: i64, a
     regrade.left = count(jobs.int("waiting")?) + coming;
     regrade.failed = count(failed.int("n")?);
     regrade.changed = count(transaction.one(changes!("count(*) AS n", ""), values![id]).await?.int("n")?);
-    let rows = transaction
-        .rows(
-            changes!(
-                "job.submission, account.login, new.code AS new_code, new.points AS new_points,
-                    new.summary AS new_summary, new.version AS new_version, new.task AS new_task,
-                    old.code AS old_code, old.points AS old_points, old.summary AS old_summary,
-                    old.version AS old_version, old.task AS old_task",
-                "AND job.submission > ? ORDER BY job.submission LIMIT ?"
-            ),
-            values![id, after, CHANGES],
-        )
-        .await?;
-    for row in &rows {
-        regrade.changes.push(read_row!(row => Change {
-            submission, login, old_code, old_points, old_summary, new_code, new_points, new_summary;
-            why: why(row)?,
-        }));
-    }
-    let is_full = i64::try_from(rows.len()).is_ok_and(|rows| rows == CHANGES);
+    let statement = changes!(
+        "job.submission, account.login, new.code AS new_code, new.points AS new_points,
+            new.summary AS new_summary, new.version AS new_version, new.task AS new_task,
+            old.code AS old_code, old.points AS old_points, old.summary AS old_summary,
+            old.version AS old_version, old.task AS old_task",
+        "AND job.submission > ? ORDER BY job.submission LIMIT ?"
+    );
+    regrade.changes = transaction.all(statement, values![id, after, CHANGES]).await?;
+    let is_full = i64::try_from(regrade.changes.len()).is_ok_and(|changes| changes == CHANGES);
     regrade.next = regrade.changes.last().filter(|_| is_full).map(|change| change.submission);
     Ok(regrade)
+}
+
+impl FromRow for Change {
+    fn from_row(row: &Row) -> Result<Self, DbError> {
+        Ok(read_row!(row => Self {
+            submission, login, old_code, old_points, old_summary, new_code, new_points, new_summary;
+            why: why(row)?,
+        }))
+    }
 }
 
 /// The differences of two gradings of one submission.
@@ -360,19 +356,14 @@ fn why(row: &Row) -> Result<Vec<String>, DbError> {
             }
         };
         let or_suite = |value: Option<String>| value.unwrap_or_else(|| "of the suite".to_owned());
-        let suite = |task: &Task| match &task.suite {
-            crate::task::Suite::Named(name) => name.clone(),
-            crate::task::Suite::Archive(digest) => digest.short().to_owned(),
-        };
-        differ("suite", suite(&old), suite(&new));
+        differ("suite", old.suite.short(), new.suite.short());
         differ("rules", or_suite(old.rules), or_suite(new.rules));
         differ("seconds", old.seconds.to_string(), new.seconds.to_string());
         differ("program", old.program, new.program);
     }
     if why.is_empty() {
-        why.push(
-            "graded by the same, with another result: the program does not always do the same, or was slow".to_owned(),
-        );
+        let words = "graded by the same, with another result: the program does not always do the same, or was slow";
+        why.push(words.to_owned());
     }
     Ok(why)
 }

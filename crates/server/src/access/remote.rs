@@ -2,12 +2,12 @@
 //! belongs to those that it holds, and say what became of them. It sees no course, no student and no other submission.
 use super::App;
 use crate::{
-    problem::Problem,
+    problem::{Problem, ensure},
     queue::{Lease, Progress},
     store::{Artefact, Digest, Opened},
     task::{Outcome, Suite, Task},
     values,
-    wire::Claimed,
+    wire::{Claimed, Manners},
     worker::{Answer, JobSource, LocalSource, REPORTS, SourceError},
 };
 use std::path::Path;
@@ -63,11 +63,6 @@ impl Remote {
         Ok(row.map(|row| row.maybe_int("token")).transpose()?.flatten() == Some(self.token))
     }
 
-    /// How often it is to say that it is alive, in milliseconds.
-    pub fn tick_every(&self) -> u64 {
-        u64::try_from(self.app.0.policy.tick_every().as_millis()).unwrap_or(u64::MAX)
-    }
-
     /// The next job, if there is one; one that must run alone only for a worker that is idle.
     ///
     /// # Errors
@@ -86,9 +81,11 @@ impl Remote {
     ///
     /// # Errors
     /// When the database does not answer.
-    pub async fn tick(&self, slots: usize, fault: Option<&str>) -> Result<(), Problem> {
+    pub async fn tick(&self, slots: usize, fault: Option<&str>) -> Result<Manners, Problem> {
         let fault = fault.map(|fault| plain(fault, 2000));
-        Ok(self.source().tick(slots.min(MANY_SLOTS), fault.as_deref()).await?)
+        self.source().tick(slots.min(MANY_SLOTS), fault.as_deref()).await?;
+        let tick_every = self.app.0.policy.tick_every().as_millis();
+        Ok(Manners { tick_every: u64::try_from(tick_every).unwrap_or(u64::MAX) })
     }
 
     /// Extends a lease, and keeps how far the grading is.
@@ -138,9 +135,7 @@ impl Remote {
             let is_number = number.parse::<f64>().is_ok_and(f64::is_finite)
                 && number.len() <= 40
                 && number.bytes().all(|c| c.is_ascii_digit() || b"+-.eE".contains(&c));
-            if !is_number {
-                return Err(Problem::invalid("points and seconds are numbers"));
-            }
+            ensure(is_number, Problem::invalid("points and seconds are numbers"))?;
         }
         let value = |text: &Option<String>| text.as_ref().and_then(|text| text.parse::<f64>().ok());
         if let (Some(points), most) = (value(&outcome.points), value(&outcome.max_points).unwrap_or(MOST_POINTS))
@@ -169,9 +164,7 @@ impl Remote {
             let Some((_, _, media_type)) = REPORTS.iter().find(|(_, name, _)| *name == file.name) else {
                 return Err(Problem::invalid(format!("no report is called {}", plain(&file.name, 60))));
             };
-            if !names.insert(file.name.clone()) {
-                return Err(Problem::invalid("a report is there twice"));
-            }
+            ensure(names.insert(file.name.clone()), Problem::invalid("a report is there twice"))?;
             file.media_type = (*media_type).to_owned();
             let statement = "SELECT size FROM job_file WHERE job = ? AND attempt = ? AND digest = ?";
             let stored =
@@ -190,7 +183,7 @@ impl Remote {
         let statement = "SELECT payload FROM job
             WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running' AND token = ?";
         let row = transaction.row(statement, values![lease.job, lease.attempt, &lease.key, self.token]).await?;
-        let Some(row) = row else { return Err(Problem::not_found("job of yours")) };
+        let row = row.ok_or_else(|| Problem::not_found("job of yours"))?;
         serde_json::from_str(&row.text("payload")?).map_err(|_| Problem::fault())
     }
 
@@ -201,9 +194,7 @@ impl Remote {
     pub async fn artefact(&self, lease: &Lease, digest: &Digest) -> Result<Opened, Problem> {
         let task = self.held(lease).await?;
         let suite = matches!(&task.suite, Suite::Archive(suite) if suite == digest);
-        if task.submission.artefact.digest != *digest && !suite {
-            return Err(Problem::not_found("artefact of this job"));
-        }
+        ensure(task.submission.artefact.digest == *digest || suite, Problem::not_found("artefact of this job"))?;
         Ok(self.app.0.store.open(digest, None).await?)
     }
 

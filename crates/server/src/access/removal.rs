@@ -8,7 +8,7 @@ use super::{
 use crate::{
     db::{DbError, Transaction},
     lti::score,
-    problem::Problem,
+    problem::{Problem, ensure},
     values,
 };
 
@@ -81,9 +81,7 @@ impl Staff {
         score::changed(&mut transaction, id).await?;
         remove_submissions(&mut transaction, "SELECT id FROM submission WHERE id = ?", id).await?;
         self.note(&mut transaction, "removed", Some(found.int("id")?), "a submission").await?;
-        transaction.commit().await?;
-        self.app.0.notifier.wake();
-        Ok(())
+        Ok(self.app.0.notifier.commit(transaction).await?)
     }
 
     /// Removes an assignment with its submissions.
@@ -109,8 +107,7 @@ impl Staff {
         ];
         run(&mut transaction, &rest, assignment.id).await?;
         self.note(&mut transaction, "removed", None, &format!("the assignment {slug}")).await?;
-        transaction.commit().await?;
-        Ok(())
+        Ok(transaction.commit().await?)
     }
 }
 
@@ -132,8 +129,7 @@ impl Admin {
         let text = format!("{slug} is {}", if archived { "archived" } else { "open again" });
         let entry = Entry { course: Some(course), ..Entry::new("course", self.account.id, &text) };
         view::note(&mut transaction, &entry).await?;
-        transaction.commit().await?;
-        Ok(())
+        Ok(transaction.commit().await?)
     }
 
     /// Removes a course with its assignments and submissions. People's accounts stay.
@@ -167,8 +163,7 @@ impl Admin {
         ];
         run(&mut transaction, &rest, course).await?;
         self.note(&mut transaction, "removed", "a course with all that belonged to it").await?;
-        transaction.commit().await?;
-        Ok(())
+        Ok(transaction.commit().await?)
     }
 
     /// Removes a person: what they handed in, what it came to, their names, and every way in. What they did as staff
@@ -177,9 +172,7 @@ impl Admin {
     /// # Errors
     /// When there is no such account, or it is one's own.
     pub async fn remove_person(&self, login: &str) -> Result<(), Problem> {
-        if login == self.account.login {
-            return Err(Problem::conflict("this is your own account", "ask another administrator"));
-        }
+        ensure(login != self.account.login, Problem::own_account())?;
         let mut transaction = self.app.0.database.begin().await?;
         let row = transaction.row("SELECT id FROM account WHERE login = ?", values![login]).await?;
         let Some(row) = row else { return Err(Problem::not_found("account")) };
@@ -215,8 +208,7 @@ impl Admin {
             transaction.execute("UPDATE event SET text = ? WHERE id = ?", values![text, row.int("id")?]).await?;
         }
         self.note(&mut transaction, "removed", "a person with all that was kept of them").await?;
-        transaction.commit().await?;
-        Ok(())
+        Ok(transaction.commit().await?)
     }
 }
 

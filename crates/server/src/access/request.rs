@@ -1,24 +1,15 @@
 //! The asker of a request, told from the secrets that it shows.
 use super::{
-    Admin, App, Member, Person, Remote, Staff, Visitor,
-    account::Account,
+    Admin, App, Member, Person, Remote, Secrets, Staff, Visitor,
     identity::{self, Seen},
+    view::Account,
 };
-use crate::{db::read_row, problem::Problem, values};
-use std::{net::IpAddr, time::Instant};
-
-/// The secrets that a request shows of its asker.
-#[derive(Clone, Default)]
-pub struct Secrets {
-    /// A token.
-    pub bearer: Option<String>,
-    /// The secret of a browser's session.
-    pub session: Option<String>,
-    /// The word of a browser that comes from a learning platform.
-    pub browser: Option<String>,
-    /// Where the request comes from.
-    pub address: Option<IpAddr>,
-}
+use crate::{
+    db::read_row,
+    problem::{Problem, ensure},
+    values,
+};
+use std::time::Instant;
 
 impl App {
     /// The owner of these secrets.
@@ -51,8 +42,7 @@ impl App {
 
     /// Anybody.
     pub fn visitor(&self, secrets: Secrets) -> Visitor {
-        let Secrets { session, browser, address, .. } = secrets;
-        Visitor { app: self.clone(), session, browser, address }
+        Visitor { app: self.clone(), secrets }
     }
 
     /// Somebody who is signed in.
@@ -97,9 +87,7 @@ impl Person {
         let row = transaction.row(statement, values![self.account.id, slug]).await?;
         let Some(row) = row else { return Err(Problem::not_found("course")) };
         let role = row.maybe_text("role")?;
-        if role.is_none() && !self.account.is_admin {
-            return Err(Problem::not_found("course"));
-        }
+        ensure(role.is_some() || self.account.is_admin, Problem::not_found("course"))?;
         let row = &row;
         Ok(read_row!(row => Member {
             course = "id", slug, title;

@@ -1,9 +1,10 @@
 //! The settings of an assignment.
-use super::{Suites, file_name::is_file_name};
+use super::suites::{Suites, is_file_name};
 use crate::{
     calendar,
+    db::DbError,
     late::LatePolicy,
-    problem::Problem,
+    problem::{Problem, ensure},
     store::Digest,
     task::{Form, Input, Suite, Task},
 };
@@ -119,11 +120,9 @@ impl Settings {
     ///
     /// # Errors
     /// When another version of the program wrote them.
-    pub fn read(text: &str) -> Result<Self, Problem> {
-        serde_json::from_str(text).map_err(|error| {
-            tracing::error!(%error, "the settings of an assignment can't be read");
-            Problem::fault()
-        })
+    pub(super) fn read(text: &str) -> Result<Self, DbError> {
+        let wrong = |error| DbError::Other(format!("the settings of an assignment can't be read: {error}"));
+        serde_json::from_str(text).map_err(wrong)
     }
 
     /// The settings that are others than before, in words.
@@ -173,14 +172,10 @@ impl Settings {
         if let Some(archive) = &self.suite_archive {
             archive.parse::<Digest>().map_err(|error| Problem::invalid(format!("suite_archive: {error}")))?;
         }
-        if self.forms.is_empty()
-            || self.forms.iter().any(|form| !matches!(form.as_str(), "program" | "sources" | "traces"))
-        {
+        if self.forms.is_empty() || self.forms.iter().any(|form| Form::named(form).is_none()) {
             return Err(Problem::invalid("forms is a list of program, sources and traces"));
         }
-        if !is_file_name(&self.program) {
-            return Err(Problem::invalid("program is a plain file name"));
-        }
+        ensure(is_file_name(&self.program), Problem::invalid("program is a plain file name"))?;
         if let Some(due) = self.due_at.filter(|due| !calendar::is_plausible(*due)) {
             return Err(Problem::invalid(format!(
                 "due_at is milliseconds since 1970, and {due} looks like seconds; write \
@@ -190,12 +185,8 @@ impl Settings {
         if self.late_days > 365 || self.late_percent > 100 {
             return Err(Problem::invalid("late_days is at most 365, and late_percent at most 100"));
         }
-        if !(1..=3600).contains(&self.seconds) {
-            return Err(Problem::invalid("seconds is between 1 and 3600"));
-        }
-        if !(1..=1 << 30).contains(&self.max_bytes) {
-            return Err(Problem::invalid("max_bytes is between 1 and 1073741824"));
-        }
+        ensure((1..=3600).contains(&self.seconds), Problem::invalid("seconds is between 1 and 3600"))?;
+        ensure((1..=1 << 30).contains(&self.max_bytes), Problem::invalid("max_bytes is between 1 and 1073741824"))?;
         Ok(())
     }
 

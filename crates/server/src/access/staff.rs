@@ -1,10 +1,10 @@
 //! The staff of a course.
 use super::{
     Member, Settings, bulk, identity,
-    view::{self, Assignment, Entry, Event, Queue, Submission},
+    view::{self, Assignment, Event, Queue, Submission},
 };
 use crate::{
-    db::{DbError, Transaction},
+    db::{DbError, FromRow, Transaction},
     lti::score,
     problem::Problem,
     values,
@@ -44,10 +44,6 @@ impl Deref for Staff {
 }
 
 impl Staff {
-    pub(super) fn entry<'a>(&self, kind: &'static str, assignment: Option<i64>, text: &'a str) -> Entry<'a> {
-        Entry { course: Some(self.course), assignment, ..Entry::new(kind, self.account.id, text) }
-    }
-
     /// Writes into the course's audit log.
     pub(super) async fn note(
         &self,
@@ -110,7 +106,7 @@ impl Staff {
         let is_same_suite = (&before.suite, &before.suite_archive) == (&settings.suite, &settings.suite_archive);
         let withholds = was_published && hides && !is_same_suite;
         let values = values![self.course, slug, title, visible, settings.text(), withholds];
-        let assignment = view::read_assignment(&transaction.one(statement, values).await?)?;
+        let assignment = Assignment::from_row(&transaction.one(statement, values).await?)?;
         // Late submissions may be worth something else now, and platforms hear of what is shown.
         if withholds || before.late_policy() != settings.late_policy() {
             score::send_all(&mut transaction, assignment.id, false).await?;
@@ -146,9 +142,8 @@ impl Staff {
         let text = format!("hidden groups of {slug} are {}", if published { "published" } else { "withheld" });
         self.note(&mut transaction, "assignment", Some(assignment.id), &text).await?;
         score::send_all(&mut transaction, assignment.id, false).await?;
-        transaction.commit().await?;
-        self.app.0.notifier.wake();
-        view::read_assignment(&row)
+        self.app.0.notifier.commit(transaction).await?;
+        Ok(Assignment::from_row(&row)?)
     }
 
     /// Stores an archive with a suite and makes it the assignment's. Submissions from now on are graded by it.
@@ -180,8 +175,7 @@ impl Staff {
     /// # Errors
     /// When there is no such assignment.
     pub async fn standings(&self, assignment: &str) -> Result<Vec<Standing>, Problem> {
-        let mut transaction = self.app.0.database.read().await?;
-        let assignment = self.find_assignment(&mut transaction, assignment).await?;
+        let (mut transaction, assignment) = self.read_at(assignment).await?;
         let statement = "SELECT account.login, account.name, member.role FROM member
             JOIN account ON account.id = member.account WHERE member.course = ?";
         let rows = transaction.rows(statement, values![self.course]).await?;
@@ -238,8 +232,7 @@ impl Staff {
         let statement = "SELECT event.id, happened_at, kind, account.login, submission, text FROM event
             LEFT JOIN account ON account.id = event.actor
             WHERE event.course = ? AND event.id < ? ORDER BY event.id DESC LIMIT 200";
-        let events = transaction.all(statement, values![self.course, before.unwrap_or(i64::MAX)]).await?;
-        Ok(events)
+        Ok(transaction.all(statement, values![self.course, before.unwrap_or(i64::MAX)]).await?)
     }
 
     /// The queue and the workers.

@@ -52,11 +52,8 @@ impl Member {
             return Err(Problem::conflict("the course is archived", "ask the administrator to open it again"));
         }
         if !assignment.settings.takes(upload.form) {
-            let taken = assignment.settings.taken();
-            return Err(Problem::unusable(format!(
-                "this assignment takes {taken}; the file is {}",
-                upload.form.words()
-            )));
+            let (taken, found) = (assignment.settings.taken(), upload.form.words());
+            return Err(Problem::unusable(format!("this assignment takes {taken}; the file is {found}")));
         }
         // Anybody who sends several at once has them looked at one after another, so that nothing is stored of one that
         // the one before leaves no room for.
@@ -86,13 +83,11 @@ impl Member {
     /// # Errors
     /// When it may not.
     pub async fn check_announced(&self, assignment: &str, key: Option<&str>, size: Option<u64>) -> Result<(), Problem> {
-        let mut transaction = self.app.0.database.read().await?;
-        let assignment = self.find_assignment(&mut transaction, assignment).await?;
+        let (mut transaction, assignment) = self.read_at(assignment).await?;
         if let Some(key) = key {
             let statement = "SELECT word FROM upload_key WHERE account = ? AND word = ?";
-            let known = transaction.row(statement, values![self.account.id, key]).await?;
             // It may have been handed in before.
-            if known.is_some() {
+            if transaction.row(statement, values![self.account.id, key]).await?.is_some() {
                 return Ok(());
             }
         }
@@ -195,45 +190,21 @@ impl Member {
         let statement =
             "INSERT INTO submission (assignment, account, number, form, file_name, digest, size, created_at)
             VALUES (?, ?, ?, ?, ?, ?, ?, {now}) RETURNING id";
-        let submission = transaction
-            .one(
-                statement,
-                values![
-                    assignment.id,
-                    self.account.id,
-                    number,
-                    upload.form.name(),
-                    upload.name,
-                    artefact.digest.as_str(),
-                    i64::try_from(artefact.size).unwrap_or(i64::MAX)
-                ],
-            )
-            .await?
-            .int("id")?;
-        let payload = serde_json::to_string(&task).map_err(|_| Problem::fault())?;
-        let job = NewJob {
-            lane: Lane::Grading,
-            submission: Some(submission),
-            campaign: None,
-            turn: Turn::Student(self.account.id),
-            payload: &payload,
-        };
+        let (account, digest) = (self.account.id, artefact.digest.as_str());
+        let size = i64::try_from(artefact.size).unwrap_or(i64::MAX);
+        let values = values![assignment.id, account, number, upload.form.name(), upload.name, digest, size];
+        let submission = transaction.one(statement, values).await?.int("id")?;
+        let (turn, payload) = (Turn::Student(account), &serde_json::to_string(&task).map_err(|_| Problem::fault())?);
+        let job = NewJob { lane: Lane::Grading, submission: Some(submission), campaign: None, turn, payload };
         queue::enqueue(transaction, &job).await?;
         score::changed(transaction, submission).await?;
         if let Some(key) = upload.key {
             let statement =
                 "INSERT INTO upload_key (account, word, assignment, digest, submission) VALUES (?, ?, ?, ?, ?)";
-            transaction
-                .execute(statement, values![self.account.id, key, assignment.id, artefact.digest.as_str(), submission])
-                .await?;
+            transaction.execute(statement, values![account, key, assignment.id, digest, submission]).await?;
         }
-        let entry = Entry {
-            course: Some(self.course),
-            assignment: Some(assignment.id),
-            submission: Some(submission),
-            ..Entry::new("submitted", self.account.id, upload.name)
-        };
-        view::note(transaction, &entry).await?;
+        let entry = self.entry("submitted", Some(assignment.id), upload.name);
+        view::note(transaction, &Entry { submission: Some(submission), ..entry }).await?;
         Ok(submission)
     }
 }

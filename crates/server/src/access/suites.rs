@@ -1,6 +1,5 @@
 //! The suites that come with the grader, by name. The grader lists them itself (`suite list --format json`), so that
 //! this program need not know them.
-use super::file_name::is_file_name;
 use crate::problem::Problem;
 use serde::Deserialize;
 
@@ -26,6 +25,12 @@ struct Entry {
     #[serde(default)]
     suite: String,
     default: bool,
+}
+
+/// A name that is one file in a folder, on every system, and looks the same in every message.
+pub fn is_file_name(name: &str) -> bool {
+    let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
+    (1..=100).contains(&name.len()) && name.chars().all(plain) && !name.starts_with(['.', '-'])
 }
 
 impl Suites {

@@ -34,8 +34,7 @@ impl Staff {
     /// # Errors
     /// When there is no such assignment.
     pub async fn suspicions(&self, slug: &str) -> Result<Vec<Suspicion>, Problem> {
-        let mut transaction = self.app.0.database.read().await?;
-        let assignment = self.find_assignment(&mut transaction, slug).await?;
+        let (mut transaction, assignment) = self.read_at(slug).await?;
         let statement = "SELECT id, scene, answer, agreeing, nearly_right, state, found_at FROM suspicion
             WHERE assignment = ? ORDER BY id DESC";
         let rows = transaction.rows(statement, values![assignment.id]).await?;
@@ -75,8 +74,7 @@ impl Staff {
             false => format!("the reference is right in {scene}"),
         };
         self.note(&mut transaction, "suspicion", Some(assignment.id), &text).await?;
-        transaction.commit().await?;
-        Ok(())
+        Ok(transaction.commit().await?)
     }
 }
 

@@ -4,16 +4,29 @@ use crate::{
     db::{DbError, FromRow, Row, Transaction, from_row, read_row},
     health,
     late::Late,
-    problem::Problem,
     queue::{self, Lane, Progress},
     shown::Shown,
     store::Artefact,
-    task::{Outcome, OutputFile, Suite, Task},
+    task::{Outcome, OutputFile, Task},
     values,
 };
 use serde::Serialize;
 use std::ops::Deref;
 use utoipa::ToSchema;
+
+/// Somebody's account.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct Account {
+    /// Its number.
+    #[serde(skip)]
+    pub(crate) id: i64,
+    /// The name in addresses and tables.
+    pub login: String,
+    /// The name of its owner.
+    pub name: String,
+    /// Whether it may do everything.
+    pub is_admin: bool,
+}
 
 /// A course.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
@@ -243,6 +256,7 @@ pub struct QueueWorker {
 }
 
 from_row! {
+    Account { id, login, name, is_admin }
     Course { slug, title }
     Mark { points = "mark_points", comment, by = "marker", marked_at, request, requested_at }
     Event { id, happened_at, kind, actor = "login", submission, text }
@@ -359,7 +373,7 @@ pub(super) async fn submission(
     id: i64,
 ) -> Result<Option<Submission>, DbError> {
     let statement = submissions!("submission.id = ? AND assignment.course = ?");
-    let found: Option<Submission> = transaction.all(statement, values![id, course]).await?.into_iter().next();
+    let found: Option<Submission> = transaction.find(statement, values![id, course]).await?;
     let Some(mut submission) = found else { return Ok(None) };
     if let Some(job) = submission.job.filter(|_| !submission.is_paused)
         && let Some(place) = queue::place(transaction, &app.0.policy, Lane::Grading, job).await?
@@ -435,17 +449,16 @@ pub(super) async fn history(
 /// A task in short: what it was graded by.
 fn by_what(task: &str) -> String {
     let Ok(task) = serde_json::from_str::<Task>(task) else { return String::new() };
-    let suite = match &task.suite {
-        Suite::Named(name) => name.clone(),
-        Suite::Archive(digest) => digest.short().to_owned(),
-    };
+    let suite = task.suite.short();
     let rules = task.rules.as_deref().unwrap_or("of the suite");
     format!("suite {suite}, rules {rules}, upload {}", task.submission.artefact.digest.short())
 }
 
-pub(super) fn read_assignment(row: &Row) -> Result<Assignment, Problem> {
-    let settings = Settings::read(&row.text("settings")?)?;
-    Ok(read_row!(row => Assignment { id, slug, title, visible, published_at; settings }))
+impl FromRow for Assignment {
+    fn from_row(row: &Row) -> Result<Self, DbError> {
+        let settings = Settings::read(&row.text("settings")?)?;
+        Ok(read_row!(row => Self { id, slug, title, visible, published_at; settings }))
+    }
 }
 
 /// An entry of the audit log.
@@ -469,38 +482,24 @@ impl<'a> Entry<'a> {
 pub(super) async fn note(transaction: &mut Transaction, entry: &Entry<'_>) -> Result<(), DbError> {
     let statement = "INSERT INTO event (happened_at, kind, actor, course, assignment, submission, text)
         VALUES ({now}, ?, ?, ?, ?, ?, ?)";
-    transaction
-        .execute(
-            statement,
-            values![entry.kind, entry.actor, entry.course, entry.assignment, entry.submission, entry.text],
-        )
-        .await?;
-    Ok(())
+    let Entry { kind, actor, course, assignment, submission, text } = *entry;
+    transaction.execute(statement, values![kind, actor, course, assignment, submission, text]).await.map(drop)
 }
 
 /// The queue as everybody of the staff may see it.
 pub(super) async fn queue(transaction: &mut Transaction, app: &App) -> Result<Queue, DbError> {
     // Each by its index: of all jobs few are one of these.
     let statement = "SELECT
-        (SELECT count(*) FROM job WHERE lane = ? AND state = 'waiting' AND campaign IS NULL) AS waiting,
-        (SELECT count(*) FROM job WHERE lane = ? AND state = 'waiting' AND campaign IS NOT NULL) AS regrades,
+        (SELECT count(*) FROM job WHERE lane = 'grading' AND state = 'waiting' AND campaign IS NULL) AS waiting,
+        (SELECT count(*) FROM job WHERE lane = 'grading' AND state = 'waiting' AND campaign IS NOT NULL) AS regrades,
         (SELECT count(*) FROM job WHERE lane = 'paused' AND state = 'waiting') AS paused,
-        (SELECT count(*) FROM job WHERE lane = ? AND state = 'running') AS running,
-        (SELECT count(*) FROM job WHERE lane = ? AND state = 'buried' AND replaced = 0) AS buried";
-    let counts = transaction
-        .one(statement, values![Lane::Grading.name(), Lane::Grading.name(), Lane::Grading.name(), Lane::Grading.name()])
-        .await?;
+        (SELECT count(*) FROM job WHERE lane = 'grading' AND state = 'running') AS running,
+        (SELECT count(*) FROM job WHERE lane = 'grading' AND state = 'buried' AND replaced = 0) AS buried";
+    let counts = &transaction.one(statement, values![]).await?;
     let recent = health::recent(&app.0.policy);
     let statement = "SELECT name, version, slots, seen_at, aside_since, faults, fault, fault_at,
            (SELECT count(*) FROM job WHERE job.state = 'running' AND job.worker = worker.name) AS running
         FROM worker WHERE seen_at > {now} - ? AND seen_at <= {now} + ? ORDER BY name LIMIT 1000";
     let workers = transaction.all(statement, values![recent, recent]).await?;
-    Ok(Queue {
-        waiting: counts.int("waiting")?,
-        regrades: counts.int("regrades")?,
-        running: counts.int("running")?,
-        buried: counts.int("buried")?,
-        paused: counts.int("paused")?,
-        workers,
-    })
+    Ok(read_row!(counts => Queue { waiting, regrades, running, buried, paused; workers }))
 }

@@ -1,17 +1,31 @@
 //! Anybody.
 use super::{
-    App, Session,
+    App, NewSecret,
     identity::{self, Way},
 };
-use crate::{db, problem::Problem};
+use crate::{
+    db,
+    problem::{Problem, ensure},
+};
 use std::net::IpAddr;
+
+/// The secrets that a request shows of its asker.
+#[derive(Clone, Default)]
+pub struct Secrets {
+    /// A token.
+    pub bearer: Option<String>,
+    /// The secret of a browser's session.
+    pub session: Option<String>,
+    /// The word of a browser that comes from a learning platform.
+    pub browser: Option<String>,
+    /// Where the request comes from.
+    pub address: Option<IpAddr>,
+}
 
 /// Somebody who need not be signed in.
 pub struct Visitor {
     pub(crate) app: App,
-    pub(super) session: Option<String>,
-    pub(crate) browser: Option<String>,
-    pub(super) address: Option<IpAddr>,
+    pub(super) secrets: Secrets,
 }
 
 impl Visitor {
@@ -19,15 +33,12 @@ impl Visitor {
     ///
     /// # Errors
     /// When it is unknown, used or too old.
-    pub async fn sign_in_by_link(&self, link: &str) -> Result<Session, Problem> {
+    pub async fn sign_in_by_link(&self, link: &str) -> Result<NewSecret, Problem> {
+        let unknown = || Problem::unknown_secret("link", "ask the course's staff for a new one");
         // Only who has a link keeps others from writing.
-        if !self.is_link(link).await? {
-            return Err(Problem::unknown_secret("link", "ask the course's staff for a new one"));
-        }
+        ensure(self.is_link(link).await?, unknown())?;
         let mut transaction = self.app.0.database.begin().await?;
-        let Some((account, way)) = identity::use_link(&mut transaction, link).await? else {
-            return Err(Problem::unknown_secret("link", "ask the course's staff for a new one"));
-        };
+        let (account, way) = identity::use_link(&mut transaction, link).await?.ok_or_else(unknown)?;
         let session = identity::begin_session(&mut transaction, account, way).await?;
         transaction.commit().await?;
         Ok(session)
@@ -46,7 +57,7 @@ impl Visitor {
     ///
     /// # Errors
     /// When it is unknown or revoked.
-    pub async fn sign_in_by_token(&self, token: &str) -> Result<Session, Problem> {
+    pub async fn sign_in_by_token(&self, token: &str) -> Result<NewSecret, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let (account, token) = identity::account_of_token(&mut transaction, token).await?;
         drop(transaction);
@@ -61,7 +72,7 @@ impl Visitor {
     /// # Errors
     /// When the database does not answer.
     pub async fn sign_out(&self) -> Result<(), Problem> {
-        if let Some(session) = &self.session {
+        if let Some(session) = &self.secrets.session {
             let mut transaction = self.app.0.database.read().await?;
             if identity::account_of_session(&mut transaction, session).await?.is_none() {
                 return Ok(());

@@ -86,6 +86,14 @@ impl Transaction {
         self.rows(statement, values).await?.iter().map(T::from_row).collect()
     }
 
+    /// Runs a statement that has one row or none, and reads it.
+    ///
+    /// # Errors
+    /// The database's error, or that of the row.
+    pub async fn find<T: FromRow>(&mut self, statement: &'static str, values: &[Value]) -> Result<Option<T>, DbError> {
+        self.row(statement, values).await?.as_ref().map(T::from_row).transpose()
+    }
+
     /// Runs a statement that has one row or none.
     ///
     /// # Errors

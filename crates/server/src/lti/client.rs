@@ -4,7 +4,7 @@ use crate::{
     db::{Database, DbError},
     secret,
 };
-use serde::Deserialize;
+use serde::{Deserialize, de::DeserializeOwned};
 use serde_json::json;
 use std::{
     collections::HashMap,
@@ -13,7 +13,7 @@ use std::{
     time::{Duration, Instant, SystemTime, UNIX_EPOCH},
 };
 use thiserror::Error;
-use ureq::Agent;
+use ureq::{Agent, http::Request};
 use url::Url;
 
 /// The scopes of tokens (AGS 3.1, NRPS 2.1).
@@ -70,13 +70,19 @@ impl From<DbError> for ServiceFault {
 #[derive(Debug)]
 pub(super) struct ServiceAnswer {
     pub(super) status: u16,
-    pub(super) body: Vec<u8>,
+    body: Vec<u8>,
     /// The header `Link`.
     pub(super) link: Option<String>,
     after: Option<Duration>,
 }
 
 impl ServiceAnswer {
+    /// Its content, which is `what` in words.
+    pub(super) fn read<T: DeserializeOwned>(&self, what: &str) -> Result<T, ServiceFault> {
+        let read = serde_json::from_slice(&self.body);
+        read.map_err(|error| ServiceFault::Refused(format!("{what} can't be read: {error}")))
+    }
+
     /// The answer, if it is one of success.
     pub(super) fn successful(self) -> Result<Self, ServiceFault> {
         // The beginning of what it says, for people: one line.
@@ -108,7 +114,7 @@ type Tokens = HashMap<(i64, String), (String, Instant)>;
 /// Asks platforms.
 pub struct Client {
     agent: Agent,
-    over_http: bool,
+    pub(super) over_http: bool,
     tokens: Mutex<Tokens>,
 }
 
@@ -138,19 +144,10 @@ impl Client {
         Self { agent, over_http, tokens: Mutex::default() }
     }
 
-    pub(super) fn over_http(&self) -> bool {
-        self.over_http
-    }
-
-    /// Reads an address of a platform.
-    pub(super) async fn get(
-        &self,
-        platform: &Platform,
-        address: &str,
-        token: Option<&str>,
-        accept: &'static str,
-    ) -> Result<ServiceAnswer, ServiceFault> {
-        self.send(platform, &Ask { address: address.to_owned(), accept, body: None }, token).await
+    /// Reads what a platform publishes.
+    pub(super) async fn get(&self, platform: &Platform, address: &str) -> Result<ServiceAnswer, ServiceFault> {
+        let ask = Ask { address: address.to_owned(), accept: "application/json", body: None };
+        self.send(platform, &ask, None).await?.successful()
     }
 
     async fn send(&self, platform: &Platform, ask: &Ask, token: Option<&str>) -> Result<ServiceAnswer, ServiceFault> {
@@ -216,8 +213,7 @@ impl Client {
             body: Some(("application/x-www-form-urlencoded", body.into_bytes())),
         };
         let told = self.send(platform, &ask, None).await?.successful()?;
-        let token: Token = serde_json::from_slice(&told.body)
-            .map_err(|error| ServiceFault::Refused(format!("its token can't be read: {error}")))?;
+        let token: Token = told.read("its token")?;
         if token.access_token.is_empty() || token.access_token.bytes().any(|c| !c.is_ascii_graphic()) {
             return Err(ServiceFault::Refused("its token is none".to_owned()));
         }
@@ -234,20 +230,15 @@ pub(super) fn now() -> u64 {
 }
 
 fn blocking(agent: &Agent, url: &Url, ask: &Ask, authorization: Option<&str>) -> Result<ServiceAnswer, ServiceFault> {
+    let mut request = Request::builder().uri(url.as_str()).header("Accept", ask.accept);
+    if let Some(authorization) = authorization {
+        request = request.header("Authorization", authorization);
+    }
     let answer = match &ask.body {
-        None => {
-            let mut request = agent.get(url.as_str()).header("Accept", ask.accept);
-            if let Some(authorization) = authorization {
-                request = request.header("Authorization", authorization);
-            }
-            request.call()
-        }
+        None => agent.run(request.body(()).map_err(ServiceFault::away)?),
         Some((kind, body)) => {
-            let mut request = agent.post(url.as_str()).header("Accept", ask.accept).header("Content-Type", *kind);
-            if let Some(authorization) = authorization {
-                request = request.header("Authorization", authorization);
-            }
-            request.send(body)
+            let request = request.method("POST").header("Content-Type", *kind).body(body);
+            agent.run(request.map_err(ServiceFault::away)?)
         }
     };
     let mut answer = answer.map_err(ServiceFault::away)?;

@@ -1,5 +1,6 @@
 //! Tokens are signed by RS256, which every platform knows (SEC 5.1.1), and by nothing else: other algorithms are
 //! refused before any key is looked at, so that no public key is ever taken for a shared secret.
+use crate::problem::ensure;
 use jsonwebtoken::{
     Algorithm, DecodingKey, DecodingKeyKind, EncodingKey, Header, Validation,
     crypto::{CryptoProvider, JwtSigner, JwtVerifier, KeyUtils},
@@ -54,9 +55,7 @@ impl JwtVerifier for Rs256Verifier {
 }
 
 fn signer(algorithm: &Algorithm, key: &EncodingKey) -> Result<Box<dyn JwtSigner>, Error> {
-    if *algorithm != Algorithm::RS256 {
-        return Err(ErrorKind::InvalidAlgorithm.into());
-    }
+    ensure(*algorithm == Algorithm::RS256, Error::from(ErrorKind::InvalidAlgorithm))?;
     let pair = RsaKeyPair::from_der(key.as_bytes()).map_err(|_| Error::from(ErrorKind::InvalidKeyFormat))?;
     Ok(Box::new(Rs256Signer(pair)))
 }

@@ -75,13 +75,7 @@ async fn all(database: &Database) -> Result<Vec<Row>, DbError> {
 /// The key that signs: the newest that platforms had the time to read of, or the oldest.
 pub(super) async fn signing(database: &Database) -> Result<Key, DbError> {
     let rows = all(database).await?;
-    let mut known = None;
-    for row in &rows {
-        if row.flag("is_known")? {
-            known = Some(row);
-            break;
-        }
-    }
+    let known = rows.iter().find(|row| matches!(row.flag("is_known"), Ok(true)));
     let row = known.or(rows.last()).ok_or_else(|| DbError::Other("there is no key".to_owned()))?;
     let der = URL_SAFE_NO_PAD
         .decode(row.text("private_key")?)

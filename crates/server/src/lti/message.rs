@@ -5,7 +5,10 @@ use super::{
     crypto::{self, LEEWAY, PublicKey},
     keys,
 };
-use crate::db::{Database, DbError};
+use crate::{
+    db::{Database, DbError},
+    problem::ensure,
+};
 use jsonwebtoken::{Algorithm, errors::ErrorKind};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
@@ -62,17 +65,24 @@ impl LtiRole {
     }
 }
 
-/// A person and where they come from.
-#[derive(Debug, Clone)]
-pub struct Message {
+/// Somebody as a platform tells of them.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LtiPerson {
     /// The platform's name for the person, which never changes.
     pub subject: String,
-    /// Their role in the course there; nothing for parents, guests and others.
+    /// Their role in the course there; nothing for parents, guests and others, and for those who left.
     pub role: Option<LtiRole>,
     /// Their name, where the platform tells.
     pub name: Option<String>,
     /// Their address, where the platform tells; used for a login's name only.
     pub email: Option<String>,
+}
+
+/// A person and where they come from.
+#[derive(Debug, Clone)]
+pub struct Message {
+    /// The person.
+    pub person: LtiPerson,
     /// Where they come from.
     pub arrival: Arrival,
 }
@@ -141,7 +151,7 @@ enum TokenAudience {
     Many(Vec<String>),
 }
 
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Default, Deserialize)]
 struct Endpoint {
     #[serde(default)]
     scope: Vec<String>,
@@ -190,9 +200,7 @@ struct Claims {
 /// The name of the key that a message says it is signed with.
 pub(super) fn key_of(token: &str) -> Result<String, Refused> {
     let header = jsonwebtoken::decode_header(token).map_err(|_| Refused::Form)?;
-    if header.alg != Algorithm::RS256 {
-        return Err(Refused::Form);
-    }
+    ensure(header.alg == Algorithm::RS256, Refused::Form)?;
     header.kid.filter(|kid| !kid.is_empty() && kid.len() <= 500).ok_or(Refused::Form)
 }
 
@@ -211,30 +219,20 @@ pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &st
         })?;
     // SEC 5.1.3, 3 to 5: of several audiences, and where it is said at all, the authorized party is this service.
     let several = matches!(&claims.aud, TokenAudience::Many(all) if all.len() > 1);
-    if let TokenAudience::One(audience) = &claims.aud
-        && *audience != settings.client_id
-    {
+    if matches!(&claims.aud, TokenAudience::One(audience) if *audience != settings.client_id) {
         return Err(Refused::Foreign("the audience"));
     }
     if (several && claims.azp.is_none()) || claims.azp.as_ref().is_some_and(|azp| *azp != settings.client_id) {
         return Err(Refused::Foreign("the authorized party"));
     }
     let now = now();
-    if claims.iat > now + LEEWAY || claims.iat + OLDEST + LEEWAY < now {
-        return Err(Refused::Time);
-    }
-    if crate::store::Digest::of(claims.nonce.as_bytes()).as_str() != nonce {
-        return Err(Refused::Foreign("the nonce"));
-    }
-    if claims.version != "1.3.0" {
-        return Err(Refused::Content("it is of another version of LTI than 1.3.0".to_owned()));
-    }
+    ensure(claims.iat <= now + LEEWAY && now <= claims.iat + OLDEST + LEEWAY, Refused::Time)?;
+    ensure(crate::store::Digest::of(claims.nonce.as_bytes()).as_str() == nonce, Refused::Foreign("the nonce"))?;
+    ensure(claims.version == "1.3.0", Refused::Content("it is of another version of LTI than 1.3.0".to_owned()))?;
     if !settings.deployments.contains(&claims.deployment) {
         return Err(Refused::Deployment(claims.deployment.chars().take(255).collect()));
     }
-    if claims.sub.is_empty() || claims.sub.len() > 255 {
-        return Err(Refused::Content("sub is 1 to 255 characters long".to_owned()));
-    }
+    ensure((1..=255).contains(&claims.sub.len()), Refused::Content("sub is 1 to 255 characters long".to_owned()))?;
     let missing = |what: &str| Refused::Content(format!("{what} is missing"));
     let (resource, deep_linking) = match claims.message_type.as_str() {
         "LtiResourceLinkRequest" => (Some(claims.resource.ok_or_else(|| missing("resource_link"))?), None),
@@ -252,16 +250,17 @@ pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &st
     if !is_name(&context.id) || resource.as_ref().is_some_and(|resource| !is_name(&resource.id)) {
         return Err(Refused::Content("the names of courses and links are 1 to 255 characters long".to_owned()));
     }
-    let endpoint = claims.endpoint.unwrap_or(Endpoint { scope: Vec::new(), lineitem: None, lineitems: None });
+    let endpoint = claims.endpoint.unwrap_or_default();
     let may = |wanted: &str| endpoint.scope.iter().any(|scope| scope == wanted);
     let scores = may(scope::SCORE);
     let columns = scores && may(scope::LINE_ITEM);
-    let spoken = [claims.given_name, claims.family_name].into_iter().flatten().collect::<Vec<_>>().join(" ");
     Ok(Message {
-        subject: claims.sub,
-        role: role_of(&claims.roles),
-        name: claims.name.or(Some(spoken)).filter(|name| !name.trim().is_empty()),
-        email: claims.email,
+        person: LtiPerson {
+            subject: claims.sub,
+            role: role_of(&claims.roles),
+            name: name_of(claims.name, [claims.given_name, claims.family_name]),
+            email: claims.email,
+        },
         arrival: Arrival {
             deployment: claims.deployment,
             context,
@@ -273,6 +272,12 @@ pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &st
             deep_linking,
         },
     })
+}
+
+/// The name of somebody, as it is or of its parts.
+pub(super) fn name_of(whole: Option<String>, parts: [Option<String>; 2]) -> Option<String> {
+    let spoken = parts.into_iter().flatten().collect::<Vec<_>>().join(" ");
+    whole.or(Some(spoken)).filter(|name| !name.trim().is_empty())
 }
 
 /// The role of somebody in the course by the platform's roles (LTI A.2.3). Their roles in the institution or system say
@@ -298,9 +303,8 @@ pub(crate) fn role_of(roles: &[String]) -> Option<LtiRole> {
         return Some(LtiRole::Student);
     }
     let administers = |role: &String| {
-        ["institution/person", "system/person"]
-            .iter()
-            .any(|place| *role == format!("http://purl.imsglobal.org/vocab/lis/v2/{place}#Administrator"))
+        let place = role.strip_prefix("http://purl.imsglobal.org/vocab/lis/v2/");
+        matches!(place, Some("institution/person#Administrator" | "system/person#Administrator"))
     };
     (named.is_empty() && roles.iter().any(administers)).then_some(LtiRole::Staff)
 }

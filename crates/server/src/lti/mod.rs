@@ -17,9 +17,11 @@ mod trust;
 
 pub use client::{Client, ServiceFault};
 pub use keys::{new_key, published};
-pub use message::{Arrival, Context, DeepLinking, LtiRole, Message, Refused, Resource, deep_linking_response};
+pub use message::{
+    Arrival, Context, DeepLinking, LtiPerson, LtiRole, Message, Refused, Resource, deep_linking_response,
+};
 pub use platform::{Platform, PlatformWish};
-pub use roster::{RosterMember, fetch as fetch_roster};
+pub use roster::fetch as fetch_roster;
 pub use sender::run as send_scores;
 
 pub(crate) use client::scope;
@@ -48,7 +50,7 @@ impl Lti {
 
     /// Whether platforms may be reached, and the service used by them, without TLS.
     pub fn over_http(&self) -> bool {
-        self.client.over_http()
+        self.client.over_http
     }
 
     /// Reads what a platform says about somebody who comes from it, and checks all of it (SEC 5.1.3).

@@ -1,7 +1,7 @@
 //! A platform as an administrator registers it.
 use crate::{
-    db::{DbError, Row},
-    problem::Problem,
+    db::{DbError, FromRow, Row},
+    problem::{Problem, ensure},
     schema::{Host, HttpsUrl, Word},
 };
 use serde::{Deserialize, Serialize};
@@ -77,9 +77,7 @@ impl PlatformWish {
     pub fn check(&self, over_http: bool) -> Result<(), Problem> {
         let is_word = |text: &str| (1..=255).contains(&text.chars().count()) && !text.chars().any(char::is_control);
         for (name, text) in [("issuer", &self.issuer), ("client_id", &self.client_id)] {
-            if !is_word(text) {
-                return Err(Problem::invalid(format!("{name} is 1 to 255 characters long")));
-            }
+            ensure(is_word(text), Problem::invalid(format!("{name} is 1 to 255 characters long")))?;
         }
         for (name, text) in
             [("login_url", &self.login_url), ("token_url", &self.token_url), ("keys_url", &self.keys_url)]
@@ -103,13 +101,15 @@ impl PlatformWish {
     }
 }
 
-impl Platform {
-    pub(crate) fn read(row: &Row) -> Result<Self, DbError> {
+impl FromRow for Platform {
+    fn from_row(row: &Row) -> Result<Self, DbError> {
         let settings = serde_json::from_str(&row.text("settings")?)
             .map_err(|error| DbError::Other(format!("the settings of a platform can't be read: {error}")))?;
         Ok(Self { id: row.int("id")?, name: row.text("name")?, settings })
     }
+}
 
+impl Platform {
     /// The hosts that its services may be on.
     fn places(&self, over_http: bool) -> Vec<String> {
         let settings = &self.settings;

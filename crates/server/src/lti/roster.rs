@@ -1,8 +1,8 @@
 //! The people in a platform's course, as the platform tells (NRPS 2).
 use super::{
-    Client, LtiRole, Platform, ServiceFault,
+    Client, LtiPerson, Platform, ServiceFault,
     client::{Ask, scope},
-    message::role_of,
+    message::{name_of, role_of},
 };
 use crate::db::Database;
 use serde::Deserialize;
@@ -13,19 +13,6 @@ const MEMBERS: usize = 50_000;
 
 /// The media type of a page of members.
 const KIND: &str = "application/vnd.ims.lti-nrps.v2.membershipcontainer+json";
-
-/// Somebody in a platform's course.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct RosterMember {
-    /// The platform's name for the person.
-    pub subject: String,
-    /// Their name, where the platform tells.
-    pub name: Option<String>,
-    /// Their address, where the platform tells.
-    pub email: Option<String>,
-    /// Their role; nothing for those who are none of ours, or not any more.
-    pub role: Option<LtiRole>,
-}
 
 #[derive(Deserialize)]
 struct RosterPage {
@@ -53,15 +40,14 @@ pub async fn fetch(
     database: &Database,
     platform: &Platform,
     address: &str,
-) -> Result<Vec<RosterMember>, ServiceFault> {
+) -> Result<Vec<LtiPerson>, ServiceFault> {
     let mut members = Vec::new();
     let mut next = Some(address.to_owned());
     for _ in 0..PAGES {
         let Some(address) = next else { return Ok(members) };
         let ask = Ask { address, accept: KIND, body: None };
         let told = client.call(database, platform, scope::MEMBERS, &ask).await?;
-        let page: RosterPage = serde_json::from_slice(&told.body)
-            .map_err(|error| ServiceFault::Refused(format!("its members can't be read: {error}")))?;
+        let page: RosterPage = told.read("its members")?;
         members.extend(page.members.into_iter().filter_map(read));
         if members.len() > MEMBERS {
             break;
@@ -71,15 +57,14 @@ pub async fn fetch(
     Err(ServiceFault::Refused("its list of members has no end".to_owned()))
 }
 
-fn read(member: Member) -> Option<RosterMember> {
+fn read(member: Member) -> Option<LtiPerson> {
     if member.user_id.is_empty() || member.user_id.len() > 255 {
         return None;
     }
     let is_active = member.status.as_deref().is_none_or(|status| status == "Active");
-    let spoken = [member.given_name, member.family_name].into_iter().flatten().collect::<Vec<_>>().join(" ");
-    Some(RosterMember {
+    Some(LtiPerson {
         subject: member.user_id,
-        name: member.name.or(Some(spoken)).filter(|name| !name.trim().is_empty()),
+        name: name_of(member.name, [member.given_name, member.family_name]),
         email: member.email,
         role: role_of(&member.roles).filter(|_| is_active),
     })

@@ -6,7 +6,7 @@
 //! changes nothing.
 use super::Platform;
 use crate::{
-    db::{DbError, Row, Transaction, read_row},
+    db::{DbError, FromRow, Row, Transaction, read_row},
     late::Late,
     queue::{self, Lane, NewJob, Notifier, Turn},
     shown::Shown,
@@ -28,18 +28,27 @@ pub(super) struct Order {
     pub(super) again: bool,
 }
 
+/// The links of platforms that are to hear of students' submissions, with the students; what follows says of which.
+macro_rules! orders {
+    ($which:literal) => {
+        concat!(
+            "SELECT DISTINCT platform_link.id AS link, submission.account FROM submission
+             JOIN assignment ON assignment.id = submission.assignment
+             JOIN member ON member.course = assignment.course AND member.account = submission.account
+                AND member.role = 'student'
+             JOIN platform_link ON platform_link.assignment = submission.assignment
+             JOIN platform_member ON platform_member.platform_course = platform_link.platform_course
+                AND platform_member.account = submission.account
+             WHERE coalesce(platform_link.line_item, platform_link.line_items) IS NOT NULL AND ",
+            $which,
+            " ORDER BY platform_link.id, submission.account"
+        )
+    };
+}
+
 /// Notes that what counts for a submission has changed: the platforms that its owner came from are to be told.
 pub(crate) async fn changed(transaction: &mut Transaction, submission: i64) -> Result<(), DbError> {
-    let statement = "SELECT platform_link.id AS link, submission.account FROM submission
-        JOIN assignment ON assignment.id = submission.assignment
-        JOIN member ON member.course = assignment.course AND member.account = submission.account
-           AND member.role = 'student'
-        JOIN platform_link ON platform_link.assignment = submission.assignment
-        JOIN platform_member ON platform_member.platform_course = platform_link.platform_course
-           AND platform_member.account = submission.account
-        WHERE submission.id = ? AND coalesce(platform_link.line_item, platform_link.line_items) IS NOT NULL
-        ORDER BY platform_link.id";
-    let rows = transaction.rows(statement, values![submission]).await?;
+    let rows = transaction.rows(orders!("submission.id = ?"), values![submission]).await?;
     enqueue(transaction, &rows, false).await.map(drop)
 }
 
@@ -50,45 +59,21 @@ pub(crate) async fn changed_by(
     after: i64,
     last: i64,
 ) -> Result<(), DbError> {
-    let statement = "SELECT DISTINCT platform_link.id AS link, submission.account FROM result
-        JOIN submission ON submission.id = result.submission
-        JOIN assignment ON assignment.id = submission.assignment
-        JOIN member ON member.course = assignment.course AND member.account = submission.account
-           AND member.role = 'student'
-        JOIN platform_link ON platform_link.assignment = submission.assignment
-        JOIN platform_member ON platform_member.platform_course = platform_link.platform_course
-           AND platform_member.account = submission.account
-        WHERE result.campaign = ? AND result.id > ? AND result.id <= ?
-           AND coalesce(platform_link.line_item, platform_link.line_items) IS NOT NULL
-        ORDER BY platform_link.id, submission.account";
+    let statement =
+        orders!("submission.id IN (SELECT submission FROM result WHERE campaign = ? AND id > ? AND id <= ?)");
     let rows = transaction.rows(statement, values![campaign, after, last]).await?;
     enqueue(transaction, &rows, false).await.map(drop)
 }
 
 /// Has all scores of an assignment sent, with `again` also those that platforms know; how many these are.
 pub(crate) async fn send_all(transaction: &mut Transaction, assignment: i64, again: bool) -> Result<usize, DbError> {
-    let statement = "SELECT platform_link.id AS link, member.account FROM platform_link
-        JOIN assignment ON assignment.id = platform_link.assignment
-        JOIN platform_member ON platform_member.platform_course = platform_link.platform_course
-        JOIN member ON member.course = assignment.course AND member.account = platform_member.account
-           AND member.role = 'student'
-        WHERE platform_link.assignment = ?
-           AND coalesce(platform_link.line_item, platform_link.line_items) IS NOT NULL
-           AND EXISTS (SELECT 1 FROM submission
-               WHERE submission.assignment = platform_link.assignment AND submission.account = member.account)
-        ORDER BY platform_link.id, member.account";
-    let rows = transaction.rows(statement, values![assignment]).await?;
+    let rows = transaction.rows(orders!("submission.assignment = ?"), values![assignment]).await?;
     enqueue(transaction, &rows, again).await
 }
 
 /// Has what an account is worth sent to a link that it just came by.
 pub(crate) async fn arrived(transaction: &mut Transaction, link: i64, account: i64) -> Result<(), DbError> {
-    let statement = "SELECT DISTINCT platform_link.id AS link, submission.account FROM platform_link
-        JOIN submission ON submission.assignment = platform_link.assignment AND submission.account = ?
-        JOIN assignment ON assignment.id = platform_link.assignment
-        JOIN member ON member.course = assignment.course AND member.account = submission.account
-           AND member.role = 'student'
-        WHERE platform_link.id = ? AND coalesce(platform_link.line_item, platform_link.line_items) IS NOT NULL";
+    let statement = orders!("submission.account = ? AND platform_link.id = ?");
     let rows = transaction.rows(statement, values![account, link]).await?;
     enqueue(transaction, &rows, false).await.map(drop)
 }
@@ -100,8 +85,8 @@ async fn enqueue(transaction: &mut Transaction, rows: &[Row], again: bool) -> Re
         if !again && queue::waits(transaction, turn).await? {
             continue;
         }
-        let payload = serde_json::to_string(&order).map_err(|error| DbError::Other(error.to_string()))?;
-        let job = NewJob { lane: Lane::Passback, submission: None, campaign: None, turn, payload: &payload };
+        let payload = &serde_json::to_string(&order).map_err(|error| DbError::Other(error.to_string()))?;
+        let job = NewJob { lane: Lane::Passback, submission: None, campaign: None, turn, payload };
         queue::enqueue(transaction, &job).await?;
     }
     if !rows.is_empty() {
@@ -154,22 +139,19 @@ pub(super) async fn prepare(transaction: &mut Transaction, order: Order) -> Resu
             }
             before.int("stamp")?
         }
-        _ => transaction
-            .one(
-                "INSERT INTO platform_score (link, account, content, stamp) VALUES (?, ?, ?, {now})
-                 ON CONFLICT (link, account) DO UPDATE SET content = excluded.content, sent_at = NULL, fault = NULL,
-                    stamp = CASE WHEN excluded.stamp > platform_score.stamp THEN excluded.stamp
-                        ELSE platform_score.stamp + 1 END
-                 RETURNING stamp",
-                values![order.link, order.account, text],
-            )
-            .await?
-            .int("stamp")?,
+        _ => {
+            let statement = "INSERT INTO platform_score (link, account, content, stamp) VALUES (?, ?, ?, {now})
+                ON CONFLICT (link, account) DO UPDATE SET content = excluded.content, sent_at = NULL, fault = NULL,
+                   stamp = CASE WHEN excluded.stamp > platform_score.stamp THEN excluded.stamp
+                       ELSE platform_score.stamp + 1 END
+                RETURNING stamp";
+            transaction.one(statement, values![order.link, order.account, text]).await?.int("stamp")?
+        }
     };
     let row = &row;
     Ok(Some(read_row!(row => Parcel {
         subject, line_item, line_items, resource, slug, title;
-        platform: Platform::read(row)?,
+        platform: Platform::from_row(row)?,
         order,
         content,
         stamp,
@@ -180,8 +162,8 @@ pub(super) async fn prepare(transaction: &mut Transaction, order: Order) -> Resu
 /// platform is told that they come, and when the grader failed, that somebody has to look: never a zero that nobody
 /// earned. Of groups that are hidden and not published platforms hear nothing: they show what they hear.
 async fn content(transaction: &mut Transaction, assignment: i64, account: i64) -> Result<Option<Value>, DbError> {
-    let statement = "SELECT job.state, result.points, result.max_points, assignment.published_at, result.shown, mark.points AS mark,
-           submission.created_at, assignment.settings, extension.due_at AS own_due FROM submission
+    let statement = "SELECT job.state, result.points, result.max_points, assignment.published_at, result.shown,
+           mark.points AS mark, submission.created_at, assignment.settings, extension.due_at AS own_due FROM submission
         LEFT JOIN extension ON extension.assignment = submission.assignment AND extension.account = submission.account
         LEFT JOIN mark ON mark.submission = submission.id
         JOIN assignment ON assignment.id = submission.assignment
@@ -231,11 +213,9 @@ pub(super) async fn sent(transaction: &mut Transaction, parcel: &Parcel) -> Resu
     let statement =
         "UPDATE platform_score SET sent_at = {now}, fault = NULL WHERE link = ? AND account = ? AND stamp = ?";
     transaction.execute(statement, values![parcel.order.link, parcel.order.account, parcel.stamp]).await?;
-    let score = &parcel.content;
+    let (score, short) = (&parcel.content, |number: f64| rounded(&number.to_string()));
     let what = match (score["scoreGiven"].as_f64(), score["scoreMaximum"].as_f64()) {
-        (Some(points), Some(most)) => {
-            format!("{} of {} points", rounded(&points.to_string()), rounded(&most.to_string()))
-        }
+        (Some(points), Some(most)) => format!("{} of {} points", short(points), short(most)),
         _ => score["gradingProgress"].as_str().unwrap_or_default().to_owned(),
     };
     note(transaction, parcel.order, "score sent", &format!("{what}, to {}", parcel.platform.name)).await
@@ -244,8 +224,7 @@ pub(super) async fn sent(transaction: &mut Transaction, parcel: &Parcel) -> Resu
 /// Notes why a platform does not take a score, for staff.
 pub(super) async fn refused(transaction: &mut Transaction, order: Order, fault: &str) -> Result<(), DbError> {
     let statement = "UPDATE platform_score SET fault = ? WHERE link = ? AND account = ? AND sent_at IS NULL";
-    transaction.execute(statement, values![fault, order.link, order.account]).await?;
-    Ok(())
+    transaction.execute(statement, values![fault, order.link, order.account]).await.map(drop)
 }
 
 /// The same for a job that was tried too often; whether it was one of these.
@@ -262,8 +241,7 @@ async fn note(transaction: &mut Transaction, order: Order, kind: &str, text: &st
         SELECT {now}, ?, assignment.course, assignment.id, account.login || ': ' || CAST(? AS TEXT)
         FROM platform_link JOIN assignment ON assignment.id = platform_link.assignment
         JOIN account ON account.id = ? WHERE platform_link.id = ?";
-    transaction.execute(statement, values![kind, text, order.account, order.link]).await?;
-    Ok(())
+    transaction.execute(statement, values![kind, text, order.account, order.link]).await.map(drop)
 }
 
 /// How far the column of a link is.
@@ -298,6 +276,5 @@ pub(super) async fn column_made(
 ) -> Result<(), DbError> {
     let statement =
         "UPDATE platform_link SET line_item = coalesce(line_item, CAST(? AS TEXT)), making_until = NULL WHERE id = ?";
-    transaction.execute(statement, values![address, link]).await?;
-    Ok(())
+    transaction.execute(statement, values![address, link]).await.map(drop)
 }

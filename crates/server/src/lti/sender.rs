@@ -218,12 +218,12 @@ async fn find_or_make(
     parcel: &Parcel,
     container: &str,
 ) -> Result<String, ServiceFault> {
-    let wrong = |error: String| ServiceFault::Refused(format!("its columns can't be read: {error}"));
-    let mut url = Url::parse(container).map_err(|error| wrong(error.to_string()))?;
+    let wrong = |error| ServiceFault::Refused(format!("its columns can't be read: {error}"));
+    let mut url = Url::parse(container).map_err(wrong)?;
     url.query_pairs_mut().append_pair("resource_link_id", &parcel.resource);
     let ask = Ask { address: url.into(), accept: "application/vnd.ims.lis.v2.lineitemcontainer+json", body: None };
     let told = lti.client.call(database, &parcel.platform, scope::LINE_ITEM, &ask).await?;
-    let found: Vec<LineItem> = serde_json::from_slice(&told.body).map_err(|error| wrong(error.to_string()))?;
+    let found: Vec<LineItem> = told.read("its columns")?;
     if let Some(item) = found.into_iter().find(|item| item.link.as_ref() == Some(&parcel.resource)) {
         return Ok(item.id);
     }
@@ -234,8 +234,7 @@ async fn find_or_make(
     const KIND: &str = "application/vnd.ims.lis.v2.lineitem+json";
     let ask = Ask { address: container.to_owned(), accept: KIND, body: Some((KIND, item.to_string().into_bytes())) };
     let told = lti.client.call(database, &parcel.platform, scope::LINE_ITEM, &ask).await?;
-    let made: LineItem = serde_json::from_slice(&told.body).map_err(|error| wrong(error.to_string()))?;
-    Ok(made.id)
+    Ok(told.read::<LineItem>("its columns")?.id)
 }
 
 #[cfg(test)]

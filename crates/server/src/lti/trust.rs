@@ -45,15 +45,14 @@ struct Key {
 }
 
 /// The keys of a set that sign by RS256; others are not ours to judge.
-fn read(set: &[u8]) -> Result<Vec<PublicKey>, serde_json::Error> {
-    let set: KeySet = serde_json::from_slice(set)?;
+fn usable(set: KeySet) -> Vec<PublicKey> {
     let keys = set.keys.into_iter().filter_map(|key| serde_json::from_value::<Key>(key).ok());
     let usable = keys.filter(|key| {
         key.kty == "RSA"
             && key.alg.as_deref().is_none_or(|alg| alg == "RS256")
             && key.r#use.as_deref().is_none_or(|purpose| purpose == "sig")
     });
-    Ok(usable.filter_map(|key| Some(PublicKey { kid: key.kid?, n: key.n, e: key.e })).collect())
+    usable.filter_map(|key| Some(PublicKey { kid: key.kid?, n: key.n, e: key.e })).collect()
 }
 
 impl Trust {
@@ -76,18 +75,14 @@ impl Trust {
                 return named(known).ok_or(Refused::UnknownKey);
             }
         }
-        let asked = client.get(platform, &platform.settings.keys_url, None, "application/json").await;
-        let keys = asked.map_err(|fault| fault.to_string()).and_then(|answer| {
-            let told = answer.successful().map_err(|fault| fault.to_string())?;
-            read(&told.body).map_err(|error| format!("its keys can't be read: {error}"))
-        });
-        let now = Instant::now();
+        let asked = client.get(platform, &platform.settings.keys_url).await;
+        let keys = asked.and_then(|answer| answer.read("its keys").map(usable));
+        let (now, address) = (Instant::now(), platform.settings.keys_url.clone());
         let newly = match keys {
-            Ok(keys) => Known { address: platform.settings.keys_url.clone(), keys, read_at: Some(now), asked_at: now },
+            Ok(keys) => Known { address, keys, read_at: Some(now), asked_at: now },
             Err(error) => {
-                tracing::warn!(platform = platform.name, error, "a platform's keys can't be had");
+                tracing::warn!(platform = platform.name, %error, "a platform's keys can't be had");
                 let before = known.filter(|known| known.read_at.is_some_and(|at| at.elapsed() < STALE));
-                let address = platform.settings.keys_url.clone();
                 let none = || Known { address, keys: Vec::new(), read_at: None, asked_at: now };
                 Known { asked_at: now, ..before.unwrap_or_else(none) }
             }
@@ -113,6 +108,7 @@ mod tests {
             {"kty": "RSA", "n": "AQ", "e": "AQAB"},
             {"kty": "EC", "kid": "curve", "crv": "P-256", "x": "AQ", "y": "AQ"},
             {"kty": "oct", "kid": "shared", "k": "AQ"}, 7]}"#;
+        let read = |set: &[u8]| serde_json::from_slice(set).map(usable);
         let names: Vec<String> = read(set).expect("a set").into_iter().map(|key| key.kid).collect();
         assert_eq!(names, ["a", "plain"]);
         assert!(read(b"[]").is_err() && read(b"no").is_err());

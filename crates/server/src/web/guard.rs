@@ -43,17 +43,20 @@ pub(super) async fn renew(State(app): State<App>, mut request: Request, next: Ne
     let mut response = next.run(request).await;
     if let Some(session) = renewed.session()
         && !response.headers().contains_key(header::SET_COOKIE)
-        && let Ok(cookie) = HeaderValue::from_str(&session_cookie(&app, session))
+        && let Ok(cookie) = HeaderValue::from_str(&session_cookie(&app, session, SESSION))
     {
         response.headers_mut().append(header::SET_COOKIE, cookie);
     }
     response
 }
 
-/// A session's cookie, which lasts as long as the session does.
-pub(super) fn session_cookie(app: &App, session: &str) -> String {
+/// How long a session lasts, in seconds.
+pub(super) const SESSION: u32 = 1_209_600;
+
+/// A session's cookie, for a time in seconds.
+pub(super) fn session_cookie(app: &App, session: &str, lasts: u32) -> String {
     let (name, secure) = (who::cookie_name(app.is_secure()), if app.is_secure() { "; Secure" } else { "" });
-    format!("{name}={session}; Path=/; HttpOnly; SameSite=Lax; Max-Age=1209600{secure}")
+    format!("{name}={session}; Path=/; HttpOnly; SameSite=Lax; Max-Age={lasts}{secure}")
 }
 
 fn is_harmless(method: &Method) -> bool {

@@ -2,7 +2,7 @@
 use crate::{access::App, problem::Problem};
 use axum::{
     extract::{FromRequest, FromRequestParts, MatchedPath, Path, Query, Request},
-    http::{HeaderMap, header, request::Parts},
+    http::{HeaderMap, Method, header, request::Parts},
 };
 use futures_util::StreamExt;
 use serde::{Deserialize, de::DeserializeOwned};
@@ -14,7 +14,7 @@ pub(super) struct Body<T>(pub(super) T);
 /// A body of text.
 pub(super) struct Text(pub(super) String);
 
-/// A body of a form.
+/// The fields of a form: a body, or the query of the address where a browser only asks.
 pub(super) struct Fields<T>(pub(super) T);
 
 /// The names in an address; a part that it does not have is empty.
@@ -32,6 +32,18 @@ pub(super) struct At {
 
 /// The query of the address.
 pub(super) struct Asked<T>(pub(super) T);
+
+/// Where a list is to end, as a query.
+#[derive(Deserialize)]
+pub(super) struct Before {
+    pub(super) before: Option<i64>,
+}
+
+/// Where a list is to begin, as a query.
+#[derive(Deserialize)]
+pub(super) struct After {
+    pub(super) after: Option<i64>,
+}
 
 fn is_of_type(headers: &HeaderMap, wanted: &str) -> bool {
     let value = headers.get(header::CONTENT_TYPE).and_then(|value| value.to_str().ok()).unwrap_or_default();
@@ -112,6 +124,10 @@ impl<T: DeserializeOwned> FromRequest<App> for Fields<T> {
     type Rejection = Problem;
 
     async fn from_request(request: Request, state: &App) -> Result<Self, Problem> {
+        if matches!(*request.method(), Method::GET | Method::HEAD) {
+            let Asked(form) = Asked::from_request_parts(&mut request.into_parts().0, state).await?;
+            return Ok(Self(form));
+        }
         if !is_of_type(request.headers(), "application/x-www-form-urlencoded") {
             return Err(Problem::invalid("the body is to be a form"));
         }

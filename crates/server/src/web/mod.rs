@@ -41,7 +41,7 @@ pub fn openapi() -> String {
 /// Everything that is served.
 pub fn router(app: App) -> Router {
     let (api, _) = api_router();
-    let pages = pages::router().layer(middleware::from_fn_with_state(app.clone(), pages::show_problems));
+    let pages = pages::router().layer(middleware::from_fn(pages::show_problems));
     Router::new()
         .merge(api)
         .merge(pages)

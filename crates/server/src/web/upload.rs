@@ -2,7 +2,7 @@
 use crate::{
     access::{App, Settings, is_file_name},
     archive::{self, ArchiveLimits},
-    problem::Problem,
+    problem::{Problem, ensure},
     task::Form,
 };
 use axum::{
@@ -236,17 +236,10 @@ static LOOKING: tokio::sync::Semaphore = tokio::sync::Semaphore::const_new(2);
 
 /// The form of a file, and whether it can be that; a refusal names what the assignment takes.
 pub(super) async fn examine(file: &Path, said: Option<&str>, settings: &Settings) -> Result<Form, Problem> {
-    let said = match said {
-        None => None,
-        Some("program") => Some(Form::Program),
-        Some("sources") => Some(Form::Sources),
-        Some("traces") => Some(Form::Traces),
-        Some(_) => return Err(Problem::invalid("form is program, sources or traces")),
-    };
-    let archives: Vec<&str> = [(Form::Sources, "sources"), (Form::Traces, "traces")]
-        .into_iter()
-        .filter_map(|(form, name)| settings.takes(form).then_some(name))
-        .collect();
+    let wrong = || Problem::invalid("form is program, sources or traces");
+    let said = said.map(|name| Form::named(name).ok_or_else(wrong)).transpose()?;
+    let archives = [Form::Sources, Form::Traces].into_iter().filter(|form| settings.takes(*form));
+    let archives: Vec<&str> = archives.map(Form::name).collect();
     let archives =
         (!archives.is_empty()).then(|| format!("an archive of {} ({})", archives.join(" or "), archive::KNOWN));
     let program = settings.takes(Form::Program).then(|| PROGRAM.to_owned());
@@ -259,9 +252,7 @@ pub(super) async fn examine(file: &Path, said: Option<&str>, settings: &Settings
 fn examine_now(file: &Path, said: Option<Form>, wanted: &str) -> Result<Form, Problem> {
     let mut start = Vec::new();
     std::fs::File::open(file)?.take(512).read_to_end(&mut start)?;
-    if start.is_empty() {
-        return Err(Problem::unusable("the file is empty"));
-    }
+    ensure(!start.is_empty(), Problem::unusable("the file is empty"))?;
     let is_program = start.starts_with(b"\x7fELF") || start.starts_with(b"#!");
     let found = archive::described(&start);
     let form = said.unwrap_or(if is_program { Form::Program } else { Form::Sources });

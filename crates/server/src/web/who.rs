@@ -54,18 +54,28 @@ fn of_parts(parts: &Parts, app: &App) -> Secrets {
     Secrets { address, ..secrets(&parts.headers, app.is_secure()) }
 }
 
-impl FromRequestParts<App> for Visitor {
-    type Rejection = Problem;
-
-    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Problem> {
-        Ok(app.visitor(of_parts(parts, app)))
-    }
+/// The course in an address, whatever else is in it.
+#[derive(Deserialize)]
+struct InCourse {
+    course: String,
 }
 
-impl FromRequestParts<App> for Person {
-    type Rejection = Problem;
+/// Roles, and how each is told from the head of a request.
+macro_rules! roles {
+    ($($role:ty: |$parts:ident, $app:ident| $tell:expr;)*) => {
+        $(impl FromRequestParts<App> for $role {
+            type Rejection = Problem;
 
-    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Problem> {
+            async fn from_request_parts($parts: &mut Parts, $app: &App) -> Result<Self, Problem> {
+                $tell
+            }
+        })*
+    };
+}
+
+roles! {
+    Visitor: |parts, app| Ok(app.visitor(of_parts(parts, app)));
+    Person: |parts, app| {
         let secrets = of_parts(parts, app);
         let person = app.person(&secrets).await?;
         parts.extensions.insert(SignedIn);
@@ -76,49 +86,19 @@ impl FromRequestParts<App> for Person {
             drop(renewed.0.set(secret));
         }
         Ok(person)
-    }
-}
-
-/// The course in an address, whatever else is in it.
-#[derive(Deserialize)]
-struct InCourse {
-    course: String,
-}
-
-impl FromRequestParts<App> for Member {
-    type Rejection = Problem;
-
-    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Problem> {
+    };
+    Member: |parts, app| {
         let person = Person::from_request_parts(parts, app).await?;
         let at = Path::<InCourse>::from_request_parts(parts, app).await;
         person.member_of(&at.map(|Path(at)| at.course).unwrap_or_default()).await
-    }
-}
-
-impl FromRequestParts<App> for Staff {
-    type Rejection = Problem;
-
-    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Problem> {
-        Member::from_request_parts(parts, app).await?.staff()
-    }
-}
-
-impl FromRequestParts<App> for Admin {
-    type Rejection = Problem;
-
-    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Problem> {
-        Person::from_request_parts(parts, app).await?.admin()
-    }
-}
-
-impl FromRequestParts<App> for Remote {
-    type Rejection = Problem;
-
-    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Problem> {
+    };
+    Staff: |parts, app| Member::from_request_parts(parts, app).await?.staff();
+    Admin: |parts, app| Person::from_request_parts(parts, app).await?.admin();
+    Remote: |parts, app| {
         let token = of_parts(parts, app).bearer.ok_or_else(Problem::not_signed_in)?;
         let name = parts.headers.get("fosssim-worker").and_then(|name| name.to_str().ok()).unwrap_or("worker");
         let remote = app.remote(&token, name).await?;
         parts.extensions.insert(SignedIn);
         Ok(remote)
-    }
+    };
 }

@@ -1,22 +1,13 @@
 //! Accounts, tokens, and what administrators see.
-use super::super::input::{Asked, At, Body};
+use super::super::input::{Asked, At, Before, Body};
 use crate::{
-    access::{Account, Admin, Event, NewSecret, Person, Queue, TokenInfo},
+    access::{Account, Admin, Event, Link, NewToken, Person, Queue, TokenInfo},
     problem::Problem,
     schema::{Slug, Title},
 };
 use axum::{Json, http::StatusCode};
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use utoipa::ToSchema;
-
-/// A token with its secret, which is shown this once.
-#[derive(Serialize, ToSchema)]
-pub(super) struct NewToken {
-    #[serde(flatten)]
-    info: TokenInfo,
-    /// The secret itself.
-    token: String,
-}
 
 /// The name of a token.
 #[derive(Deserialize, ToSchema)]
@@ -56,24 +47,6 @@ pub(super) struct AccountWish {
     is_admin: bool,
 }
 
-/// A link that signs in once, good for a week.
-#[derive(Serialize, ToSchema)]
-pub(super) struct Link {
-    /// The link; nothing where the account was there before.
-    pub(super) link: Option<String>,
-}
-
-/// Where to look on from.
-#[derive(Deserialize)]
-pub(super) struct Before {
-    pub(super) before: Option<i64>,
-}
-
-/// A link as people open it.
-pub(super) fn link(app: &crate::access::App, secret: Option<NewSecret>) -> Link {
-    Link { link: secret.map(|secret| app.welcome_address(&secret)) }
-}
-
 /// The one who asks.
 #[utoipa::path(get, path = "/api/v1/me", tag = "accounts",
     responses((status = 200, body = Account)))]
@@ -82,8 +55,8 @@ pub(super) async fn me(person: Person) -> Json<Account> {
 }
 
 /// Sets one's own password, where the server takes passwords. All sessions end.
-#[utoipa::path(put, path = "/api/v1/password", tag = "accounts", security(("session" = [])), request_body = PasswordWish,
-    responses((status = 204, description = "Set")))]
+#[utoipa::path(put, path = "/api/v1/password", tag = "accounts", security(("session" = [])),
+    request_body = PasswordWish, responses((status = 204, description = "Set")))]
 pub(super) async fn set_password(person: Person, Body(wish): Body<PasswordWish>) -> Result<StatusCode, Problem> {
     person.set_password(&wish.old, &wish.new).await?;
     Ok(StatusCode::NO_CONTENT)
@@ -96,31 +69,7 @@ pub(super) async fn new_token(
     person: Person,
     Body(wish): Body<TokenName>,
 ) -> Result<(StatusCode, Json<NewToken>), Problem> {
-    let (info, secret) = person.new_token(&wish.name).await?;
-    Ok((StatusCode::CREATED, Json(NewToken { info, token: secret.reveal().to_owned() })))
-}
-
-/// Makes an account or changes it, and returns a link that signs in once.
-#[utoipa::path(put, path = "/api/v1/accounts/{login}", tag = "administration",
-    request_body = AccountWish, responses((status = 200, body = Link)))]
-pub(super) async fn set_account(
-    admin: Admin,
-    At { login, .. }: At,
-    Body(wish): Body<AccountWish>,
-) -> Result<Json<Link>, Problem> {
-    let secret = admin.set_account(&login, &wish.name, wish.is_admin).await?;
-    Ok(Json(link(&admin.app, Some(secret))))
-}
-
-/// Makes a token for workers on other machines.
-#[utoipa::path(post, path = "/api/v1/worker-tokens", tag = "administration", request_body = WorkerTokenName,
-    responses((status = 201, body = NewToken)))]
-pub(super) async fn new_worker_token(
-    admin: Admin,
-    Body(wish): Body<WorkerTokenName>,
-) -> Result<(StatusCode, Json<NewToken>), Problem> {
-    let (info, secret) = admin.new_worker_token(&wish.name).await?;
-    Ok((StatusCode::CREATED, Json(NewToken { info, token: secret.reveal().to_owned() })))
+    Ok((StatusCode::CREATED, Json(person.new_token(&wish.name).await?)))
 }
 
 /// Everything that happened, latest first, 200 at a time.
@@ -131,7 +80,17 @@ pub(super) async fn audit(admin: Admin, Asked(asked): Asked<Before>) -> Result<J
     Ok(Json(admin.audit(asked.before).await?))
 }
 
-answers! {
+answers! { CREATED:
+    /// Makes a token for workers on other machines.
+    post "/api/v1/worker-tokens" "administration"
+        new_worker_token(admin: Admin, wish: WorkerTokenName) -> NewToken: admin.new_worker_token(&wish.name);
+}
+
+answers! { OK:
+    /// Makes an account or changes it, and returns a link that signs in once.
+    put "/api/v1/accounts/{login}" "administration"
+        set_account(admin: Admin, { login }, wish: AccountWish) -> Link:
+            admin.set_account(&login, &wish.name, wish.is_admin);
     /// One's own tokens.
     get "/api/v1/tokens" "accounts" tokens(person: Person) -> Vec<TokenInfo>: person.tokens();
     /// All accounts.
@@ -142,7 +101,7 @@ answers! {
     get "/api/v1/queue" "administration" queue(admin: Admin) -> Queue: admin.queue();
 }
 
-deeds! {
+deeds! { NO_CONTENT:
     /// Revokes one of one's own tokens.
     delete "/api/v1/tokens/{id}" "accounts"
         revoke_token(person: Person, { id }) -> "Revoked": person.revoke_token(id);

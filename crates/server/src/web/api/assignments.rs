@@ -4,9 +4,9 @@ use super::super::{
     upload,
 };
 use crate::{
-    access::{Assignment, Member, Settings, Staff, Standing, moment, moment_schema},
+    access::{Assignment, Member, Settings, Staff, Standing, Suspicion, moment, moment_schema},
     archive::{self, ArchiveLimits},
-    problem::Problem,
+    problem::{Problem, ensure},
     schema::Title,
     worker,
 };
@@ -85,9 +85,7 @@ pub(in crate::web) async fn receive_suite(
 /// Unpacks an archive with a suite that keeps to itself: its scenes lie in the archive, or come with the program. A
 /// worker would read any other file of its machine for it. Also whether it hides groups.
 fn unpack_suite(archive: &Path, incoming: &Path) -> Result<(tempfile::TempDir, bool), Problem> {
-    if std::fs::metadata(archive)?.len() == 0 {
-        return Err(Problem::no_suite("the file is empty"));
-    }
+    ensure(std::fs::metadata(archive)?.len() > 0, Problem::no_suite("the file is empty"))?;
     let folder = tempfile::tempdir_in(incoming)?;
     archive::unpack(archive, folder.path(), ArchiveLimits::USUAL)
         .map_err(|error| Problem::no_suite(error.to_string()))?;
@@ -118,7 +116,7 @@ pub(super) async fn export(
     Asked(asked): Asked<Format>,
 ) -> Result<Response, Problem> {
     let format = asked.format.as_deref().unwrap_or("csv");
-    let disposition = format!("attachment; filename=\"{}-{assignment}.{format}\"", staff.course().slug);
+    let disposition = format!("attachment; filename=\"{}-{assignment}.{format}\"", staff.slug);
     let (kind, body) = match format {
         "csv" => ("text/csv; charset=utf-8", HttpBody::from(super::export_csv(&staff.standings(&assignment).await?)?)),
         "jsonl" => ("application/jsonl; charset=utf-8", lines(staff, &assignment).await?),
@@ -149,7 +147,7 @@ async fn lines(staff: Staff, assignment: &str) -> Result<HttpBody, Problem> {
     Ok(HttpBody::from_stream(pages))
 }
 
-answers! {
+answers! { OK:
     /// Makes an assignment or changes it. Grades stay as they are: that takes a regrade. What late work costs counts at
     /// once.
     put "/api/v1/courses/{course}/assignments/{assignment}" "assignments"
@@ -170,9 +168,19 @@ answers! {
     /// How all students stand: which submission counts, and for what.
     get "/api/v1/courses/{course}/assignments/{assignment}/class" "assignments"
         standings(staff: Staff, { assignment }) -> Vec<Standing>: staff.standings(&assignment);
+    /// Scenes in which more than a third of the students who are right otherwise answer the same, and not what the
+    /// reference does.
+    get "/api/v1/courses/{course}/assignments/{assignment}/suspicions" "assignments"
+        suspicions(staff: Staff, { assignment }) -> Vec<Suspicion>: staff.suspicions(&assignment);
 }
 
-deeds! {
+deeds! { NO_CONTENT:
+    /// The reference is right there.
+    post "/api/v1/courses/{course}/assignments/{assignment}/suspicions/{id}/dismiss" "assignments"
+        dismiss(staff: Staff, { assignment, id }) -> "Noted": staff.decide_suspicion(&assignment, id, false);
+    /// Tells the students whose submissions answer so that the reference may be wrong.
+    post "/api/v1/courses/{course}/assignments/{assignment}/suspicions/{id}/tell" "assignments"
+        tell(staff: Staff, { assignment, id }) -> "Noted": staff.decide_suspicion(&assignment, id, true);
     /// Lets a student hand in until another moment than the others.
     put "/api/v1/courses/{course}/assignments/{assignment}/extensions/{login}" "assignments"
         extend(staff: Staff, { assignment, login }, wish: Extension) -> "Set":

@@ -1,15 +1,12 @@
 //! Courses and their members.
-use super::{
-    super::input::{Asked, At, Body, Text},
-    accounts::{Before, Link, link},
-};
+use super::super::input::{Asked, At, Before, Body, Text};
 use crate::{
-    access::{Admin, Course, CourseOf, Event, MemberInfo, Person, Staff},
+    access::{Admin, Course, CourseOf, Event, Link, MemberInfo, MemberLine, MemberLinks, Person, Staff},
     problem::Problem,
     schema::{Slug, Title},
 };
 use axum::{Json, http::StatusCode};
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use utoipa::ToSchema;
 
 /// A course as it is to be.
@@ -32,25 +29,6 @@ pub(super) struct MemberWish {
     /// `student` or `staff`.
     #[schema(pattern = "^(student|staff)$")]
     role: String,
-}
-
-/// The links that are to be handed on to a new member.
-#[derive(Serialize, ToSchema)]
-pub(super) struct MemberLinks {
-    /// A link that signs in once, good for a week; nothing where the account was there before.
-    link: Option<String>,
-    /// A link to accept by, for anybody who has an account of their own: they open it, signed in as ever.
-    invitation: Option<String>,
-}
-
-/// Makes a course.
-#[utoipa::path(post, path = "/api/v1/courses", tag = "administration", request_body = CourseWish,
-    responses((status = 201, body = Course)))]
-pub(super) async fn new_course(
-    admin: Admin,
-    Body(wish): Body<CourseWish>,
-) -> Result<(StatusCode, Json<Course>), Problem> {
-    Ok((StatusCode::CREATED, Json(admin.new_course(&wish.slug, &wish.title).await?)))
 }
 
 /// Removes a course with its assignments, submissions and log, for ever. Accounts stay.
@@ -78,35 +56,6 @@ pub(super) struct Confirm {
     confirm: String,
 }
 
-/// Makes somebody a member, and their account when there is none; a new account gets a link that signs in once. Anybody
-/// who has an account of their own is invited, and nothing changes until they accept.
-#[utoipa::path(put, path = "/api/v1/courses/{course}/members/{login}", tag = "courses", request_body = MemberWish,
-    responses((status = 200, body = MemberLinks)))]
-pub(super) async fn set_member(
-    staff: Staff,
-    At { login, .. }: At,
-    Body(wish): Body<MemberWish>,
-) -> Result<Json<MemberLinks>, Problem> {
-    let added = staff.set_member(&login, &wish.name, &wish.role).await?;
-    let app = &staff.app;
-    let invitation = added.invitation.map(|secret| app.invitation_address(&secret));
-    Ok(Json(MemberLinks { link: link(app, added.link).link, invitation }))
-}
-
-/// A line of a table of members, and what became of it.
-#[derive(Serialize, ToSchema)]
-pub(super) struct MemberLine {
-    line: u64,
-    name: String,
-    login: String,
-    email: String,
-    role: String,
-    /// The error in the line; then nothing was done about any.
-    error: Option<String>,
-    #[serde(flatten)]
-    links: MemberLinks,
-}
-
 /// Whether only to look.
 #[derive(Deserialize)]
 pub(super) struct Preview {
@@ -125,29 +74,7 @@ pub(super) async fn import(
     Asked(asked): Asked<Preview>,
     Text(table): Text,
 ) -> Result<Json<Vec<MemberLine>>, Problem> {
-    let lines = staff.import(&table, asked.preview).await?;
-    let app = &staff.app;
-    let told = lines.into_iter().map(|one| MemberLine {
-        links: MemberLinks {
-            link: one.link.map(|secret| app.welcome_address(&secret)),
-            invitation: one.invitation.map(|secret| app.invitation_address(&secret)),
-        },
-        line: one.line,
-        name: one.name,
-        login: one.login,
-        email: one.email,
-        role: one.role,
-        error: one.error,
-    });
-    Ok(Json(told.collect()))
-}
-
-/// A new link that signs a student of this course in once.
-#[utoipa::path(post, path = "/api/v1/courses/{course}/members/{login}/link", tag = "courses",
-    responses((status = 200, body = Link)))]
-pub(super) async fn member_link(staff: Staff, At { login, .. }: At) -> Result<Json<Link>, Problem> {
-    let secret = staff.new_link(&login).await?;
-    Ok(Json(link(&staff.app, Some(secret))))
+    Ok(Json(staff.import(&table, asked.preview).await?))
 }
 
 /// The events of the course, latest first, 200 at a time.
@@ -158,14 +85,28 @@ pub(super) async fn audit(staff: Staff, Asked(asked): Asked<Before>) -> Result<J
     Ok(Json(staff.audit(asked.before).await?))
 }
 
-answers! {
+answers! { CREATED:
+    /// Makes a course.
+    post "/api/v1/courses" "administration"
+        new_course(admin: Admin, wish: CourseWish) -> Course: admin.new_course(&wish.slug, &wish.title);
+}
+
+answers! { OK:
+    /// Makes somebody a member, and their account when there is none; a new account gets a link that signs in once. Anybody
+    /// who has an account of their own is invited, and nothing changes until they accept.
+    put "/api/v1/courses/{course}/members/{login}" "courses"
+        set_member(staff: Staff, { login }, wish: MemberWish) -> MemberLinks:
+            staff.set_member(&login, &wish.name, &wish.role);
+    /// A new link that signs a student of this course in once.
+    post "/api/v1/courses/{course}/members/{login}/link" "courses"
+        member_link(staff: Staff, { login }) -> Link: staff.new_link(&login);
     /// The courses that one is in.
     get "/api/v1/courses" "courses" courses(person: Person) -> Vec<CourseOf>: person.courses();
     /// The members of a course.
     get "/api/v1/courses/{course}/members" "courses" members(staff: Staff) -> Vec<MemberInfo>: staff.members();
 }
 
-deeds! {
+deeds! { NO_CONTENT:
     /// Puts a course away: nobody hands in any more, and everything stays to be read.
     put "/api/v1/courses/{course}/archived" "administration"
         archive(admin: Admin, { course }) -> "Archived": admin.archive_course(&course, true);

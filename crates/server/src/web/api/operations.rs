@@ -6,7 +6,8 @@ use axum::{
 };
 
 /// Whether the process is alive.
-#[utoipa::path(get, path = "/health", tag = "operations", responses((status = 200, body = String, content_type = "text/plain", description = "It is")))]
+#[utoipa::path(get, path = "/health", tag = "operations",
+    responses((status = 200, body = String, content_type = "text/plain", description = "It is")))]
 pub(super) async fn health() -> &'static str {
     "alive\n"
 }

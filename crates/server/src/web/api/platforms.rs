@@ -7,15 +7,7 @@ use crate::{
 };
 use axum::{Json, http::StatusCode};
 
-/// Sends all scores of an assignment once more, also those that platforms took.
-#[utoipa::path(post, path = "/api/v1/courses/{course}/assignments/{assignment}/scores", tag = "assignments",
-    responses((status = 202, description = "They are on their way")))]
-pub(super) async fn send_scores(staff: Staff, At { assignment, .. }: At) -> Result<StatusCode, Problem> {
-    staff.send_scores(&assignment).await?;
-    Ok(StatusCode::ACCEPTED)
-}
-
-answers! {
+answers! { OK:
     /// Registers a platform, or changes it.
     put "/api/v1/platforms/{name}" "administration"
         set_platform(admin: Admin, { name }, wish: PlatformWish) -> Platform: admin.set_platform(&name, &wish);
@@ -28,7 +20,13 @@ answers! {
         scores(staff: Staff, { assignment }) -> Vec<ScoreInfo>: staff.scores(&assignment);
 }
 
-deeds! {
+deeds! { ACCEPTED:
+    /// Sends all scores of an assignment once more, also those that platforms took.
+    post "/api/v1/courses/{course}/assignments/{assignment}/scores" "assignments"
+        send_scores(staff: Staff, { assignment }) -> "They are on their way": staff.send_scores(&assignment);
+}
+
+deeds! { NO_CONTENT:
     /// Shuts a platform: nobody comes from it any more, and no scores go there.
     delete "/api/v1/platforms/{name}" "administration"
         shut_platform(admin: Admin, { name }) -> "Shut": admin.shut_platform(&name);

@@ -1,5 +1,5 @@
 //! Regrades: begun, looked at, applied or discarded.
-use super::super::input::{Asked, At, Body};
+use super::super::input::{After, Asked, At, Body};
 use crate::{
     access::{Regrade, Settings, Staff},
     problem::Problem,
@@ -21,20 +21,21 @@ pub(super) struct RegradeWish {
 }
 
 /// Grades all submissions again, beside their grades. Nothing changes until it is applied.
-#[utoipa::path(post, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades", tag = "regrades", request_body = RegradeWish,
+#[utoipa::path(post, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades", tag = "regrades",
+    request_body = RegradeWish,
     responses((status = 201, body = Regrade), (status = 202, body = Regrade, description = "It goes on: see `doing`")))]
 pub(super) async fn begin(
     staff: Staff,
     At { assignment, .. }: At,
     Body(wish): Body<RegradeWish>,
 ) -> Result<(StatusCode, Json<Regrade>), Problem> {
-    let regrade = staff.regrade(&assignment, &wish.reason, wish.settings.as_ref()).await?;
-    Ok((status(&regrade, StatusCode::CREATED), Json(regrade)))
+    Ok(answer(staff.regrade(&assignment, &wish.reason, wish.settings.as_ref()).await?, StatusCode::CREATED))
 }
 
 /// The changes that a regrade would make, or made, and why.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}", tag = "regrades",
-    params(("after" = Option<i64>, Query, description = "Only changes of submissions after this one: `next` of the answer before")),
+    params(("after" = Option<i64>, Query,
+        description = "Only changes of submissions after this one: `next` of the answer before")),
     responses((status = 200, body = Regrade)))]
 pub(super) async fn show(
     staff: Staff,
@@ -44,15 +45,9 @@ pub(super) async fn show(
     Ok(Json(staff.show_regrade(&assignment, id, asked.after).await?))
 }
 
-/// Where to go on.
-#[derive(Deserialize)]
-pub(super) struct After {
-    after: Option<i64>,
-}
-
 /// A regrade that is worked on after the answer was accepted only.
-fn status(regrade: &Regrade, done: StatusCode) -> StatusCode {
-    if regrade.doing.is_some() { StatusCode::ACCEPTED } else { done }
+fn answer(regrade: Regrade, done: StatusCode) -> (StatusCode, Json<Regrade>) {
+    (if regrade.doing.is_some() { StatusCode::ACCEPTED } else { done }, Json(regrade))
 }
 
 /// Makes its results count.
@@ -60,8 +55,7 @@ fn status(regrade: &Regrade, done: StatusCode) -> StatusCode {
     tag = "regrades",
     responses((status = 200, body = Regrade), (status = 202, body = Regrade, description = "It goes on: see `doing`")))]
 pub(super) async fn apply(staff: Staff, At { assignment, id, .. }: At) -> Result<(StatusCode, Json<Regrade>), Problem> {
-    let regrade = staff.apply_regrade(&assignment, id).await?;
-    Ok((status(&regrade, StatusCode::OK), Json(regrade)))
+    Ok(answer(staff.apply_regrade(&assignment, id).await?, StatusCode::OK))
 }
 
 /// Gives it up; nothing changes.
@@ -72,11 +66,10 @@ pub(super) async fn discard(
     staff: Staff,
     At { assignment, id, .. }: At,
 ) -> Result<(StatusCode, Json<Regrade>), Problem> {
-    let regrade = staff.discard_regrade(&assignment, id).await?;
-    Ok((status(&regrade, StatusCode::OK), Json(regrade)))
+    Ok(answer(staff.discard_regrade(&assignment, id).await?, StatusCode::OK))
 }
 
-answers! {
+answers! { OK:
     /// The regrades of an assignment, latest first.
     get "/api/v1/courses/{course}/assignments/{assignment}/regrades" "regrades"
         regrades(staff: Staff, { assignment }) -> Vec<Regrade>: staff.regrades(&assignment);

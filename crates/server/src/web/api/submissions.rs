@@ -5,7 +5,7 @@ use super::super::{
     status, upload,
 };
 use crate::{
-    access::{History, Member, Staff, Standing, Submission, Upload},
+    access::{Accepted, Again, History, Member, Staff, Standing, Submission, Upload},
     problem::Problem,
 };
 use axum::{
@@ -43,10 +43,10 @@ pub(super) async fn submit(
         None => None,
         Some(key) => Some(key.to_str().map_err(|_| Problem::invalid("Idempotency-Key is not ASCII"))?),
     };
-    let (submission, repeated) =
+    let Accepted { submission, repeated } =
         receive(&member, &assignment, request, about.name.as_deref(), about.form.as_deref(), key).await?;
     let status = if repeated { StatusCode::OK } else { StatusCode::CREATED };
-    let place = format!("/api/v1/courses/{}/submissions/{}", member.course().slug, submission.id);
+    let place = format!("/api/v1/courses/{}/submissions/{}", member.slug, submission.id);
     Ok((status, [(header::LOCATION, place)], Json(submission)).into_response())
 }
 
@@ -58,7 +58,7 @@ pub(in crate::web) async fn receive(
     name: Option<&str>,
     form: Option<&str>,
     key: Option<&str>,
-) -> Result<(Submission, bool), Problem> {
+) -> Result<Accepted, Problem> {
     let _transfer = member.transfer()?;
     let settings = member.assignment(assignment).await?.settings;
     let most = settings.max_bytes;
@@ -81,8 +81,7 @@ pub(in crate::web) async fn receive(
     if key.is_some_and(|key| !(1..=200).contains(&key.len()) || key.chars().any(char::is_control)) {
         return Err(Problem::invalid("a key is 1 to 200 characters long"));
     }
-    let accepted = member.submit(assignment, &Upload { form, name: &name, file: &received.file, key }).await?;
-    Ok((accepted.submission, accepted.repeated))
+    member.submit(assignment, &Upload { form, name: &name, file: &received.file, key }).await
 }
 
 /// The mark that staff gives a submission.
@@ -200,7 +199,20 @@ pub(in crate::web) fn cell(text: &str) -> String {
     if text.starts_with(['=', '+', '-', '@', '\t']) { format!("'{text}") } else { text.to_owned() }
 }
 
-answers! {
+answers! { ACCEPTED:
+    /// Grades a submission once more, by the assignment's settings as they are.
+    post "/api/v1/courses/{course}/submissions/{id}/again" "submissions"
+        grade_again(staff: Staff, { id }) -> Again: staff.grade_again(id);
+    /// Grades all submissions to an assignment on which the grader failed once more, and goes on with it if it waits for
+    /// staff.
+    post "/api/v1/courses/{course}/assignments/{assignment}/judge-errors/again" "submissions"
+        grade_errors_again(staff: Staff, { assignment }) -> Again: staff.grade_errors_again(Some(&assignment));
+    /// The same for all assignments of a course.
+    post "/api/v1/courses/{course}/judge-errors/again" "submissions"
+        grade_all_errors_again(staff: Staff) -> Again: staff.grade_errors_again(None);
+}
+
+answers! { OK:
     /// Gives a submission other points than the grader, with a comment, or the grader's again.
     put "/api/v1/courses/{course}/submissions/{id}/mark" "submissions"
         mark(staff: Staff, { id }, wish: MarkWish) -> Submission:
@@ -216,7 +228,7 @@ answers! {
         history(member: Member, { id }) -> Vec<History>: member.history(id);
 }
 
-deeds! {
+deeds! { NO_CONTENT:
     /// Asks staff to look at one's own submission again.
     post "/api/v1/courses/{course}/submissions/{id}/request" "submissions"
         request(member: Member, { id }, wish: RequestWish) -> "Staff sees it": member.request(id, &wish.text);

@@ -7,7 +7,7 @@ use super::super::{
 };
 use crate::{
     access::Remote,
-    problem::Problem,
+    problem::{Problem, ensure},
     queue::Lease,
     store::{Artefact, Digest},
     wire::{Alive, Claimed, Finished, JobFault, LeaseAnswer, Manners, Renewal},
@@ -19,14 +19,6 @@ use axum::{
     response::{IntoResponse, Response},
 };
 use serde::Deserialize;
-
-/// Says that the worker is alive.
-#[utoipa::path(post, path = "/api/v1/worker/tick", tag = "workers", request_body = Alive,
-    responses((status = 200, body = Manners)))]
-pub(super) async fn tick(remote: Remote, Body(alive): Body<Alive>) -> Result<Json<Manners>, Problem> {
-    remote.tick(alive.slots, alive.fault.as_deref()).await?;
-    Ok(Json(Manners { tick_every: remote.tick_every() }))
-}
 
 /// The one who claims.
 #[derive(Deserialize)]
@@ -46,7 +38,10 @@ pub(super) async fn claim(remote: Remote, Asked(claimant): Asked<Claimant>) -> R
     })
 }
 
-answers! {
+answers! { OK:
+    /// Says that the worker is alive.
+    post "/api/v1/worker/tick" "workers"
+        tick(remote: Remote, alive: Alive) -> Manners: remote.tick(alive.slots, alive.fault.as_deref());
     /// Extends a lease, and says how far the grading is.
     post "/api/v1/worker/renew" "workers"
         renew(remote: Remote, renewal: Renewal) -> LeaseAnswer: remote.renew(&renewal.lease, renewal.progress);
@@ -93,8 +88,6 @@ pub(super) async fn store(remote: Remote, At { digest, .. }: At, request: Reques
     let most = remote.check_held(&lease).await?;
     let received = upload::receive(&remote.app, request, most).await?;
     let found = crate::store::digest_of_file(&received.file).await?;
-    if found.digest != digest {
-        return Err(Problem::invalid("these are other bytes than the digest says"));
-    }
+    ensure(found.digest == digest, Problem::invalid("these are other bytes than the digest says"))?;
     Ok(Json(remote.store(&lease, &received.file).await?))
 }

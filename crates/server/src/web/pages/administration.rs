@@ -4,7 +4,7 @@ use super::{
         api::{CourseWish, WorkerTokenName},
         input::{At, Fields},
     },
-    Frame, see, show, text,
+    Frame, Page, see, show, text,
 };
 use crate::{
     access::{Account, Admin, Event, Queue, TokenInfo},
@@ -12,7 +12,7 @@ use crate::{
     problem::Problem,
 };
 use askama::Template;
-use axum::response::{Html, Redirect};
+use axum::response::Redirect;
 use serde::Deserialize;
 
 #[derive(Template)]
@@ -37,7 +37,7 @@ pub(super) struct NewAccount {
     is_admin: Option<String>,
 }
 
-async fn make(admin: &Admin, link: Option<String>, token: Option<String>) -> Result<Html<String>, Problem> {
+async fn make(admin: &Admin, link: Option<String>, token: Option<String>) -> Page {
     show(&AdminPage {
         frame: Frame::of(&admin.account).then("/admin".to_owned(), "Administration"),
         accounts: admin.accounts().await?,
@@ -51,26 +51,22 @@ async fn make(admin: &Admin, link: Option<String>, token: Option<String>) -> Res
     })
 }
 
-pub(super) async fn page(admin: Admin) -> Result<Html<String>, Problem> {
+pub(super) async fn page(admin: Admin) -> Page {
     make(&admin, None, None).await
 }
 
-pub(super) async fn new_course(admin: Admin, Fields(form): Fields<CourseWish>) -> Result<Redirect, Problem> {
-    let course = admin.new_course(form.slug.trim(), form.title.trim()).await?;
-    Ok(see(&format!("/c/{}", course.slug)))
+pub(super) async fn set_account(admin: Admin, Fields(form): Fields<NewAccount>) -> Page {
+    let link = admin.set_account(form.login.trim(), form.name.trim(), form.is_admin.is_some()).await?.link;
+    make(&admin, link, None).await
 }
 
-pub(super) async fn set_account(admin: Admin, Fields(form): Fields<NewAccount>) -> Result<Html<String>, Problem> {
-    let secret = admin.set_account(form.login.trim(), form.name.trim(), form.is_admin.is_some()).await?;
-    let link = admin.app.welcome_address(&secret);
-    make(&admin, Some(link), None).await
-}
-
-pub(super) async fn new_worker(admin: Admin, Fields(form): Fields<WorkerTokenName>) -> Result<Html<String>, Problem> {
-    let (_, secret) = admin.new_worker_token(form.name.trim()).await?;
-    make(&admin, None, Some(secret.reveal().to_owned())).await
+pub(super) async fn new_worker(admin: Admin, Fields(form): Fields<WorkerTokenName>) -> Page {
+    let token = admin.new_worker_token(form.name.trim()).await?.token;
+    make(&admin, None, Some(token)).await
 }
 
 deeds! {
+    new_course(admin: Admin, form: CourseWish):
+        admin.new_course(form.slug.trim(), form.title.trim()) => "/c/{}", form.slug.trim();
     revoke_worker(admin: Admin, { id }): admin.revoke_worker_token(id) => "/admin";
 }

@@ -1,14 +1,14 @@
 //! A course: its assignments, members, queue and audit log.
 use super::{
-    super::input::{Asked, At, Fields},
-    Frame, see, show, text,
+    super::input::{Asked, At, Before, Fields},
+    Frame, Page, see, show, text,
 };
 use crate::{
     access::{Assignment, Event, Member, MemberInfo, Overview, Queue, Settings, Staff, Submission},
     problem::Problem,
 };
 use askama::Template;
-use axum::response::{Html, Redirect};
+use axum::response::Redirect;
 use serde::Deserialize;
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -16,10 +16,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 #[template(path = "course.html")]
 struct CoursePage {
     frame: Frame,
-    slug: String,
-    title: String,
-    is_staff: bool,
-    is_archived: bool,
+    member: Member,
     assignments: Vec<Row>,
 }
 
@@ -116,26 +113,13 @@ pub(super) struct NewMember {
     role: String,
 }
 
-#[derive(Deserialize)]
-pub(super) struct Before {
-    before: Option<i64>,
-}
-
-pub(super) async fn course(member: Member) -> Result<Html<String>, Problem> {
-    let course = member.course();
+pub(super) async fn course(member: Member) -> Page {
     let mut assignments = Vec::new();
     for assignment in member.assignments().await? {
         let (work, overview) = (OwnWork::of(&member, &assignment).await?, member.overview(&assignment).await?);
         assignments.push(Row { assignment, work, overview });
     }
-    show(&CoursePage {
-        frame: Frame::course(&member),
-        slug: course.slug,
-        title: course.title,
-        is_staff: member.is_staff,
-        is_archived: member.is_archived,
-        assignments,
-    })
+    show(&CoursePage { frame: Frame::course(&member), member, assignments })
 }
 
 pub(super) async fn new_assignment(staff: Staff, Fields(form): Fields<NewAssignment>) -> Result<Redirect, Problem> {
@@ -144,46 +128,39 @@ pub(super) async fn new_assignment(staff: Staff, Fields(form): Fields<NewAssignm
         return Err(Problem::conflict("there is an assignment of this name", "give it another name"));
     }
     staff.set_assignment(slug, form.title.trim(), Some(false), Some(&Settings::default())).await?;
-    Ok(see(&format!("/c/{}/a/{slug}/settings", staff.course().slug)))
+    Ok(see(&format!("/c/{}/a/{slug}/settings", staff.slug)))
 }
 
-async fn members_page(staff: &Staff, link: Option<(String, &'static str, String)>) -> Result<Html<String>, Problem> {
-    let slug = staff.course().slug;
+async fn members_page(staff: &Staff, link: Option<(String, &'static str, String)>) -> Page {
+    let slug = staff.slug.clone();
     let frame = Frame::course(staff).then(format!("/c/{slug}/members"), "Members");
     show(&MembersPage { frame, slug, members: staff.members().await?, platforms: staff.platforms().await?, link })
 }
 
-pub(super) async fn members(staff: Staff) -> Result<Html<String>, Problem> {
+pub(super) async fn members(staff: Staff) -> Page {
     members_page(&staff, None).await
 }
 
-pub(super) async fn set_member(staff: Staff, Fields(form): Fields<NewMember>) -> Result<Html<String>, Problem> {
+pub(super) async fn set_member(staff: Staff, Fields(form): Fields<NewMember>) -> Page {
     let login = form.login.trim();
-    let added = staff.set_member(login, form.name.trim(), &form.role).await?;
-    let app = &staff.app;
-    let link = match (added.link, added.invitation) {
-        (Some(secret), _) => Some((login.to_owned(), SIGNS_IN, app.welcome_address(&secret))),
-        (None, Some(secret)) => Some((login.to_owned(), INVITES, app.invitation_address(&secret))),
-        (None, None) => None,
-    };
-    members_page(&staff, link).await
+    let links = staff.set_member(login, form.name.trim(), &form.role).await?;
+    let (signs_in, invites) = (links.link.map(|link| (SIGNS_IN, link)), links.invitation.map(|link| (INVITES, link)));
+    members_page(&staff, signs_in.or(invites).map(|(what, link)| (login.to_owned(), what, link))).await
 }
 
-pub(super) async fn member_link(staff: Staff, At { login, .. }: At) -> Result<Html<String>, Problem> {
-    let secret = staff.new_link(&login).await?;
-    let link = staff.app.welcome_address(&secret);
-    members_page(&staff, Some((login, SIGNS_IN, link))).await
+pub(super) async fn member_link(staff: Staff, At { login, .. }: At) -> Page {
+    let link = staff.new_link(&login).await?.link;
+    members_page(&staff, link.map(|link| (login, SIGNS_IN, link))).await
 }
 
-pub(super) async fn audit(staff: Staff, Asked(asked): Asked<Before>) -> Result<Html<String>, Problem> {
-    let slug = staff.course().slug;
+pub(super) async fn audit(staff: Staff, Asked(asked): Asked<Before>) -> Page {
+    let slug = staff.slug.clone();
     let frame = Frame::course(&staff).then(format!("/c/{slug}/audit"), "Audit log");
     show(&AuditPage { frame, slug, events: staff.audit(asked.before).await? })
 }
 
-pub(super) async fn queue(staff: Staff) -> Result<Html<String>, Problem> {
-    let slug = staff.course().slug;
-    let frame = Frame::course(&staff).then(format!("/c/{slug}/queue"), "Queue");
+pub(super) async fn queue(staff: Staff) -> Page {
+    let frame = Frame::course(&staff).then(format!("/c/{}/queue", staff.slug), "Queue");
     show(&QueuePage { frame, queue: staff.queue().await? })
 }
 

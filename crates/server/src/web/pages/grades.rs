@@ -1,10 +1,10 @@
 //! The class, and regrades.
 use super::{
-    super::input::{Asked, At, Fields},
-    Frame,
+    super::input::{After, Asked, At, Fields},
+    Frame, Page,
     heat::Heat,
     see,
-    settings::{Grading, GradingFields},
+    settings::{Grading, SuiteOption, suites},
     show,
     statistics::Statistics,
     text,
@@ -14,7 +14,7 @@ use crate::{
     problem::Problem,
 };
 use askama::Template;
-use axum::response::{Html, Redirect};
+use axum::response::Redirect;
 use serde::Deserialize;
 
 #[derive(Template)]
@@ -35,7 +35,7 @@ struct ClassPage {
     requests: Vec<crate::access::Request>,
     statistics: Option<Statistics>,
     heat: Heat,
-    grading: GradingFields,
+    suites: Vec<SuiteOption>,
     /// Whether students see less than staff until it is published.
     hides: bool,
 }
@@ -92,53 +92,42 @@ impl Look {
 }
 
 #[derive(Deserialize)]
-pub(super) struct After {
-    after: Option<i64>,
-}
-
-#[derive(Deserialize)]
 pub(super) struct NewRegrade {
     reason: String,
     #[serde(flatten)]
     grading: Grading,
 }
 
-pub(super) async fn class(
-    staff: Staff,
-    At { course: slug, assignment, .. }: At,
-    Asked(look): Asked<Look>,
-) -> Result<Html<String>, Problem> {
+/// The frame of the class, and of what lies behind it.
+pub(super) fn frame(staff: &Staff, assignment: &Assignment) -> Frame {
+    let frame = Frame::assignment(staff, assignment);
+    frame.then(format!("/c/{}/a/{}/class", staff.slug, assignment.slug), "Class")
+}
+
+pub(super) async fn class(staff: Staff, At { course: slug, assignment, .. }: At, Asked(look): Asked<Look>) -> Page {
     let assignment = staff.assignment(&assignment).await?;
-    let frame = Frame::assignment(&staff, &assignment.slug, &assignment.title)
-        .then(format!("/c/{slug}/a/{}/class", assignment.slug), "Class");
     let standings = staff.standings(&assignment.slug).await?;
-    let regrades = staff.regrades(&assignment.slug).await?;
-    let grading = GradingFields::of(&assignment.settings, staff.app.suites.names());
-    let suspicions = staff.suspicions(&assignment.slug).await?;
-    let scores = staff.scores(&assignment.slug).await?;
-    let (requests, statistics) = (staff.requests(&assignment.slug).await?, Statistics::of(&standings));
+    let statistics = Statistics::of(&standings);
     let (standings, found, [before, after]) = look.at(standings);
     let results: Vec<i64> =
         standings.iter().filter_map(|one| Some(one.counts.as_ref()?.grade.as_ref()?.result)).collect();
-    let heat = Heat::of(&standings, &staff.failed_scenes(&results).await?);
-    let hides = staff.hides(&assignment).await?;
     show(&ClassPage {
-        frame,
+        frame: frame(&staff, &assignment),
         slug,
-        assignment,
-        standings,
         look,
         found,
         before,
         after,
-        regrades,
-        suspicions,
-        scores,
-        requests,
+        regrades: staff.regrades(&assignment.slug).await?,
+        suspicions: staff.suspicions(&assignment.slug).await?,
+        scores: staff.scores(&assignment.slug).await?,
+        requests: staff.requests(&assignment.slug).await?,
         statistics,
-        heat,
-        grading,
-        hides,
+        heat: Heat::of(&standings, &staff.failed_scenes(&results).await?),
+        standings,
+        suites: suites(&assignment.settings, staff.app.suites.names()),
+        hides: staff.hides(&assignment).await?,
+        assignment,
     })
 }
 
@@ -152,27 +141,15 @@ pub(super) async fn begin(
     Ok(see(&format!("/c/{slug}/a/{assignment}/regrades/{}", regrade.id)))
 }
 
-async fn show_page(
-    staff: &Staff,
-    slug: String,
-    assignment: &str,
-    id: i64,
-    after: Option<i64>,
-) -> Result<Html<String>, Problem> {
-    let assignment = staff.assignment(assignment).await?;
-    let regrade = staff.show_regrade(&assignment.slug, id, after).await?;
-    let frame = Frame::assignment(staff, &assignment.slug, &assignment.title)
-        .then(format!("/c/{slug}/a/{}/class", assignment.slug), "Class")
-        .then(format!("/c/{slug}/a/{}/regrades/{id}", assignment.slug), "Regrade");
-    show(&RegradePage { frame, slug, assignment, regrade })
-}
-
 pub(super) async fn show_regrade(
     staff: Staff,
     At { course: slug, assignment, id, .. }: At,
     Asked(asked): Asked<After>,
-) -> Result<Html<String>, Problem> {
-    show_page(&staff, slug, &assignment, id, asked.after).await
+) -> Page {
+    let assignment = staff.assignment(&assignment).await?;
+    let regrade = staff.show_regrade(&assignment.slug, id, asked.after).await?;
+    let address = format!("/c/{slug}/a/{}/regrades/{id}", assignment.slug);
+    show(&RegradePage { frame: frame(&staff, &assignment).then(address, "Regrade"), slug, assignment, regrade })
 }
 
 deeds! {

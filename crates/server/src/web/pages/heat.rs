@@ -52,10 +52,10 @@ fn strip(names: &[&str], failed: &FailedScenes) -> String {
             count => format!("{count} scenes are wrong"),
         }
     );
-    for (class, is_this) in [("h-w", is_wrong as fn(&str) -> bool), ("h-e", is_failure), ("h-n", is_not_run)] {
+    for class in ["h-w", "h-e", "h-n"] {
         let mut path = String::new();
         for (place, name) in names.iter().enumerate() {
-            if failed.get(*name).is_some_and(|code| is_this(code)) {
+            if failed.get(*name).is_some_and(|code| class_of(code) == class) {
                 let _ = write!(path, "M{place} .5h1");
             }
         }
@@ -66,16 +66,13 @@ fn strip(names: &[&str], failed: &FailedScenes) -> String {
     out + "</svg>"
 }
 
-fn is_wrong(code: &str) -> bool {
-    code == "WA" || code == "NW"
-}
-
-fn is_not_run(code: &str) -> bool {
-    code == "--"
-}
-
-fn is_failure(code: &str) -> bool {
-    !is_wrong(code) && !is_not_run(code)
+/// How a verdict is drawn: wrong, not run, or failed.
+fn class_of(code: &str) -> &'static str {
+    match code {
+        "WA" | "NW" => "h-w",
+        "--" => "h-n",
+        _ => "h-e",
+    }
 }
 
 /// The change that an attempt has made, in a sentence.

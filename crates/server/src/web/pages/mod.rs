@@ -1,13 +1,17 @@
 //! The pages. They work without JavaScript; with it a submission's state changes by itself, and files can be dropped.
 
-/// Handlers that do one thing and lead on to a page, one a row: name, whom it serves and which parts of the address it
-/// takes; what it does, and where it leads.
+/// Handlers that do one thing and lead on to a page, one a row: name, whom it serves, which parts of the address it
+/// takes, and its form; what it does, and where it leads.
 macro_rules! deeds {
-    ($($(#[doc = $doc:literal])* $name:ident($who:ident: $role:ty $(, { $($at:ident),* })?): $do:expr => $to:literal;)*) => {
+    ($($(#[doc = $doc:literal])*
+        $name:ident($who:ident: $role:ty $(, { $($at:ident),* })? $(, $form:ident: $fields:ty)?):
+            $do:expr => $to:literal $(, $part:expr)*;)*) => {
         $($(#[doc = $doc])*
-        pub(super) async fn $name($who: $role $(, At { $($at,)* .. }: At)?) -> Result<Redirect, Problem> {
+        pub(super) async fn $name(
+            $who: $role $(, At { $($at,)* .. }: At)? $(, Fields($form): Fields<$fields>)?
+        ) -> Result<Redirect, Problem> {
             $do.await?;
-            Ok(see(&format!($to)))
+            Ok(see(&format!($to $(, $part)*)))
         })*
     };
 }
@@ -27,11 +31,14 @@ mod student;
 mod submission;
 mod text;
 
-use crate::{access::App, problem::Problem};
+use crate::{
+    access::{Account, App, Assignment, Member},
+    problem::Problem,
+};
 use askama::Template;
 use axum::{
     Router,
-    extract::{Request, State},
+    extract::Request,
     http::{HeaderValue, Method, StatusCode, Uri, header, uri::PathAndQuery},
     middleware::Next,
     response::{Html, IntoResponse, Redirect, Response},
@@ -80,7 +87,7 @@ pages! {
     post "/admin/platforms/{name}/shut" => platform::shut_platform,
     post "/admin/platform-keys" => platform::new_key,
     get "/lti/login" => platform::login,
-    post "/lti/login" => platform::login_by_form,
+    post "/lti/login" => platform::login,
     post "/lti/launch" => platform::launch,
     get "/lti/keys.json" => platform::keys,
     get "/lti/configuration.json" => platform::configuration,
@@ -152,7 +159,8 @@ fn constant(kind: &'static str, text: &'static str) -> Response {
     ([(header::CONTENT_TYPE, kind), (header::CACHE_CONTROL, "max-age=300")], text).into_response()
 }
 
-/// The frame of every page.
+/// The frame of every page; as it is by default, nobody's.
+#[derive(Default)]
 pub(super) struct Frame {
     /// The person who is signed in.
     login: Option<String>,
@@ -162,25 +170,17 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    fn nobody() -> Self {
-        Self { login: None, is_admin: false, way: Vec::new() }
-    }
-
-    fn of(account: &crate::access::Account) -> Self {
+    fn of(account: &Account) -> Self {
         Self { login: Some(account.login.clone()), is_admin: account.is_admin, way: Vec::new() }
     }
 
-    fn course(member: &crate::access::Member) -> Self {
-        let course = member.course();
-        let mut frame = Self::of(&member.account);
-        frame.way.push((format!("/c/{}", course.slug), course.title));
-        frame
+    fn course(member: &Member) -> Self {
+        Self::of(&member.account).then(format!("/c/{}", member.slug), &member.title)
     }
 
     /// At an assignment of a course.
-    fn assignment(member: &crate::access::Member, slug: &str, title: &str) -> Self {
-        let frame = Self::course(member);
-        frame.then(format!("/c/{}/a/{slug}", member.course().slug), title)
+    fn assignment(member: &Member, assignment: &Assignment) -> Self {
+        Self::course(member).then(format!("/c/{}/a/{}", member.slug, assignment.slug), &assignment.title)
     }
 
     fn then(mut self, address: String, title: &str) -> Self {
@@ -189,8 +189,11 @@ impl Frame {
     }
 }
 
+/// A page, or why there is none.
+type Page = Result<Html<String>, Problem>;
+
 /// A page from its template.
-fn show(template: &impl Template) -> Result<Html<String>, Problem> {
+fn show(template: &impl Template) -> Page {
     template.render().map(Html).map_err(|error| {
         tracing::error!(%error, "a page could not be made");
         Problem::fault()
@@ -210,7 +213,7 @@ struct ProblemPage {
 }
 
 /// Turns refusals into pages, and shows the way in to who is not signed in.
-pub(super) async fn show_problems(State(_): State<App>, request: Request, next: Next) -> Response {
+pub(super) async fn show_problems(request: Request, next: Next) -> Response {
     let wanted = (request.method() == Method::GET).then(|| request.uri().clone());
     as_page(next.run(request).await, wanted.as_ref())
 }
@@ -239,15 +242,12 @@ fn as_page(mut response: Response, wanted: Option<&Uri>) -> Response {
     let Some(problem) = response.extensions_mut().remove::<Problem>() else { return response };
     if let Some(wanted) = wanted.filter(|_| problem.status() == StatusCode::UNAUTHORIZED) {
         let to = wanted.path_and_query().map_or("/", PathAndQuery::as_str);
-        let query = if to == "/" {
-            String::new()
-        } else {
-            format!("?to={}", byte_serialize(to.as_bytes()).collect::<String>())
-        };
-        return see(&format!("/sign-in{query}")).into_response();
+        let query = byte_serialize(to.as_bytes()).collect::<String>();
+        let address = if to == "/" { "/sign-in".to_owned() } else { format!("/sign-in?to={query}") };
+        return see(&address).into_response();
     }
     let status = problem.status();
-    match show(&ProblemPage { frame: Frame::nobody(), problem }) {
+    match show(&ProblemPage { frame: Frame::default(), problem }) {
         Ok(page) => {
             let mut answer = (status, page).into_response();
             if let Some(after) = response.headers_mut().remove(header::RETRY_AFTER) {

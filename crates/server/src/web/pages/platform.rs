@@ -1,13 +1,14 @@
 //! Coming from a learning platform.
 use super::{
     super::{
-        input::{Asked, At, Fields},
+        input::{At, Fields},
         who::browser_cookie,
     },
-    Frame, see, show, sign_in,
+    Frame, Page, see, show, sign_in,
 };
 use crate::{
-    access::{Admin, App, Assignment, Choice, Chosen, Course, LoginRequest, Person, Staff, Visitor},
+    access::{Admin, App, Choice, Chosen, LoginRequest, Person, Staff, Visitor},
+    lti::{PlatformWish, scope},
     problem::Problem,
 };
 use askama::Template;
@@ -15,21 +16,10 @@ use axum::{
     Json,
     extract::State,
     http::{HeaderMap, HeaderValue, header},
-    response::{Html, IntoResponse, Redirect, Response},
+    response::{IntoResponse, Redirect, Response},
 };
 use serde::Deserialize;
 use serde_json::{Value, json};
-
-/// The request that a platform sends when somebody wants to come.
-#[derive(Deserialize)]
-pub(super) struct Login {
-    iss: String,
-    login_hint: String,
-    target_link_uri: Option<String>,
-    lti_message_hint: Option<String>,
-    client_id: Option<String>,
-    lti_deployment_id: Option<String>,
-}
 
 /// The platform's answer.
 #[derive(Deserialize)]
@@ -48,24 +38,11 @@ struct WindowPage {
 }
 
 #[derive(Template)]
-#[template(path = "platform/course.html")]
-struct CoursePage {
+#[template(path = "platform/choice.html")]
+struct ChoicePage {
     frame: Frame,
     secret: String,
-    platform: String,
-    title: String,
-    slug: String,
-    courses: Vec<Course>,
-}
-
-#[derive(Template)]
-#[template(path = "platform/assignment.html")]
-struct AssignmentPage {
-    frame: Frame,
-    secret: String,
-    course: Course,
-    title: Option<String>,
-    assignments: Vec<Assignment>,
+    choice: Choice,
 }
 
 #[derive(Template)]
@@ -113,8 +90,7 @@ fn browser_word(app: &App, word: &str) -> String {
     format!("{}={word}; Path=/; HttpOnly; Max-Age=600; {rest}", browser_cookie(secure))
 }
 
-fn with_policy(response: Response, policy: &str) -> Response {
-    let mut response = response;
+fn with_policy(mut response: Response, policy: &str) -> Response {
     if let Ok(policy) = HeaderValue::from_str(policy) {
         response.headers_mut().insert(header::CONTENT_SECURITY_POLICY, policy);
     }
@@ -124,27 +100,9 @@ fn with_policy(response: Response, policy: &str) -> Response {
 pub(super) async fn login(
     visitor: Visitor,
     headers: HeaderMap,
-    Asked(login): Asked<Login>,
+    Fields(login): Fields<LoginRequest>,
 ) -> Result<Response, Problem> {
-    begin(&visitor, &headers, login).await
-}
-
-pub(super) async fn login_by_form(
-    visitor: Visitor,
-    headers: HeaderMap,
-    Fields(login): Fields<Login>,
-) -> Result<Response, Problem> {
-    begin(&visitor, &headers, login).await
-}
-
-async fn begin(visitor: &Visitor, headers: &HeaderMap, login: Login) -> Result<Response, Problem> {
-    let request = LoginRequest {
-        issuer: login.iss.clone(),
-        client: login.client_id.clone(),
-        hint: login.login_hint.clone(),
-        message_hint: login.lti_message_hint.clone(),
-    };
-    let platform = visitor.platform(&request).await?;
+    let platform = visitor.platform(&login).await?;
     let app = &visitor.app;
     let framed = headers.get("sec-fetch-dest").is_some_and(|place| place == "iframe" || place == "frame");
     if framed {
@@ -163,14 +121,14 @@ async fn begin(visitor: &Visitor, headers: &HeaderMap, login: Login) -> Result<R
         // A link and no form: where a form may lead is asked of all redirections, too, and this one goes on to the
         // platform.
         let address = format!("/lti/login?{}", query.finish());
-        let page = show(&WindowPage { frame: Frame::nobody(), address })?.into_response();
+        let page = show(&WindowPage { frame: Frame::default(), address })?.into_response();
         let origins = platform.origins(app.lti.over_http());
         let policy = format!(
             "default-src 'none'; style-src 'self'; form-action 'self'; base-uri 'none'; frame-ancestors {origins}"
         );
         return Ok(with_policy(page, &policy));
     }
-    let answer = visitor.begin_login(&platform, &request, visitor.browser.as_deref()).await?;
+    let answer = visitor.begin_login(&platform, &login).await?;
     Ok(sign_in::with_cookie(&browser_word(app, &answer.browser), &answer.address))
 }
 
@@ -183,7 +141,7 @@ pub(super) async fn launch(visitor: Visitor, Fields(answer): Fields<Answer>) -> 
             false => Problem::refused_launch(format!("the platform says: {said}")),
         });
     };
-    let launched = visitor.launch(state, token, visitor.browser.as_deref()).await?;
+    let launched = visitor.launch(state, token).await?;
     Ok(sign_in::enter(&visitor.app, &launched.session, &launched.to))
 }
 
@@ -208,7 +166,7 @@ pub(super) async fn configuration(State(app): State<App>) -> Json<Value> {
         "oidc_initiation_url": format!("{public}/lti/login"),
         "target_link_uri": launch,
         "public_jwk_url": format!("{public}/lti/keys.json"),
-        "scopes": [crate::lti::scope::SCORE, crate::lti::scope::LINE_ITEM, crate::lti::scope::MEMBERS],
+        "scopes": [scope::SCORE, scope::LINE_ITEM, scope::MEMBERS],
         "extensions": [{
             "platform": "canvas.instructure.com",
             "domain": host,
@@ -221,26 +179,9 @@ pub(super) async fn configuration(State(app): State<App>) -> Json<Value> {
     }))
 }
 
-pub(super) async fn choose(person: Person, At { secret, .. }: At) -> Result<Html<String>, Problem> {
-    let frame = Frame::of(&person.account);
-    match person.choice(&secret).await? {
-        Choice::Course { platform, title, slug, courses } => {
-            show(&CoursePage { frame, secret, platform, title, slug, courses })
-        }
-        Choice::Assignment { course, title, assignments } => {
-            show(&AssignmentPage { frame, secret, course, title, assignments })
-        }
-    }
-}
-
-pub(super) async fn choose_course(
-    person: Person,
-    At { secret, .. }: At,
-    Fields(choice): Fields<CourseChoice>,
-) -> Result<Redirect, Problem> {
-    let known = choice.known.as_deref().filter(|slug| !slug.is_empty());
-    person.choose_course(&secret, known, (choice.slug.trim(), choice.title.trim())).await?;
-    Ok(see(&format!("/lti/choose/{secret}")))
+pub(super) async fn choose(person: Person, At { secret, .. }: At) -> Page {
+    let choice = person.choice(&secret).await?;
+    show(&ChoicePage { frame: Frame::of(&person.account), secret, choice })
 }
 
 pub(super) async fn choose_assignment(
@@ -260,26 +201,31 @@ pub(super) async fn choose_assignment(
     }
 }
 
-pub(super) async fn set_platform(admin: Admin, Fields(form): Fields<NewPlatform>) -> Result<Redirect, Problem> {
-    let words = |text: &str| -> Vec<String> {
-        text.split([' ', ',', '\n', '\r', '\t']).filter(|word| !word.is_empty()).map(str::to_owned).collect()
-    };
-    let audience = form.audience.trim();
-    let wish = crate::lti::PlatformWish {
-        issuer: form.issuer.trim().to_owned(),
-        client_id: form.client_id.trim().to_owned(),
-        login_url: form.login_url.trim().to_owned(),
-        token_url: form.token_url.trim().to_owned(),
-        keys_url: form.keys_url.trim().to_owned(),
-        audience: (!audience.is_empty()).then(|| audience.to_owned()),
-        deployments: words(&form.deployments),
-        hosts: words(&form.hosts),
-    };
-    admin.set_platform(form.name.trim(), &wish).await?;
-    Ok(see("/admin"))
+impl NewPlatform {
+    fn wish(&self) -> PlatformWish {
+        let word = |text: &str| text.trim().to_owned();
+        let words = |text: &str| -> Vec<String> {
+            text.split([' ', ',', '\n', '\r', '\t']).filter(|word| !word.is_empty()).map(str::to_owned).collect()
+        };
+        PlatformWish {
+            issuer: word(&self.issuer),
+            client_id: word(&self.client_id),
+            login_url: word(&self.login_url),
+            token_url: word(&self.token_url),
+            keys_url: word(&self.keys_url),
+            audience: Some(word(&self.audience)).filter(|audience| !audience.is_empty()),
+            deployments: words(&self.deployments),
+            hosts: words(&self.hosts),
+        }
+    }
 }
 
 deeds! {
+    choose_course(person: Person, { secret }, choice: CourseChoice): {
+        let known = choice.known.as_deref().filter(|slug| !slug.is_empty());
+        person.choose_course(&secret, known, (choice.slug.trim(), choice.title.trim()))
+    } => "/lti/choose/{secret}";
+    set_platform(admin: Admin, form: NewPlatform): admin.set_platform(form.name.trim(), &form.wish()) => "/admin";
     shut_platform(admin: Admin, { name }): admin.shut_platform(&name) => "/admin";
     new_key(admin: Admin): admin.new_platform_key() => "/admin";
     read_roster(staff: Staff, { course }): staff.read_roster() => "/c/{course}/members";

@@ -1,14 +1,14 @@
 //! Removing for ever: a page that says what goes, and a button that means it.
 use super::{
     super::input::{At, Fields},
-    Frame, see, show,
+    Frame, Page, see, show,
 };
 use crate::{
     access::{Admin, Staff},
     problem::Problem,
 };
 use askama::Template;
-use axum::response::{Html, Redirect};
+use axum::response::Redirect;
 use serde::Deserialize;
 
 #[derive(Template)]
@@ -45,7 +45,7 @@ const COURSE: &str = "Its assignments, all submissions, grades and reports, its 
 const PERSON: &str = "All that they handed in, what it came to, their login and name, tokens and links are removed for ever, in all \
                       courses. A shut account only can't sign in any more.";
 
-pub(super) async fn submission(staff: Staff, At { course: slug, id, .. }: At) -> Result<Html<String>, Problem> {
+pub(super) async fn submission(staff: Staff, At { course: slug, id, .. }: At) -> Page {
     let submission = staff.submission(id).await?;
     let frame = Frame::course(&staff).then(format!("/c/{slug}/s/{id}"), &format!("Submission {}", submission.number));
     let title = format!("Submission {} of {} to {}", submission.number, submission.login, submission.title);
@@ -63,44 +63,23 @@ pub(super) async fn remove_submission(
     Ok(see(&format!("/c/{slug}/a/{assignment}/class")))
 }
 
-pub(super) async fn assignment(staff: Staff, At { assignment, .. }: At) -> Result<Html<String>, Problem> {
+pub(super) async fn assignment(staff: Staff, At { assignment, .. }: At) -> Page {
     let assignment = staff.assignment(&assignment).await?;
-    let frame = Frame::assignment(&staff, &assignment.slug, &assignment.title);
+    let frame = Frame::assignment(&staff, &assignment);
     show(&RemovePage { frame, title: assignment.title, words: ASSIGNMENT, confirm: assignment.slug, instead: None })
 }
 
-pub(super) async fn remove_assignment(
-    staff: Staff,
-    At { course: slug, assignment, .. }: At,
-    Fields(form): Fields<Confirmed>,
-) -> Result<Redirect, Problem> {
-    form.is(&assignment)?;
-    staff.remove_assignment(&assignment).await?;
-    Ok(see(&format!("/c/{slug}")))
-}
-
-pub(super) async fn course(admin: Admin, staff: Staff) -> Result<Html<String>, Problem> {
-    let course = staff.course();
+pub(super) async fn course(_: Admin, staff: Staff) -> Page {
     let (way, button) = match staff.is_archived {
         true => ("reopen", "Open it again"),
         false => ("archive", "Archive it"),
     };
-    let instead = Some((format!("/c/{}/{way}", course.slug), button));
-    let frame = Frame::of(&admin.account).then(format!("/c/{}", course.slug), &course.title);
-    show(&RemovePage { frame, title: course.title, words: COURSE, confirm: course.slug, instead })
+    let instead = Some((format!("/c/{}/{way}", staff.slug), button));
+    let (frame, title, confirm) = (Frame::course(&staff), staff.title.clone(), staff.slug.clone());
+    show(&RemovePage { frame, title, words: COURSE, confirm, instead })
 }
 
-pub(super) async fn remove_course(
-    admin: Admin,
-    At { course: slug, .. }: At,
-    Fields(form): Fields<Confirmed>,
-) -> Result<Redirect, Problem> {
-    form.is(&slug)?;
-    admin.remove_course(&slug).await?;
-    Ok(see("/"))
-}
-
-pub(super) async fn person(admin: Admin, At { login, .. }: At) -> Result<Html<String>, Problem> {
+pub(super) async fn person(admin: Admin, At { login, .. }: At) -> Page {
     let found = admin.accounts().await?.into_iter().find(|account| account.login == login);
     let account = found.ok_or_else(|| Problem::not_found("account"))?;
     let frame = Frame::of(&admin.account).then("/admin".to_owned(), "Administration");
@@ -109,17 +88,13 @@ pub(super) async fn person(admin: Admin, At { login, .. }: At) -> Result<Html<St
     show(&RemovePage { frame, title, words: PERSON, confirm: login, instead })
 }
 
-pub(super) async fn remove_person(
-    admin: Admin,
-    At { login, .. }: At,
-    Fields(form): Fields<Confirmed>,
-) -> Result<Redirect, Problem> {
-    form.is(&login)?;
-    admin.remove_person(&login).await?;
-    Ok(see("/admin"))
-}
-
 deeds! {
+    remove_assignment(staff: Staff, { course, assignment }, form: Confirmed):
+        { form.is(&assignment)?; staff.remove_assignment(&assignment) } => "/c/{course}";
+    remove_course(admin: Admin, { course }, form: Confirmed):
+        { form.is(&course)?; admin.remove_course(&course) } => "/";
+    remove_person(admin: Admin, { login }, form: Confirmed):
+        { form.is(&login)?; admin.remove_person(&login) } => "/admin";
     archive(admin: Admin, { course }): admin.archive_course(&course, true) => "/c/{course}";
     reopen(admin: Admin, { course }): admin.archive_course(&course, false) => "/c/{course}";
     shut_account(admin: Admin, { login }): admin.disable_account(&login) => "/admin";

@@ -4,18 +4,15 @@ use super::{
         api,
         input::{At, Fields},
     },
-    Frame, see, show, text,
+    Frame, Page, see, show, text,
 };
 use crate::{
     access::{Assignment, Settings, Staff},
     calendar,
-    problem::Problem,
+    problem::{Problem, ensure},
 };
 use askama::Template;
-use axum::{
-    extract::Request,
-    response::{Html, Redirect},
-};
+use axum::{extract::Request, response::Redirect};
 use serde::Deserialize;
 
 /// The value of an uploaded suite in the list of suites.
@@ -29,41 +26,26 @@ struct SettingsPage {
     frame: Frame,
     slug: String,
     assignment: Assignment,
-    /// How it is graded: shared with regrades.
-    grading: GradingFields,
+    suites: Vec<SuiteOption>,
     megabytes: f64,
 }
 
-/// The values in the part of a form about grading.
-pub(super) struct GradingFields {
-    /// The suites: value, words, and whether it is this one.
-    pub(super) suites: Vec<(String, String, bool)>,
-    pub(super) rules: String,
-    pub(super) hints: String,
-    pub(super) program: String,
-    pub(super) seconds: u64,
-}
+/// A suite in a form: value, words, and whether it is this one.
+pub(super) type SuiteOption = (String, String, bool);
 
-impl GradingFields {
-    pub(super) fn of(settings: &Settings, names: &[String]) -> Self {
-        let mut suites = Vec::new();
-        if let Some(digest) = &settings.suite_archive {
-            suites.push((UPLOADED.to_owned(), format!("your own, {}", text::short(digest)), true));
-        }
-        let is_named = settings.suite_archive.is_none();
-        let other = Some(&settings.suite).filter(|suite| !names.contains(suite));
-        for name in names.iter().chain(other) {
-            let words = if name.is_empty() { "the grader's default".to_owned() } else { name.clone() };
-            suites.push((name.clone(), words, is_named && *name == settings.suite));
-        }
-        Self {
-            suites,
-            rules: settings.rules.clone().unwrap_or_default(),
-            hints: settings.hints.clone().unwrap_or_default(),
-            program: settings.program.clone(),
-            seconds: settings.seconds,
-        }
+/// The suites to choose from.
+pub(super) fn suites(settings: &Settings, names: &[String]) -> Vec<SuiteOption> {
+    let mut suites = Vec::new();
+    if let Some(digest) = &settings.suite_archive {
+        suites.push((UPLOADED.to_owned(), format!("your own, {}", text::short(digest)), true));
     }
+    let is_named = settings.suite_archive.is_none();
+    let other = Some(&settings.suite).filter(|suite| !names.contains(suite));
+    for name in names.iter().chain(other) {
+        let words = if name.is_empty() { "the grader's default".to_owned() } else { name.clone() };
+        suites.push((name.clone(), words, is_named && *name == settings.suite));
+    }
+    suites
 }
 
 /// The part of a form about grading.
@@ -127,9 +109,7 @@ impl NewSettings {
         // A form from before they were there.
         let late = |what: &str, text: &str, before: u32| if text.is_empty() { Ok(before) } else { number(what, text) };
         let megabytes: f64 = number("the largest upload", &self.megabytes)?;
-        if !(0.0..=1024.0).contains(&megabytes) {
-            return Err(Problem::invalid("the largest upload is at most 1024 MiB"));
-        }
+        ensure((0.0..=1024.0).contains(&megabytes), Problem::invalid("the largest upload is at most 1024 MiB"))?;
         let forms = [("program", &self.form_program), ("sources", &self.form_sources), ("traces", &self.form_traces)];
         Ok(Settings {
             forms: forms.iter().filter(|(_, ticked)| ticked.is_some()).map(|(name, _)| (*name).to_owned()).collect(),
@@ -157,13 +137,13 @@ pub(super) fn moment(field: &str, zone: &str, before: Option<i64>) -> Result<Opt
     Ok(same.or(Some(at)))
 }
 
-pub(super) async fn page(staff: Staff, At { course: slug, assignment, .. }: At) -> Result<Html<String>, Problem> {
+pub(super) async fn page(staff: Staff, At { course: slug, assignment, .. }: At) -> Page {
     let assignment = staff.assignment(&assignment).await?;
-    let frame = Frame::assignment(&staff, &assignment.slug, &assignment.title)
-        .then(format!("/c/{slug}/a/{}/settings", assignment.slug), "Settings");
-    let grading = GradingFields::of(&assignment.settings, staff.app.suites.names());
+    let address = format!("/c/{slug}/a/{}/settings", assignment.slug);
+    let frame = Frame::assignment(&staff, &assignment).then(address, "Settings");
+    let suites = suites(&assignment.settings, staff.app.suites.names());
     let megabytes = assignment.settings.max_bytes as f64 / MIB;
-    show(&SettingsPage { frame, slug, assignment, grading, megabytes })
+    show(&SettingsPage { frame, slug, assignment, suites, megabytes })
 }
 
 pub(super) async fn set(

@@ -1,20 +1,19 @@
 //! Signing in and out.
 use super::{
     super::{
-        guard::session_cookie,
+        guard::{SESSION, session_cookie},
         input::{Asked, At, Fields},
-        who::cookie_name,
     },
-    Frame, see, show,
+    Frame, Page, see, show,
 };
 use crate::{
-    access::{App, Session, Visitor},
+    access::{App, NewSecret, Visitor},
     problem::Problem,
 };
 use askama::Template;
 use axum::{
     http::{HeaderValue, header},
-    response::{Html, IntoResponse, Response},
+    response::{IntoResponse, Response},
 };
 use serde::Deserialize;
 
@@ -64,8 +63,8 @@ fn local(to: &str) -> &str {
 }
 
 /// A new session's cookie, and the way on.
-pub(super) fn enter(app: &App, session: &Session, to: &str) -> Response {
-    with_cookie(&session_cookie(app, session.secret()), to)
+pub(super) fn enter(app: &App, session: &NewSecret, to: &str) -> Response {
+    with_cookie(&session_cookie(app, session.reveal(), SESSION), to)
 }
 
 pub(super) fn with_cookie(cookie: &str, to: &str) -> Response {
@@ -76,8 +75,8 @@ pub(super) fn with_cookie(cookie: &str, to: &str) -> Response {
     response
 }
 
-pub(super) async fn page(visitor: Visitor, Asked(Wanted { to }): Asked<Wanted>) -> Result<Html<String>, Problem> {
-    show(&SignIn { frame: Frame::nobody(), takes_passwords: visitor.app.takes_passwords(), to })
+pub(super) async fn page(visitor: Visitor, Asked(Wanted { to }): Asked<Wanted>) -> Page {
+    show(&SignIn { frame: Frame::default(), takes_passwords: visitor.app.takes_passwords(), to })
 }
 
 pub(super) async fn by_password(visitor: Visitor, Fields(form): Fields<Password>) -> Result<Response, Problem> {
@@ -91,8 +90,8 @@ pub(super) async fn by_token(visitor: Visitor, Fields(form): Fields<Token>) -> R
 }
 
 /// Opening the link does nothing yet: mail programs open links, too.
-pub(super) async fn welcome(visitor: Visitor, At { secret, .. }: At) -> Result<Html<String>, Problem> {
-    show(&Welcome { frame: Frame::nobody(), is_good: visitor.is_link(&secret).await? })
+pub(super) async fn welcome(visitor: Visitor, At { secret, .. }: At) -> Page {
+    show(&Welcome { frame: Frame::default(), is_good: visitor.is_link(&secret).await? })
 }
 
 pub(super) async fn by_link(visitor: Visitor, At { secret, .. }: At) -> Result<Response, Problem> {
@@ -102,13 +101,7 @@ pub(super) async fn by_link(visitor: Visitor, At { secret, .. }: At) -> Result<R
 
 pub(super) async fn sign_out(visitor: Visitor) -> Result<Response, Problem> {
     visitor.sign_out().await?;
-    let secure = visitor.app.is_secure();
-    let cookie = format!(
-        "{}=; Path=/; HttpOnly; SameSite=Lax; Max-Age=0{}",
-        cookie_name(secure),
-        if secure { "; Secure" } else { "" }
-    );
-    Ok(with_cookie(&cookie, "/sign-in"))
+    Ok(with_cookie(&session_cookie(&visitor.app, "", 0), "/sign-in"))
 }
 
 #[cfg(test)]

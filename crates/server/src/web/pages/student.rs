@@ -4,16 +4,16 @@ use super::{
         api::{RequestWish, cell},
         input::{At, Fields},
     },
-    Frame, heat, see,
+    Frame, Page, grades, heat, see,
     settings::moment,
     show, text,
 };
 use crate::{
-    access::{App, Assignment, AttemptChange, Imported, Member, Staff, Submission, Work},
+    access::{Assignment, AttemptChange, Member, MemberLine, Staff, Submission, Work},
     problem::Problem,
 };
 use askama::Template;
-use axum::response::{Html, Redirect};
+use axum::response::Redirect;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use url::form_urlencoded::byte_serialize;
@@ -50,7 +50,7 @@ struct ImportPage {
 
 /// A line of the table, and the link to be handed on.
 struct Line {
-    of: Imported,
+    of: MemberLine,
     link: String,
     /// A letter with the link, as an address.
     letter: String,
@@ -77,15 +77,11 @@ pub(super) struct Table {
     import: Option<String>,
 }
 
-pub(super) async fn page(
-    staff: Staff,
-    At { course: slug, assignment, login, .. }: At,
-) -> Result<Html<String>, Problem> {
+pub(super) async fn page(staff: Staff, At { course: slug, assignment, login, .. }: At) -> Page {
     let assignment = staff.assignment(&assignment).await?;
     let work = staff.work(&assignment.slug, &login).await?;
-    let frame = Frame::assignment(&staff, &assignment.slug, &assignment.title)
-        .then(format!("/c/{slug}/a/{}/class", assignment.slug), "Class")
-        .then(format!("/c/{slug}/a/{}/students/{login}", assignment.slug), &work.name);
+    let address = format!("/c/{slug}/a/{}/students/{login}", assignment.slug);
+    let frame = grades::frame(&staff, &assignment).then(address, &work.name);
     let graded: Vec<(&Submission, i64)> =
         work.submissions.iter().filter_map(|one| Some((one, one.grade.as_ref()?.result))).collect();
     let failed = staff.failed_scenes(&graded.iter().map(|(_, result)| *result).collect::<Vec<_>>()).await?;
@@ -99,45 +95,17 @@ pub(super) async fn page(
     show(&StudentPage { frame, slug, assignment, work, changes })
 }
 
-pub(super) async fn extend(
-    staff: Staff,
-    At { course: slug, assignment, login, .. }: At,
-    Fields(form): Fields<NewExtension>,
-) -> Result<Redirect, Problem> {
-    let before = staff.work(&assignment, &login).await?.extended_to;
-    staff.extend(&assignment, &login, moment(&form.due, &form.due_zone, before)?).await?;
-    Ok(see(&format!("/c/{slug}/a/{assignment}/students/{login}")))
-}
-
-pub(super) async fn mark(
-    staff: Staff,
-    At { course: slug, id, .. }: At,
-    Fields(form): Fields<NewMark>,
-) -> Result<Redirect, Problem> {
-    let points = point(form.points.trim());
-    staff.mark(id, Some(points.as_str()).filter(|points| !points.is_empty()), form.comment.trim()).await?;
-    Ok(see(&format!("/c/{slug}/s/{id}")))
-}
-
-/// A number with a decimal comma, `7,5`, with a point. Three digits behind a comma may be thousands.
-fn point(number: &str) -> String {
-    match number.split_once(',') {
-        Some((whole, part)) if (1..=2).contains(&part.len()) => format!("{whole}.{part}"),
-        _ => number.to_owned(),
+/// Points; a number with a decimal comma, `7,5`, with a point. Three digits behind a comma may be thousands. Nothing
+/// where the field is empty.
+fn points(field: &str) -> Option<String> {
+    match field.split_once(',') {
+        Some((whole, part)) if (1..=2).contains(&part.len()) => Some(format!("{whole}.{part}")),
+        _ => Some(field.to_owned()).filter(|field| !field.is_empty()),
     }
 }
 
-pub(super) async fn request(
-    member: Member,
-    At { course: slug, id, .. }: At,
-    Fields(form): Fields<RequestWish>,
-) -> Result<Redirect, Problem> {
-    member.request(id, form.text.trim()).await?;
-    Ok(see(&format!("/c/{slug}/s/{id}")))
-}
-
-fn import_page(staff: &Staff, table: String, lines: Vec<Line>, is_done: bool) -> Result<Html<String>, Problem> {
-    let slug = staff.course().slug;
+fn import_page(staff: &Staff, table: String, lines: Vec<Line>, is_done: bool) -> Page {
+    let slug = staff.slug.clone();
     let frame = Frame::course(staff)
         .then(format!("/c/{slug}/members"), "Members")
         .then(format!("/c/{slug}/members/import"), "Import");
@@ -157,25 +125,31 @@ fn percent(bytes: &[u8]) -> String {
     byte_serialize(bytes).collect::<String>().replace('+', "%20")
 }
 
-fn line(app: &App, course: &str, of: Imported) -> Line {
-    let link = match (&of.link, &of.invitation) {
-        (Some(secret), _) => app.welcome_address(secret),
-        (None, Some(secret)) => app.invitation_address(secret),
-        (None, None) => String::new(),
-    };
+fn line(course: &str, of: MemberLine) -> Line {
+    let link = of.links.link.clone().or(of.links.invitation.clone()).unwrap_or_default();
     let (subject, body) = (percent(course.as_bytes()), percent(format!("{}:\n{link}\n", of.name).as_bytes()));
     let letter = format!("mailto:{}?subject={subject}&body={body}", percent(of.email.as_bytes()));
     Line { of, link, letter }
 }
 
-pub(super) async fn import(staff: Staff) -> Result<Html<String>, Problem> {
+pub(super) async fn import(staff: Staff) -> Page {
     import_page(&staff, String::new(), Vec::new(), false)
 }
 
-pub(super) async fn import_table(staff: Staff, Fields(form): Fields<Table>) -> Result<Html<String>, Problem> {
+pub(super) async fn import_table(staff: Staff, Fields(form): Fields<Table>) -> Page {
     let is_meant = form.import.is_some();
     let lines = staff.import(&form.table, !is_meant).await?;
-    let (app, course) = (&staff.app, staff.course().title);
-    let lines = lines.into_iter().map(|one| line(app, &course, one)).collect();
+    let lines = lines.into_iter().map(|one| line(&staff.title, one)).collect();
     import_page(&staff, form.table, lines, is_meant)
+}
+
+deeds! {
+    extend(staff: Staff, { course, assignment, login }, form: NewExtension): {
+        let before = staff.work(&assignment, &login).await?.extended_to;
+        staff.extend(&assignment, &login, moment(&form.due, &form.due_zone, before)?)
+    } => "/c/{course}/a/{assignment}/students/{login}";
+    mark(staff: Staff, { course, id }, form: NewMark):
+        staff.mark(id, points(form.points.trim()).as_deref(), form.comment.trim()) => "/c/{course}/s/{id}";
+    request(member: Member, { course, id }, form: RequestWish):
+        member.request(id, form.text.trim()) => "/c/{course}/s/{id}";
 }

@@ -4,7 +4,7 @@ use super::{
         api,
         input::{Asked, At},
     },
-    Frame,
+    Frame, Page,
     course::OwnWork,
     heat, see, show, text,
 };
@@ -18,7 +18,7 @@ use askama::Template;
 use axum::{
     extract::Request,
     http::HeaderMap,
-    response::{Html, Redirect, Response},
+    response::{Redirect, Response},
 };
 use serde::Deserialize;
 
@@ -29,9 +29,7 @@ const SHOWN: u64 = 200_000;
 #[template(path = "assignment.html")]
 struct AssignmentPage {
     frame: Frame,
-    slug: String,
-    is_staff: bool,
-    is_archived: bool,
+    member: Member,
     assignment: Assignment,
     work: OwnWork,
     key: String,
@@ -41,9 +39,8 @@ struct AssignmentPage {
 #[template(path = "submission.html")]
 struct SubmissionPage {
     frame: Frame,
-    slug: String,
+    member: Member,
     is_own: bool,
-    is_staff: bool,
     submission: Submission,
     /// The work of its owner, and how much they may still do; nothing for others.
     work: Option<OwnWork>,
@@ -58,16 +55,11 @@ struct SubmissionPage {
     page: Option<&'static str>,
 }
 
-pub(super) async fn assignment(
-    member: Member,
-    At { course: slug, assignment, .. }: At,
-) -> Result<Html<String>, Problem> {
+pub(super) async fn assignment(member: Member, At { assignment, .. }: At) -> Page {
     let assignment = member.assignment(&assignment).await?;
-    let frame = Frame::assignment(&member, &assignment.slug, &assignment.title);
+    let frame = Frame::assignment(&member, &assignment);
     let work = OwnWork::of(&member, &assignment).await?;
-    let key = secret::random_hex();
-    let (is_staff, is_archived) = (member.is_staff, member.is_archived);
-    show(&AssignmentPage { frame, slug, is_staff, is_archived, assignment, work, key })
+    show(&AssignmentPage { frame, member, assignment, work, key: secret::random_hex() })
 }
 
 pub(super) async fn submit(
@@ -75,8 +67,8 @@ pub(super) async fn submit(
     At { course: slug, assignment, .. }: At,
     request: Request,
 ) -> Result<Redirect, Problem> {
-    let (submission, _) = api::receive(&member, &assignment, request, None, None, None).await?;
-    Ok(see(&format!("/c/{slug}/s/{}", submission.id)))
+    let accepted = api::receive(&member, &assignment, request, None, None, None).await?;
+    Ok(see(&format!("/c/{slug}/s/{}", accepted.submission.id)))
 }
 
 /// The assignment of a submission, where the member sees it.
@@ -85,18 +77,15 @@ async fn find_assignment(member: &Member, submission: &Submission) -> Result<Opt
 }
 
 /// The frame of a submission's pages.
-async fn frame(member: &Member, submission: &Submission) -> Result<Frame, Problem> {
-    let frame = match find_assignment(member, submission).await? {
-        Some(assignment) => Frame::assignment(member, &assignment.slug, &assignment.title),
-        None => Frame::course(member),
-    };
-    let address = format!("/c/{}/s/{}", member.course().slug, submission.id);
-    Ok(frame.then(address, &format!("Submission {}", submission.number)))
+fn frame(member: &Member, assignment: Option<&Assignment>, submission: &Submission) -> Frame {
+    let frame = assignment.map_or_else(|| Frame::course(member), |assignment| Frame::assignment(member, assignment));
+    let address = format!("/c/{}/s/{}", member.slug, submission.id);
+    frame.then(address, &format!("Submission {}", submission.number))
 }
 
-pub(super) async fn submission(member: Member, At { course: slug, id, .. }: At) -> Result<Html<String>, Problem> {
+pub(super) async fn submission(member: Member, At { id, .. }: At) -> Page {
     let submission = member.submission(id).await?;
-    let frame = frame(&member, &submission).await?;
+    let assignment = find_assignment(&member, &submission).await?;
     let has =
         |name: &str| submission.grade.as_ref().is_some_and(|grade| grade.files.iter().any(|file| file.name == name));
     let report = if has("report.txt") {
@@ -106,18 +95,13 @@ pub(super) async fn submission(member: Member, At { course: slug, id, .. }: At) 
         None
     };
     let is_own = submission.login == member.account.login;
-    let work = match is_own && !member.is_staff {
-        // Staff may have hidden the assignment again.
-        true => match find_assignment(&member, &submission).await? {
-            Some(assignment) => Some(OwnWork::of(&member, &assignment).await?),
-            None => None,
-        },
-        false => None,
+    // Staff may have hidden the assignment again.
+    let work = match &assignment {
+        Some(assignment) if is_own && !member.is_staff => Some(OwnWork::of(&member, assignment).await?),
+        _ => None,
     };
     show(&SubmissionPage {
-        frame,
-        slug,
-        is_staff: member.is_staff,
+        frame: frame(&member, assignment.as_ref(), &submission),
         is_own,
         work,
         is_moving: matches!(submission.state.as_str(), "waiting" | "running"),
@@ -127,6 +111,7 @@ pub(super) async fn submission(member: Member, At { course: slug, id, .. }: At) 
         page: page_of(&submission),
         report,
         submission,
+        member,
     })
 }
 
@@ -134,8 +119,7 @@ pub(super) async fn submission(member: Member, At { course: slug, id, .. }: At) 
 #[template(path = "beside.html")]
 struct BesidePage {
     frame: Frame,
-    slug: String,
-    is_staff: bool,
+    member: Member,
     /// Other attempts of the same person: their numbers of submission and attempt.
     attempts: Vec<(i64, i64)>,
     /// The submissions, each with its page.
@@ -151,11 +135,7 @@ pub(super) struct Beside {
     login: String,
 }
 
-pub(super) async fn beside(
-    member: Member,
-    At { course: slug, id, .. }: At,
-    Asked(Beside { attempt, login }): Asked<Beside>,
-) -> Result<Html<String>, Problem> {
+pub(super) async fn beside(member: Member, At { id, .. }: At, Asked(Beside { attempt, login }): Asked<Beside>) -> Page {
     let one = member.submission(id).await?;
     let attempts = member.attempts_beside(&one).await?;
     let other = match (attempt.trim(), login.trim()) {
@@ -167,12 +147,12 @@ pub(super) async fn beside(
         Some(other) => Some(member.submission(other).await?),
         None => None,
     };
-    let frame = frame(&member, &one).await?;
+    let frame = frame(&member, find_assignment(&member, &one).await?.as_ref(), &one);
     let shown = std::iter::once(one).chain(other).map(|one| {
         let page = page_of(&one);
         (one, page)
     });
-    show(&BesidePage { frame, is_staff: member.is_staff, attempts, shown: shown.collect(), slug })
+    show(&BesidePage { frame, member, attempts, shown: shown.collect() })
 }
 
 /// The page that is shown of a submission: staff's own, where there is one that the reader may see.
