@@ -81,10 +81,9 @@ pub(super) fn is_time_without_losses(expected: &Expected, own: f64, t: f64) -> b
     is_near || time_fits(expected, possible_time(expected), t, value_without_losses)
 }
 
-/// Compares a logged contact with the reference's.
+/// Compares a logged contact with the reference's, of a step from this state.
 pub(super) fn hit(
-    context: &Context<'_>,
-    records: &Records<'_>,
+    before: &State,
     known: Option<&(BoundedPairMotion, Expected)>,
     own: Impulse,
     actual: &LoggedImpulse,
@@ -98,7 +97,7 @@ pub(super) fn hit(
     }
     let (normal, tolerance) = match known {
         Some((motion, _)) => normal(motion, actual.time),
-        None => (own.normal, simple_tolerance(context, records)),
+        None => (own.normal, simple_tolerance(before)),
     };
     compare_normal(Impulse { normal, time: actual.time, ..own }, tolerance, actual, judged)
 }
@@ -119,7 +118,7 @@ pub(super) fn possible_hit(
         if actual.time != 0.0 {
             return Some(FindingDetail::ContactTime { expected, actual: *actual });
         }
-        return compare_normal(expected, simple_tolerance(context, records), actual, judged);
+        return compare_normal(expected, simple_tolerance(records.before), actual, judged);
     };
     if !is_possible(expected, actual.time, value) {
         let time = possible_time(expected);
@@ -138,9 +137,9 @@ fn normal(motion: &BoundedPairMotion, t: f64) -> (Vec2, f64) {
     (Vec2::new(normal.x.value, normal.y.value), FAIR_UNITS * UNIT_ROUNDOFF * bound)
 }
 
-/// The tolerance of contact normals that come from positions at once.
-fn simple_tolerance(context: &Context<'_>, records: &Records<'_>) -> f64 {
-    FAIR_UNITS * UNIT_ROUNDOFF * context.size(records.before)
+/// The tolerance of contact normals that come from positions at once, whose roundings are of the largest one's size.
+fn simple_tolerance(before: &State) -> f64 {
+    FAIR_UNITS * UNIT_ROUNDOFF * largest(&before.positions)
 }
 
 fn compare_normal(
@@ -183,7 +182,7 @@ impl<'a> Tolerances<'a> {
     /// Around this state of the reference.
     pub fn of(context: &Context<'_>, own: &State, sensitivity: Option<&'a State>) -> Self {
         let roundings = FAIR_UNITS * UNIT_ROUNDOFF;
-        let size = context.size(own);
+        let size = largest(&own.positions);
         let speed = largest(&own.velocities);
         // Where contacts are answered, velocities come from displacements over the time step.
         let from_positions = match context.scene.collision {

@@ -1,5 +1,5 @@
 //! The facts by which a step is judged: the scene, and the trace's records.
-use super::ordinary::{Ordinary, largest};
+use super::ordinary::Ordinary;
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{ByKind, Decision, Pair, PairKind, Pass, State, pairs},
@@ -47,11 +47,6 @@ impl<'a> Context<'a> {
             }
             PairKind::ParticleHalfPlane => [Some(first), None, None],
         }
-    }
-
-    /// The size of the largest position: roundings of positions are of this size.
-    pub(super) fn size(&self, state: &State) -> f64 {
-        largest(&state.positions)
     }
 }
 

@@ -16,7 +16,8 @@ use std::fmt;
 /// for _ in 0..scene.steps() {
 ///     simulation.step(&mut counts)?;
 /// }
-/// assert_eq!((counts.continuous_time_passes, counts.calls.values().sum(), counts.polynomials), (10, 10, 20));
+/// let calls: u64 = counts.calls.values().sum();
+/// assert_eq!((counts.continuous_time_passes, calls, counts.polynomials), (10, 10, 20));
 /// # Ok::<(), fosssim_model::sim::StepError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

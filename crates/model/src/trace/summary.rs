@@ -167,8 +167,8 @@ impl StepView {
     }
 }
 
-/// The digests of steps in groups of equal length, which a trace of `all` steps has few of. The initial record is a group
-/// of its own. A single step keeps its own digest, the one that a listing of all steps shows.
+/// The digests of steps in groups of equal length, of which a trace of `all` steps has few. The initial record is by
+/// itself. A single step keeps its own digest, the one that a listing of all steps shows.
 fn groups(steps: &[Short], all: u32) -> Vec<(u32, u32, Short)> {
     let (initial, later) = steps.split_at(steps.len().min(1));
     let mut first = 0;

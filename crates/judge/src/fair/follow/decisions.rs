@@ -122,7 +122,7 @@ impl Follower<'_> {
             (Decision::Hit { time, normal }, Some(actual)) => {
                 let own = Impulse { pair, normal, time };
                 let known = self.expected();
-                let finding = contact::hit(self.context, &self.records, known.as_ref(), own, &actual, &mut self.judged);
+                let finding = contact::hit(self.records.before, known.as_ref(), own, &actual, &mut self.judged);
                 if let Some(detail) = finding {
                     self.charge(detail);
                 }

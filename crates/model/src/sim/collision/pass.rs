@@ -211,12 +211,7 @@ impl Detector {
 
     /// Takes over where a pair's particles end now. Gives these, some of them more than once.
     fn displace(&mut self, bodies: &Bodies, pair: Pair, q_start: &[f64], q_end: &[f64]) -> [usize; 3] {
-        let (first, second) = (pair.first as usize, pair.second as usize);
-        let moved = match pair.kind {
-            PairKind::ParticleParticle => [first, second, second],
-            PairKind::ParticleEdge => [first, bodies.edges[second][0], bodies.edges[second][1]],
-            PairKind::ParticleHalfPlane => [first; 3],
-        };
+        let moved = bodies.particles_of(pair);
         for particle in moved {
             put(&mut self.displacements, particle, at(q_end, particle) - at(q_start, particle));
         }
