@@ -59,7 +59,7 @@ pub(crate) fn answer(request: &PairRequest) -> PageAnswer {
         .map_err(|_| "there is no answer: the numbers are too large or too small, and the original hangs here")?;
     let report = Detect { study: &study, place: None };
     let picture = |embedding| detection::picture(&study, &report.title(), embedding).into_bytes();
-    let value = json!({ "decision": report.decision(general), "collides": study.answer.collides() });
+    let value = json!({ "decision": report.decision(general), "collides": study.answer.decision.collides() });
     let parts = vec![
         report.text(Style::Plain).into_bytes(),
         report.json().into_bytes(),

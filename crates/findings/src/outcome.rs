@@ -4,7 +4,6 @@ use fosssim_model::{
     sim::{SearchCounts, StepError},
     trace::{Malformation, Unreadable},
 };
-use serde::{Deserialize, Serialize};
 
 /// Why grading stopped before its end.
 #[derive(Debug)]
@@ -28,17 +27,7 @@ pub enum Stop {
 
 /// Damage that the original's reading passes over in silence; before a step without result also a number in the trace's
 /// state that is not finite.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Damage {
-    /// The frame, from 0.
-    pub frame: u64,
-    /// The step it belongs to; 0 for the initial record.
-    pub step: u32,
-    /// Byte offset.
-    pub offset: u64,
-    /// The damage itself.
-    pub what: Malformation,
-}
+pub use fosssim_model::trace::TraceError as Damage;
 
 /// Everything that judging one trace yields.
 #[derive(Debug)]

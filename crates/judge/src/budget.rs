@@ -142,9 +142,9 @@ mod tests {
         })
     }
 
-    fn judged(floor: u64, scene: &Scene, trace: &[u8], fair: bool, threads: usize) -> Outcome {
+    fn judged(floor: u64, scene: &Scene, mut trace: &[u8], fair: bool, threads: usize) -> Outcome {
         let options = Options { fair, threads, ..Options::default() };
-        judge_within(usize::MAX, Some(floor), scene, trace, &options, &mut ())
+        judge_within(usize::MAX, Some(floor), scene, &mut trace, &options, &mut ())
     }
 
     /// The step at which judging was given up.

@@ -100,9 +100,7 @@ impl Identical {
 
     /// Whether the step has a result and its states are nothing out of the ordinary.
     fn step(&mut self, step: u32, before: &State, context: Option<&Context<'_>>, most_work: u64) -> bool {
-        let state = self.simulation.state_mut();
-        state.positions.clone_from(&before.positions);
-        state.velocities.clone_from(&before.velocities);
+        self.simulation.state_mut().clone_from(before);
         self.simulation.set_steps_done(step - 1);
         self.simulation.limit_work(most_work);
         let is_ordinary = |state: &State| context.is_none_or(|context| context.ordinary.holds(state));

@@ -138,7 +138,7 @@ impl Progress for KeepingProgress<'_, '_> {
 }
 
 /// The kept steps, and the bytes behind the steps that are judged.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct KeptBytes {
     layout: Layout,
     most: usize,
@@ -184,22 +184,7 @@ pub struct LateStep {
 
 impl KeptBytes {
     fn new(layout: Layout, most: usize) -> Self {
-        Self {
-            layout,
-            most,
-            pieces: Vec::new(),
-            memory: 0,
-            covered: 0,
-            is_closed: most == 0,
-            late: Vec::new(),
-            late_memory: 0,
-            tail: Vec::new(),
-            start: 0,
-            base: 0,
-            wrong: 0,
-            is_skipping: false,
-            has_ended: false,
-        }
+        Self { layout, most, is_closed: most == 0, ..Self::default() }
     }
 
     /// Whether what comes next belongs to the beginning.

@@ -3,7 +3,7 @@ use super::rules::Book;
 use fosssim_model::sim::RootSearch;
 
 /// How to judge.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct Options {
     /// Number of threads that judge steps; the results do not depend on it. 0 takes one per core, eight at most.
     pub threads: usize,
@@ -17,17 +17,4 @@ pub struct Options {
     pub fair: bool,
     /// Look at every step and every call by itself, the long way. The outcome is the same; it shows that it is.
     pub one_by_one: bool,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self {
-            threads: 0,
-            root_search: RootSearch::WhereNeeded,
-            stop_at_first: false,
-            stop_by: Book::Parity,
-            fair: false,
-            one_by_one: false,
-        }
-    }
 }

@@ -20,7 +20,7 @@ pub trait Progress {
 }
 
 /// Where a step lies in its trace, in bytes from the beginning.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct StepPlace {
     /// The step, from 1.
     pub step: u32,

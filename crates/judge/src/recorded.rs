@@ -6,7 +6,7 @@
 //! compared, and the initial record.
 use super::{
     finding::{PolynomialPlace, Role},
-    outcome::{Damage, Outcome, Stop},
+    outcome::{Outcome, Stop},
     progress::Progress,
     tally::{self, Buffers, StepResult, Tally},
 };
@@ -15,7 +15,6 @@ use fosssim_model::{
     sim::{Impulse, Observer, Pair, PairKind, Pairs, Pass, Stage, pairs},
     trace::{Layout, Lenient, LenientFrame, LoggedImpulse, record_memory},
 };
-use fosssim_num::vector::Vec2;
 use std::io::Read;
 
 /// Why a trace can't be judged against a recording: always the recording's fault.
@@ -74,17 +73,11 @@ fn compare(
             outcome.stop = Some(Stop::Trace { frame, step, cause: stop.cause, offset, what });
             break;
         }
-        if let (None, Some(note)) = (&outcome.damage, actual.note.take()) {
-            outcome.damage = Some(Damage { frame, step, offset: note.offset, what: note.what });
-        }
+        outcome.damage = outcome.damage.or(actual.note.take());
         let damaged = outcome.damage.is_some();
         outcome.damaged_steps += u32::from(damaged && is_end);
         let mut tally = Tally::new((step, frame), &actual, None, true, &mut buffers, &mut result);
-        for logged in &expected.impulses {
-            if let Some(impulse) = impulse(logged) {
-                tally.impulse(&impulse);
-            }
-        }
+        expected.impulses.iter().filter_map(impulse).for_each(|impulse| tally.impulse(&impulse));
         for index in 0..expected.polynomials.len() {
             tally.compare_polynomial(expected.polynomials.get(index), || places.at(index));
         }
@@ -113,13 +106,12 @@ fn compare(
 
 /// An impulse of a sound recording.
 fn impulse(logged: &LoggedImpulse) -> Option<Impulse> {
-    let normal = Vec2::new(logged.normal.x, logged.normal.y);
-    Some(Impulse { pair: logged.pair()?, normal, time: logged.time })
+    Some(Impulse { pair: logged.pair()?, normal: logged.normal, time: logged.time })
 }
 
 /// Which polynomial of a step belongs to which pair.
 struct Places {
-    pairs: Pairs<'static>,
+    pairs: Pairs,
     continuous: bool,
 }
 

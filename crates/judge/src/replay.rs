@@ -41,19 +41,12 @@ const DONE_STEPS: usize = 16;
 /// One step as read, and what judging it yields.
 #[derive(Debug, Default)]
 struct StepSlot {
-    step: u32,
+    /// Its number, and where it lies.
+    place: StepPlace,
     before: State,
-    /// Byte offset of the record that `before` comes from.
-    before_at: u64,
     /// The mid record; without its lists, unless the fair rules want them.
     mid: LenientFrame,
     end: LenientFrame,
-    /// Byte offsets of the step's first record, of its end record, and of what follows.
-    begin_at: u64,
-    end_at: u64,
-    behind: u64,
-    /// Whether its bytes are the reference's.
-    is_own: bool,
     damage: Option<Damage>,
     result: StepResult,
     fair: StepJudgement,
@@ -72,14 +65,6 @@ struct StepSlot {
     bytes: usize,
 }
 
-impl StepSlot {
-    /// Where the step lies.
-    fn place(&self) -> StepPlace {
-        let &Self { step, before_at: before, begin_at: begin, end_at: last, behind: end, is_own, .. } = self;
-        StepPlace { step, before, begin, last, end, is_own }
-    }
-}
-
 /// Steps in a row; slots are reused from batch to batch.
 #[derive(Default)]
 struct Batch {
@@ -93,21 +78,18 @@ struct Batch {
 /// Memory does not depend on the trace's length. What follows the last record is not read, save for one byte that tells
 /// whether it is there.
 pub fn judge<R: Read + Send>(scene: &Scene, mut trace: R, options: &Options, progress: &mut dyn Progress) -> Outcome {
-    judge_any(scene, &mut trace, options, progress)
-}
-
-/// Compiled once and here, whatever the trace comes from: what is generic is compiled where it is used, at that crate's
-/// level.
-fn judge_any(scene: &Scene, trace: &mut (dyn Read + Send), options: &Options, progress: &mut dyn Progress) -> Outcome {
-    judge_within(record_memory(scene), None, scene, trace, options, progress)
+    judge_within(record_memory(scene), None, scene, &mut trace, options, progress)
 }
 
 /// As [`judge`], with so much memory for the lists of a record, in bytes, and another floor of work, if one is given.
-pub(super) fn judge_within<R: Read + Send>(
+///
+/// It is compiled once and here, whatever the trace comes from: what is generic is compiled where it is used, at that
+/// crate's level.
+pub(super) fn judge_within(
     memory: usize,
     floor: Option<u64>,
     scene: &Scene,
-    trace: R,
+    trace: &mut (dyn Read + Send),
     options: &Options,
     progress: &mut dyn Progress,
 ) -> Outcome {
@@ -246,7 +228,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
     fn read_initial(&mut self) -> Result<(), Stop> {
         let mut frame = LenientFrame::default();
         let mut damage = None;
-        let read = self.read_frame(&mut frame, 0, &mut damage);
+        let read = self.read_frame(&mut frame, &mut damage);
         self.damaged = damage.is_some();
         self.damage = damage;
         if let (Ok(()), false, Some(context), Some(judgement)) =
@@ -259,16 +241,14 @@ impl<'a, R: Read + Send> Replay<'a, R> {
     }
 
     /// Reads one record; the first damage of a slot is kept.
-    fn read_frame(&mut self, frame: &mut LenientFrame, step: u32, damage: &mut Option<Damage>) -> Result<(), Stop> {
+    fn read_frame(&mut self, frame: &mut LenientFrame, damage: &mut Option<Damage>) -> Result<(), Stop> {
         match self.reader.next(frame) {
             Ok(()) => {
-                if let (None, Some(note)) = (&damage, frame.note.take()) {
-                    *damage = Some(Damage { frame: note.frame, step, offset: note.offset, what: note.what });
-                }
+                *damage = damage.take().or(frame.note.take());
                 Ok(())
             }
             Err(stop) => {
-                let TraceError { frame, offset, what, .. } = stop.at;
+                let TraceError { frame, step, offset, what } = stop.at;
                 Err(Stop::Trace { frame, step, cause: stop.cause, offset, what })
             }
         }
@@ -297,38 +277,37 @@ impl<'a, R: Read + Send> Replay<'a, R> {
     }
 
     fn read_step(&mut self, slot: &mut StepSlot) -> Result<(), Stop> {
-        slot.step = self.steps_read + 1;
+        let (step, before, begin) = (self.steps_read + 1, self.state_at, self.reader.offset());
+        slot.place = StepPlace { step, before, begin, ..StepPlace::default() };
         slot.damage = None;
         slot.error = None;
         slot.beyond_limit = false;
         (slot.is_done, slot.work) = (false, 0);
-        (slot.before_at, slot.begin_at) = (self.state_at, self.reader.offset());
-        slot.is_own = false;
         if self.read_at_once(slot) {
             return Ok(());
         }
-        copy_state(&mut slot.before, &self.state);
+        slot.before.clone_from(&self.state);
         let mut damage = None;
         let mut read = Ok(());
         if self.shape.layout.polynomials {
             if self.shape.fair.is_some() {
-                read = self.read_frame(&mut slot.mid, slot.step, &mut damage);
+                read = self.read_frame(&mut slot.mid, &mut damage);
             } else {
                 // Parity never compares the mid record's lists; the end record's buffer serves for reading them.
-                read = self.read_frame(&mut slot.end, slot.step, &mut damage);
+                read = self.read_frame(&mut slot.end, &mut damage);
                 if read.is_ok() {
-                    copy_state(&mut slot.mid.state, &slot.end.state);
+                    slot.mid.state.clone_from(&slot.end.state);
                 }
             }
         }
         if read.is_ok() {
-            read = self.read_frame(&mut slot.end, slot.step, &mut damage);
+            read = self.read_frame(&mut slot.end, &mut damage);
         }
         slot.damage = damage;
         read?;
-        copy_state(&mut self.state, &slot.end.state);
+        self.state.clone_from(&slot.end.state);
         self.state_at = self.reader.record_offset();
-        (slot.end_at, slot.behind) = (self.state_at, self.reader.offset());
+        (slot.place.last, slot.place.end) = (self.state_at, self.reader.offset());
         slot.bytes = memory(&slot.end).max(memory(&slot.mid)) + self.shape.layout.state_bytes();
         self.steps_read += 1;
         Ok(())
@@ -337,15 +316,15 @@ impl<'a, R: Read + Send> Replay<'a, R> {
     /// Reads a step and judges it, if it is the reference's byte for byte.
     fn read_at_once(&mut self, slot: &mut StepSlot) -> bool {
         let (context, rest) = (self.shape.fair.as_ref(), self.budget.rest());
-        let Some(found) = self.identical.find(&mut self.reader, slot.step, &self.state, context, rest) else {
+        let Some(found) = self.identical.find(&mut self.reader, slot.place.step, &self.state, context, rest) else {
             return false;
         };
-        copy_state(&mut self.state, self.identical.state());
+        self.state.clone_from(self.identical.state());
         self.state_at = self.reader.record_offset();
-        (slot.end_at, slot.behind) = (self.state_at, self.reader.offset());
+        (slot.place.last, slot.place.end) = (self.state_at, self.reader.offset());
         self.steps_read += 1;
         slot.result.set_identical();
-        slot.is_own = true;
+        slot.place.is_own = true;
         slot.fair = found.fair.unwrap_or_default();
         (slot.bytes, slot.work, slot.is_done) = (found.bytes, found.work, true);
         (slot.is_extraordinary, slot.is_put_off) = (false, false);
@@ -356,7 +335,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
     fn deliver(&mut self, batch: &mut Batch, progress: &mut dyn Progress, options: &Options) -> bool {
         for slot in &mut batch.slots[..batch.filled] {
             let slot = lock(slot);
-            progress.step_begins(slot.step);
+            progress.step_begins(slot.place.step);
             let outcome = &mut self.outcome;
             if outcome.damage.is_none() && slot.error.is_some() {
                 outcome.damage = not_finite(slot, self.shape.layout);
@@ -366,7 +345,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
                 outcome.damage = slot.damage.take();
             }
             if !self.budget.spend(slot.work) {
-                slot.error = Some(StepError::Work { step: slot.step });
+                slot.error = Some(StepError::Work { step: slot.place.step });
             }
             if let Some(error) = slot.error {
                 outcome.stop = Some(Stop::Step(error));
@@ -385,9 +364,9 @@ impl<'a, R: Read + Send> Replay<'a, R> {
                     (&mut self.judging, &self.shape.fair, &mut self.reach)
                 {
                     if slot.is_extraordinary {
-                        let frame = u64::from(slot.step) * u64::from(self.shape.layout.records_per_step());
+                        let frame = self.shape.layout.end_record(slot.place.step);
                         let mid = self.shape.layout.polynomials.then_some(&slot.mid);
-                        let (step, before, end) = (slot.step, &slot.before, &slot.end);
+                        let (step, before, end) = (slot.place.step, &slot.before, &slot.end);
                         let records = Records { step, frame, before, mid, end };
                         let known = (!slot.is_put_off).then(|| std::mem::take(&mut slot.fair));
                         let identical = slot.result.identical;
@@ -397,7 +376,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
                             (judged, work) = reach.judge(context, records, identical, None, self.budget.rest());
                         }
                         if !self.budget.spend(work) {
-                            outcome.stop = Some(Stop::Step(StepError::Work { step: slot.step }));
+                            outcome.stop = Some(Stop::Step(StepError::Work { step: slot.place.step }));
                             return true;
                         }
                         slot.fair = judged;
@@ -407,7 +386,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             }
             outcome.steps_judged += 1;
             outcome.damaged_steps += u32::from(self.damaged);
-            progress.step_judged(slot.step, &slot.result.remarks);
+            progress.step_judged(slot.place.step, &slot.result.remarks);
             if slot.result.counts.total() > 0 && !self.damaged {
                 outcome.parity.findings.wrong_steps += 1;
             }
@@ -415,9 +394,9 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             if !is_right && !self.damaged {
                 let parity = StepFindings { firsts: &slot.result.firsts, more: slot.result.more() };
                 let fair = StepFindings { firsts: &slot.fair.findings, more: slot.fair.more };
-                progress.step_wrong(&WrongStep { step: slot.step, parity, fair });
+                progress.step_wrong(&WrongStep { step: slot.place.step, parity, fair });
             }
-            progress.step_passed(&slot.place());
+            progress.step_passed(&slot.place);
             slot.mid.shrink();
             slot.end.shrink();
             let is_hopeless = match options.stop_by {
@@ -441,11 +420,11 @@ fn not_finite(slot: &StepSlot, layout: Layout) -> Option<Damage> {
         Some(place) => (["velocity x", "velocity y"], place),
     };
     let quantity = names[place % 2].into();
-    let step = slot.step - 1;
+    let step = slot.place.step - 1;
     Some(Damage {
-        frame: u64::from(step) * u64::from(layout.records_per_step()),
+        frame: layout.end_record(step),
         step,
-        offset: slot.before_at + 8 * index as u64,
+        offset: slot.place.before + 8 * index as u64,
         what: Malformation::NotFinite { quantity, particle: place / 2, value: *value },
     })
 }
@@ -454,10 +433,10 @@ fn not_finite(slot: &StepSlot, layout: Layout) -> Option<Damage> {
 fn beyond_limit(slot: &StepSlot, layout: Layout) -> Stop {
     let (logged, kept) = (slot.end.logged, slot.end.polynomials.len());
     Stop::Trace {
-        frame: u64::from(slot.step) * u64::from(layout.records_per_step()),
-        step: slot.step,
+        frame: layout.end_record(slot.place.step),
+        step: slot.place.step,
         cause: Unreadable::Limit,
-        offset: slot.end_at,
+        offset: slot.place.last,
         what: Malformation::BeyondKept { logged, kept },
     }
 }
@@ -478,11 +457,6 @@ impl Batch {
 fn memory(frame: &LenientFrame) -> usize {
     let LenientFrame { impulses, polynomials, .. } = frame;
     8 * polynomials.coefficients.len() + 8 * polynomials.ends.len() + size_of::<LoggedImpulse>() * impulses.len()
-}
-
-fn copy_state(target: &mut State, source: &State) {
-    target.positions.clone_from(&source.positions);
-    target.velocities.clone_from(&source.velocities);
 }
 
 fn lock(slot: &mut Mutex<StepSlot>) -> &mut StepSlot {

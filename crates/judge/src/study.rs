@@ -87,30 +87,15 @@ impl Answer {
             Some(normal) => Decision::Hit { time, normal },
             None => Decision::Miss { time: Time::Found(time) },
         };
-        let mut both = Intervals::<SETS>::new();
+        let mut both = Intervals::<SETS>::EMPTY;
         both.push(Interval::EVERYTHING);
         for curve in curves {
-            let mut set = Intervals::<SETS>::new();
+            let mut set = Intervals::<SETS>::EMPTY;
             curve.positive.iter().for_each(|&interval| set.push(interval));
             both = both.intersection(&set);
         }
         let positive = if curves.is_empty() { Vec::new() } else { both.as_slice().to_vec() };
         Ok(Self { positive, decision })
-    }
-
-    /// Whether the pair collides within the step.
-    #[must_use]
-    pub const fn collides(&self) -> bool {
-        matches!(self.decision, Decision::Hit { .. })
-    }
-
-    /// The first time from which all polynomials are positive; infinite if there is none.
-    #[must_use]
-    pub const fn time(&self) -> f64 {
-        match self.decision {
-            Decision::Hit { time, .. } | Decision::Miss { time: Time::Found(time) } => time,
-            Decision::Miss { .. } => f64::INFINITY,
-        }
     }
 }
 
@@ -242,7 +227,7 @@ mod tests {
     fn the_assignments_examples() {
         let study = Study::of(&first_example()).unwrap();
         assert_eq!(study.curves[0].logged.coefficients(), [-361.0, -304.0, -468.0, -288.0, 0.0]);
-        assert!(!study.answer.collides());
+        assert!(!study.answer.decision.collides());
         let second = PairMotion::Edge {
             centre: point(1.0, 4.0, 1.0, 4.0),
             ends: [point(2.0, 1.0, 3.0, 5.0), point(6.0, 2.0, 3.0, 7.0)],
@@ -251,7 +236,7 @@ mod tests {
         let study = Study::of(&second).unwrap();
         assert_eq!(study.curves[0].logged.coefficients(), [-16.0, 0.0, -68.0, 36.0, -16.0]);
         assert_eq!(study.curves[0].positive, []);
-        assert_eq!((study.answer.collides(), study.certain), (false, Some(false)));
+        assert_eq!((study.answer.decision.collides(), study.certain), (false, Some(false)));
     }
 
     /// The sets on the way lead to the same time as the reference's own search.
@@ -273,7 +258,7 @@ mod tests {
         let differing: Vec<usize> =
             (0..6).filter(|&k| course.coefficients()[k] != right_one.coefficients()[k]).collect();
         assert_eq!(differing, [2]);
-        assert_eq!(right.answer.time(), time);
+        assert_eq!(right.answer.decision.time(), time);
     }
 
     #[test]

@@ -16,13 +16,13 @@ use super::{
 };
 use fosssim_model::{
     scene::Scene,
-    sim::{Impulse, Observer, Pairs, Pass, PolynomialBytes, Resume, Stage, State, Steer, Wanted, pairs},
+    sim::{Impulse, Observer, Pairs, Pass, PolynomialBytes, Resume, State, Steer, Wanted, pairs},
     trace::{LenientFrame, LoggedImpulse},
 };
 use fosssim_num::{
     polynomial::MAX_COEFFICIENTS,
     tolerances::{PARITY_COEFFICIENT, PARITY_MAXIMUM, PARITY_NORMAL, PARITY_ZERO_POLYNOMIAL},
-    vector::{Vec2, at, length},
+    vector::{at, length, same_bits},
 };
 
 /// Below this sum of moduli, coefficients that are equal bit for bit always pass the original's comparison: `(O*s)/s`
@@ -81,10 +81,10 @@ impl StepResult {
 }
 
 /// Buffers of a tally, kept from step to step.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Buffers {
     /// The pairs that a pass looks at.
-    order: Pairs<'static>,
+    order: Pairs,
     /// The reference's polynomials of the current pass.
     own: PolynomialBytes,
     impulses: Vec<Impulse>,
@@ -94,9 +94,7 @@ pub(super) struct Buffers {
 impl Buffers {
     /// Empty, for steps of this scene.
     pub(super) fn new(scene: &Scene) -> Self {
-        let (order, own, impulses, pending) =
-            (pairs(scene), PolynomialBytes::default(), Vec::new(), Pending::default());
-        Self { order, own, impulses, pending }
+        Self { order: pairs(scene), ..Self::default() }
     }
 }
 
@@ -112,7 +110,6 @@ pub(super) struct Tally<'a> {
     logs_impulses: bool,
     buffers: &'a mut Buffers,
     result: &'a mut StepResult,
-    pass: Pass,
     passes: usize,
     /// Polynomials of the reference so far.
     polynomials: usize,
@@ -142,7 +139,6 @@ impl<'a> Tally<'a> {
             logs_impulses,
             buffers,
             result,
-            pass: Pass { stage: Stage::Simple, index: 0 },
             passes: 0,
             polynomials: 0,
             identical: true,
@@ -183,7 +179,7 @@ impl<'a> Tally<'a> {
             self.identical &= self.frame.logged == self.polynomials;
             self.settle_polynomials();
         }
-        self.identical &= same_bits(reference, &self.frame.state);
+        self.identical &= same_state(reference, &self.frame.state);
         self.result.identical = self.identical;
         self.compare_states(reference);
     }
@@ -196,8 +192,8 @@ impl<'a> Tally<'a> {
     fn compare_impulses(&mut self) {
         let own = std::mem::take(&mut self.buffers.impulses);
         let theirs = &self.frame.impulses;
-        self.identical &=
-            own.len() == theirs.len() && own.iter().zip(theirs).all(|(own, logged)| same_impulse(own, logged));
+        self.identical &= own.len() == theirs.len()
+            && own.iter().zip(theirs).all(|(own, logged)| LoggedImpulse::from(*own).is_same(logged));
         let by_pair = Contacts::of(theirs);
         let logged = |own: &Impulse| key(own.pair).and_then(|key| by_pair.about(key).next());
         let mut own_keys: Vec<_> = own.iter().filter_map(|own| key(own.pair)).collect();
@@ -276,7 +272,7 @@ impl<'a> Tally<'a> {
         if equal_and_safe(expected, actual) {
             return;
         }
-        self.identical = self.identical && equal(expected, actual);
+        self.identical = self.identical && same_bits(expected, actual);
         if !passes(expected, actual) {
             let at = (self.step, self.frame_number);
             self.buffers.pending.compare(at, expected, actual, place);
@@ -285,8 +281,7 @@ impl<'a> Tally<'a> {
 }
 
 impl Observer for Tally<'_> {
-    fn begin_pass(&mut self, pass: Pass) {
-        self.pass = pass;
+    fn begin_pass(&mut self, _pass: Pass) {
         self.passes += 1;
     }
 
@@ -298,7 +293,7 @@ impl Observer for Tally<'_> {
     /// Compares the pass's polynomials.
     fn end_pass(&mut self, pass: Pass, _hits: usize) {
         let mut own = std::mem::take(&mut self.buffers.own);
-        let order = std::mem::replace(&mut self.buffers.order, Pairs::none());
+        let order = std::mem::take(&mut self.buffers.order);
         let mut coefficients = [0.0; MAX_COEFFICIENTS];
         // Then the original rejects nothing that is the same. Where NaN is among it, it rejects nothing anyway.
         let is_small = own.largest() < SAFE_SUM / MAX_COEFFICIENTS as f64;
@@ -342,9 +337,8 @@ impl Observer for Tally<'_> {
 impl Steer for Tally<'_> {
     fn synchronise(&mut self, state: &mut State) -> Resume {
         if let Some(mid) = self.mid {
-            self.identical &= mid.logged == self.polynomials && same_bits(state, &mid.state);
-            state.positions.copy_from_slice(&mid.state.positions);
-            state.velocities.copy_from_slice(&mid.state.velocities);
+            self.identical &= mid.logged == self.polynomials && same_state(state, &mid.state);
+            state.clone_from(&mid.state);
         }
         Resume::Own
     }
@@ -364,25 +358,9 @@ pub(super) fn accumulate(total: &mut Residuals, step: &[(f64, f64)]) {
     }
 }
 
-/// Whether both name the same pair of objects; the time is never compared.
-fn same_pair(own: &Impulse, logged: &LoggedImpulse) -> bool {
-    key(own.pair) == Some(logged_key(logged))
-}
-
-/// Whether both are the same impulse bit for bit, the time included.
-fn same_impulse(own: &Impulse, logged: &LoggedImpulse) -> bool {
-    let bits = |normal: Vec2, time: f64| [normal.x.to_bits(), normal.y.to_bits(), time.to_bits()];
-    same_pair(own, logged) && bits(own.normal, own.time) == bits(logged.normal, logged.time)
-}
-
 /// Whether two states are equal bit for bit.
-fn same_bits(own: &State, other: &State) -> bool {
-    equal(&own.positions, &other.positions) && equal(&own.velocities, &other.velocities)
-}
-
-/// Whether two lists are equal bit for bit.
-fn equal(own: &[f64], other: &[f64]) -> bool {
-    own.len() == other.len() && own.iter().zip(other).all(|(own, other)| own.to_bits() == other.to_bits())
+fn same_state(own: &State, other: &State) -> bool {
+    same_bits(&own.positions, &other.positions) && same_bits(&own.velocities, &other.velocities)
 }
 
 /// Whether the original rejects a polynomial that is the reference's bit for bit (oracle-behaviour.md 6.2 and 8.10).
@@ -496,12 +474,12 @@ mod tests {
             let actual = own.map(|own| factor * own + noise * (next() - 0.5));
             let bytes: Vec<u8> = own.iter().flat_map(|own| own.to_le_bytes()).collect();
             match likeness::<3>(&bytes, &actual) {
-                Likeness::Same => assert!(equal(&own, &actual)),
+                Likeness::Same => assert!(same_bits(&own, &actual)),
                 Likeness::Factor => {
-                    assert!(passes(&own, &actual) && !equal(&own, &actual), "{own:?} {actual:?}");
+                    assert!(passes(&own, &actual) && !same_bits(&own, &actual), "{own:?} {actual:?}");
                     clear += 1;
                 }
-                Likeness::Open => assert!(!equal(&own, &actual)),
+                Likeness::Open => assert!(!same_bits(&own, &actual)),
             }
         }
         assert!(clear > 5000, "{clear}");

@@ -63,7 +63,7 @@ fn intersected<'a, const CAPACITY: usize>(
     steps: &mut u64,
 ) -> Result<f64, DoesNotTerminate> {
     let Some(first) = lists.next() else { return Ok(f64::INFINITY) };
-    let mut set = Intervals::<CAPACITY>::new();
+    let mut set = Intervals::<CAPACITY>::EMPTY;
     for &interval in counted(first, steps)?.as_slice() {
         set.push(interval);
     }
@@ -88,7 +88,7 @@ pub fn positive_set(coefficients: &[f64]) -> Result<PositiveSet, DoesNotTerminat
 }
 
 fn counted(coefficients: &[f64], steps: &mut u64) -> Result<PositiveSet, DoesNotTerminate> {
-    let mut set = PositiveSet::new();
+    let mut set = PositiveSet::EMPTY;
     let zeros = match coefficients.len() {
         0 => return Ok(set),
         1 => Zeros::default(),

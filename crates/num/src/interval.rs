@@ -34,19 +34,9 @@ pub struct Intervals<const CAPACITY: usize> {
     list: [Interval; CAPACITY],
 }
 
-impl<const CAPACITY: usize> Default for Intervals<CAPACITY> {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 impl<const CAPACITY: usize> Intervals<CAPACITY> {
     /// The empty set.
-    #[inline]
-    #[must_use]
-    pub const fn new() -> Self {
-        Self { length: 0, list: [Interval { lo: 0.0, hi: 0.0 }; CAPACITY] }
-    }
+    pub const EMPTY: Self = Self { length: 0, list: [Interval { lo: 0.0, hi: 0.0 }; CAPACITY] };
 
     /// The intervals, in order.
     #[inline]
@@ -100,7 +90,7 @@ impl<const CAPACITY: usize> Intervals<CAPACITY> {
     #[inline]
     #[must_use]
     pub fn intersection<const OTHER: usize>(&self, other: &Intervals<OTHER>) -> Self {
-        let mut both = Self::new();
+        let mut both = Self::EMPTY;
         for &a in self.as_slice() {
             for &b in other.as_slice() {
                 if a.touches(b) {
@@ -133,7 +123,7 @@ mod tests {
     use super::{Interval, Intervals};
 
     fn intervals(list: &[(f64, f64)]) -> Intervals<4> {
-        let mut intervals = Intervals::new();
+        let mut intervals = Intervals::EMPTY;
         for &(lo, hi) in list {
             intervals.push(Interval { lo, hi });
         }
@@ -163,6 +153,6 @@ mod tests {
         assert_eq!(set.next_time(0.0), 0.5);
         assert_eq!(set.next_time(0.75), 0.75);
         assert_eq!(set.next_time(1.0), f64::INFINITY);
-        assert_eq!(Intervals::<4>::new().next_time(0.0), f64::INFINITY);
+        assert_eq!(Intervals::<4>::EMPTY.next_time(0.0), f64::INFINITY);
     }
 }

@@ -44,12 +44,6 @@ impl<N: Number> Plane<N> {
     pub fn dot(self, other: Self) -> N {
         self.x * other.x + self.y * other.y
     }
-
-    /// The third component of the cross product, `x*y' - y*x'`.
-    #[inline(always)]
-    pub fn cross(self, other: Self) -> N {
-        self.x * other.y - self.y * other.x
-    }
 }
 
 impl From<Vec2> for Plane<f64> {
@@ -313,12 +307,6 @@ pub struct Mask<S: Simd> {
 }
 
 impl<S: Simd> Mask<S> {
-    /// 1 where it says yes, 0 elsewhere.
-    #[inline(always)]
-    pub fn as_numbers(self) -> Lanes<S> {
-        self.or_zero(1.0)
-    }
-
     /// A number where it says yes, 0 elsewhere.
     #[inline(always)]
     pub fn or_zero(self, number: f64) -> Lanes<S> {
@@ -404,7 +392,7 @@ mod tests {
                 let values: [f64; MOST_LANES] = std::array::from_fn(|lane| f64::from(first) + 0.125 * lane as f64);
                 Lanes::load(simd, &values)
             };
-            let sum = from(4).at_least(4.125).or_zero(-2.5) + from(0).below(0.25).as_numbers();
+            let sum = from(4).at_least(4.125).or_zero(-2.5) + from(0).below(0.25).or_zero(1.0);
             let numbers = [[from(0), from(1), from(2), from(3)], [sum, from(5), from(6), from(7)]];
             let mut rows = vec![-1.0; 9 * Lanes::<S>::COUNT];
             Lanes::store_by_lane(&numbers, 9, &mut rows);

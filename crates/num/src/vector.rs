@@ -39,6 +39,13 @@ pub fn columns(values: &[f64]) -> MatrixView2xX<'_, f64> {
     MatrixView2xX::from_slice(values, values.len() / 2)
 }
 
+/// Whether two lists are equal bit for bit.
+#[inline]
+#[must_use]
+pub fn same_bits(one: &[f64], other: &[f64]) -> bool {
+    one.len() == other.len() && one.iter().zip(other).all(|(one, other)| one.to_bits() == other.to_bits())
+}
+
 /// Reads the vector of element `index` from an array in trace order (`x0, y0, x1, y1, ...`).
 #[inline]
 #[must_use]

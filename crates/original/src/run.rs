@@ -4,13 +4,13 @@ use crate::{
     arguments::Arguments,
     transcript::{Heading, Task, Transcript},
     verdict::residual_file,
-    words::{INPUT_AND_OUTPUT, NO_VORTEX_HESSIAN, input_not_opened, output_not_opened},
+    words::{INPUT_AND_OUTPUT, NO_VORTEX_HESSIAN, not_opened},
 };
 use fosssim_files::{Identity, open_for_reading, open_for_writing, patient, read_limited};
 use fosssim_judge::{Stop, Unreadable, replay, replay::Progress};
 use fosssim_model::{
     scene::{
-        Integrator, LARGEST_IMPLICIT, LARGEST_SCENE, Scene,
+        LARGEST_IMPLICIT, LARGEST_SCENE, Scene,
         original::{self, OriginalScene, Refusal, RefusalKind},
     },
     sim::{RootSearch, Simulation, StepError},
@@ -36,14 +36,14 @@ pub(crate) fn run(arguments: &Arguments, words: &[Vec<u8>], outside: &dyn Outsid
         Err(refusal) => return refuse_scene(arguments, &refusal),
     };
     if let Some(message) = unsupported(arguments, &scene.scene) {
-        return complain(&message);
+        return complain(message);
     }
     let wanted = arguments.generate || arguments.movie.is_some();
     let pictures =
         wanted.then(|| outside.pictures(arguments.generate, arguments.movie.as_deref().map(Path::new), &scene.scene));
     let pictures = match pictures.transpose() {
         Ok(pictures) => pictures,
-        Err(message) => return complain(&message),
+        Err(message) => return complain(message),
     };
     let task = match (&arguments.output, &arguments.input) {
         (Some(file), _) => Task::Record(file.as_bytes()),
@@ -56,22 +56,20 @@ pub(crate) fn run(arguments: &Arguments, words: &[Vec<u8>], outside: &dyn Outsid
     match (&arguments.output, &arguments.input) {
         (Some(file), _) => match create(Path::new(file), identity) {
             Ok(file) => simulate(&scene.scene, file, transcript, pictures, outside),
-            Err(message) => {
-                crate::complain(&message);
-                FAILED
-            }
+            Err(message) => complain(message),
         },
         (None, Some(file)) => {
             if let Ok(trace) = open(Path::new(file)) {
                 if let Some(pictures) = pictures
                     && let Err(message) = draw(&scene.scene, Path::new(file), pictures)
                 {
-                    return complain(&message);
+                    return complain(message);
                 }
                 return grade(&scene.scene, trace, transcript, outside);
             }
+            // The original names the third word of the command line instead of the file.
             let third_word = words.get(2).map(Vec::as_slice).unwrap_or_default();
-            crate::complain(&input_not_opened(third_word));
+            crate::complain(&not_opened("input", third_word));
             transcript.not_opened();
             drop(transcript.finish());
             FAILED
@@ -80,13 +78,13 @@ pub(crate) fn run(arguments: &Arguments, words: &[Vec<u8>], outside: &dyn Outsid
     }
 }
 
-fn complain(text: &str) -> u8 {
-    crate::complain(text.as_bytes());
+fn complain(text: impl AsRef<[u8]>) -> u8 {
+    crate::complain(text.as_ref());
     FAILED
 }
 
 /// Reads the scene as the original does. A directory opens and reads as empty text.
-fn load(arguments: &Arguments) -> Result<(OriginalScene, Option<Identity>), Refusal> {
+fn load(arguments: &Arguments) -> Result<(OriginalScene, Identity), Refusal> {
     let name = Path::new(&arguments.scene);
     let unreadable = || Refusal::unreadable(arguments.scene.as_bytes());
     let (file, metadata) = open_for_reading(name).map_err(|_| unreadable())?;
@@ -100,14 +98,14 @@ fn load(arguments: &Arguments) -> Result<(OriginalScene, Option<Identity>), Refu
             explanation: error.to_string(),
         })?
     };
-    Ok((original::read(&bytes)?, Some(Identity::of(&metadata))))
+    Ok((original::read(&bytes)?, Identity::of(&metadata)))
 }
 
 fn refuse_scene(arguments: &Arguments, refusal: &Refusal) -> u8 {
     if refusal.kind == RefusalKind::Crash {
         // The original dies of an uncaught exception here.
         let name = arguments.scene.display();
-        return complain(&format!("{name}: {}; `fosssim-oracle simulate {name}` says where\n", refusal.explanation));
+        return complain(format!("{name}: {}; `fosssim-oracle simulate {name}` says where\n", refusal.explanation));
     }
     crate::complain(&refusal.stderr);
     refusal.exit_code
@@ -118,21 +116,19 @@ fn unsupported(arguments: &Arguments, scene: &Scene) -> Option<String> {
     if arguments.display {
         return Some("there is no window to simulate in (the default); add -d 0 to run without one\n".to_owned());
     }
-    let implicit = matches!(scene.integrator, Integrator::ImplicitEuler | Integrator::LinearizedImplicitEuler);
     let particles = scene.particles.len();
-    (implicit && particles > LARGEST_IMPLICIT).then(|| {
+    (scene.integrator.is_implicit() && particles > LARGEST_IMPLICIT).then(|| {
         format!("{particles} particles are too many for an implicit integrator, which can have {LARGEST_IMPLICIT}\n")
     })
 }
 
 /// Creates the trace.
-fn create(name: &Path, scene: Option<Identity>) -> Result<File, Vec<u8>> {
-    let existing = fs::metadata(name).ok().map(|metadata| Identity::of(&metadata));
-    if existing.is_some() && existing == scene {
+fn create(name: &Path, scene: Identity) -> Result<File, Vec<u8>> {
+    if fs::metadata(name).is_ok_and(|metadata| Identity::of(&metadata) == scene) {
         let text = format!("{} is the scene itself; choose another name for the trace\n", name.display());
         return Err(text.into_bytes());
     }
-    create_now(name).map_err(|_| output_not_opened(name.as_os_str().as_bytes()))
+    create_now(name).map_err(|_| not_opened("output", name.as_os_str().as_bytes()))
 }
 
 /// Creates or truncates a file. A pipe without a reader is an error and does not block.
@@ -169,7 +165,7 @@ fn simulate<W: Write>(
             && let Err(error) = pictures.step(step, &simulation.state().positions)
         {
             drop(transcript.finish());
-            return complain(&error);
+            return complain(error);
         }
     }
     let written = recorder.finish();
@@ -181,7 +177,7 @@ fn simulate<W: Write>(
     match (stopped, written) {
         (Some(error), _) => step_failed(&error, outside),
         // The original would go on and claim that the trace was saved.
-        (None, Err(error)) => complain(&format!("the trace could not be written: {error}\n")),
+        (None, Err(error)) => complain(format!("the trace could not be written: {error}\n")),
         (None, Ok(_)) => 0,
     }
 }
@@ -231,7 +227,7 @@ fn grade(
             step,
             offset,
             what,
-        }) => complain(&format!("the trace can't be read at byte {offset} (record {frame}, step {step}): {what}\n")),
+        }) => complain(format!("the trace can't be read at byte {offset} (record {frame}, step {step}): {what}\n")),
     }
 }
 
@@ -241,7 +237,7 @@ fn step_failed(error: &StepError, outside: &dyn Outside) -> u8 {
         StepError::VortexHessian { .. } => complain(NO_VORTEX_HESSIAN),
         StepError::RootSearch { .. } | StepError::Newton { .. } | StepError::Work { .. } => {
             let (step, words) = outside.step_error(error);
-            complain(&format!("step {step} has no result: {words}\n"))
+            complain(format!("step {step} has no result: {words}\n"))
         }
     }
 }

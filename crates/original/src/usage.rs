@@ -14,22 +14,19 @@ pub(crate) fn help(program: &[u8]) -> Vec<u8> {
     let mut text = b"\nUSAGE: \n\n".to_vec();
     text.extend(brief(program));
     text.extend(b"\n\nWhere: \n\n");
-    for flag in &FLAGS {
-        let value = format!(" <{}>", kind(flag));
-        text.extend(wrapped(format!("-{}{value},  --{}{value}", flag.letter, flag.name).as_bytes(), 3, 3));
-        let required = if flag.required { "(required)  " } else { "" };
-        text.extend(wrapped(format!("{required}{}", flag.help).as_bytes(), 5, 0));
-        text.push(b'\n');
-    }
-    for (names, help) in [
-        ("--,  --ignore_rest", "Ignores everything that follows."),
-        ("--version", "Displays version information and exits."),
-        ("-h,  --help", "Displays usage information and exits."),
-    ] {
+    let mut entry = |names: &str, help: &str| {
         text.extend(wrapped(names.as_bytes(), 3, 3));
         text.extend(wrapped(help.as_bytes(), 5, 0));
         text.push(b'\n');
+    };
+    for flag in &FLAGS {
+        let value = format!(" <{}>", kind(flag));
+        let required = if flag.required { "(required)  " } else { "" };
+        entry(&format!("-{}{value},  --{}{value}", flag.letter, flag.name), &format!("{required}{}", flag.help));
     }
+    entry("--,  --ignore_rest", "Ignores everything that follows.");
+    entry("--version", "Displays version information and exits.");
+    entry("-h,  --help", "Displays usage information and exits.");
     text.push(b'\n');
     text.extend(wrapped(TITLE.as_bytes(), 3, 0));
     text.push(b'\n');

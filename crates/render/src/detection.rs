@@ -19,6 +19,6 @@ pub fn picture(study: &Study, title: &str, embedding: Embedding) -> String {
             positive: &curve.positive,
         })
         .collect();
-    let impact = study.answer.collides().then(|| study.answer.time());
+    let impact = study.answer.decision.collides().then(|| study.answer.decision.time());
     PolynomialPlot { title, curves: &curves, common: Some(&study.answer.positive), impact }.svg(embedding)
 }

@@ -72,16 +72,16 @@ impl Detect<'_> {
                 let (x, y) = (number(normal.x), number(normal.y));
                 format!("they collide at time {} with normal ({x}, {y})", number(time))
             }
-            Decision::Miss { .. } if answer.time() <= 1.0 => {
+            Decision::Miss { .. } if answer.decision.time() <= 1.0 => {
                 format!(
                     "no collision: all are positive from time {}, but the normal is zero there",
-                    number(answer.time())
+                    number(answer.decision.time())
                 )
             }
-            Decision::Miss { .. } if answer.time().is_finite() => {
+            Decision::Miss { .. } if answer.decision.time().is_finite() => {
                 format!(
                     "no collision in this step: all are positive from time {} on, which is after it",
-                    number(answer.time())
+                    number(answer.decision.time())
                 )
             }
             Decision::Miss { .. } => "no collision: there is no time from 0 on at which all are positive".to_owned(),
@@ -137,10 +137,10 @@ impl Detect<'_> {
         }
         text += &format!("\n{}\n", style.paint(Look::Strong, "Decision"));
         text += &format!("  all positive: {}\n", intervals(&study.answer.positive));
-        let look = if study.answer.collides() { Look::Notice } else { Look::Good };
+        let look = if study.answer.decision.collides() { Look::Notice } else { Look::Good };
         text += &format!("  {}\n", style.paint(look, &self.decision(exact)));
         text += match study.certain {
-            Some(certain) if certain == study.answer.collides() => "  certain: round-off can't change this\n",
+            Some(certain) if certain == study.answer.decision.collides() => "  certain: round-off can't change this\n",
             Some(_) => "  the true answer is the other one: the root finder is misled by rounding\n",
             None => "  borderline: a correct program with other round-off may decide otherwise\n",
         };
@@ -360,8 +360,8 @@ fn answer_view(answer: &Answer) -> Value {
     };
     json!({
         "positive": sets(&answer.positive),
-        "collides": answer.collides(),
-        "time": Number(answer.time()),
+        "collides": answer.decision.collides(),
+        "time": Number(answer.decision.time()),
         "normal": normal,
     })
 }

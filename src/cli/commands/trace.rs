@@ -26,7 +26,7 @@ pub(super) fn info(arguments: &TraceInfo) -> Result<u8> {
         TextOrJson::Json => report::info_json(&scene.name, &trace.name, &summary),
     };
     console::show(&text, arguments.format)?;
-    Ok(if summary.stopped.is_none() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
+    Ok(if summary.trace.stopped.is_none() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }
 
 /// One step of a trace.

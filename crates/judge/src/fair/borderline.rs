@@ -6,7 +6,7 @@ use super::{contact, formulas::BoundedPairMotion};
 use fosssim_findings::fair::Borderline;
 use fosssim_model::{
     scene::Scene,
-    sim::{Decision, Detection, Observer, Pass, RootSearch, Simulation, Stage, StepError},
+    sim::{Detection, Observer, RootSearch, Simulation, StepError},
 };
 
 /// All decisions of the reference that roundings of [`FAIR_UNITS`](fosssim_num::tolerances::FAIR_UNITS) units can flip,
@@ -15,8 +15,7 @@ use fosssim_model::{
 /// # Errors
 /// When a step has no result.
 pub fn borderline(scene: &Scene) -> Result<Vec<Borderline>, StepError> {
-    let mut observer =
-        BorderlineObserver { scene, step: 0, pass: Pass { stage: Stage::Simple, index: 0 }, found: Vec::new() };
+    let mut observer = BorderlineObserver { scene, step: 0, found: Vec::new() };
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     for _ in 0..scene.steps() {
         simulation.step(&mut observer)?;
@@ -27,7 +26,6 @@ pub fn borderline(scene: &Scene) -> Result<Vec<Borderline>, StepError> {
 struct BorderlineObserver<'a> {
     scene: &'a Scene,
     step: u32,
-    pass: Pass,
     found: Vec<Borderline>,
 }
 
@@ -36,18 +34,14 @@ impl Observer for BorderlineObserver<'_> {
         self.step = step;
     }
 
-    fn begin_pass(&mut self, pass: Pass) {
-        self.pass = pass;
-    }
-
     fn detection(&mut self, detection: &Detection<'_>) {
         if detection.polynomials.is_empty() {
             return;
         }
         let motion = BoundedPairMotion::of(self.scene, detection.pair, detection.q_start, detection.q_end);
         if contact::is_borderline(&motion, &motion.polynomials()) {
-            let collides = matches!(detection.decision, Decision::Hit { .. });
-            let (step, pass, pair) = (self.step, self.pass, detection.pair);
+            let collides = detection.decision.collides();
+            let (step, &Detection { pass, pair, .. }) = (self.step, detection);
             self.found.push(Borderline { step, pass, pair, collides });
         }
     }

@@ -197,23 +197,10 @@ fn fits(expected: &[Bounded], actual: &[f64]) -> Option<Match> {
     if !(norm > 0.0 && norm.is_finite() && sum_of_moduli(expected).is_finite()) || says_nothing(expected) {
         return None;
     }
-    let mut all_units = [0.0; MAX_COEFFICIENTS];
-    let (mut products, mut squares) = (0.0, 0.0);
-    for ((r, s), own_units) in expected.iter().zip(actual).zip(&mut all_units) {
-        *own_units = units(r, norm);
-        if is_significant(r) {
-            let weight = r.value / *own_units;
-            products += weight * (s / r.value) * weight;
-            squares += weight * weight;
-        }
-    }
-    let scale = products / squares;
-    if !(squares > 0.0 && scale > 0.0) {
-        return None;
-    }
+    let scale = fit(expected, actual, 0).filter(|scale| *scale > 0.0)?;
     let mut share = 0.0_f64;
-    for ((r, s), own_units) in expected.iter().zip(actual).zip(all_units) {
-        let tolerance = UNIT_ROUNDOFF * scale * own_units;
+    for (r, s) in expected.iter().zip(actual) {
+        let tolerance = UNIT_ROUNDOFF * scale * units(r, norm);
         let residual = (s - scale * r.value).abs();
         if !(residual <= tolerance) {
             return None;
@@ -344,7 +331,7 @@ fn check(r: &Bounded, s: f64, norm: f64, is_missing: bool, scale: f64) -> Result
         return Ok(if residual == 0.0 { 0.0 } else { residual / tolerance });
     }
     // The course's library drops leading coefficients that are small, whatever the scale.
-    if is_missing && scale > 0.0 && residual < LEADING_COEFFICIENT + tolerance {
+    if is_missing && residual < LEADING_COEFFICIENT + tolerance {
         return Ok(0.0);
     }
     Err(tolerance)

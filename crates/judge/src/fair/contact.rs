@@ -1,8 +1,8 @@
 //! Contacts and states: how far they may be off, and which decisions hang on round-off.
 use super::{
-    context::{Context, Records, largest},
+    context::{Context, Records},
     formulas::{BoundedPairMotion, Expected},
-    sensitivity::Deviation,
+    ordinary::largest,
     step_judgement::StepJudgement,
 };
 use crate::finding::{Finding, FindingDetail};
@@ -81,11 +81,10 @@ pub(super) fn is_time_without_losses(expected: &Expected, own: f64, t: f64) -> b
     is_near || time_fits(expected, possible_time(expected), t, value_without_losses)
 }
 
-/// Compares a logged contact with the reference's.
+/// Compares a logged contact with the reference's, of a step from this state.
 pub(super) fn hit(
-    context: &Context<'_>,
-    records: &Records<'_>,
-    known: Option<(&BoundedPairMotion, &Expected)>,
+    before: &State,
+    known: Option<&(BoundedPairMotion, Expected)>,
     own: Impulse,
     actual: &LoggedImpulse,
     judged: &mut StepJudgement,
@@ -98,7 +97,7 @@ pub(super) fn hit(
     }
     let (normal, tolerance) = match known {
         Some((motion, _)) => normal(motion, actual.time),
-        None => (own.normal, simple_tolerance(context, records)),
+        None => (own.normal, simple_tolerance(before)),
     };
     compare_normal(Impulse { normal, time: actual.time, ..own }, tolerance, actual, judged)
 }
@@ -107,7 +106,7 @@ pub(super) fn hit(
 pub(super) fn possible_hit(
     context: &Context<'_>,
     records: &Records<'_>,
-    known: Option<(&BoundedPairMotion, &Expected)>,
+    known: Option<&(BoundedPairMotion, Expected)>,
     pair: Pair,
     actual: &LoggedImpulse,
     judged: &mut StepJudgement,
@@ -119,7 +118,7 @@ pub(super) fn possible_hit(
         if actual.time != 0.0 {
             return Some(FindingDetail::ContactTime { expected, actual: *actual });
         }
-        return compare_normal(expected, simple_tolerance(context, records), actual, judged);
+        return compare_normal(expected, simple_tolerance(records.before), actual, judged);
     };
     if !is_possible(expected, actual.time, value) {
         let time = possible_time(expected);
@@ -138,9 +137,9 @@ fn normal(motion: &BoundedPairMotion, t: f64) -> (Vec2, f64) {
     (Vec2::new(normal.x.value, normal.y.value), FAIR_UNITS * UNIT_ROUNDOFF * bound)
 }
 
-/// The tolerance of contact normals that come from positions at once.
-fn simple_tolerance(context: &Context<'_>, records: &Records<'_>) -> f64 {
-    FAIR_UNITS * UNIT_ROUNDOFF * context.size(records.before)
+/// The tolerance of contact normals that come from positions at once, whose roundings are of the largest one's size.
+fn simple_tolerance(before: &State) -> f64 {
+    FAIR_UNITS * UNIT_ROUNDOFF * largest(&before.positions)
 }
 
 fn compare_normal(
@@ -176,14 +175,14 @@ fn overlap_normal(context: &Context<'_>, pair: Pair, positions: &[f64]) -> Vec2 
 pub(super) struct Tolerances<'a> {
     position: f64,
     velocity: f64,
-    sensitivity: Option<&'a Deviation>,
+    sensitivity: Option<&'a State>,
 }
 
 impl<'a> Tolerances<'a> {
     /// Around this state of the reference.
-    pub fn of(context: &Context<'_>, own: &State, sensitivity: Option<&'a Deviation>) -> Self {
+    pub fn of(context: &Context<'_>, own: &State, sensitivity: Option<&'a State>) -> Self {
         let roundings = FAIR_UNITS * UNIT_ROUNDOFF;
-        let size = context.size(own);
+        let size = largest(&own.positions);
         let speed = largest(&own.velocities);
         // Where contacts are answered, velocities come from displacements over the time step.
         let from_positions = match context.scene.collision {
@@ -203,7 +202,7 @@ impl<'a> Tolerances<'a> {
         self.with(self.velocity, particle, |known| &known.velocities)
     }
 
-    fn with(&self, floor: f64, particle: usize, of: fn(&Deviation) -> &Vec<f64>) -> f64 {
+    fn with(&self, floor: f64, particle: usize, of: fn(&State) -> &Vec<f64>) -> f64 {
         let known = self.sensitivity.map_or(0.0, |known| length(at(of(known), particle)));
         floor + FAIR_SENSITIVITY * known
     }
@@ -282,12 +281,8 @@ pub(super) fn time_of(polynomials: &[Polynomial]) -> Option<f64> {
 /// Where a parabola's inputs have so few digits that every way to evaluate the formulas is exact, there is no round-off
 /// to excuse anything: touching at the very end of the step is then as certain as anything else.
 pub fn decides(motion: &BoundedPairMotion, expected: &Expected) -> Option<bool> {
-    let mut polynomials: [&[Bounded]; 4] = [&[]; 4];
-    for (number, polynomial) in polynomials.iter_mut().enumerate() {
-        *polynomial = expected.polynomial(number);
-    }
-    let is_ordinary = |polynomial: &[Bounded]| polynomial.iter().all(|c| is_ordinary(c.value));
-    if !polynomials.iter().all(|polynomial| is_ordinary(polynomial)) {
+    let polynomials = expected.polynomials();
+    if !polynomials.iter().copied().flatten().all(|c| is_ordinary(c.value)) {
         // Among numbers of such sizes nobody promises anything, and certainty would take long.
         return None;
     }
@@ -309,11 +304,7 @@ pub(super) fn is_borderline(motion: &BoundedPairMotion, expected: &Expected) -> 
 
 /// A time of impact for a pair that may collide or not.
 pub(super) fn possible_time(expected: &Expected) -> f64 {
-    let mut polynomials: [&[Bounded]; 4] = [&[]; 4];
-    for (number, polynomial) in polynomials.iter_mut().enumerate() {
-        *polynomial = expected.polynomial(number);
-    }
-    let earliest = decide(&polynomials[..expected.count()], FAIR_UNITS).time;
+    let earliest = decide(&expected.polynomials()[..expected.count()], FAIR_UNITS).time;
     earliest.map_or(1.0, |[low, high]| low.midpoint(high).clamp(0.0, 1.0))
 }
 

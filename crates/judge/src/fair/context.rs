@@ -1,11 +1,10 @@
 //! The facts by which a step is judged: the scene, and the trace's records.
-use super::{formulas::extent, ordinary::Ordinary};
+use super::ordinary::Ordinary;
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{ByKind, Decision, Pair, PairKind, Pass, State, pairs},
     trace::{Layout, LenientFrame},
 };
-use fosssim_num::vector::at;
 
 /// The values that all steps share.
 #[derive(Debug, Clone, Copy)]
@@ -49,11 +48,6 @@ impl<'a> Context<'a> {
             PairKind::ParticleHalfPlane => [Some(first), None, None],
         }
     }
-
-    /// The size of the largest position: roundings of positions are of this size.
-    pub(super) fn size(&self, state: &State) -> f64 {
-        largest(&state.positions)
-    }
 }
 
 impl Records<'_> {
@@ -92,10 +86,4 @@ pub(super) struct Followed {
     pub pair: Pair,
     pub pass: Pass,
     pub decision: Decision,
-}
-
-/// The size of the largest vector, in whatever directions the axes point.
-pub(super) fn largest(vectors: &[f64]) -> f64 {
-    let all = (0..vectors.len() / 2).map(|index| extent(at(vectors, index)));
-    all.fold(0.0, f64::max)
 }

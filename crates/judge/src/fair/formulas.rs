@@ -66,6 +66,11 @@ impl Expected {
         &self.polynomials[number][MAX_COEFFICIENTS - self.sizes[number]..]
     }
 
+    /// All polynomials; those beyond their number are empty.
+    pub fn polynomials(&self) -> [&[Bounded]; 4] {
+        std::array::from_fn(|number| self.polynomial(number))
+    }
+
     /// The other accepted form of polynomial `number`: the mathematically right approach of a particle and an edge.
     pub fn other_form(&self, number: usize) -> Option<&[Bounded]> {
         if number == 3 { self.right_approach.as_ref().map(|right| &right[..]) } else { None }

@@ -42,7 +42,6 @@ mod pending;
 mod polynomial;
 mod probe;
 mod reach;
-mod sensitivity;
 mod step;
 mod step_judgement;
 #[cfg(test)]

@@ -6,20 +6,20 @@ use fosssim_num::{
     vector::{Vec2, at},
 };
 
-/// The smallest and the largest size of states.
+/// The smallest and the largest size of ordinary states.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Range {
+pub(crate) struct Ordinary {
     /// The largest position.
-    pub(super) position: f64,
+    position: f64,
     /// The largest velocity.
-    pub(super) velocity: f64,
+    velocity: f64,
     /// The least extent of all particles together.
-    pub(super) spread: f64,
+    spread: f64,
 }
 
-impl Range {
-    /// The range of the scene's start.
-    pub(super) fn of(scene: &Scene) -> Self {
+impl Ordinary {
+    /// The range of the scene's start: most states need no other.
+    pub fn of(scene: &Scene) -> Self {
         let radii = scene.particles.iter().map(|particle| extent(particle.position) + particle.radius);
         let sizes = radii.chain(scene.half_planes.iter().map(|half_plane| extent(half_plane.point)));
         let position = Some(sizes.fold(0.0, f64::max)).filter(|size| *size > 0.0).unwrap_or(1.0);
@@ -28,38 +28,43 @@ impl Range {
         let places = scene.particles.iter().map(|particle| particle.position);
         Self { position, velocity, spread: spread(places) }
     }
-}
-
-/// The range with which a step's states are compared first; most need no other.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Ordinary(Range);
-
-impl Ordinary {
-    /// The range to expect from the scene's start.
-    pub fn of(scene: &Scene) -> Self {
-        Self(Range::of(scene))
-    }
 
     /// Whether nothing in a state is out of the ordinary.
     pub fn holds(&self, state: &State) -> bool {
-        beyond(&self.0, state).is_none()
+        self.beyond(state).is_none()
+    }
+
+    /// The first particle whose state is beyond what the range allows.
+    pub(super) fn beyond(&self, state: &State) -> Option<usize> {
+        let particles = state.positions.len() / 2;
+        let is_far = |value: f64, most: f64| !(value <= FAIR_REACH * most);
+        let far = (0..particles).find(|&particle| {
+            is_far(extent(at(&state.positions, particle)), self.position)
+                || is_far(extent(at(&state.velocities, particle)), self.velocity)
+        });
+        far.or_else(|| (spread(places(state)) * FAIR_REACH < self.spread).then_some(0))
+    }
+
+    /// Takes in a state that is ordinary, whatever it is.
+    pub(super) fn widen(&mut self, state: &State) {
+        self.position = self.position.max(largest(&state.positions));
+        self.velocity = self.velocity.max(largest(&state.velocities));
+        self.spread = self.spread.min(spread(places(state)));
     }
 }
 
-/// The first particle whose state is beyond what the range allows.
-pub(super) fn beyond(range: &Range, state: &State) -> Option<usize> {
-    let particles = state.positions.len() / 2;
-    let is_far = |value: f64, most: f64| !(value <= FAIR_REACH * most);
-    let far = (0..particles).find(|&particle| {
-        is_far(extent(at(&state.positions, particle)), range.position)
-            || is_far(extent(at(&state.velocities, particle)), range.velocity)
-    });
-    let places = || (0..particles).map(|particle| at(&state.positions, particle));
-    far.or_else(|| (spread(places()) * FAIR_REACH < range.spread).then_some(0))
+fn places(state: &State) -> impl Iterator<Item = Vec2> {
+    (0..state.positions.len() / 2).map(|particle| at(&state.positions, particle))
+}
+
+/// The size of the largest vector, in whatever directions the axes point.
+pub(super) fn largest(vectors: &[f64]) -> f64 {
+    let all = (0..vectors.len() / 2).map(|index| extent(at(vectors, index)));
+    all.fold(0.0, f64::max)
 }
 
 /// The extent of all points together; 0 of one point.
-pub(super) fn spread(points: impl Iterator<Item = Vec2>) -> f64 {
+fn spread(points: impl Iterator<Item = Vec2>) -> f64 {
     let none = [f64::INFINITY, f64::NEG_INFINITY];
     let [x, y] = points.fold([none; 2], |[x, y], point| [widened(x, point.x), widened(y, point.y)]);
     (x[1] - x[0]).max(y[1] - y[0]).max(0.0)

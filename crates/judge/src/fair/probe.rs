@@ -7,7 +7,6 @@
 use super::{
     context::{Context, Followed, Records},
     formulas::BoundedPairMotion,
-    sensitivity::{Deviation, Sensitivity},
 };
 use fosssim_model::sim::{Decision, Detection, Observer, Pair, Pass, Resume, Simulation, Stage, State, Steer, Time};
 use fosssim_num::{
@@ -20,6 +19,19 @@ use fosssim_num::{
 /// The number of perturbed repetitions.
 const RUNS: u64 = 8;
 
+/// The sensitivity of a step, as far as it was measured: the largest deviations, component by component.
+#[derive(Debug, Clone)]
+pub(super) struct Sensitivity {
+    /// For each detection pass that of the positions that it sees, 2N each.
+    pub passes: Vec<Vec<f64>>,
+    /// That of the state at the synchronisation point.
+    pub mid: State,
+    /// That of the state at the end.
+    pub end: State,
+    /// Calls whose decisions flip.
+    pub flipped: Vec<usize>,
+}
+
 /// Repeats a step whose decisions are known. Where the reference's own polynomials can't be solved from here (the
 /// trace's can, else nobody would ask), nothing is known, and nothing deviates: each value's own bounds are all that
 /// counts.
@@ -29,14 +41,15 @@ pub(super) fn probe(
     records: &Records<'_>,
     decisions: &[Followed],
 ) -> Sensitivity {
-    let still = Deviation::zeros(records.before.positions.len());
+    let zeros = vec![0.0; records.before.positions.len()];
+    let still = State { positions: zeros.clone(), velocities: zeros };
     let mut sensitivity = Sensitivity { passes: Vec::new(), mid: still.clone(), end: still, flipped: Vec::new() };
     let Some(base) = run(context, simulation, records, decisions, 0) else { return sensitivity };
     sensitivity.passes = base.passes.iter().map(|q| vec![0.0; q.len()]).collect();
     for seed in 1..=RUNS {
         let Some(other) = run(context, simulation, records, decisions, seed) else { continue };
-        sensitivity.mid.widen(&base.mid, &other.mid);
-        sensitivity.end.widen(&base.end, &other.end);
+        widen_state(&mut sensitivity.mid, &base.mid, &other.mid);
+        widen_state(&mut sensitivity.end, &base.end, &other.end);
         for ((own, base), other) in sensitivity.passes.iter_mut().zip(&base.passes).zip(&other.passes) {
             widen(own, base, other);
         }
@@ -58,23 +71,17 @@ fn widen(own: &mut [f64], base: &[f64], other: &[f64]) {
     }
 }
 
-impl Deviation {
-    /// No sensitivity, for this number of coordinates.
-    fn zeros(coordinates: usize) -> Self {
-        Self { positions: vec![0.0; coordinates], velocities: vec![0.0; coordinates] }
-    }
-
-    fn widen(&mut self, base: &Self, other: &Self) {
-        widen(&mut self.positions, &base.positions, &other.positions);
-        widen(&mut self.velocities, &base.velocities, &other.velocities);
-    }
+fn widen_state(own: &mut State, base: &State, other: &State) {
+    widen(&mut own.positions, &base.positions, &other.positions);
+    widen(&mut own.velocities, &base.velocities, &other.velocities);
 }
 
-/// The result of one repetition.
+/// The result of one repetition. Without a synchronisation point its state is empty, and so deviates in nothing.
+#[derive(Default)]
 struct Run {
     passes: Vec<Vec<f64>>,
-    mid: Deviation,
-    end: Deviation,
+    mid: State,
+    end: State,
     hits: Vec<bool>,
 }
 
@@ -85,19 +92,13 @@ fn run(
     decisions: &[Followed],
     seed: u64,
 ) -> Option<Run> {
-    let mut start = records.before.clone();
-    perturb(&mut start, seed);
-    simulation.state_mut().clone_from(&start);
+    simulation.state_mut().clone_from(records.before);
+    perturb(simulation.state_mut(), seed);
     simulation.set_steps_done(records.step - 1);
-    let still = Deviation::zeros(start.positions.len());
-    let run = Run { passes: Vec::new(), mid: still.clone(), end: still, hits: Vec::new() };
+    let run = Run::default();
     let mut probe = PerturbedRun { records, decisions, seed, run, stale: true, pass: 0, motion: None, context };
     simulation.step(&mut probe).ok()?;
-    let mut run = probe.run;
-    let end = simulation.state();
-    run.end = Deviation { positions: end.positions.clone(), velocities: end.velocities.clone() };
-    debug_assert_eq!(run.end.positions.len(), 2 * context.scene.particles.len());
-    Some(run)
+    Some(Run { end: simulation.state().clone(), ..probe.run })
 }
 
 /// Moves every component by up to [`FAIR_UNITS`] roundings, up or down; seed 0 moves nothing.
@@ -170,7 +171,7 @@ impl Observer for PerturbedRun<'_> {
             self.run.passes[self.pass].extend_from_slice(detection.q_end);
             self.stale = false;
         }
-        self.stale |= matches!(detection.decision, Decision::Hit { .. });
+        self.stale |= detection.decision.collides();
     }
 
     fn steers(&mut self) -> Option<&mut dyn Steer> {
@@ -196,8 +197,7 @@ impl Steer for PerturbedRun<'_> {
 
     fn decide(&mut self, pair: Pair, decision: Decision) -> Decision {
         let call = self.run.hits.len();
-        let hits = matches!(decision, Decision::Hit { .. });
-        self.run.hits.push(hits);
+        self.run.hits.push(decision.collides());
         let Some(known) = self.decisions.get(call).filter(|known| known.pair == pair) else { return decision };
         match (known.decision, decision) {
             (Decision::Hit { .. }, Decision::Hit { time, .. })
@@ -212,11 +212,10 @@ impl Steer for PerturbedRun<'_> {
     }
 
     fn synchronise(&mut self, state: &mut State) -> Resume {
-        self.run.mid = Deviation { positions: state.positions.clone(), velocities: state.velocities.clone() };
+        self.run.mid.clone_from(state);
         let Some(mid) = self.records.mid else { return Resume::Own };
-        if mid.state.positions.iter().chain(&mid.state.velocities).all(|value| value.is_finite()) {
-            state.positions.copy_from_slice(&mid.state.positions);
-            state.velocities.copy_from_slice(&mid.state.velocities);
+        if mid.state.is_finite() {
+            state.clone_from(&mid.state);
             perturb(state, self.seed);
         }
         Resume::Synchronised

@@ -5,15 +5,14 @@
 //! are never right, unless the reference itself gets there from the scene's start.
 use super::{
     context::{Context, Records},
-    formulas::extent,
-    ordinary::{Range, beyond, spread},
+    ordinary::Ordinary,
     step::judge,
     step_judgement::StepJudgement,
 };
 use crate::finding::FindingDetail;
 use fosssim_model::{
     scene::Scene,
-    sim::{RootSearch, Simulation, State},
+    sim::{RootSearch, Simulation},
 };
 use fosssim_num::vector::at;
 
@@ -22,7 +21,7 @@ use fosssim_num::vector::at;
 #[derive(Debug)]
 pub(crate) struct Reach<'a> {
     scene: &'a Scene,
-    range: Range,
+    range: Ordinary,
     run: Option<Run>,
     /// Judges steps that are extraordinary for the reference, too.
     other: Option<Simulation>,
@@ -40,7 +39,7 @@ struct Run {
 impl<'a> Reach<'a> {
     /// Nothing but the scene is known.
     pub fn new(scene: &'a Scene) -> Self {
-        Self { scene, range: Range::of(scene), run: None, other: None }
+        Self { scene, range: Ordinary::of(scene), run: None, other: None }
     }
 
     /// Judges a step with a state that is out of the ordinary. `known` is its judgement, if it starts from ordinary
@@ -74,7 +73,7 @@ impl<'a> Reach<'a> {
     /// The first particle that is where the reference never comes near.
     fn beyond_reach(&self, records: &Records<'_>) -> Option<FindingDetail> {
         records.states().find_map(|state| {
-            let particle = beyond(&self.range, state)?;
+            let particle = self.range.beyond(state)?;
             let (position, velocity) = (at(&state.positions, particle), at(&state.velocities, particle));
             Some(FindingDetail::BeyondReach { particle, position: position.into(), velocity: velocity.into() })
         })
@@ -90,13 +89,8 @@ impl<'a> Reach<'a> {
         while run.steps < step && !run.is_lost {
             run.steps += 1;
             let has_result = run.simulation.step(&mut ()).is_ok();
-            let State { positions, velocities } = run.simulation.state();
-            run.is_lost = !has_result || !positions.iter().chain(velocities).all(|value| value.is_finite());
-            let largest = |vectors: &[f64]| (0..vectors.len() / 2).map(|p| extent(at(vectors, p))).fold(0.0, f64::max);
-            self.range.position = self.range.position.max(largest(positions));
-            self.range.velocity = self.range.velocity.max(largest(velocities));
-            let places = (0..positions.len() / 2).map(|particle| at(positions, particle));
-            self.range.spread = self.range.spread.min(spread(places));
+            run.is_lost = !has_result || !run.simulation.state().is_finite();
+            self.range.widen(run.simulation.state());
         }
     }
 }

@@ -4,8 +4,7 @@ use super::{
     contact::{self, Tolerances},
     context::{Context, Records},
     follow::Follower,
-    probe::probe,
-    sensitivity::Sensitivity,
+    probe::{Sensitivity, probe},
     step_judgement::StepJudgement,
 };
 use crate::finding::{Finding, FindingDetail, RecordPart};
@@ -14,7 +13,7 @@ use fosssim_model::{
     sim::{Simulation, State, StepError},
     trace::LenientFrame,
 };
-use fosssim_num::polynomial::MAX_COEFFICIENTS;
+use fosssim_num::{polynomial::MAX_COEFFICIENTS, vector::same_bits};
 
 /// The number of borderline decisions of a hybrid step that are tried the other way, in all combinations.
 const MOST_FLIPS: usize = 4;
@@ -48,11 +47,7 @@ pub(crate) fn judge(
 /// Compares the first record with the scene.
 pub(crate) fn judge_initial(context: &Context<'_>, frame: &LenientFrame) -> StepJudgement {
     let mut judged = StepJudgement::default();
-    let mut state = State::default();
-    for particle in &context.scene.particles {
-        state.positions.extend([particle.position.x, particle.position.y]);
-        state.velocities.extend([particle.velocity.x, particle.velocity.y]);
-    }
+    let state = State::of(context.scene);
     contact::states(&mut judged, 0, &state, &frame.state, &Tolerances::of(context, &state, None));
     if !frame.impulses.is_empty() || !frame.polynomials.is_empty() {
         let part = if frame.impulses.is_empty() { RecordPart::Polynomials } else { RecordPart::Impulses };
@@ -112,7 +107,7 @@ fn compare_records(context: &Context<'_>, records: Records<'_>, judged: &mut Ste
         charge(FindingDetail::ImpossibleLog);
     }
     let Some(mid) = mid else { return };
-    if mid.impulses.len() != end.impulses.len() || !mid.impulses.iter().zip(&end.impulses).all(same_impulse) {
+    if mid.impulses.len() != end.impulses.len() || !mid.impulses.iter().zip(&end.impulses).all(|(a, b)| a.is_same(b)) {
         charge(FindingDetail::RecordsDiffer { part: RecordPart::Impulses });
     }
     let count = mid.polynomials.len();
@@ -129,13 +124,4 @@ fn compare_records(context: &Context<'_>, records: Records<'_>, judged: &mut Ste
 fn is_impossible(frame: &LenientFrame) -> bool {
     let log = &frame.polynomials;
     frame.note.is_none() && !frame.plain || (0..log.len()).any(|index| log.get(index).len() > MAX_COEFFICIENTS)
-}
-
-fn same_impulse((a, b): (&fosssim_model::trace::LoggedImpulse, &fosssim_model::trace::LoggedImpulse)) -> bool {
-    (a.kind, a.first, a.second) == (b.kind, b.first, b.second)
-        && same_bits(&[a.normal.x, a.normal.y, a.time], &[b.normal.x, b.normal.y, b.time])
-}
-
-fn same_bits(a: &[f64], b: &[f64]) -> bool {
-    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
 }

@@ -78,7 +78,7 @@ fn a_record_beyond_the_memory_is_wrong_by_its_length_or_not_judged() {
     let longer = writer.finish().expect("memory").0;
     for threads in [1, 2] {
         let options = Options { threads, ..Options::default() };
-        let judge = |memory, trace: &[u8]| judge_within(memory, None, &scene, trace, &options, &mut ());
+        let judge = |memory, mut trace: &[u8]| judge_within(memory, None, &scene, &mut trace, &options, &mut ());
         let whole = judge(usize::MAX, &right);
         assert!(whole.stop.is_none() && whole.parity.findings.counts.total() == 0, "{whole:?}");
         let Some(Stop::Trace { step: 1, frame: 2, cause: Unreadable::Limit, what, .. }) = judge(0, &right).stop else {

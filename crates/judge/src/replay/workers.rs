@@ -1,5 +1,5 @@
 //! The threads that judge what was read. Nothing of the results depends on how many there are.
-use super::{Batch, StepRules, StepSlot, copy_state};
+use super::{Batch, StepRules, StepSlot};
 use crate::{
     fair::{self, Records},
     options::Options,
@@ -129,27 +129,17 @@ fn judge_batch(batch: &Batch, workers: &mut [Worker], shape: &StepRules<'_>, res
 }
 
 fn judge_step(slot: &mut StepSlot, worker: &mut Worker, shape: &StepRules<'_>) {
-    let StepSlot {
-        step,
-        before,
-        mid,
-        end,
-        result,
-        fair: judged,
-        is_extraordinary,
-        is_put_off,
-        error,
-        beyond_limit,
-        ..
-    } = slot;
+    let step = slot.place.step;
+    let StepSlot { before, mid, end, result, fair: judged, is_extraordinary, is_put_off, error, beyond_limit, .. } =
+        slot;
     let Worker { simulation, buffers, searches } = worker;
-    copy_state(simulation.state_mut(), before);
-    simulation.set_steps_done(*step - 1);
+    simulation.state_mut().clone_from(before);
+    simulation.set_steps_done(step - 1);
     let layout = shape.layout;
-    let frame = u64::from(*step) * u64::from(layout.records_per_step());
+    let frame = layout.end_record(step);
     let mid = layout.polynomials.then_some(&*mid);
     (*error, *beyond_limit) = (None, false);
-    let mut tally = Tally::new((*step, frame), end, mid, shape.logs_impulses, buffers, result);
+    let mut tally = Tally::new((step, frame), end, mid, shape.logs_impulses, buffers, result);
     let begin = simulation.search_counts();
     let end_of_step = simulation.step(&mut tally);
     *searches += simulation.search_counts() - begin;
@@ -161,7 +151,7 @@ fn judge_step(slot: &mut StepSlot, worker: &mut Worker, shape: &StepRules<'_>) {
         Err(cause) => *error = Some(cause),
     }
     if let (Some(context), None, false) = (&shape.fair, &error, *beyond_limit) {
-        let records = Records { step: *step, frame, before, mid, end };
+        let records = Records { step, frame, before, mid, end };
         *is_extraordinary = !records.states().all(|state| context.ordinary.holds(state));
         *is_put_off = *is_extraordinary && !records.start_ordinarily(context);
         if !*is_put_off {

@@ -97,18 +97,23 @@ pub struct Definition {
     pub tells_times: bool,
 }
 
+/// The rules that most assignments share.
+const COMMON: Definition = Definition {
+    key: "",
+    title: "",
+    handlings: &[],
+    pairs: &[],
+    dropping: Dropping::Leading,
+    version: "Fall 2010 v.A",
+    verdict: "Collisions Passed",
+    tells_times: false,
+};
+
 impl Definition {
     /// How it handles a collision type; none where another assignment brings it.
     #[must_use]
-    pub const fn handling(&self, collision: CollisionType) -> Option<&Handling> {
-        let mut index = 0;
-        while index < self.handlings.len() {
-            if self.handlings[index].collision as u8 == collision as u8 {
-                return Some(&self.handlings[index]);
-            }
-            index += 1;
-        }
-        None
+    pub fn handling(&self, collision: CollisionType) -> Option<&Handling> {
+        self.handlings.iter().find(|handling| handling.collision == collision)
     }
 }
 

@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "kebab-case")]
 pub enum PairKind {
     /// Two particles (0).
-    ParticleParticle,
+    ParticleParticle = 0,
     /// A particle and an edge (1).
-    ParticleEdge,
+    ParticleEdge = 1,
     /// A particle and a half-plane (2).
-    ParticleHalfPlane,
+    ParticleHalfPlane = 2,
 }
 
 impl PairKind {
@@ -35,11 +35,7 @@ impl PairKind {
     /// The number that a trace writes.
     #[must_use]
     pub const fn code(self) -> i32 {
-        match self {
-            Self::ParticleParticle => 0,
-            Self::ParticleEdge => 1,
-            Self::ParticleHalfPlane => 2,
-        }
+        self as i32
     }
 
     /// The greatest number of polynomials that a detection call logs.

@@ -1,5 +1,5 @@
 //! Theme 2, Milestone 1: collisions at the end of a step, and the penalty force (collisions.md 6, simulation.md 3).
-use super::{CollisionType, Definition, Dropping, Handling, ImpulseList, RecordLists};
+use super::{COMMON, CollisionType, Definition, Handling, ImpulseList, RecordLists};
 
 /// No detection logs polynomials; the course's root finder comes with the next milestone.
 pub(super) const DEFINITION: Definition = Definition {
@@ -17,9 +17,5 @@ pub(super) const DEFINITION: Definition = Definition {
             heading: "Collisions disabled",
         },
     ],
-    pairs: &[],
-    dropping: Dropping::Leading,
-    version: "Fall 2010 v.A",
-    verdict: "Collisions Passed",
-    tells_times: false,
+    ..COMMON
 };

@@ -1,5 +1,5 @@
 //! Theme 2, Milestone 2 (trace-format.md 2, collisions.md).
-use super::{CollisionType, Definition, Dropping, Handling, ImpulseList, PairKind, RecordLists};
+use super::{COMMON, CollisionType, Definition, Handling, ImpulseList, PairKind, RecordLists};
 
 pub(super) const DEFINITION: Definition = Definition {
     key: "t2m2",
@@ -17,8 +17,5 @@ pub(super) const DEFINITION: Definition = Definition {
         },
     ],
     pairs: &PairKind::ALL,
-    dropping: Dropping::Leading,
-    version: "Fall 2010 v.A",
-    verdict: "Collisions Passed",
-    tells_times: false,
+    ..COMMON
 };

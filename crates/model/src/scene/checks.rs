@@ -5,7 +5,7 @@
 //! is looked at; what happens later is the simulator's business.
 use super::document::Document;
 use super::model::{Collision, Edge, Force, HalfPlane, Integrator, Particle};
-use super::problem::{Report, SceneFinding};
+use super::problem::{Problem, Report};
 use super::tag::Tag;
 use super::xml::{Part, SceneParts};
 use fosssim_num::vector::Vec2;
@@ -25,19 +25,18 @@ pub(super) fn check(document: &Document<'_>, parts: &SceneParts<'_, '_>, report:
     methods(parts, report);
     normals(parts, report);
     fixed_and_moving(parts, report);
-    let places = Places::new(parts);
-    edges_without_length(parts, &places, report);
-    forces_without_direction(parts, &places, report);
+    edges_without_length(parts, report);
+    forces_without_direction(parts, report);
     if let Some(rule) = ContactRule::of(parts) {
         coincident_particles(parts, &rule, report);
-        particles_on_edges(parts, &rule, &places, report);
+        particles_on_edges(parts, &rule, report);
         particles_on_half_planes(parts, &rule, report);
     }
 }
 
 /// An error or warning about an element.
-fn about(tag: &Tag<'_>, message: String, help: &str) -> SceneFinding {
-    SceneFinding::new(tag.span.clone(), message).element(tag.rule.name).help(help)
+fn about(tag: &Tag<'_>, message: String, help: &str) -> Problem {
+    Problem::of(tag.rule.name, &tag.span, message).help(help)
 }
 
 fn steps(parts: &SceneParts<'_, '_>, report: &mut Report) {
@@ -62,9 +61,9 @@ fn size(document: &Document<'_>, parts: &SceneParts<'_, '_>, report: &mut Report
     let count = parts.particles.len();
     if count == 0 && !report.has_errors() {
         let span = document.scene.clone().unwrap_or(0..0);
-        report.warning(|| SceneFinding::new(span, "the scene has no particles").help("its trace holds no state"));
+        report.warning(|| Problem::new(span, "the scene has no particles").help("its trace holds no state"));
     }
-    if let (Some(part), Some(true)) = (&parts.integrator, is_implicit(parts))
+    if let (Some(part), true) = (&parts.integrator, is_implicit(parts))
         && count > LARGEST_IMPLICIT
     {
         report.error(|| {
@@ -77,15 +76,15 @@ fn size(document: &Document<'_>, parts: &SceneParts<'_, '_>, report: &mut Report
     }
 }
 
-fn is_implicit(parts: &SceneParts<'_, '_>) -> Option<bool> {
-    let (integrator, _) = parts.integrator.as_ref()?.value?;
-    Some(matches!(integrator, Integrator::ImplicitEuler | Integrator::LinearizedImplicitEuler))
+fn is_implicit(parts: &SceneParts<'_, '_>) -> bool {
+    let integrator = parts.integrator.as_ref().and_then(|part| part.value);
+    integrator.is_some_and(|(integrator, _)| integrator.is_implicit())
 }
 
 /// Integrators and forces that do not go together.
 fn methods(parts: &SceneParts<'_, '_>, report: &mut Report) {
     let Some(integrator) = &parts.integrator else { return };
-    if is_implicit(parts) == Some(true) {
+    if is_implicit(parts) {
         for part in parts.forces.iter().filter(|part| part.tag.rule.name == "vortexforce") {
             report.error(|| {
                 let help = "it has no Hessian; the original stops at the first step";
@@ -133,27 +132,15 @@ fn fixed_and_moving(parts: &SceneParts<'_, '_>, report: &mut Report) {
     }
 }
 
-/// Where the particles start, for those that could be read.
-struct Places(Vec<Option<Vec2>>);
-
-impl Places {
-    fn new(parts: &SceneParts<'_, '_>) -> Self {
-        Self(parts.particles.iter().map(|part| part.value.as_ref().map(|particle| particle.position)).collect())
-    }
-
-    fn of(&self, particle: usize) -> Option<Vec2> {
-        self.0.get(particle).copied().flatten()
-    }
-
-    fn same(&self, a: usize, b: usize) -> bool {
-        self.of(a).zip(self.of(b)).is_some_and(|(a, b)| a == b)
-    }
+/// Whether two particles start in one place, as far as these could be read.
+fn in_one_place(parts: &SceneParts<'_, '_>, first: usize, second: usize) -> bool {
+    parts.place(first).zip(parts.place(second)).is_some_and(|(first, second)| first == second)
 }
 
-fn edges_without_length(parts: &SceneParts<'_, '_>, places: &Places, report: &mut Report) {
+fn edges_without_length(parts: &SceneParts<'_, '_>, report: &mut Report) {
     for (number, part) in parts.edges.iter().enumerate() {
         let Some(Edge { first, second, .. }) = part.value else { continue };
-        if places.same(first, second) {
+        if in_one_place(parts, first, second) {
             report.error(|| {
                 let help = "an edge without length has no direction; a spring on it is not a number";
                 about(
@@ -166,12 +153,12 @@ fn edges_without_length(parts: &SceneParts<'_, '_>, places: &Places, report: &mu
     }
 }
 
-fn forces_without_direction(parts: &SceneParts<'_, '_>, places: &Places, report: &mut Report) {
+fn forces_without_direction(parts: &SceneParts<'_, '_>, report: &mut Report) {
     for part in &parts.forces {
         let Some(Force::Gravitation { first, second, .. } | Force::Vortex { first, second, .. }) = part.value else {
             continue;
         };
-        if places.same(first, second) {
+        if in_one_place(parts, first, second) {
             let name = part.tag.rule.name;
             report.error(|| {
                 let message = format!("`{name}` between particles {first} and {second}, which start in one place");
@@ -243,7 +230,7 @@ fn coincident_particles(parts: &SceneParts<'_, '_>, rule: &ContactRule, report: 
     }
 }
 
-fn particles_on_edges(parts: &SceneParts<'_, '_>, rule: &ContactRule, places: &Places, report: &mut Report) {
+fn particles_on_edges(parts: &SceneParts<'_, '_>, rule: &ContactRule, report: &mut Report) {
     let fixed = |particle: usize| {
         parts.particles.get(particle).and_then(|part| part.value.as_ref()).is_none_or(|particle| particle.fixed)
     };
@@ -251,7 +238,7 @@ fn particles_on_edges(parts: &SceneParts<'_, '_>, rule: &ContactRule, places: &P
         parts.edges.iter().enumerate().flat_map(|edge| parts.particles.iter().enumerate().map(move |p| (edge, p)));
     for ((edge_number, edge), (number, particle)) in pairs.take(MOST_PAIRS) {
         let (Some(edge), Part { tag, value: Some(particle) }) = (edge.value, particle) else { continue };
-        let Some((start, end)) = places.of(edge.first).zip(places.of(edge.second)) else { continue };
+        let Some((start, end)) = parts.place(edge.first).zip(parts.place(edge.second)) else { continue };
         if number == edge.first || number == edge.second || start == end {
             continue;
         }

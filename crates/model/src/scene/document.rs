@@ -2,13 +2,12 @@
 //!
 //! quick-xml cuts the text into tags; nesting and the names of elements are judged here, attributes in `tag`. Nothing
 //! is looked at twice, so that the work grows with the length of the text only.
-use std::collections::BTreeSet;
-use std::ops::Range;
+use std::{collections::BTreeSet, ops::Range};
 
 use quick_xml::errors::{Error, SyntaxError};
 use quick_xml::events::Event;
 
-use super::problem::{MOST_PROBLEMS, Report, SceneFinding, quote};
+use super::problem::{MOST_PROBLEMS, Problem, Report, quote};
 use super::tag::{self, Tag, is_space, offset};
 use super::{grammar, rule::Rule};
 
@@ -110,8 +109,7 @@ impl<'t> DocumentReader<'t, '_> {
         if let Some(open) = self.open.last() {
             if !self.document.broken {
                 self.report.error(|| {
-                    SceneFinding::new(open.span.clone(), format!("`<{}>` is never closed", quote(open.name)))
-                        .element(open.name)
+                    Problem::of(open.name, &open.span, format!("`<{}>` is never closed", quote(open.name)))
                         .help(format!("end it with `/>` or with `</{}>`", quote(open.name)))
                 });
             }
@@ -126,14 +124,14 @@ impl<'t> DocumentReader<'t, '_> {
         };
         let first = self.text.get(at..).and_then(|rest| rest.chars().next());
         let end = at + first.map_or(0, char::len_utf8);
-        self.report.error(|| SceneFinding::new(at..end, message).maybe_help(help));
+        self.report.error(|| Problem::new(at..end, message).maybe_help(help));
     }
 
     fn document_type(&mut self, span: Range<usize>) {
         let declares = self.text[span.clone()].contains('[');
         if declares {
             self.report.error(|| {
-                SceneFinding::new(span, "a document type with declarations, which the original ignores")
+                Problem::new(span, "a document type with declarations, which the original ignores")
                     .help("remove it and write out what it declares")
             });
         }
@@ -149,7 +147,7 @@ impl<'t> DocumentReader<'t, '_> {
         let at = offset(self.text, text);
         self.report.error(|| {
             let place = if outside { "outside the scene" } else { "between the elements" };
-            SceneFinding::new(at..at + text.len(), format!("text {place}: `{}`", quote(text)))
+            Problem::new(at..at + text.len(), format!("text {place}: `{}`", quote(text)))
                 .help("only elements count here; remove it or make it a comment, `<!-- ... -->`")
         });
     }
@@ -160,7 +158,7 @@ impl<'t> DocumentReader<'t, '_> {
         let name = &inner[..name_length];
         if name.is_empty() {
             self.document.broken = true;
-            self.report.error(|| SceneFinding::new(span.clone(), "no element name after `<`"));
+            self.report.error(|| Problem::new(span.clone(), "no element name after `<`"));
             return;
         }
         let name_span = span.start..span.start + 1 + name_length;
@@ -185,12 +183,8 @@ impl<'t> DocumentReader<'t, '_> {
         let glued = behind.len() < inner.len() - name.len() && behind.bytes().next().is_some_and(|b| !is_space(b));
         if glued && behind != "/" {
             self.report.error(|| {
-                SceneFinding::new(
-                    span.clone(),
-                    format!("only a line break between `{}` and its first attribute", quote(name)),
-                )
-                .element(name)
-                .help("the original joins the lines and loses the element; put a space before the attribute")
+                Problem::of(name, span, format!("only a line break between `{}` and its first attribute", quote(name)))
+                    .help("the original joins the lines and loses the element; put a space before the attribute")
             });
         }
     }
@@ -212,11 +206,10 @@ impl<'t> DocumentReader<'t, '_> {
                     "everything stands in one element `scene`",
                 ),
             };
-            self.report.error(|| SceneFinding::new(span.clone(), message).element(name).help(help));
+            self.report.error(|| Problem::of(name, span, message).help(help));
         } else if !self.in_scene {
             self.report.error(|| {
-                SceneFinding::new(span.clone(), "a second `scene`")
-                    .element(name)
+                Problem::of(name, span, "a second `scene`")
                     .help("only the first one counts; move its elements there or to a file of their own")
             });
         }
@@ -233,12 +226,10 @@ impl<'t> DocumentReader<'t, '_> {
         }
         self.document.broken = true;
         self.report.error(|| {
-            SceneFinding::new(span.clone(), format!("`{}` inside `{}`", quote(name), quote(parent.name)))
-                .element(name)
-                .help(format!(
-                    "only elements directly in `scene` count; is the end of `{}` missing?",
-                    quote(parent.name)
-                ))
+            Problem::of(name, span, format!("`{}` inside `{}`", quote(name), quote(parent.name))).help(format!(
+                "only elements directly in `scene` count; is the end of `{}` missing?",
+                quote(parent.name)
+            ))
         });
     }
 
@@ -257,12 +248,10 @@ impl<'t> DocumentReader<'t, '_> {
         self.report.error(|| {
             let similar = grammar::similar_element(name);
             meant.extend(similar);
-            SceneFinding::new(span.clone(), format!("unknown element `{}`", quote(name))).element(name).help(
-                similar.map_or_else(
-                    || "the original ignores it silently".to_owned(),
-                    |similar| format!("did you mean `{similar}`?"),
-                ),
-            )
+            Problem::of(name, span, format!("unknown element `{}`", quote(name))).help(similar.map_or_else(
+                || "the original ignores it silently".to_owned(),
+                |similar| format!("did you mean `{similar}`?"),
+            ))
         });
     }
 
@@ -278,8 +267,7 @@ impl<'t> DocumentReader<'t, '_> {
                 let nested = self.in_scene && self.open.get(1).is_some_and(|open| open.complained);
                 if !nested {
                     self.report.error(|| {
-                        SceneFinding::new(last.span.clone(), format!("`<{}>` is not closed", quote(last.name)))
-                            .element(last.name)
+                        Problem::of(last.name, &last.span, format!("`<{}>` is not closed", quote(last.name)))
                             .help(format!("end it with `/>` or with `</{}>`", quote(last.name)))
                     });
                 }
@@ -291,9 +279,7 @@ impl<'t> DocumentReader<'t, '_> {
                 let slip = last.is_some_and(|open| grammar::closest(name, [open.name].into_iter()).is_some());
                 self.report.error(|| {
                     let help = last.map(|open| format!("open is `<{}>`", quote(open.name)));
-                    SceneFinding::new(span, format!("`</{}>` closes nothing", quote(name)))
-                        .element(name)
-                        .maybe_help(help)
+                    Problem::of(name, &span, format!("`</{}>` closes nothing", quote(name))).maybe_help(help)
                 });
                 if !slip {
                     return;

@@ -1,15 +1,14 @@
 //! Typed reading of an element's attributes, with a problem for whatever cannot be read.
 //!
 //! Every method that returns nothing has reported why, or knows that somebody else has.
-use std::borrow::Cow;
-use std::ops::Range;
+use std::{borrow::Cow, ops::Range};
 
 use quick_xml::escape::{EscapeError, unescape};
 
 use super::grammar;
 use super::model::Color;
 use super::numbers::{self, Flaw};
-use super::problem::{Report, SceneFinding, Severity, quote};
+use super::problem::{Problem, Report, Severity, quote};
 use super::tag::{Attribute, Tag, list};
 use fosssim_num::vector::Vec2;
 
@@ -70,17 +69,12 @@ impl<'d, 't, 'r> Fields<'d, 't, 'r> {
     /// The words are made only if there is room for them.
     fn complain(&mut self, severity: Severity, name: &str, words: impl FnOnce() -> (String, String)) {
         let (span, tag, number) = (self.span(name), self.tag, self.number);
-        let finding = || {
+        self.report.add(severity, || {
             let (message, help) = words();
-            SceneFinding::new(span, format!("`{name}` of {} {message}", who(tag, number)))
-                .element(tag.rule.name)
+            Problem::of(tag.rule.name, &span, format!("`{name}` of {} {message}", who(tag, number)))
                 .attribute(name)
                 .help(help)
-        };
-        match severity {
-            Severity::Error => self.report.error(finding),
-            Severity::Warning => self.report.warning(finding),
-        }
+        });
     }
 
     /// Whether an attribute is absent or empty.
@@ -208,8 +202,7 @@ impl<'d, 't, 'r> Fields<'d, 't, 'r> {
         if attribute.is_none() && !self.tag.broken && !self.tag.meant.contains(name) {
             let (tag, number) = (self.tag, self.number);
             self.report.error(|| {
-                SceneFinding::new(tag.span.clone(), format!("{} has no `{name}`", who(tag, number)))
-                    .element(tag.rule.name)
+                Problem::of(tag.rule.name, &tag.span, format!("{} has no `{name}`", who(tag, number)))
                     .attribute(name)
                     .help(format!("required: {what}"))
             });

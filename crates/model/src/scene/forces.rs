@@ -2,7 +2,7 @@
 //!
 //! Both readers, the grammar, the writer and everybody who shows a force go by it. A force that has no row does not
 //! compile.
-use super::{model::Force, rule::Rule};
+use super::{element::Element, model::Force, rule::Rule};
 use fosssim_num::vector::Vec2;
 
 /// The attributes of one element, as a reader takes them.
@@ -19,17 +19,6 @@ pub(super) trait Source {
     fn vector(&mut self, x: &'static str, y: &'static str) -> Result<Vec2, Self::Error> {
         let (x, y) = (self.number(x, None, None), self.number(y, None, None));
         Ok(Vec2::new(x?, y?))
-    }
-}
-
-/// The attributes of one element, as somebody writes them.
-pub(super) trait Sink {
-    fn edge(&mut self, name: &str, index: usize);
-    fn particle(&mut self, name: &str, index: usize);
-    fn number(&mut self, name: &str, value: f64);
-    fn vector(&mut self, x: &str, y: &str, value: Vec2) {
-        self.number(x, value.x);
-        self.number(y, value.y);
     }
 }
 
@@ -62,10 +51,10 @@ macro_rules! forces {
         /// The elements of forces.
         pub(super) static RULES: &[Rule] = &[$(Rule { name: $element, attributes: &[$($($name),+),+] }),+];
 
-        /// Tells the attributes of a force; the name of its element.
-        pub(super) fn tell(force: &Force, sink: &mut impl Sink) -> &'static str {
+        /// The element of a force.
+        pub(super) fn element(force: &Force) -> Element {
             match *force {
-                $(Force::$kind { $($field),+ } => { $(sink.$part($($name),+, $field);)+ $element })+
+                $(Force::$kind { $($field),+ } => Element::new($element)$(.$part($($name),+, $field))+,)+
             }
         }
     };

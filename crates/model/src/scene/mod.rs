@@ -9,6 +9,7 @@
 
 mod checks;
 mod document;
+mod element;
 mod fields;
 mod forces;
 mod grammar;

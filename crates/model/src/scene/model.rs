@@ -50,7 +50,7 @@ impl Scene {
         let is_first = |force: &Force| matches!(force, Force::SimpleGravity { .. });
         match (self.collision, self.integrator) {
             (Collision::Penalty { detection: CollisionDetection::Contest, .. }, _) => Assignment::T2M3,
-            (Collision::None, Integrator::ImplicitEuler | Integrator::LinearizedImplicitEuler) => Assignment::T1M3,
+            (Collision::None, integrator) if integrator.is_implicit() => Assignment::T1M3,
             (Collision::None, Integrator::ExplicitEuler) if self.forces.iter().all(is_first) => Assignment::T1M1,
             (Collision::None, _) => Assignment::T1M2,
             (collision, _) => Assignment::of(collision.kind()),
@@ -71,6 +71,32 @@ pub enum Integrator {
     ImplicitEuler,
     /// `linearized-implicit-euler`
     LinearizedImplicitEuler,
+}
+
+impl Integrator {
+    /// All of them, in their order, with their names in scenes.
+    pub const NAMED: [(&'static str, Self); 5] = [
+        ("explicit-euler", Self::ExplicitEuler),
+        ("forward-backward-euler", Self::ForwardBackwardEuler),
+        ("symplectic-euler", Self::SymplecticEuler),
+        ("implicit-euler", Self::ImplicitEuler),
+        ("linearized-implicit-euler", Self::LinearizedImplicitEuler),
+    ];
+
+    /// Its name in scenes.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        Self::NAMED[self as usize].0
+    }
+
+    /// Whether it solves a system of equations in every step.
+    #[must_use]
+    pub const fn is_implicit(self) -> bool {
+        match self {
+            Self::ImplicitEuler | Self::LinearizedImplicitEuler => true,
+            Self::ExplicitEuler | Self::ForwardBackwardEuler | Self::SymplecticEuler => false,
+        }
+    }
 }
 
 /// Collision handling (collisions.md).
@@ -128,7 +154,7 @@ impl Collision {
     /// # Panics
     /// Never: a test holds every type to be handled by its assignment.
     #[must_use]
-    pub const fn handling(&self) -> &'static Handling {
+    pub fn handling(&self) -> &'static Handling {
         let kind = self.kind();
         Assignment::of(kind).definition().handling(kind).expect("an assignment handles what it brings")
     }

@@ -74,27 +74,29 @@ fn flaw(text: &str, length: usize) -> Flaw {
 /// How many bytes at the start have the shape of a number; 0 when there are no digits.
 fn shape(text: &str) -> usize {
     let bytes = text.as_bytes();
-    let digits = |from: usize| bytes.get(from..).unwrap_or_default().iter().take_while(|b| b.is_ascii_digit()).count();
-    let sign = usize::from(matches!(bytes.first(), Some(b'+' | b'-')));
-    let whole = digits(sign);
-    let mut end = sign + whole;
-    let mut count = whole;
-    if bytes.get(end) == Some(&b'.') {
-        let fraction = digits(end + 1);
-        count += fraction;
-        end += 1 + fraction;
-    }
-    if count == 0 {
-        return 0;
-    }
+    let Some(end) = mantissa(bytes) else { return 0 };
     if matches!(bytes.get(end), Some(b'e' | b'E')) {
         let sign = usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
-        let exponent = digits(end + 1 + sign);
+        let exponent = digits(bytes, end + 1 + sign);
         if exponent > 0 {
-            end += 1 + sign + exponent;
+            return end + 1 + sign + exponent;
         }
     }
     end
+}
+
+/// Where a number's sign, digits and fraction end; `None` without digits.
+pub(super) fn mantissa(text: &[u8]) -> Option<usize> {
+    let sign = usize::from(matches!(text.first(), Some(b'+' | b'-')));
+    let whole = digits(text, sign);
+    let point = sign + whole;
+    let fraction = if text.get(point) == Some(&b'.') { 1 + digits(text, point + 1) } else { 0 };
+    (whole > 0 || fraction > 1).then_some(point + fraction)
+}
+
+/// How many digits stand at `from`.
+pub(super) fn digits(text: &[u8], from: usize) -> usize {
+    text.get(from..).unwrap_or_default().iter().take_while(|byte| byte.is_ascii_digit()).count()
 }
 
 #[cfg(test)]

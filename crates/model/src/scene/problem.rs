@@ -1,6 +1,5 @@
 //! Problems of a scene: what is wrong, where, and what would be right.
-use std::fmt;
-use std::ops::Range;
+use std::{fmt, ops::Range};
 
 /// At most this many errors, and as many warnings, are kept of one scene; the rest is only counted.
 pub const MOST_PROBLEMS: usize = 200;
@@ -61,17 +60,7 @@ pub struct Problems {
 impl Problems {
     /// A refusal of the whole text, pointing to its start.
     pub(super) fn whole(source: &str, message: String, help: &str) -> Self {
-        let problem = Problem {
-            severity: Severity::Error,
-            line: 1,
-            column: 1,
-            span: 0..0,
-            element: None,
-            attribute: None,
-            message,
-            help: Some(help.to_owned()),
-        };
-        Self { source: source.to_owned(), list: vec![problem], omitted: 0 }
+        Self { source: source.to_owned(), list: vec![Problem::new(0..0, message).help(help)], omitted: 0 }
     }
 }
 
@@ -91,23 +80,16 @@ impl fmt::Display for Problems {
 
 impl std::error::Error for Problems {}
 
-/// A problem whose line and column are not known yet.
-#[derive(Debug)]
-pub(super) struct SceneFinding {
-    span: Range<usize>,
-    element: Option<String>,
-    attribute: Option<String>,
-    message: String,
-    help: Option<String>,
-}
-
-impl SceneFinding {
+/// Problems in the making: as an error at the start of the text, until [`Report`] knows better.
+impl Problem {
     pub(super) fn new(span: Range<usize>, message: impl Into<String>) -> Self {
-        Self { span, element: None, attribute: None, message: message.into(), help: None }
+        let (severity, message) = (Severity::Error, message.into());
+        Self { severity, line: 1, column: 1, span, element: None, attribute: None, message, help: None }
     }
 
-    pub(super) fn element(self, name: &str) -> Self {
-        Self { element: Some(quote(name)), ..self }
+    /// About an element of this name.
+    pub(super) fn of(element: &str, span: &Range<usize>, message: impl Into<String>) -> Self {
+        Self { element: Some(quote(element)), ..Self::new(span.clone(), message) }
     }
 
     pub(super) fn attribute(self, name: &str) -> Self {
@@ -115,7 +97,7 @@ impl SceneFinding {
     }
 
     pub(super) fn help(self, help: impl Into<String>) -> Self {
-        Self { help: Some(help.into()), ..self }
+        self.maybe_help(Some(help.into()))
     }
 
     pub(super) fn maybe_help(self, help: Option<String>) -> Self {
@@ -123,49 +105,47 @@ impl SceneFinding {
     }
 }
 
-/// Gathers findings. They are made only while there is room, so that a file full of rubbish costs no more than its
+/// Gathers problems. They are made only while there is room, so that a file full of rubbish costs no more than its
 /// length.
 #[derive(Debug, Default)]
 pub(super) struct Report {
-    errors: Vec<SceneFinding>,
-    warnings: Vec<SceneFinding>,
+    list: Vec<Problem>,
+    /// How many are kept of each severity.
+    kept: [usize; 2],
     omitted: usize,
 }
 
 impl Report {
-    pub(super) fn error(&mut self, finding: impl FnOnce() -> SceneFinding) {
-        if self.errors.len() < MOST_PROBLEMS {
-            self.errors.push(finding());
-        } else {
-            self.omitted += 1;
-        }
+    pub(super) fn error(&mut self, problem: impl FnOnce() -> Problem) {
+        self.add(Severity::Error, problem);
     }
 
-    pub(super) fn warning(&mut self, finding: impl FnOnce() -> SceneFinding) {
-        if self.warnings.len() < MOST_PROBLEMS {
-            self.warnings.push(finding());
+    pub(super) fn warning(&mut self, problem: impl FnOnce() -> Problem) {
+        self.add(Severity::Warning, problem);
+    }
+
+    pub(super) fn add(&mut self, severity: Severity, problem: impl FnOnce() -> Problem) {
+        let kept = &mut self.kept[severity as usize];
+        if *kept < MOST_PROBLEMS {
+            *kept += 1;
+            self.list.push(Problem { severity, ..problem() });
         } else {
             self.omitted += 1;
         }
     }
 
     pub(super) fn has_errors(&self) -> bool {
-        !self.errors.is_empty()
+        self.kept[Severity::Error as usize] > 0
     }
 
     /// The problems in the order of their places, and how many more there were. `text` is what the spans refer to.
-    pub(super) fn finish(self, text: &[u8]) -> (Vec<Problem>, usize) {
-        let errors = self.errors.into_iter().map(|finding| (Severity::Error, finding));
-        let warnings = self.warnings.into_iter().map(|finding| (Severity::Warning, finding));
-        let mut findings: Vec<_> = errors.chain(warnings).collect();
-        findings.sort_by_key(|(severity, finding)| (finding.span.start, *severity));
+    pub(super) fn finish(mut self, text: &[u8]) -> (Vec<Problem>, usize) {
+        self.list.sort_by_key(|problem| (problem.span.start, problem.severity));
         let mut place = Place::at_start(text);
-        let problem = |(severity, finding): (Severity, SceneFinding)| {
-            let (line, column) = place.advance(text, finding.span.start);
-            let SceneFinding { span, element, attribute, message, help } = finding;
-            Problem { severity, line, column, span, element, attribute, message, help }
-        };
-        (findings.into_iter().map(problem).collect(), self.omitted)
+        for problem in &mut self.list {
+            (problem.line, problem.column) = place.advance(text, problem.span.start);
+        }
+        (self.list, self.omitted)
     }
 }
 
@@ -219,9 +199,9 @@ mod tests {
     fn places_count_lines_and_characters() {
         let text = "\u{feff}a\né b\r\nc".as_bytes();
         let mut report = Report::default();
-        report.warning(|| SceneFinding::new(13..13, "third"));
-        report.error(|| SceneFinding::new(8..9, "second").help("do this"));
-        report.error(|| SceneFinding::new(3..4, "first").element("e"));
+        report.warning(|| Problem::new(13..13, "third"));
+        report.error(|| Problem::new(8..9, "second").help("do this"));
+        report.error(|| Problem::of("e", &(3..4), "first"));
         let (list, omitted) = report.finish(text);
         let shown = Problems { source: "x".into(), list, omitted }.to_string();
         assert_eq!(shown, "1:1: first\n2:3: second (do this)\n3:2: warning: third");
@@ -231,9 +211,9 @@ mod tests {
     fn the_list_is_capped_and_the_rest_counted() {
         let mut report = Report::default();
         for _ in 0..MOST_PROBLEMS + 3 {
-            report.error(|| SceneFinding::new(0..0, "e"));
+            report.error(|| Problem::new(0..0, "e"));
         }
-        report.warning(|| SceneFinding::new(0..0, "w"));
+        report.warning(|| Problem::new(0..0, "w"));
         let (list, omitted) = report.finish(b"");
         assert_eq!((list.len(), omitted), (MOST_PROBLEMS + 1, 3));
         let shown = Problems { source: String::new(), list, omitted }.to_string();

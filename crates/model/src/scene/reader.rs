@@ -6,7 +6,7 @@
 use std::borrow::Cow;
 
 use super::model::Scene;
-use super::problem::{Problem, Problems, Report, SceneFinding};
+use super::problem::{Problem, Problems, Report};
 use super::{checks, document, original, xml};
 
 /// The largest scene file that is read, in bytes.
@@ -42,8 +42,7 @@ pub fn read(name: &str, text: &[u8]) -> Result<Loaded, Problems> {
     if document.scene.is_none() {
         if !document.broken && !document.other_root {
             report.error(|| {
-                SceneFinding::new(0..0, "the file has no `scene`")
-                    .help("everything stands between `<scene>` and `</scene>`")
+                Problem::new(0..0, "the file has no `scene`").help("everything stands between `<scene>` and `</scene>`")
             });
         }
     } else if let Some(parts) = xml::read(&document, &mut report) {
@@ -53,7 +52,7 @@ pub fn read(name: &str, text: &[u8]) -> Result<Loaded, Problems> {
     if let Some(found) = &scene {
         compare(found, text, &mut report);
     } else if !report.has_errors() {
-        report.error(|| SceneFinding::new(0..0, "the scene is incomplete"));
+        report.error(|| Problem::new(0..0, "the scene is incomplete"));
     }
     let refused = report.has_errors();
     let (list, omitted) = report.finish(text);
@@ -66,11 +65,11 @@ pub fn read(name: &str, text: &[u8]) -> Result<Loaded, Problems> {
 /// The text with every byte that is not UTF-8 replaced by `?`, so that places stay where they are.
 fn decode<'t>(text: &'t [u8], report: &mut Report) -> Cow<'t, str> {
     if let Some(at) = text.iter().position(|&byte| byte == 0) {
-        report.error(|| SceneFinding::new(at..at + 1, "a NUL byte").help("the original stops reading there"));
+        report.error(|| Problem::new(at..at + 1, "a NUL byte").help("the original stops reading there"));
     }
     let Err(error) = std::str::from_utf8(text) else { return String::from_utf8_lossy(text) };
     let at = error.valid_up_to();
-    report.error(|| SceneFinding::new(at..at + 1, "a byte that is not UTF-8").help("save the file as UTF-8"));
+    report.error(|| Problem::new(at..at + 1, "a byte that is not UTF-8").help("save the file as UTF-8"));
     let mut readable = String::with_capacity(text.len());
     for chunk in text.utf8_chunks() {
         readable.push_str(chunk.valid());
@@ -86,5 +85,5 @@ fn compare(scene: &Scene, text: &[u8], report: &mut Report) {
         Ok(_) => "it joins lines without a space and may see other markup".to_owned(),
         Err(refusal) => refusal.explanation,
     };
-    report.error(|| SceneFinding::new(0..0, "the original reads this file differently").help(difference));
+    report.error(|| Problem::new(0..0, "the original reads this file differently").help(difference));
 }

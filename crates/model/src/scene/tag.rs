@@ -1,13 +1,11 @@
 //! One tag: its attributes as written, with their places, and everything that is wrong with their form and names.
 //!
 //! Values are neither translated nor understood here; that is the business of `fields`.
-use std::borrow::Cow;
-use std::collections::BTreeSet;
-use std::ops::Range;
+use std::{borrow::Cow, collections::BTreeSet, ops::Range};
 
 use quick_xml::events::attributes::{AttrError, Attributes};
 
-use super::problem::{Report, SceneFinding, quote};
+use super::problem::{Problem, Report, quote};
 use super::{grammar, rule::Rule};
 
 /// An attribute as written.
@@ -78,15 +76,13 @@ impl<'t> Tag<'t> {
                     None if rule.attributes.is_empty() => format!("`{}` has none", rule.name),
                     None => format!("`{}` has {}", rule.name, list(rule.attributes)),
                 };
-                SceneFinding::new(name_span, format!("unknown attribute `{}` of `{}`", quote(name), rule.name))
-                    .element(rule.name)
+                Problem::of(rule.name, &name_span, format!("unknown attribute `{}` of `{}`", quote(name), rule.name))
                     .attribute(name)
                     .help(help)
             });
         } else if self.attributes.iter().any(|other| other.name == name) {
             report.error(|| {
-                SceneFinding::new(name_span, format!("a second `{name}` of `{}`", rule.name))
-                    .element(rule.name)
+                Problem::of(rule.name, &name_span, format!("a second `{name}` of `{}`", rule.name))
                     .attribute(name)
                     .help("the original takes the first; remove one")
             });
@@ -99,7 +95,7 @@ impl<'t> Tag<'t> {
 }
 
 /// The fault in the form of an attribute. `start` is where `inner` starts in the text.
-fn broken(rule: &Rule, inner: &str, start: usize, error: &AttrError) -> SceneFinding {
+fn broken(rule: &Rule, inner: &str, start: usize, error: &AttrError) -> Problem {
     let (at, message) = match *error {
         AttrError::ExpectedEq(at) => (at, "`=` and a value are missing after"),
         AttrError::ExpectedValue(at) => (at, "a value is missing after"),
@@ -118,9 +114,7 @@ fn broken(rule: &Rule, inner: &str, start: usize, error: &AttrError) -> SceneFin
     } else {
         (word, format!("{message} `{}`", quote(&before[word..])), "attributes are written `name=\"value\"`")
     };
-    SceneFinding::new(start + from..start + before.len(), format!("{message} in `{}`", rule.name))
-        .element(rule.name)
-        .help(help)
+    Problem::of(rule.name, &(start + from..start + before.len()), format!("{message} in `{}`", rule.name)).help(help)
 }
 
 /// White space of XML.

@@ -7,9 +7,10 @@ use super::forces::{ForceKind, Source};
 use super::model::{
     Collision, CollisionDetection, Display, Edge, Force, HalfPlane, Integrator, Particle, ParticlePath, Scene, Viewport,
 };
-use super::problem::{Report, SceneFinding};
+use super::problem::{Problem, Report};
 use super::tag::Tag;
 use crate::assignments::CollisionType;
+use fosssim_num::vector::Vec2;
 
 /// The elements that objects were read from, so that later checks can point to them.
 pub(super) struct SceneParts<'d, 't> {
@@ -30,12 +31,19 @@ pub(super) struct Part<'d, 't, T> {
     pub(super) value: Option<T>,
 }
 
+/// All values, when nothing of them is missing.
+fn values<T>(parts: Vec<Part<'_, '_, T>>) -> Option<Vec<T>> {
+    parts.into_iter().map(|part| part.value).collect()
+}
+
 impl SceneParts<'_, '_> {
+    /// Where a particle starts, if it could be read.
+    pub(super) fn place(&self, particle: usize) -> Option<Vec2> {
+        Some(self.particles.get(particle)?.value.as_ref()?.position)
+    }
+
     /// The scene, when nothing of it is missing.
     pub(super) fn into_scene(self) -> Option<Scene> {
-        fn values<T>(parts: Vec<Part<'_, '_, T>>) -> Option<Vec<T>> {
-            parts.into_iter().map(|part| part.value).collect()
-        }
         let (integrator, time_step) = self.integrator?.value?;
         Some(Scene {
             duration: self.duration?.value?,
@@ -112,8 +120,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
         let tag = tags.next()?;
         for other in tags {
             self.report.error(|| {
-                SceneFinding::new(other.span.clone(), format!("a second `{name}`"))
-                    .element(name)
+                Problem::of(name, &other.span, format!("a second `{name}`"))
                     .help("the original takes the first and ignores the others; remove one")
             });
         }
@@ -142,8 +149,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
             && !self.document.meant.contains(name)
         {
             self.report.error(|| {
-                SceneFinding::new(scene.clone(), format!("the scene has no `{name}`"))
-                    .element(name)
+                Problem::of(name, scene, format!("the scene has no `{name}`"))
                     .help(format!("add `<{name} {attributes}/>`"))
             });
         }
@@ -170,7 +176,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
         if self.document.rigid_bodies && !rigid {
             let scene = self.document.scene.clone().unwrap_or(0..0);
             self.report.error(|| {
-                SceneFinding::new(scene, "the scene has rigid bodies").help(format!("{stub}; use particles and edges"))
+                Problem::new(scene, "the scene has rigid bodies").help(format!("{stub}; use particles and edges"))
             });
         }
         rigid
@@ -197,8 +203,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
             }
             other => {
                 self.report.warning(|| {
-                    SceneFinding::new(part.tag.span.clone(), "`collisiondetection` has no effect")
-                        .element("collisiondetection")
+                    Problem::of("collisiondetection", &part.tag.span, "`collisiondetection` has no effect")
                         .help("it says how a `penalty` scene finds its pairs; other collision handling tests all pairs")
                 });
                 Some(other)
@@ -215,17 +220,15 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
         let background = self.optional("backgroundcolor", |fields| fields.color());
         let tag = self.optional("scenetag", |fields| fields.text("tag", "a text"));
         let mut colors = |name: &str, of: Count| {
-            let parts = self.repeated(name, |fields| {
+            values(self.repeated(name, |fields| {
                 let (index, color) = (fields.index("i", of), fields.color());
                 Some((index?, color?))
-            });
-            parts.into_iter().map(|part| part.value).collect::<Option<Vec<_>>>()
+            }))
         };
         let particle_colors = colors("particlecolor", particles);
         let edge_colors = colors("edgecolor", edges);
         let half_plane_colors = colors("halfplanecolor", half_planes);
-        let paths = self.repeated("particlepath", |fields| path(fields, particles));
-        let paths = paths.into_iter().map(|part| part.value).collect::<Option<Vec<_>>>();
+        let paths = values(self.repeated("particlepath", |fields| path(fields, particles)));
         Some(Display {
             max_frequency: max_frequency?,
             viewport: viewport?,
@@ -239,9 +242,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
     }
 }
 
-type AnyFields<'d, 't, 'r> = Fields<'d, 't, 'r>;
-
-fn duration(fields: &mut AnyFields<'_, '_, '_>) -> Option<f64> {
+fn duration(fields: &mut Fields<'_, '_, '_>) -> Option<f64> {
     let duration = fields.scalar("time")?;
     if duration < 0.0 {
         fields.bad("time", "the simulated time cannot be negative");
@@ -249,26 +250,19 @@ fn duration(fields: &mut AnyFields<'_, '_, '_>) -> Option<f64> {
     Some(duration)
 }
 
-fn integrator(fields: &mut AnyFields<'_, '_, '_>) -> Option<(Integrator, f64)> {
-    let types = [
-        ("explicit-euler", Integrator::ExplicitEuler),
-        ("forward-backward-euler", Integrator::ForwardBackwardEuler),
-        ("symplectic-euler", Integrator::SymplecticEuler),
-        ("implicit-euler", Integrator::ImplicitEuler),
-        ("linearized-implicit-euler", Integrator::LinearizedImplicitEuler),
-    ];
-    let (integrator, time_step) = (fields.choice("type", &types), fields.scalar("dt"));
+fn integrator(fields: &mut Fields<'_, '_, '_>) -> Option<(Integrator, f64)> {
+    let (integrator, time_step) = (fields.choice("type", &Integrator::NAMED), fields.scalar("dt"));
     if time_step.is_some_and(|time_step| time_step <= 0.0) {
         fields.bad("dt", "the time step must be positive; the original makes no step");
     }
     Some((integrator?, time_step?))
 }
 
-fn detection(fields: &mut AnyFields<'_, '_, '_>) -> Option<CollisionDetection> {
+fn detection(fields: &mut Fields<'_, '_, '_>) -> Option<CollisionDetection> {
     fields.choice("type", &[("all-pairs", CollisionDetection::AllPairs), ("contest", CollisionDetection::Contest)])
 }
 
-fn collision(fields: &mut AnyFields<'_, '_, '_>) -> Option<Collision> {
+fn collision(fields: &mut Fields<'_, '_, '_>) -> Option<Collision> {
     let types = CollisionType::ALL.map(|kind| (kind.name(), kind));
     let restitution = fields.scalar_or("COR", 1.0);
     if restitution.is_some_and(|value| !(0.0..=1.0).contains(&value)) {
@@ -313,7 +307,7 @@ fn collision(fields: &mut AnyFields<'_, '_, '_>) -> Option<Collision> {
 }
 
 /// `maxiters`: a scalar in the original, which cuts off its fraction.
-fn max_iterations(fields: &mut AnyFields<'_, '_, '_>) -> Option<i32> {
+fn max_iterations(fields: &mut Fields<'_, '_, '_>) -> Option<i32> {
     let written = fields.scalar_or("maxiters", 10.0)?;
     if written.trunc() != written || written < f64::from(i32::MIN) || written > f64::from(i32::MAX) {
         fields.bad("maxiters", "write a whole number of at most 2147483647");
@@ -327,7 +321,7 @@ fn max_iterations(fields: &mut AnyFields<'_, '_, '_>) -> Option<i32> {
     Some(iterations)
 }
 
-fn particle(fields: &mut AnyFields<'_, '_, '_>) -> Option<Particle> {
+fn particle(fields: &mut Fields<'_, '_, '_>) -> Option<Particle> {
     let (position, velocity) = (fields.vector("px", "py"), fields.vector("vx", "vy"));
     let mass = fields.scalar("m");
     if mass.is_some_and(|mass| mass <= 0.0) {
@@ -339,7 +333,7 @@ fn particle(fields: &mut AnyFields<'_, '_, '_>) -> Option<Particle> {
     Some(Particle { position: position?, velocity: velocity?, mass: mass?, fixed: fixed?, radius: radius?, tag: tag? })
 }
 
-fn radius(fields: &mut AnyFields<'_, '_, '_>, default: f64) -> Option<f64> {
+fn radius(fields: &mut Fields<'_, '_, '_>, default: f64) -> Option<f64> {
     let radius = fields.scalar_or("radius", default)?;
     if radius < 0.0 {
         fields.bad("radius", "a radius cannot be negative");
@@ -347,21 +341,21 @@ fn radius(fields: &mut AnyFields<'_, '_, '_>, default: f64) -> Option<f64> {
     Some(radius)
 }
 
-fn edge(fields: &mut AnyFields<'_, '_, '_>, particles: Count) -> Option<Edge> {
+fn edge(fields: &mut Fields<'_, '_, '_>, particles: Count) -> Option<Edge> {
     let (pair, radius) = (pair(fields, particles), radius(fields, 0.015));
     let (first, second) = pair?;
     Some(Edge { first, second, radius: radius? })
 }
 
 /// Two different particles in `i` and `j`.
-fn pair(fields: &mut AnyFields<'_, '_, '_>, particles: Count) -> Option<(usize, usize)> {
+fn pair(fields: &mut Fields<'_, '_, '_>, particles: Count) -> Option<(usize, usize)> {
     let first = fields.index("i", particles);
     let second = other(fields, first, particles);
     Some((first?, second?))
 }
 
 /// The particle in `j`, which is another one than that in `i`.
-fn other(fields: &mut AnyFields<'_, '_, '_>, first: Option<usize>, particles: Count) -> Option<usize> {
+fn other(fields: &mut Fields<'_, '_, '_>, first: Option<usize>, particles: Count) -> Option<usize> {
     let second = fields.index("j", particles)?;
     if first == Some(second) {
         fields.error("j", "is the same particle as `i`", "two different particles are needed");
@@ -407,7 +401,7 @@ impl Source for ForceFields<'_, '_, '_, '_> {
     }
 }
 
-fn path(fields: &mut AnyFields<'_, '_, '_>, particles: Count) -> Option<ParticlePath> {
+fn path(fields: &mut Fields<'_, '_, '_>, particles: Count) -> Option<ParticlePath> {
     let (particle, duration, color) = (fields.index("i", particles), fields.scalar("duration"), fields.color());
     if duration.is_some_and(|duration| duration < 0.0) {
         fields.bad("duration", "a duration cannot be negative");
@@ -416,7 +410,7 @@ fn path(fields: &mut AnyFields<'_, '_, '_>, particles: Count) -> Option<Particle
 }
 
 /// Warns of a number below zero that the original accepts.
-fn negative(fields: &mut AnyFields<'_, '_, '_>, name: &str, value: f64, effect: &str) {
+fn negative(fields: &mut Fields<'_, '_, '_>, name: &str, value: f64, effect: &str) {
     if value < 0.0 {
         fields.odd(name, effect);
     }

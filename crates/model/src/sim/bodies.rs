@@ -2,7 +2,10 @@
 //!
 //! Nothing here changes during a simulation. Particles, edges and half-planes keep their document order, which is
 //! the order of every loop over them (simulation.md 1).
-use super::pairs::Objects;
+use super::{
+    pair::{Pair, PairKind},
+    pairs::Objects,
+};
 use crate::scene::Scene;
 use fosssim_num::vector::Vec2;
 
@@ -61,6 +64,16 @@ impl Bodies {
     #[inline]
     pub fn objects(&self) -> Objects {
         Objects { particles: self.particles(), edges: self.edges.len(), half_planes: self.points.len() }
+    }
+
+    /// The particles of a pair; the last one stands for those that it lacks.
+    pub fn particles_of(&self, pair: Pair) -> [usize; 3] {
+        let (first, second) = (pair.first as usize, pair.second as usize);
+        match pair.kind {
+            PairKind::ParticleParticle => [first, second, second],
+            PairKind::ParticleEdge => [first, self.edges[second][0], self.edges[second][1]],
+            PairKind::ParticleHalfPlane => [first; 3],
+        }
     }
 
     /// About how many pairs a pass looks at.

@@ -240,6 +240,8 @@ impl From<PassForm> for Pass {
 /// The inputs and the decision of one detection call.
 #[derive(Debug, Clone, Copy)]
 pub struct Detection<'a> {
+    /// The pass.
+    pub pass: Pass,
     /// The pair.
     pub pair: Pair,
     /// The polynomials as logged, in the order of the trace; empty for `simple`.
@@ -267,6 +269,23 @@ pub enum Decision {
         /// Its knowledge of the time.
         time: Time,
     },
+}
+
+impl Decision {
+    /// Whether the pair collides within the step.
+    #[must_use]
+    pub const fn collides(self) -> bool {
+        matches!(self, Self::Hit { .. })
+    }
+
+    /// The time that was found; infinite where there is none, or none was looked for.
+    #[must_use]
+    pub const fn time(self) -> f64 {
+        match self {
+            Self::Hit { time, .. } | Self::Miss { time: Time::Found(time) } => time,
+            Self::Miss { .. } => f64::INFINITY,
+        }
+    }
 }
 
 /// The knowledge of the time of a pair that does not collide.

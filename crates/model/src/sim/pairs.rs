@@ -5,7 +5,7 @@
 //! pairs share, takes the ranges of each kind from [`Objects::row`].
 use super::pair::{ByKind, Pair, PairKind, pair};
 use crate::scene::Scene;
-use std::{borrow::Cow, cmp::Ordering, ops::Range};
+use std::{cmp::Ordering, ops::Range};
 
 /// How many objects there are of which pairs consist.
 #[derive(Debug, Clone, Copy)]
@@ -77,28 +77,22 @@ pub(super) fn is_end(ends: [usize; 2], particle: usize) -> bool {
 }
 
 /// The pairs of one pass over a scene.
-#[derive(Debug, Clone)]
-pub struct Pairs<'a> {
+#[derive(Debug, Clone, Default)]
+pub struct Pairs {
     particles: usize,
     /// The ends of each edge.
-    edges: Cow<'a, [[usize; 2]]>,
+    edges: Vec<[usize; 2]>,
     half_planes: usize,
 }
 
 /// The pairs of one pass over a scene.
 #[must_use]
-pub fn pairs(scene: &Scene) -> Pairs<'static> {
+pub fn pairs(scene: &Scene) -> Pairs {
     let edges = scene.edges.iter().map(|edge| [edge.first, edge.second]).collect();
-    Pairs { particles: scene.particles.len(), edges: Cow::Owned(edges), half_planes: scene.half_planes.len() }
+    Pairs { particles: scene.particles.len(), edges, half_planes: scene.half_planes.len() }
 }
 
-impl Pairs<'_> {
-    /// The pairs of a scene without any.
-    #[must_use]
-    pub const fn none() -> Pairs<'static> {
-        Pairs { particles: 0, edges: Cow::Borrowed(&[]), half_planes: 0 }
-    }
-
+impl Pairs {
     /// All pairs, in the order of the pass: particle by particle, with all later particles, then with the edges that it
     /// is no end of, then with the half-planes.
     pub fn iter(&self) -> impl Iterator<Item = Pair> + Clone {

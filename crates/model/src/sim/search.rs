@@ -37,16 +37,23 @@ impl SearchCounts {
     pub const fn work(&self) -> u64 {
         self.calls + SEARCH_WORK * self.searched + self.steps + self.subnormal
     }
+
+    /// Each count made of both.
+    fn with(self, other: Self, made: fn(u64, u64) -> u64) -> Self {
+        Self {
+            calls: made(self.calls, other.calls),
+            searched: made(self.searched, other.searched),
+            excluded: made(self.excluded, other.excluded),
+            disagreements: made(self.disagreements, other.disagreements),
+            steps: made(self.steps, other.steps),
+            subnormal: made(self.subnormal, other.subnormal),
+        }
+    }
 }
 
 impl std::ops::AddAssign for SearchCounts {
     fn add_assign(&mut self, other: Self) {
-        self.calls += other.calls;
-        self.searched += other.searched;
-        self.excluded += other.excluded;
-        self.disagreements += other.disagreements;
-        self.steps += other.steps;
-        self.subnormal += other.subnormal;
+        *self = self.with(other, |one, more| one + more);
     }
 }
 
@@ -54,14 +61,7 @@ impl std::ops::AddAssign for SearchCounts {
 impl std::ops::Sub for SearchCounts {
     type Output = Self;
     fn sub(self, before: Self) -> Self {
-        Self {
-            calls: self.calls - before.calls,
-            searched: self.searched - before.searched,
-            excluded: self.excluded - before.excluded,
-            disagreements: self.disagreements - before.disagreements,
-            steps: self.steps - before.steps,
-            subnormal: self.subnormal - before.subnormal,
-        }
+        self.with(before, |all, earlier| all - earlier)
     }
 }
 

@@ -3,7 +3,7 @@ use super::{
     bodies::Bodies,
     collision::Handler,
     forces::Forces,
-    integrators::{DoesNotConverge, Stepper},
+    integrators::Stepper,
     observer::Observer,
     search::{RootSearch, SearchCounts},
     state::State,
@@ -31,11 +31,7 @@ impl Simulation {
     /// When an edge names a particle that does not exist; the strict reader refuses such scenes.
     #[must_use]
     pub fn new(scene: &Scene, root_search: RootSearch) -> Self {
-        let mut state = State::default();
-        for particle in &scene.particles {
-            state.positions.extend([particle.position.x, particle.position.y]);
-            state.velocities.extend([particle.velocity.x, particle.velocity.y]);
-        }
+        let state = State::of(scene);
         Self {
             bodies: Bodies::new(scene),
             forces: Forces::new(scene),
@@ -88,12 +84,7 @@ impl Simulation {
         }
         self.q_start.clone_from(&self.state.positions);
         self.stepper.limit_work(self.most_work.saturating_sub(self.handler.counts().work()));
-        if let Err(DoesNotConverge) =
-            self.stepper.advance(&self.bodies, &mut self.forces, &mut self.state, observer.steers())
-        {
-            let is_beyond = self.stepper.is_beyond_limit();
-            return Err(if is_beyond { StepError::Work { step } } else { StepError::Newton { step } });
-        }
+        self.stepper.advance(step, &self.bodies, &mut self.forces, &mut self.state, observer.steers())?;
         self.handler.limit_work(self.most_work.saturating_sub(self.stepper.work()));
         self.handler.handle(&self.bodies, step, &self.q_start, &mut self.state, observer)?;
         self.steps_done = step;

@@ -1,10 +1,42 @@
 //! The moving parts of a scene: positions and velocities.
+use crate::scene::Scene;
 
 /// Positions and velocities in trace order (`x0, y0, x1, y1, ...`), 2N each.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, PartialEq, Default)]
 pub struct State {
     /// Positions.
     pub positions: Vec<f64>,
     /// Velocities.
     pub velocities: Vec<f64>,
+}
+
+impl State {
+    /// The state in which a scene starts.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Self {
+        let mut state = Self::default();
+        for particle in &scene.particles {
+            state.positions.extend([particle.position.x, particle.position.y]);
+            state.velocities.extend([particle.velocity.x, particle.velocity.y]);
+        }
+        state
+    }
+
+    /// Whether all numbers are finite.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.positions.iter().chain(&self.velocities).all(|value| value.is_finite())
+    }
+}
+
+/// A state that takes over another one keeps its memory.
+impl Clone for State {
+    fn clone(&self) -> Self {
+        Self { positions: self.positions.clone(), velocities: self.velocities.clone() }
+    }
+
+    fn clone_from(&mut self, other: &Self) {
+        self.positions.clone_from(&other.positions);
+        self.velocities.clone_from(&other.velocities);
+    }
 }

@@ -82,19 +82,32 @@ pub(crate) fn impulses<R: Read>(source: &mut Source<R>, count: usize, out: &mut 
     whole
 }
 
-/// Appends ordinary polynomials (size 0 to 6, wholly in `bytes`) until the first that is not ordinary, at most `most`.
+/// The size of an ordinary polynomial (0 to 6, wholly in `bytes`), and what follows its size.
+#[inline(always)]
+fn ordinary(bytes: &[u8]) -> Option<(usize, &[u8])> {
+    let (head, rest) = bytes.split_first_chunk::<4>()?;
+    let size = u32::from_le_bytes(*head) as usize;
+    (size <= MAX_COEFFICIENTS && 8 * size <= rest.len()).then_some((size, rest))
+}
+
+/// Whether the next polynomial is ordinary, and wholly in the window now.
+pub(crate) fn has_ordinary<R: Read>(source: &mut Source<R>) -> bool {
+    if source.ensure(4) < 4 {
+        return false;
+    }
+    usize::try_from(integer(&source.window()[..4]))
+        .is_ok_and(|size| size <= MAX_COEFFICIENTS && source.ensure(4 + 8 * size) >= 4 + 8 * size)
+}
+
+/// Appends ordinary polynomials until the first that is not ordinary, at most `most`.
 /// Gives the bytes used, their number, and, with `TRIM`, whether any leading coefficient was dropped.
 pub(crate) fn polynomials<const TRIM: bool>(bytes: &[u8], most: u64, log: &mut PolynomialLog) -> (usize, u64, bool) {
     let (mut at, mut done, mut trimmed) = (0, 0, false);
     let PolynomialLog { coefficients, ends } = log;
     let mut used = coefficients.len();
     while done < most
-        && let Some((head, rest)) = bytes[at..].split_first_chunk::<4>()
+        && let Some((size, rest)) = ordinary(&bytes[at..])
     {
-        let size = u32::from_le_bytes(*head) as usize;
-        if size > MAX_COEFFICIENTS || 8 * size > rest.len() {
-            break;
-        }
         // A copy of constant length, of which a part counts, is the fastest; room for it is made for many at a time.
         if coefficients.len() < used + MAX_COEFFICIENTS {
             let more = usize::try_from(most - done).unwrap_or(usize::MAX).min(TOGETHER);
@@ -122,20 +135,16 @@ pub(crate) fn polynomials<const TRIM: bool>(bytes: &[u8], most: u64, log: &mut P
     (at, done, trimmed)
 }
 
-/// Passes over ordinary polynomials as [`polynomials`] decodes them. Gives the bytes used and their number.
-pub(crate) fn pass_over(bytes: &[u8], most: u64) -> (usize, u64) {
+/// Passes over ordinary polynomials as [`polynomials`] decodes them, and gives the same; nothing is dropped.
+pub(crate) fn pass_over(bytes: &[u8], most: u64) -> (usize, u64, bool) {
     let (mut at, mut done) = (0, 0);
     while done < most
-        && let Some((head, rest)) = bytes[at..].split_first_chunk::<4>()
+        && let Some((size, _)) = ordinary(&bytes[at..])
     {
-        let size = u32::from_le_bytes(*head) as usize;
-        if size > MAX_COEFFICIENTS || 8 * size > rest.len() {
-            break;
-        }
         at += 4 + 8 * size;
         done += 1;
     }
-    (at, done)
+    (at, done, false)
 }
 
 /// Appends up to `count` coefficients from the window and gives their number; 0 only at the end of the source.

@@ -2,7 +2,7 @@
 //!
 //! This says where bytes part, not who is right: `judge` does that.
 use super::{
-    error::TraceError,
+    error::{List, TraceError},
     frame::{Frame, LoggedImpulse},
     reader::Reader,
 };
@@ -48,19 +48,10 @@ pub struct Difference {
 /// A part that differs, with the left and the right value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Block {
-    /// A component of a position.
-    Position {
-        /// The particle.
-        particle: usize,
-        /// `x` or `y`.
-        axis: char,
-        /// Left value.
-        left: f64,
-        /// Right value.
-        right: f64,
-    },
-    /// A component of a velocity.
-    Velocity {
+    /// A component of a position or of a velocity.
+    Coordinate {
+        /// `position` or `velocity`.
+        quantity: &'static str,
         /// The particle.
         particle: usize,
         /// `x` or `y`.
@@ -79,8 +70,10 @@ pub enum Block {
         /// Right value.
         right: LoggedImpulse,
     },
-    /// The lengths of the impulse lists; their common beginnings agree.
-    ImpulseCount {
+    /// The lengths of two lists; their common beginnings agree.
+    Count {
+        /// Which lists.
+        list: List,
         /// Left length.
         left: usize,
         /// Right length.
@@ -105,13 +98,6 @@ pub enum Block {
         left: f64,
         /// Right value.
         right: f64,
-    },
-    /// The lengths of the polynomial lists; their common beginnings agree.
-    PolynomialCount {
-        /// Left length.
-        left: usize,
-        /// Right length.
-        right: usize,
     },
 }
 
@@ -153,20 +139,23 @@ pub fn difference(left: &Frame, right: &Frame) -> Option<Block> {
         let index = a.iter().zip(b).position(|(a, b)| a.to_bits() != b.to_bits())?;
         Some((index, a[index], b[index]))
     };
-    let axis = |index: usize| if index.is_multiple_of(2) { 'x' } else { 'y' };
-    if let Some((index, left, right)) = number(&left.state.positions, &right.state.positions) {
-        return Some(Block::Position { particle: index / 2, axis: axis(index), left, right });
-    }
-    if let Some((index, left, right)) = number(&left.state.velocities, &right.state.velocities) {
-        return Some(Block::Velocity { particle: index / 2, axis: axis(index), left, right });
+    let count = |list, left, right| (left != right).then_some(Block::Count { list, left, right });
+    for (quantity, left, right) in [
+        ("position", &left.state.positions, &right.state.positions),
+        ("velocity", &left.state.velocities, &right.state.velocities),
+    ] {
+        if let Some((index, left, right)) = number(left, right) {
+            let axis = if index.is_multiple_of(2) { 'x' } else { 'y' };
+            return Some(Block::Coordinate { quantity, particle: index / 2, axis, left, right });
+        }
     }
     for (index, (&left, &right)) in left.impulses.iter().zip(&right.impulses).enumerate() {
-        if bits(left) != bits(right) {
+        if !left.is_same(&right) {
             return Some(Block::Impulse { index, left, right });
         }
     }
-    if left.impulses.len() != right.impulses.len() {
-        return Some(Block::ImpulseCount { left: left.impulses.len(), right: right.impulses.len() });
+    if let Some(block) = count(List::Impulses, left.impulses.len(), right.impulses.len()) {
+        return Some(block);
     }
     for (index, (a, b)) in left.polynomials.iter().zip(right.polynomials.iter()).enumerate() {
         if a.len() != b.len() {
@@ -176,13 +165,7 @@ pub fn difference(left: &Frame, right: &Frame) -> Option<Block> {
             return Some(Block::Coefficient { index, power: a.len() - 1 - place, left, right });
         }
     }
-    (left.polynomials.len() != right.polynomials.len())
-        .then_some(Block::PolynomialCount { left: left.polynomials.len(), right: right.polynomials.len() })
-}
-
-fn bits(impulse: LoggedImpulse) -> (i32, i32, i32, [u64; 3]) {
-    let LoggedImpulse { kind, first, second, normal, time } = impulse;
-    (kind, first, second, [normal.x, normal.y, time].map(f64::to_bits))
+    count(List::Polynomials, left.polynomials.len(), right.polynomials.len())
 }
 
 impl fmt::Display for Comparison {
@@ -212,36 +195,27 @@ impl fmt::Display for Difference {
 impl fmt::Display for Block {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::Position { particle, axis, left, right } => {
-                write!(f, "position {axis} of particle {particle}: {}", Numbers(left, right))
-            }
-            Self::Velocity { particle, axis, left, right } => {
-                write!(f, "velocity {axis} of particle {particle}: {}", Numbers(left, right))
+            Self::Coordinate { quantity, particle, axis, left, right } => {
+                write!(f, "{quantity} {axis} of particle {particle}: {}", numbers(left, right))
             }
             Self::Impulse { index, left, right } => write!(f, "impulse {index}: {left} against {right}"),
-            Self::ImpulseCount { left, right } => write!(f, "number of impulses: {left} against {right}"),
+            Self::Count { list, left, right } => write!(f, "number of {list}s: {left} against {right}"),
             Self::PolynomialSize { index, left, right } => {
                 write!(f, "size of polynomial {index}: {left} against {right}")
             }
             Self::Coefficient { index, power, left, right } => {
-                write!(f, "coefficient of t^{power} of polynomial {index}: {}", Numbers(left, right))
+                write!(f, "coefficient of t^{power} of polynomial {index}: {}", numbers(left, right))
             }
-            Self::PolynomialCount { left, right } => write!(f, "number of polynomials: {left} against {right}"),
         }
     }
 }
 
 /// Two numbers whose bits differ; bits are shown where the text does not (NaN).
-struct Numbers(f64, f64);
-
-impl fmt::Display for Numbers {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self(left, right) = *self;
-        if left.is_nan() && right.is_nan() {
-            write!(f, "NaN ({:#018x}) against NaN ({:#018x})", left.to_bits(), right.to_bits())
-        } else {
-            write!(f, "{left:?} against {right:?}")
-        }
+fn numbers(left: f64, right: f64) -> String {
+    if left.is_nan() && right.is_nan() {
+        format!("NaN ({:#018x}) against NaN ({:#018x})", left.to_bits(), right.to_bits())
+    } else {
+        format!("{left:?} against {right:?}")
     }
 }
 

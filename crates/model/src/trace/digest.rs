@@ -15,7 +15,7 @@ use std::{
 };
 
 /// SHA-256 of some bytes; prints as 64 hexadecimal digits.
-#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Sha(pub [u8; 32]);
 
 impl fmt::Display for Sha {
@@ -67,7 +67,7 @@ fn finish(digest: Sha256) -> Sha {
 /// 1 0b5ed3c9a2f7b1aa
 /// 288 bytes, 3 records, sha256 ...
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Digests {
     /// Digest of each step's records, the initial record as step 0. An incomplete step has none.
     pub steps: Vec<Short>,
@@ -90,13 +90,40 @@ impl Digests {
     /// Reads a whole trace, in the memory of one record and eight bytes per step. A malformed trace has digests, too:
     /// those of its sound steps and that of all its bytes.
     pub fn of(mut stream: impl Read, layout: Layout) -> Self {
-        Self::of_stream(&mut stream, layout)
+        Self::walk(&mut stream, layout, &mut |_, _, _| {})
     }
 
-    fn of_stream(stream: &mut dyn Read, layout: Layout) -> Self {
-        let mut steps = Vec::new();
-        let walked = walk(stream, layout, |_, _, _| {}, |_, digest| steps.push(digest));
-        let Walked { sha256, bytes, records, trailing, unread, stopped } = walked;
+    /// The same; `frame` sees every record: its number, content and notes.
+    pub(super) fn walk(
+        stream: &mut dyn Read,
+        layout: Layout,
+        frame: &mut dyn FnMut(u64, &Frame, &[TraceError]),
+    ) -> Self {
+        let mut all = Hashing { stream, digest: Sha256::new(), bytes: 0 };
+        let mut reader = Reader::new(&mut all, layout).keeping_raw();
+        let (mut current, mut digest, mut steps) = (Frame::default(), Sha256::new(), Vec::new());
+        let stopped = loop {
+            match reader.next(&mut current) {
+                Ok(true) => {}
+                Ok(false) => break None,
+                Err(error) => break Some(error),
+            }
+            let record = reader.records() - 1;
+            frame(record, &current, reader.notes());
+            digest.update(reader.raw());
+            if !layout.is_mid(record) {
+                steps.push(Short::of(std::mem::take(&mut digest)));
+            }
+        };
+        let begin = if stopped.is_some() { reader.record_offset() } else { reader.offset() };
+        let records = reader.records();
+        let failed = reader.trailing().err();
+        let unread = matches!(&failed, Some(TraceError { what: Malformation::Endless { .. }, .. }));
+        let end = reader.offset();
+        let Hashing { digest, bytes, .. } = all;
+        // The buffer may hold a few bytes more than were looked at; how many depends on the stream.
+        let bytes = if unread { end } else { bytes };
+        let (sha256, trailing, stopped) = (finish(digest), bytes - begin, stopped.or(failed));
         Self { steps, sha256, bytes, records, trailing, unread, stopped }
     }
 }
@@ -114,52 +141,6 @@ impl fmt::Display for Digests {
         }
         writeln!(f, "{} bytes, {} records, sha256 {}", self.bytes, self.records, self.sha256)
     }
-}
-
-/// The result of a walk over a whole trace.
-pub(crate) struct Walked {
-    pub(crate) sha256: Sha,
-    pub(crate) bytes: u64,
-    pub(crate) records: u64,
-    pub(crate) trailing: u64,
-    pub(crate) unread: bool,
-    pub(crate) stopped: Option<TraceError>,
-}
-
-/// Reads a trace to its end; `frame` sees every record (its number, content and notes), `step` every complete step's
-/// digest.
-pub(crate) fn walk(
-    stream: &mut dyn Read,
-    layout: Layout,
-    mut frame: impl FnMut(u64, &Frame, &[TraceError]),
-    mut step: impl FnMut(u32, Short),
-) -> Walked {
-    let mut all = Hashing { stream, digest: Sha256::new(), bytes: 0 };
-    let mut reader = Reader::new(&mut all, layout).keeping_raw();
-    let mut current = Frame::default();
-    let mut digest = Sha256::new();
-    let stopped = loop {
-        match reader.next(&mut current) {
-            Ok(true) => {}
-            Ok(false) => break None,
-            Err(error) => break Some(error),
-        }
-        let record = reader.records() - 1;
-        frame(record, &current, reader.notes());
-        digest.update(reader.raw());
-        if !layout.is_mid(record) {
-            step(layout.step_of(record), Short::of(std::mem::take(&mut digest)));
-        }
-    };
-    let begin = if stopped.is_some() { reader.record_offset() } else { reader.offset() };
-    let records = reader.records();
-    let failed = reader.trailing().err();
-    let unread = matches!(&failed, Some(TraceError { what: Malformation::Endless { .. }, .. }));
-    let end = reader.offset();
-    let Hashing { digest, bytes, .. } = all;
-    // The buffer may hold a few bytes more than were looked at; how many depends on the stream.
-    let bytes = if unread { end } else { bytes };
-    Walked { sha256: finish(digest), bytes, records, trailing: bytes - begin, unread, stopped: stopped.or(failed) }
 }
 
 /// A stream whose bytes are digested as they are read.

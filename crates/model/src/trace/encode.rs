@@ -1,30 +1,11 @@
 //! The blocks of a record as bytes (trace-format.md 1): little-endian, packed, into buffers that are reused.
 //!
 //! Nothing here writes to a stream; [`super::Writer`] does. No function checks what it encodes.
-use super::frame::{LoggedImpulse, PolynomialLog};
+use super::frame::LoggedImpulse;
 use crate::sim::State;
-use fosssim_num::polynomial::MAX_COEFFICIENTS;
 
 /// Bytes of an encoded impulse: three `i32`, three `f64`.
 pub(crate) const IMPULSE_BYTES: usize = 36;
-
-/// Bytes of the largest polynomial that the simulator logs.
-const POLYNOMIAL_BYTES: usize = 4 + 8 * MAX_COEFFICIENTS;
-
-/// A list in encoded form: how many entries, and their bytes.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub(crate) struct Encoded {
-    pub(crate) count: usize,
-    pub(crate) bytes: Vec<u8>,
-}
-
-impl Encoded {
-    /// Empties the list and keeps its memory.
-    pub(crate) fn clear(&mut self) {
-        self.count = 0;
-        self.bytes.clear();
-    }
-}
 
 /// Appends `values` one after the other.
 // Not for inlining: it would be compiled where a recorder is used, at that crate's level.
@@ -66,31 +47,9 @@ pub(crate) fn impulse(out: &mut Vec<u8>, impulse: &LoggedImpulse) {
 }
 
 /// Appends one polynomial, highest power first.
-#[inline]
 pub(crate) fn polynomial(out: &mut Vec<u8>, coefficients: &[f64]) {
-    if coefficients.len() <= MAX_COEFFICIENTS {
-        // A copy of constant length and a cut are several times faster than a copy of variable length.
-        let mut bytes = [0; POLYNOMIAL_BYTES];
-        #[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "at most six")]
-        let size = coefficients.len() as i32;
-        bytes[0..4].copy_from_slice(&size.to_le_bytes());
-        for (place, value) in bytes[4..].chunks_exact_mut(8).zip(coefficients) {
-            place.copy_from_slice(&value.to_le_bytes());
-        }
-        let end = out.len() + 4 + 8 * coefficients.len();
-        out.extend_from_slice(&bytes);
-        out.truncate(end);
-    } else {
-        count(out, coefficients.len());
-        numbers(out, coefficients);
-    }
-}
-
-/// Appends all polynomials of a log, without their count.
-pub(crate) fn polynomials(out: &mut Vec<u8>, log: &PolynomialLog) {
-    for coefficients in log.iter() {
-        polynomial(out, coefficients);
-    }
+    count(out, coefficients.len());
+    numbers(out, coefficients);
 }
 
 #[cfg(test)]

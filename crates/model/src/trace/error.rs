@@ -6,28 +6,24 @@ use serde::{Deserialize, Serialize};
 use std::{borrow::Cow, fmt, io};
 
 /// Something wrong with a trace, and its place.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("byte {offset}, {}: {what}", RecordName(*.frame, *.step))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, thiserror::Error)]
+#[error("byte {offset}, {}: {what}", record_name(*.frame, *.step))]
 pub struct TraceError {
-    /// Byte offset from the beginning of the trace: where the value begins that is wrong or not there.
-    pub offset: u64,
     /// The record, from 0 (the initial one).
     pub frame: u64,
     /// The step it belongs to, from 1; 0 for the initial record.
     pub step: u32,
+    /// Byte offset from the beginning of the trace: where the value begins that is wrong or not there.
+    pub offset: u64,
     /// The fault, in words without position.
     pub what: Malformation,
 }
 
 /// A record and its step in words.
-struct RecordName(u64, u32);
-
-impl fmt::Display for RecordName {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.1 {
-            0 => write!(f, "record {} (initial state)", self.0),
-            step => write!(f, "record {} (step {step})", self.0),
-        }
+fn record_name(record: u64, step: u32) -> String {
+    match step {
+        0 => format!("record {record} (initial state)"),
+        _ => format!("record {record} (step {step})"),
     }
 }
 

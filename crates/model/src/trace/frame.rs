@@ -1,6 +1,6 @@
 //! One record in memory.
 use crate::sim::{Impulse, Pair, PairKind, State};
-use fosssim_num::vector::Vec2;
+use fosssim_num::vector::{Vec2, same_bits};
 use serde::{Deserialize, Serialize};
 use std::{borrow::Cow, fmt};
 
@@ -96,6 +96,14 @@ impl LoggedImpulse {
     pub fn pair(&self) -> Option<Pair> {
         let (first, second) = (u32::try_from(self.first).ok()?, u32::try_from(self.second).ok()?);
         Some(Pair { kind: self.kind()?, first, second })
+    }
+
+    /// Whether both are equal bit for bit.
+    #[must_use]
+    pub fn is_same(&self, other: &Self) -> bool {
+        let numbers = |impulse: &Self| [impulse.normal.x, impulse.normal.y, impulse.time];
+        (self.kind, self.first, self.second) == (other.kind, other.first, other.second)
+            && same_bits(&numbers(self), &numbers(other))
     }
 }
 

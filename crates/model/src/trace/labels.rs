@@ -3,7 +3,7 @@
 //! A trace does not say it. The step is simulated again from the state before it, and the calls are counted.
 use crate::{
     scene::Scene,
-    sim::{Detection, Observer, Pair, Pass, RootSearch, Simulation, Stage, State},
+    sim::{Detection, Observer, Pair, Pass, RootSearch, Simulation, State},
 };
 
 /// Where a polynomial of a step's end record comes from.
@@ -28,26 +28,19 @@ pub fn labels(scene: &Scene, before: &State) -> Vec<Label> {
         return Vec::new();
     }
     state.clone_from(before);
-    let mut labels = Labels { pass: Pass { stage: Stage::Simple, index: 0 }, list: Vec::new() };
+    let mut labels = Labels(Vec::new());
     match simulation.step(&mut labels) {
-        Ok(()) => labels.list,
+        Ok(()) => labels.0,
         Err(_) => Vec::new(),
     }
 }
 
-struct Labels {
-    pass: Pass,
-    list: Vec<Label>,
-}
+struct Labels(Vec<Label>);
 
 impl Observer for Labels {
-    fn begin_pass(&mut self, pass: Pass) {
-        self.pass = pass;
-    }
-
     fn detection(&mut self, detection: &Detection<'_>) {
-        let (pass, pair) = (self.pass, detection.pair);
-        self.list.extend((0..detection.polynomials.len()).map(|number| Label { pass, pair, number }));
+        let &Detection { pass, pair, .. } = detection;
+        self.0.extend((0..detection.polynomials.len()).map(|number| Label { pass, pair, number }));
     }
 }
 

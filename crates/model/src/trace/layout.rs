@@ -2,7 +2,7 @@
 use crate::{assignments::ImpulseList, scene::Scene};
 
 /// Everything about a trace's shape that the scene decides (trace-format.md 1, 2).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Layout {
     /// Number of particles N.
     pub particles: usize,

@@ -163,7 +163,7 @@ impl<'a> Lenient<&'a [u8]> {
 impl<R: Read> Lenient<R> {
     /// A reader at the beginning of `stream`, which needs no buffer of its own.
     pub fn new(stream: R, layout: Layout) -> Self {
-        Self { source: Source::new(stream, None), layout, record: 0, begin: 0, failed: false, note: None, limit: LIMIT }
+        Self { source: Source::new(stream), layout, record: 0, begin: 0, failed: false, note: None, limit: LIMIT }
     }
 
     /// Bounds the memory that the lists of one record may take, in bytes; see [`record_memory`].
@@ -246,10 +246,9 @@ impl<R: Read> Lenient<R> {
     }
 
     fn stop(&self, cause: Unreadable, offset: u64, what: Malformation) -> ReadStop {
-        match self.source.error().cloned() {
-            Some((kind, message)) if matches!(cause, Unreadable::State | Unreadable::Impulses) => {
-                let at = self.error(self.source.offset(), Malformation::Io { kind, message });
-                ReadStop { cause: Unreadable::Io, at }
+        match self.source.error() {
+            Some(error) if matches!(cause, Unreadable::State | Unreadable::Impulses) => {
+                ReadStop { cause: Unreadable::Io, at: self.error(self.source.offset(), error) }
             }
             _ => ReadStop { cause, at: self.error(offset, what) },
         }
@@ -276,6 +275,13 @@ impl<R: Read> Lenient<R> {
         }
     }
 
+    /// A count or size.
+    fn integer(&mut self) -> i32 {
+        let mut bytes = [0; 4];
+        self.bytes(&mut bytes);
+        i32::from_le_bytes(bytes)
+    }
+
     fn state(&mut self, state: &mut State) -> Result<(), ReadStop> {
         // The original took the record before for a whole one, although the bytes ended in it.
         let whole = self.record - u64::from(self.failed && self.record > 0);
@@ -294,13 +300,11 @@ impl<R: Read> Lenient<R> {
 
     fn impulses(&mut self, impulses: &mut Vec<LoggedImpulse>) -> Result<(), ReadStop> {
         let (list, offset) = (List::Impulses, self.source.offset());
-        let mut bytes = [0; 4];
-        self.bytes(&mut bytes);
+        let count = self.integer();
         let begin = self.source.offset();
         if self.failed {
             return Err(self.stop(Unreadable::Impulses, offset, Malformation::CountCut { list, left: begin - offset }));
         }
-        let count = i32::from_le_bytes(bytes);
         if count < 0 {
             self.note(offset, Malformation::NegativeCount { list, count });
         }
@@ -322,10 +326,8 @@ impl<R: Read> Lenient<R> {
 
     fn polynomials(&mut self, frame: &mut LenientFrame) -> Result<(), ReadStop> {
         let (list, offset) = (List::Polynomials, self.source.offset());
-        let mut bytes = [0; 4];
-        self.bytes(&mut bytes);
+        let count = self.integer();
         let begin = self.source.offset();
-        let count = i32::from_le_bytes(bytes);
         if self.failed {
             frame.plain = false;
             self.note(offset, Malformation::CountCut { list, left: begin - offset });
@@ -335,22 +337,20 @@ impl<R: Read> Lenient<R> {
         let entries = u64::try_from(count).unwrap_or(0);
         let mut done = 0;
         while done < entries && !self.failed {
-            if self.is_full(frame) {
-                let (used, ordinary) = decode::pass_over(self.source.window(), entries - done);
-                self.source.consume(used);
-                done += ordinary;
+            let (window, most) = (self.source.window(), entries - done);
+            let (used, ordinary, trimmed) = if self.is_full(frame) {
+                decode::pass_over(window, most)
             } else {
-                let log = &mut frame.polynomials;
-                let (used, ordinary, trimmed) = decode::polynomials::<true>(self.source.window(), entries - done, log);
-                self.source.consume(used);
-                frame.plain &= !trimmed;
-                done += ordinary;
-            }
+                decode::polynomials::<true>(window, most, &mut frame.polynomials)
+            };
+            self.source.consume(used);
+            frame.plain &= !trimmed;
+            done += ordinary;
             if entries > STORABLE_POLYNOMIALS && self.source.offset() - begin > self.limit as u64 {
                 let what = Malformation::FrameTooLarge { limit: self.limit as u64 };
                 return Err(self.stop(Unreadable::Memory, offset, what));
             }
-            if done < entries && !self.ordinary_in_window() {
+            if done < entries && !decode::has_ordinary(&mut self.source) {
                 self.polynomial(frame, done, count)?;
                 done += 1;
             }
@@ -370,28 +370,16 @@ impl<R: Read> Lenient<R> {
         Ok(())
     }
 
-    /// Whether the next polynomial has an ordinary size and is wholly in the window now.
-    fn ordinary_in_window(&mut self) -> bool {
-        if self.source.ensure(4) < 4 {
-            return false;
-        }
-        let size = i32::from_le_bytes(self.source.window()[..4].try_into().expect("four bytes"));
-        usize::try_from(size)
-            .is_ok_and(|size| size <= MAX_COEFFICIENTS && self.source.ensure(4 + 8 * size) >= 4 + 8 * size)
-    }
-
     /// Reads one polynomial the long way: any size, the stream may end anywhere.
     fn polynomial(&mut self, frame: &mut LenientFrame, number: u64, count: i32) -> Result<(), ReadStop> {
         let offset = self.source.offset();
-        let mut bytes = [0; 4];
-        self.bytes(&mut bytes);
-        let size = i32::from_le_bytes(bytes);
+        let written = self.integer();
         if self.failed {
             self.note(offset, Malformation::PolynomialCut { polynomial: number, count });
-        } else if size < 0 {
-            self.note(offset, Malformation::NegativeSize { polynomial: number, size });
+        } else if written < 0 {
+            self.note(offset, Malformation::NegativeSize { polynomial: number, size: written });
         }
-        let size = usize::try_from(size).unwrap_or(0);
+        let size = usize::try_from(written).unwrap_or(0);
         if size > STORABLE_COEFFICIENTS {
             let what = Malformation::FrameTooLarge { limit: 8 * STORABLE_COEFFICIENTS as u64 };
             return Err(self.stop(Unreadable::Memory, offset, what));
@@ -422,11 +410,10 @@ impl<R: Read> Lenient<R> {
         if keeps {
             log.ends.push(log.coefficients.len());
         }
-        frame.plain &= !self.failed && bytes[3] < 0x80;
+        frame.plain &= !self.failed && written >= 0;
         if whole && self.failed {
             let left = self.source.offset() - begin;
-            let size = i32::from_le_bytes(bytes);
-            self.note(offset, Malformation::SizeBeyondEnd { polynomial: number, size, left });
+            self.note(offset, Malformation::SizeBeyondEnd { polynomial: number, size: written, left });
         }
         Ok(())
     }

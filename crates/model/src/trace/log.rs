@@ -1,15 +1,16 @@
 //! The part of a trace that a step writes: its lists, and when which of them is part of a record (trace-format.md 2).
 use super::{
-    encode::{self, Encoded},
+    encode::{self, IMPULSE_BYTES},
     frame::LoggedImpulse,
+    layout::Layout,
 };
-use crate::sim::{Detection, Impulse, Pass, PolynomialBytes, Stage};
+use crate::sim::{Detection, Impulse, Pass, PolynomialBytes, Stage, State};
 
 /// The lists of a step so far, as a trace holds them.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Log {
-    /// Impulses.
-    pub(super) impulses: Encoded,
+    /// The bytes of impulses.
+    impulses: Vec<u8>,
     /// Polynomials.
     pub(super) polynomials: PolynomialBytes,
     /// Whether the responses of the current pass reach the trace: those of `hybrid` never do.
@@ -43,8 +44,24 @@ impl Log {
     /// Appends an impulse, if it belongs to the trace.
     pub(super) fn impulse(&mut self, impulse: &Impulse) {
         if self.logs_impulses {
-            encode::impulse(&mut self.impulses.bytes, &LoggedImpulse::from(*impulse));
-            self.impulses.count += 1;
+            encode::impulse(&mut self.impulses, &LoggedImpulse::from(*impulse));
+        }
+    }
+
+    /// Number of impulses.
+    pub(super) fn impulses(&self) -> usize {
+        self.impulses.len() / IMPULSE_BYTES
+    }
+
+    /// Appends a record with these lists, but for its polynomials.
+    pub(super) fn write_head(&self, out: &mut Vec<u8>, layout: Layout, state: &State) {
+        encode::state(out, state);
+        if layout.impulses {
+            encode::count(out, self.impulses());
+            out.extend_from_slice(&self.impulses);
+        }
+        if layout.polynomials {
+            encode::count(out, self.polynomials.count());
         }
     }
 }

@@ -66,7 +66,7 @@ impl<R: Read> Reader<R> {
     /// A reader at the beginning of `stream`, which needs no buffer of its own.
     pub fn new(stream: R, layout: Layout) -> Self {
         Self {
-            source: Source::new(stream, None),
+            source: Source::new(stream),
             layout,
             objects: None,
             record: 0,
@@ -194,7 +194,7 @@ impl<R: Read> Reader<R> {
     pub fn trailing(&mut self) -> Result<u64, TraceError> {
         let offset = self.source.offset();
         let drained = self.source.drain(TRAILING_LIMIT);
-        match (self.io(), drained) {
+        match (self.source.error(), drained) {
             (Some(what), _) => Err(self.error(self.source.offset(), what)),
             (None, None) => {
                 // The place is the end of the last record: there may be none that could come next.
@@ -221,15 +221,9 @@ impl<R: Read> Reader<R> {
         Malformation::FrameTooLarge { limit: self.limit }
     }
 
-    /// The stream's own error as a malformation.
-    fn io(&self) -> Option<Malformation> {
-        let (kind, message) = self.source.error()?.clone();
-        Some(Malformation::Io { kind, message })
-    }
-
     /// The failure that missing bytes are: the stream's own error, or else `what`.
     fn missing(&self, offset: u64, what: Malformation) -> Failure {
-        (offset, self.io().unwrap_or(what))
+        (offset, self.source.error().unwrap_or(what))
     }
 
     fn read(&mut self, frame: &mut Frame) -> Result<(), Failure> {
@@ -339,18 +333,13 @@ impl<R: Read> Reader<R> {
                 break;
             }
             // The next one is not wholly in the window, or its size is not ordinary.
-            let offset = self.source.offset();
-            let there = self.source.ensure(4);
-            if there < 4 {
-                return Err(self.cut(begin, count, (offset, Malformation::PolynomialCut { polynomial: done, count })));
-            }
-            let size = i32::from_le_bytes(self.source.window()[..4].try_into().expect("four bytes"));
-            if let Ok(size @ 0..=MAX_COEFFICIENTS) = usize::try_from(size)
-                && self.source.ensure(4 + 8 * size) >= 4 + 8 * size
-            {
+            if decode::has_ordinary(&mut self.source) {
                 continue;
             }
-            self.source.consume(4);
+            let offset = self.source.offset();
+            let Ok(size) = decode::count(&mut self.source) else {
+                return Err(self.cut(begin, count, (offset, Malformation::PolynomialCut { polynomial: done, count })));
+            };
             if let Err(failure) = self.odd_polynomial(offset, done, size, log) {
                 return Err(self.cut(begin, count, failure));
             }

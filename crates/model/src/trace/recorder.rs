@@ -116,7 +116,14 @@ mod tests {
         recorder.begin_pass(pass);
         let polynomials = [Polynomial::trimmed(&[1.0, 2.0, 3.0]), Polynomial::trimmed(&[])];
         let decision = Decision::Miss { time: Time::Excluded };
-        recorder.detection(&Detection { pair: PAIR, polynomials: &polynomials, decision, q_start: &[], q_end: &[] });
+        recorder.detection(&Detection {
+            pass,
+            pair: PAIR,
+            polynomials: &polynomials,
+            decision,
+            q_start: &[],
+            q_end: &[],
+        });
         recorder.end_pass(pass, 1);
         recorder.impulse(&IMPULSE);
     }

@@ -3,6 +3,7 @@
 //!
 //! An error of the stream counts as its end and is kept, so that both readers treat it like missing bytes and can
 //! still name it.
+use super::error::Malformation;
 use std::io::{self, Read};
 
 /// Size of the buffer, hence of the largest piece that [`Source::ensure`] can show at once. A larger one makes no
@@ -20,15 +21,16 @@ pub(crate) struct Source<R> {
     /// Length of the whole stream, where it is known. Nothing beyond is read.
     length: Option<u64>,
     ended: bool,
-    error: Option<(io::ErrorKind, String)>,
+    error: Option<Malformation>,
     /// The bytes consumed since `start_tape`.
     tape: Option<Vec<u8>>,
 }
 
 impl<R: Read> Source<R> {
-    /// A source at the beginning of `stream`, whose length may be known.
-    pub(crate) fn new(stream: R, length: Option<u64>) -> Self {
-        Self { stream, buffer: Vec::new(), start: 0, end: 0, offset: 0, length, ended: false, error: None, tape: None }
+    /// A source at the beginning of `stream`.
+    pub(crate) fn new(stream: R) -> Self {
+        let (buffer, length, error, tape) = (Vec::new(), None, None, None);
+        Self { stream, buffer, start: 0, end: 0, offset: 0, length, ended: false, error, tape }
     }
 
     /// The same source, whatever the stream is.
@@ -73,8 +75,8 @@ impl<R: Read> Source<R> {
     }
 
     /// The error that ended the stream.
-    pub(crate) fn error(&self) -> Option<&(io::ErrorKind, String)> {
-        self.error.as_ref()
+    pub(crate) fn error(&self) -> Option<Malformation> {
+        self.error.clone()
     }
 
     /// The bytes in the buffer.
@@ -189,7 +191,7 @@ impl<R: Read> Source<R> {
                 Ok(count) => self.end += count,
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
                 Err(error) => {
-                    self.error = Some((error.kind(), error.to_string()));
+                    self.error = Some(Malformation::Io { kind: error.kind(), message: error.to_string() });
                     self.ended = true;
                 }
             }
@@ -220,7 +222,7 @@ mod tests {
     #[test]
     fn a_trickling_stream_gives_the_same_bytes() {
         let bytes: Vec<u8> = (0..100).collect();
-        let mut source = Source::new(Trickle(&bytes, false), None);
+        let mut source = Source::new(Trickle(&bytes, false));
         assert_eq!(source.ensure(10), 10);
         assert_eq!(source.window(), &bytes[..10]);
         source.consume(7);
@@ -235,7 +237,7 @@ mod tests {
     #[test]
     fn what_was_followed_can_be_given_back() {
         let bytes: Vec<u8> = (0..=255).cycle().take(3 * WINDOW).collect();
-        let mut source = Source::new(&bytes[..], None);
+        let mut source = Source::new(&bytes[..]);
         assert!(source.follow(&bytes[..2 * WINDOW]));
         assert!(!source.follow(&[0; 9]) && !source.follow(&[&bytes[2 * WINDOW..], &[1]].concat()));
         let count = usize::try_from(source.offset()).unwrap();
@@ -266,7 +268,7 @@ mod tests {
         let bytes = vec![7; 8 * WINDOW];
         for followed in [5, WINDOW - 3, WINDOW + 9] {
             let mut count = 0;
-            let mut source = Source::new(Counting(&bytes, &mut count), None);
+            let mut source = Source::new(Counting(&bytes, &mut count));
             assert!(source.follow(&bytes[..followed]));
             source.unread(followed, [&bytes[..followed]].into_iter());
             while source.ensure(4) > 0 {
@@ -281,7 +283,7 @@ mod tests {
 
     #[test]
     fn nothing_beyond_the_known_length_is_read() {
-        let mut source = Source::new(&[1_u8; 50][..], Some(20));
+        let mut source = Source::new(&[1_u8; 50][..]).with_length(20);
         assert_eq!(source.left(), Some(20));
         assert_eq!(source.ensure(30), 20);
         assert_eq!(source.drain(u64::MAX), Some(20));
@@ -289,16 +291,16 @@ mod tests {
 
     #[test]
     fn no_more_is_drained_than_allowed() {
-        let mut source = Source::new(io::repeat(0), None);
+        let mut source = Source::new(io::repeat(0));
         assert_eq!((source.drain(1_000_000), source.offset()), (None, 1_000_000));
-        let mut source = Source::new(&[1_u8; 50][..], None);
+        let mut source = Source::new(&[1_u8; 50][..]);
         assert_eq!((source.drain(49), source.drain(1)), (None, Some(1)));
     }
 
     #[test]
     fn the_tape_holds_what_was_consumed() {
         let bytes: Vec<u8> = (0..100).collect();
-        let mut source = Source::new(&bytes[..], None);
+        let mut source = Source::new(&bytes[..]);
         source.ensure(30);
         source.consume(10);
         source.start_tape(vec![1, 2, 3]);

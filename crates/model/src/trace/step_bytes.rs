@@ -1,5 +1,5 @@
 //! The records of one step as bytes, to be compared with those of a trace before anything is decoded.
-use super::{decode, encode, layout::Layout, log::Log};
+use super::{decode, layout::Layout, log::Log};
 use crate::sim::{Detection, Impulse, Observer, Pass, State, Wanted};
 
 /// The records that [`Recorder`](super::Recorder) would write of a step, in pieces that are not copied: the observer of
@@ -79,7 +79,7 @@ impl StepBytes {
     pub fn memory(&self) -> usize {
         let polynomials = &self.log.polynomials;
         // A size is four bytes in the trace and eight in memory.
-        let impulses = self.log.impulses.count * decode::IMPULSE_MEMORY;
+        let impulses = self.log.impulses() * decode::IMPULSE_MEMORY;
         impulses.max(polynomials.bytes().len() + 4 * polynomials.count())
     }
 
@@ -97,16 +97,9 @@ impl StepBytes {
         let Self { layout, log, records, has_odd_states, .. } = self;
         let Record { head, polynomials } = &mut records[index];
         head.clear();
-        encode::state(head, state);
-        if layout.impulses {
-            encode::count(head, log.impulses.count);
-            head.extend_from_slice(&log.impulses.bytes);
-        }
-        if layout.polynomials {
-            encode::count(head, log.polynomials.count());
-        }
+        log.write_head(head, *layout, state);
         *polynomials = log.polynomials.bytes().len();
-        *has_odd_states |= !state.positions.iter().chain(&state.velocities).all(|value| value.is_finite());
+        *has_odd_states |= !state.is_finite();
     }
 }
 
@@ -136,8 +129,7 @@ impl Observer for StepBytes {
     fn synchronised(&mut self, state: &State) {
         if self.layout.polynomials {
             self.record(0, state);
-            self.mid.positions.clone_from(&state.positions);
-            self.mid.velocities.clone_from(&state.velocities);
+            self.mid.clone_from(state);
         }
     }
 

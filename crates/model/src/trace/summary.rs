@@ -4,15 +4,15 @@
 //! fewest digits that read back to the same bits. What a trace does not hold (passes, pair kinds, zones) is counted
 //! by [`EventCounts`](super::EventCounts) while a simulation runs.
 use super::{
-    TraceError,
-    digest::{self, Sha, Short},
+    digest::{Digests, Short},
+    error::TraceError,
     frame::{Frame, LoggedImpulse},
     histogram::Histogram,
     layout::Layout,
 };
 use crate::{
     scene::Scene,
-    sim::{Pair, Pairs, pairs},
+    sim::{Pair, pairs},
 };
 use sha2::{Digest, Sha256};
 use std::{fmt, io::Read};
@@ -69,7 +69,7 @@ const GROUPS: u32 = 16;
 /// );
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Summary {
     /// The collision type's name in scenes.
     pub collision: &'static str,
@@ -81,17 +81,8 @@ pub struct Summary {
     pub half_planes: usize,
     /// Polynomials of one detection pass over all pairs (trace-format.md 2).
     pub polynomials_per_pass: u64,
-    /// Bytes of the trace.
-    pub bytes: u64,
-    /// Records that could be read.
-    pub records: u64,
-    /// Bytes behind the last of them.
-    pub trailing: u64,
-    /// Whether more bytes follow, which were not read. `bytes` and `trailing` count only what was read, and the digest
-    /// says nothing about the trace.
-    pub unread: bool,
-    /// The error that ended the reading before the scene's last record.
-    pub stopped: Option<TraceError>,
+    /// The trace's bytes, records, damage and digests.
+    pub trace: Digests,
     /// Number of oddities that do not end the reading, and the first.
     pub notes: (u64, Option<TraceError>),
     /// Impulses per step, of end records.
@@ -106,8 +97,6 @@ pub struct Summary {
     pub busiest: Option<StepView>,
     /// Digests of groups of steps: first and last step, and the digest of the steps' digests.
     pub digests: Vec<(u32, u32, Short)>,
-    /// SHA-256 of all bytes.
-    pub sha256: Sha,
 }
 
 /// The polynomials of one step.
@@ -124,71 +113,41 @@ pub struct StepView {
 }
 
 impl Summary {
-    /// Summarises a trace of `scene`, in the memory of one record. A malformed trace has a summary, too: it says where
-    /// reading ended.
+    /// Summarises a trace of `scene`, in the memory of one record and eight bytes per step. A malformed trace has a
+    /// summary, too: it says where reading ended.
     pub fn of(scene: &Scene, mut trace: impl Read) -> Self {
-        Self::of_stream(scene, &mut trace)
-    }
-
-    fn of_stream(scene: &Scene, trace: &mut dyn Read) -> Self {
         let layout = Layout::of(scene);
-        let per_pass = polynomials_per_pass(scene);
         let mut summary = Self {
             collision: scene.collision.kind().name(),
             layout,
             edges: scene.edges.len(),
             half_planes: scene.half_planes.len(),
-            polynomials_per_pass: per_pass,
-            bytes: 0,
-            records: 0,
-            trailing: 0,
-            unread: false,
-            stopped: None,
-            notes: (0, None),
-            impulses: Histogram::default(),
-            polynomials: Histogram::default(),
-            collisions: Vec::new(),
-            first: None,
-            busiest: None,
-            digests: Vec::new(),
-            sha256: Sha([0; 32]),
+            polynomials_per_pass: if layout.polynomials { pairs(scene).polynomials() as u64 } else { 0 },
+            ..Self::default()
         };
-        let mut groups = Groups::new(layout.steps);
-        let walked = digest::walk(
-            trace,
-            layout,
-            |record, frame, notes| {
-                summary.notes.0 += notes.len() as u64;
-                if let (None, Some(note)) = (&summary.notes.1, notes.first()) {
-                    summary.notes.1 = Some(note.clone());
-                }
-                if record > 0 && !layout.is_mid(record) {
-                    summary.step(scene, layout.step_of(record), frame);
-                }
-            },
-            |step, digest| groups.add(step, digest),
-        );
-        summary.digests = groups.finish();
-        Self {
-            bytes: walked.bytes,
-            records: walked.records,
-            trailing: walked.trailing,
-            unread: walked.unread,
-            stopped: walked.stopped,
-            sha256: walked.sha256,
-            ..summary
-        }
+        let mut hear = |record, frame: &Frame, notes: &[TraceError]| summary.record(scene, record, frame, notes);
+        summary.trace = Digests::walk(&mut trace, layout, &mut hear);
+        summary.digests = groups(&summary.trace.steps, layout.steps);
+        summary
     }
 
-    /// Takes in the end record of a step.
-    fn step(&mut self, scene: &Scene, step: u32, frame: &Frame) {
+    /// Takes in a record.
+    fn record(&mut self, scene: &Scene, record: u64, frame: &Frame, notes: &[TraceError]) {
+        self.notes.0 += notes.len() as u64;
+        if self.notes.1.is_none() {
+            self.notes.1 = notes.first().cloned();
+        }
+        if record == 0 || self.layout.is_mid(record) {
+            return;
+        }
+        let step = self.layout.step_of(record);
         self.impulses.add(frame.impulses.len() as u64);
         self.polynomials.add(frame.polynomials.len() as u64);
         let room = COLLISIONS - self.collisions.len();
         self.collisions.extend(frame.impulses.iter().take(room).map(|impulse| (step, *impulse)));
         let events = (frame.impulses.len(), frame.polynomials.len());
         if self.busiest.as_ref().is_none_or(|busiest| events > (busiest.impulses, busiest.polynomials)) {
-            let view = StepView::of(scene, self.polynomials_per_pass, step, frame);
+            let view = StepView::of(scene, step, frame);
             self.first.get_or_insert_with(|| view.clone());
             self.busiest = Some(view);
         }
@@ -196,80 +155,32 @@ impl Summary {
 }
 
 impl StepView {
-    fn of(scene: &Scene, per_pass: u64, step: u32, frame: &Frame) -> Self {
-        let log = &frame.polynomials;
-        let pairs = pairs(scene);
-        let labels = labels(&pairs).cycle();
-        let shown = log
-            .iter()
-            .zip(labels)
-            .take(POLYNOMIALS)
-            .enumerate()
-            .map(|(index, (coefficients, label))| {
-                let pass = index as u64 / per_pass.max(1);
-                let coefficients = coefficients.iter().copied().take(COEFFICIENTS).collect();
-                (format!("pass {pass}, {label}"), coefficients)
-            })
-            .collect();
+    fn of(scene: &Scene, step: u32, frame: &Frame) -> Self {
+        let (log, pairs) = (&frame.polynomials, pairs(scene));
+        let shown = log.iter().take(POLYNOMIALS).enumerate().filter_map(|(index, coefficients)| {
+            let (pass, Pair { kind, first, second }, _) = pairs.polynomial(index)?;
+            let label = format!("pass {pass}, particle {first} - {} {second}", kind.second());
+            Some((label, coefficients.iter().copied().take(COEFFICIENTS).collect()))
+        });
+        let shown = shown.collect();
         Self { step, impulses: frame.impulses.len(), polynomials: log.len(), shown }
     }
 }
 
-/// For each polynomial of a detection pass its pair in words.
-fn labels<'a>(pairs: &'a Pairs<'_>) -> impl Iterator<Item = String> + Clone + 'a {
-    pairs.iter().flat_map(|Pair { kind, first, second }| {
-        std::iter::repeat_n(format!("particle {first} - {} {second}", kind.second()), kind.polynomials())
-    })
-}
-
-/// Polynomials of one detection pass over all pairs; 0 for the types without polynomials.
-fn polynomials_per_pass(scene: &Scene) -> u64 {
-    if !Layout::of(scene).polynomials {
-        return 0;
-    }
-    pairs(scene).polynomials() as u64
-}
-
-/// Gathers the digests of steps into groups of equal length.
-struct Groups {
-    length: u32,
-    open: Option<(u32, u32, Sha256, Short)>,
-    closed: Vec<(u32, u32, Short)>,
-}
-
-impl Groups {
-    fn new(steps: u32) -> Self {
-        Self { length: steps.div_ceil(GROUPS).max(1), open: None, closed: Vec::new() }
-    }
-
-    fn add(&mut self, step: u32, digest: Short) {
-        match &mut self.open {
-            Some((_, last, all, _)) => {
-                all.update(digest.0.to_be_bytes());
-                *last = step;
-            }
-            None => {
-                let all = Sha256::new_with_prefix(digest.0.to_be_bytes());
-                self.open = Some((step, step, all, digest));
-            }
-        }
-        // The initial record is a group of its own.
-        if step.is_multiple_of(self.length) {
-            self.close();
-        }
-    }
-
-    fn close(&mut self) {
-        if let Some((first, last, all, single)) = self.open.take() {
-            // A single step keeps its own digest, the one that a listing of all steps shows.
-            self.closed.push((first, last, if first == last { single } else { Short::of(all) }));
-        }
-    }
-
-    fn finish(mut self) -> Vec<(u32, u32, Short)> {
-        self.close();
-        self.closed
-    }
+/// The digests of steps in groups of equal length, of which a trace of `all` steps has few. The initial record is by
+/// itself. A single step keeps its own digest, the one that a listing of all steps shows.
+fn groups(steps: &[Short], all: u32) -> Vec<(u32, u32, Short)> {
+    let (initial, later) = steps.split_at(steps.len().min(1));
+    let mut first = 0;
+    let group = |steps: &[Short]| {
+        let last = first + steps.len() as u32 - 1;
+        let digest = match steps {
+            [single] => *single,
+            _ => Short::of(steps.iter().fold(Sha256::new(), |all, step| all.chain_update(step.0.to_be_bytes()))),
+        };
+        (std::mem::replace(&mut first, last + 1), last, digest)
+    };
+    initial.chunks(1).chain(later.chunks(all.div_ceil(GROUPS).max(1) as usize)).map(group).collect()
 }
 
 /// `1 particle`, `2 particles`.
@@ -284,14 +195,15 @@ impl fmt::Display for Summary {
         let particles = number(self.layout.particles as u64, "particle");
         let (edges, planes) = (number(self.edges as u64, "edge"), number(self.half_planes as u64, "half-plane"));
         writeln!(f, "scene          {}, {steps}, {particles}, {edges}, {planes}", self.collision)?;
-        let bytes = number(self.bytes, "byte");
-        let more = if self.unread { "more than " } else { "" };
-        writeln!(f, "trace          {more}{bytes}, {} of {}", self.records, number(self.layout.records(), "record"))?;
-        if let Some(error) = &self.stopped {
+        let Digests { bytes, records, trailing, unread, stopped, sha256, .. } = &self.trace;
+        let bytes = number(*bytes, "byte");
+        let more = if *unread { "more than " } else { "" };
+        writeln!(f, "trace          {more}{bytes}, {records} of {}", number(self.layout.records(), "record"))?;
+        if let Some(error) = stopped {
             writeln!(f, "damage         {error}")?;
         }
-        if self.trailing > 0 {
-            writeln!(f, "trailing       {more}{}", number(self.trailing, "byte"))?;
+        if *trailing > 0 {
+            writeln!(f, "trailing       {more}{}", number(*trailing, "byte"))?;
         }
         if let (count, Some(first)) = &self.notes {
             writeln!(f, "odd            {}, the first: {first}", number(*count, "value"))?;
@@ -315,10 +227,10 @@ impl fmt::Display for Summary {
             let steps = if first == last { format!("step {first}") } else { format!("steps {first}-{last}") };
             writeln!(f, "  {steps:<12} {digest}")?;
         }
-        if self.unread {
+        if *unread {
             return writeln!(f, "sha256         unknown, for not all bytes were read");
         }
-        writeln!(f, "sha256         {}", self.sha256)
+        writeln!(f, "sha256         {sha256}")
     }
 }
 

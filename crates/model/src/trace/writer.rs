@@ -60,7 +60,7 @@ impl<W: Write> Writer<W> {
 
     /// Writes one frame; lists that the layout has no room for are left out.
     pub fn frame(&mut self, frame: &Frame) {
-        self.begin(&frame.state);
+        encode::state(&mut self.buffer, &frame.state);
         if self.layout.impulses {
             encode::count(&mut self.buffer, frame.impulses.len());
             for impulse in &frame.impulses {
@@ -69,7 +69,7 @@ impl<W: Write> Writer<W> {
         }
         if self.layout.polynomials {
             encode::count(&mut self.buffer, frame.polynomials.len());
-            encode::polynomials(&mut self.buffer, &frame.polynomials);
+            frame.polynomials.iter().for_each(|polynomial| encode::polynomial(&mut self.buffer, polynomial));
         }
         self.written.records += 1;
         if self.is_full() {
@@ -80,13 +80,8 @@ impl<W: Write> Writer<W> {
     /// Writes one record whose lists are encoded already. While it [borrows](Self::borrows) the log keeps its
     /// polynomials; once it is [full](Self::is_full) it takes two more records, then they must be handed on.
     pub(super) fn record(&mut self, state: &State, log: &Log) {
-        self.begin(state);
-        if self.layout.impulses {
-            encode::count(&mut self.buffer, log.impulses.count);
-            self.buffer.extend_from_slice(&log.impulses.bytes);
-        }
+        log.write_head(&mut self.buffer, self.layout, state);
         if self.layout.polynomials {
-            encode::count(&mut self.buffer, log.polynomials.count());
             let polynomials = log.polynomials.bytes();
             if polynomials.len() < LONG {
                 self.buffer.extend_from_slice(polynomials);
@@ -134,10 +129,6 @@ impl<W: Write> Writer<W> {
         }
         self.stream.flush()?;
         Ok((self.stream, self.written))
-    }
-
-    fn begin(&mut self, state: &State) {
-        encode::state(&mut self.buffer, state);
     }
 
     /// Writes what is gathered; the log has these polynomials.

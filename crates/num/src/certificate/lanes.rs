@@ -152,7 +152,7 @@ mod tests {
                 let masks = [never_positive(a, b, c), never_positive_line(b, c), search_ends(&[a, b, c])];
                 for (answer, mask) in answers.iter_mut().zip(masks) {
                     let mut lanes = [0.0; MOST_LANES];
-                    mask.as_numbers().store(&mut lanes);
+                    mask.or_zero(1.0).store(&mut lanes);
                     answer[first..first + Lanes::<S>::COUNT].copy_from_slice(&lanes[..Lanes::<S>::COUNT]);
                 }
             }

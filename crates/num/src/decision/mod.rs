@@ -34,17 +34,17 @@ mod short;
 #[cfg(test)]
 mod tests;
 
-use super::bounded::{Bounded, UNIT_ROUNDOFF};
+use super::{
+    bounded::{Bounded, UNIT_ROUNDOFF},
+    polynomial::MAX_COEFFICIENTS,
+};
 use exact::{ExactAnswer, exact_first};
 use pieces::{Answer, Search};
 use range::{Ends, Problem};
-pub use short::{all_exact, is_short};
+pub use short::all_exact;
 
 /// Most polynomials that one detection asks about.
 pub const MAX_POLYNOMIALS: usize = 4;
-
-/// Most coefficients of one polynomial.
-pub const MAX_COEFFICIENTS: usize = 6;
 
 /// The greatest margin that is reported, in units of [`UNIT_ROUNDOFF`]: the decision survives relative errors of about
 /// 1.
@@ -81,30 +81,6 @@ pub enum Level {
 impl Level {
     /// All levels, in the order in which they are tried.
     pub const ALL: [Self; 4] = [Self::Range, Self::Bernstein, Self::Subdivision, Self::Exact];
-}
-
-/// How many queries each level has decided.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct LevelCounts([u64; Level::ALL.len()]);
-
-impl LevelCounts {
-    /// Counts one more decision of this level.
-    pub fn record(&mut self, level: Level) {
-        self.0[level as usize] += 1;
-    }
-
-    /// Decisions of this level so far.
-    #[must_use]
-    pub fn of(&self, level: Level) -> u64 {
-        self.0[level as usize]
-    }
-
-    /// Adds the counts of another worker.
-    pub fn add(&mut self, other: &Self) {
-        for (sum, count) in self.0.iter_mut().zip(other.0) {
-            *sum += count;
-        }
-    }
 }
 
 /// A decision, with its enclosure, margin and level.

@@ -22,12 +22,6 @@ pub fn all_exact(values: &[f64], bits: u32) -> bool {
     highest == i32::MIN || i64::from(highest) - i64::from(lowest) <= i64::from(bits)
 }
 
-/// [`all_exact`] of one value: it has at most `bits` significant bits.
-#[must_use]
-pub fn is_short(value: f64, bits: u32) -> bool {
-    all_exact(&[value], bits)
-}
-
 /// `|value|` as mantissa times a power of two; the mantissa of zero is 0. For finite values.
 pub(super) fn split(value: f64) -> (u64, i32) {
     let bits = value.to_bits();
@@ -38,7 +32,7 @@ pub(super) fn split(value: f64) -> (u64, i32) {
 
 #[cfg(test)]
 mod tests {
-    use super::{all_exact, is_short, split};
+    use super::{all_exact, split};
 
     #[test]
     fn short_values_share_a_power_of_two() {
@@ -55,10 +49,10 @@ mod tests {
 
     #[test]
     fn decimals_are_long_and_what_is_not_finite_is_never_short() {
-        assert!(!is_short(0.1, 50));
-        assert!(is_short(0.1, 53));
-        assert!(is_short(5e-324, 1));
-        assert!(!is_short(f64::NAN, 2000) && !is_short(f64::INFINITY, 2000));
+        assert!(!all_exact(&[0.1], 50));
+        assert!(all_exact(&[0.1], 53));
+        assert!(all_exact(&[5e-324], 1));
+        assert!(!all_exact(&[f64::NAN], 2000) && !all_exact(&[f64::INFINITY], 2000));
     }
 
     #[test]

@@ -8,7 +8,7 @@ use super::{
     },
     info::place,
 };
-use fosssim_model::trace::{Block, Comparison, TraceError};
+use fosssim_model::trace::{Block, Comparison, List, TraceError};
 use serde_json::{Value, json};
 
 /// The names under which people know what is compared.
@@ -105,11 +105,8 @@ pub fn diff_json(names: &TraceNames<'_>, comparison: &Comparison) -> String {
 fn rows(block: &Block) -> Vec<(String, String, String)> {
     let one = |name: String, left: String, right: String| vec![(name, left, right)];
     match *block {
-        Block::Position { particle, axis, left, right } => {
-            one(format!("position {axis} of particle {particle}"), bits(left, right), bits(right, left))
-        }
-        Block::Velocity { particle, axis, left, right } => {
-            one(format!("velocity {axis} of particle {particle}"), bits(left, right), bits(right, left))
+        Block::Coordinate { quantity, particle, axis, left, right } => {
+            one(format!("{quantity} {axis} of particle {particle}"), bits(left, right), bits(right, left))
         }
         Block::Impulse { index, left, right } => {
             let row = |name: &str, left: String, right: String| (format!("impulse {index}, {name}"), left, right);
@@ -122,17 +119,12 @@ fn rows(block: &Block) -> Vec<(String, String, String)> {
                 row("time", bits(left.time, right.time), bits(right.time, left.time)),
             ]
         }
-        Block::ImpulseCount { left, right } => {
-            one("number of impulses".to_owned(), left.to_string(), right.to_string())
-        }
+        Block::Count { list, left, right } => one(format!("number of {list}s"), left.to_string(), right.to_string()),
         Block::PolynomialSize { index, left, right } => {
             one(format!("coefficients of polynomial {index}"), left.to_string(), right.to_string())
         }
         Block::Coefficient { index, power, left, right } => {
             one(format!("t^{power} of polynomial {index}"), bits(left, right), bits(right, left))
-        }
-        Block::PolynomialCount { left, right } => {
-            one("number of polynomials".to_owned(), left.to_string(), right.to_string())
         }
     }
 }
@@ -149,12 +141,11 @@ fn bits(value: f64, other: f64) -> String {
 /// The key of what differs, and both values.
 fn values(block: &Block) -> (&'static str, Value, Value) {
     match *block {
-        Block::Position { left, right, .. } => ("position", json!(Number(left)), json!(Number(right))),
-        Block::Velocity { left, right, .. } => ("velocity", json!(Number(left)), json!(Number(right))),
+        Block::Coordinate { quantity, left, right, .. } => (quantity, json!(Number(left)), json!(Number(right))),
         Block::Impulse { left, right, .. } => ("impulse", json!(left), json!(right)),
-        Block::ImpulseCount { left, right } => ("impulse_count", json!(left), json!(right)),
+        Block::Count { list: List::Impulses, left, right } => ("impulse_count", json!(left), json!(right)),
         Block::PolynomialSize { left, right, .. } => ("polynomial_size", json!(left), json!(right)),
         Block::Coefficient { left, right, .. } => ("coefficient", json!(Number(left)), json!(Number(right))),
-        Block::PolynomialCount { left, right } => ("polynomial_count", json!(left), json!(right)),
+        Block::Count { list: List::Polynomials, left, right } => ("polynomial_count", json!(left), json!(right)),
     }
 }

@@ -37,12 +37,12 @@ impl Follower<'_> {
             Stage::Impulses { .. } | Stage::Geometric { .. } => by_polynomials,
         };
         let is_expected = match own {
-            Some(own) if (own.time <= 1.0) != (time(by_polynomials) <= 1.0) => own.time <= 1.0,
-            _ => collides(by_polynomials),
+            Some(own) if (own.time <= 1.0) != (by_polynomials.time() <= 1.0) => own.time <= 1.0,
+            _ => by_polynomials.collides(),
         };
         // A decision that is charged is not excused as well.
-        if collides(decision) != is_expected && self.judged.total() == findings {
-            self.judged.borderline(self.pass, pair, collides(decision));
+        if decision.collides() != is_expected && self.judged.total() == findings {
+            self.judged.borderline(self.pass, pair, decision.collides());
         }
         if self.sensitivity.is_some() && self.is_hybrid() && self.is_borderline(call) {
             self.borderline.push(call);
@@ -70,7 +70,7 @@ impl Follower<'_> {
             return;
         }
         let Some((motion, expected)) = &self.expected() else { return };
-        let (actual, hits) = (time(by_polynomials), own.time <= 1.0);
+        let (actual, hits) = (by_polynomials.time(), own.time <= 1.0);
         if (actual <= 1.0) != hits {
             if contact::decides(motion, expected) == Some(hits) {
                 let place = self.place(pair);
@@ -122,8 +122,7 @@ impl Follower<'_> {
             (Decision::Hit { time, normal }, Some(actual)) => {
                 let own = Impulse { pair, normal, time };
                 let known = self.expected();
-                let known = known.as_ref().map(|(motion, expected)| (motion, expected));
-                let finding = contact::hit(self.context, &self.records, known, own, &actual, &mut self.judged);
+                let finding = contact::hit(self.records.before, known.as_ref(), own, &actual, &mut self.judged);
                 if let Some(detail) = finding {
                     self.charge(detail);
                 }
@@ -138,10 +137,9 @@ impl Follower<'_> {
             (Decision::Miss { .. }, Some(actual)) => {
                 if self.is_borderline(call) {
                     // Whether they collide may go either way; where and when, if they do, may not.
-                    let known = self.expected();
-                    let known = known.as_ref().map(|(motion, expected)| (motion, expected));
+                    let (known, judged) = (self.expected(), &mut self.judged);
                     let finding =
-                        contact::possible_hit(self.context, &self.records, known, pair, &actual, &mut self.judged);
+                        contact::possible_hit(self.context, &self.records, known.as_ref(), pair, &actual, judged);
                     if let Some(detail) = finding {
                         self.charge(detail);
                     }
@@ -168,17 +166,5 @@ impl Follower<'_> {
             };
             self.charge(detail);
         }
-    }
-}
-
-fn collides(decision: Decision) -> bool {
-    matches!(decision, Decision::Hit { .. })
-}
-
-/// The time that was found; infinite where there is none, or none was looked for.
-fn time(decision: Decision) -> f64 {
-    match decision {
-        Decision::Hit { time, .. } | Decision::Miss { time: Time::Found(time) } => time,
-        Decision::Miss { .. } => f64::INFINITY,
     }
 }

@@ -11,7 +11,7 @@ use super::{
     contact::{self, Tolerances},
     context::{Context, Followed, Records},
     formulas::{BoundedPairMotion, Expected},
-    sensitivity::Sensitivity,
+    probe::Sensitivity,
     step_judgement::StepJudgement,
     unapplied,
 };
@@ -25,7 +25,7 @@ use fosssim_model::{
     scene::Collision,
     sim::{ByKind, Decision, Detection, Observer, Pair, PairKind, Pass, Resume, Stage, State, Steer, Zone},
 };
-use fosssim_num::{certificate::exclusion_of, polynomial::Polynomial};
+use fosssim_num::{certificate::exclusion_of, polynomial::Polynomial, vector::same_bits};
 
 /// The greatest number of decisions for which room is made at first.
 const DECISIONS: usize = 1 << 14;
@@ -207,7 +207,7 @@ impl Observer for Follower<'_> {
     }
 
     fn detection(&mut self, detection: &Detection<'_>) {
-        if !matches!(detection.decision, Decision::Hit { .. }) {
+        if !detection.decision.collides() {
             return;
         }
         let particles = self.context.particles(detection.pair).into_iter().flatten();
@@ -240,10 +240,8 @@ impl Steer for Follower<'_> {
         self.next = Some(index + polynomials.len());
         let records = self.records;
         let logged = |number: usize| records.end.polynomials.get(index + number);
-        let same = polynomials.iter().enumerate().all(|(number, own)| {
-            let (own, logged) = (own.coefficients(), logged(number));
-            own.len() == logged.len() && own.iter().zip(logged).all(|(own, logged)| own.to_bits() == logged.to_bits())
-        });
+        let mut numbered = polynomials.iter().enumerate();
+        let same = numbered.all(|(number, own)| same_bits(own.coefficients(), logged(number)));
         if same {
             self.judged.same[pair.kind] += 1;
             if self.sensitivity.is_some() || !self.is_hybrid() {
@@ -312,10 +310,8 @@ impl Steer for Follower<'_> {
             let tolerances = Tolerances::of(self.context, state, bounds);
             contact::states(&mut self.judged, self.records.frame - 1, state, &mid.state, &tolerances);
         }
-        let is_finite = mid.state.positions.iter().chain(&mid.state.velocities).all(|value| value.is_finite());
-        if is_finite {
-            state.positions.copy_from_slice(&mid.state.positions);
-            state.velocities.copy_from_slice(&mid.state.velocities);
+        if mid.state.is_finite() {
+            state.clone_from(&mid.state);
         }
         Resume::Synchronised
     }

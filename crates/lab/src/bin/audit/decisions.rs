@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use fosssim_oracle::num::{
     bounded::Bounded,
-    decision::{Certainty, Level, LevelCounts, decide},
+    decision::{Certainty, Level, decide},
     polynomial::Polynomial,
 };
 
@@ -17,7 +17,7 @@ const REASONS: [&str; 3] = ["c t^m", "dropped terms", "rounding"];
 /// Certified decisions of one pair type beside those of the root finder.
 #[derive(Default)]
 pub(super) struct Decisions {
-    levels: LevelCounts,
+    levels: [u64; Level::ALL.len()],
     certainties: [u64; 3],
     /// By reason; `[certainly no, but the search hits; certainly yes, but it does not]`.
     differ: [[u64; 2]; REASONS.len()],
@@ -36,7 +36,7 @@ impl Decisions {
     ) {
         let slices: Vec<&[Bounded]> = lists.iter().map(Vec::as_slice).collect();
         let decision = decide(&slices, UNITS);
-        self.levels.record(decision.level);
+        self.levels[decision.level as usize] += 1;
         self.certainties[decision.certainty as usize] += 1;
         let Some(time) = time else { return };
         if decision.certainty == Certainty::Borderline || (time <= 1.0) == (decision.certainty == Certainty::Yes) {
@@ -66,8 +66,8 @@ impl Decisions {
 
     /// Adds another worker's table.
     pub(super) fn add(&mut self, other: Self) {
-        self.levels.add(&other.levels);
-        for (sum, count) in self.certainties.iter_mut().zip(other.certainties) {
+        let counts = self.levels.iter_mut().zip(other.levels);
+        for (sum, count) in counts.chain(self.certainties.iter_mut().zip(other.certainties)) {
             *sum += count;
         }
         for (sum, counts) in self.differ.iter_mut().zip(other.differ) {
@@ -83,7 +83,7 @@ impl Decisions {
         let [yes, no, borderline] = self.certainties;
         let _ = writeln!(text, "{name}, certified: {yes} yes, {no} no, {borderline} borderline");
         for level in Level::ALL {
-            let _ = writeln!(text, "  {:<12} {:>12}", format!("{level:?}"), self.levels.of(level));
+            let _ = writeln!(text, "  {:<12} {:>12}", format!("{level:?}"), self.levels[level as usize]);
         }
         for ((reason, [hits, misses]), first) in REASONS.iter().zip(self.differ).zip(&self.first) {
             let _ = writeln!(text, "  search differs, {reason}: {hits} no but hit, {misses} yes but not");

@@ -1,14 +1,13 @@
-//! One element of a repeated kind, with the original's words about its attributes (scene-format.md 5).
-use super::markup::Element;
-use super::{Refusal, values};
+//! One element, mostly of a repeated kind, with the original's words about its attributes (scene-format.md 5).
+use super::{Refusal, markup::Element, values};
 use crate::scene::model::Color;
 use fosssim_num::vector::Vec2;
 
-/// An element, the name that messages give it, and its number among its kind.
+/// An element, the name that messages give it, and its number among its kind, if there may be several.
 pub(super) struct Item<'e> {
     element: &'e Element<'e>,
     kind: &'static str,
-    number: usize,
+    number: Option<usize>,
     exit_code: u8,
 }
 
@@ -25,11 +24,17 @@ impl<'e> Item<'e> {
             .iter()
             .filter(move |element| element.name == name.as_bytes())
             .enumerate()
-            .map(move |(number, element)| Self { element, kind, number, exit_code })
+            .map(move |(number, element)| Self { element, kind, number: Some(number), exit_code })
     }
 
-    pub(super) fn number(&self) -> usize {
-        self.number
+    /// An element of which only the first counts.
+    pub(super) fn single(element: &'e Element<'e>, kind: &'static str) -> Self {
+        Self { element, kind, number: None, exit_code: 1 }
+    }
+
+    /// `particle 3`, or `backgroundcolor`.
+    pub(super) fn who(&self) -> String {
+        self.number.map_or_else(|| self.kind.to_owned(), |number| format!("{} {number}", self.kind))
     }
 
     pub(super) fn text(&self, name: &str) -> Option<&[u8]> {
@@ -84,9 +89,9 @@ impl<'e> Item<'e> {
         Ok(Color { red: component("r")?, green: component("g")?, blue: component("b")? })
     }
 
-    /// `Failed to parse [value of ]NAME attribute for KIND NUMBER. END`
+    /// `Failed to parse [value of ]NAME attribute for WHO. END`
     pub(super) fn refusal(&self, of: &str, name: &str, end: &str) -> Refusal {
-        let text = format!("Failed to parse {of}{name} attribute for {} {}. {end}", self.kind, self.number);
+        let text = format!("Failed to parse {of}{name} attribute for {}. {end}", self.who());
         Refusal::message(text.as_bytes(), self.exit_code)
     }
 

@@ -2,6 +2,7 @@
 //!
 //! A small in-situ parser without validation (scene-format.md 1.4). Closing tags close whatever is open, text and
 //! comments are skipped, and only the children of the scene are kept.
+use crate::scene::tag::is_space;
 use std::borrow::Cow;
 
 /// A child of the scene.
@@ -67,10 +68,6 @@ pub(super) fn parse(text: &[u8]) -> Result<Option<Vec<Element<'_>>>, &'static st
 const END: &str = "unexpected end of data";
 const CLOSE: &str = "expected >";
 
-fn is_space(byte: u8) -> bool {
-    matches!(byte, b' ' | b'\n' | b'\r' | b'\t')
-}
-
 fn is_element_name(byte: u8) -> bool {
     !is_space(byte) && !matches!(byte, b'/' | b'>' | b'?' | 0)
 }
@@ -113,8 +110,13 @@ impl<'t> Cursor<'t> {
         self.at += 2;
         self.skip(is_element_name);
         self.skip(is_space);
-        if self.peek(0) != b'>' {
-            return Err(CLOSE);
+        self.expect(b'>', CLOSE)
+    }
+
+    /// Goes behind this byte.
+    fn expect(&mut self, byte: u8, otherwise: &'static str) -> Result<(), &'static str> {
+        if self.peek(0) != byte {
+            return Err(otherwise);
         }
         self.at += 1;
         Ok(())
@@ -125,13 +127,9 @@ impl<'t> Cursor<'t> {
         match self.peek(0) {
             b'?' => {
                 self.at += 1;
-                self.skip_past(b"?>")?;
-                Ok(None)
+                self.skip_past(b"?>").map(|()| None)
             }
-            b'!' => {
-                self.declaration()?;
-                Ok(None)
-            }
+            b'!' => self.declaration().map(|()| None),
             _ => self.element().map(Some),
         }
     }
@@ -179,10 +177,7 @@ impl<'t> Cursor<'t> {
         while is_attribute_name(self.peek(0)) {
             let name = self.skip(is_attribute_name);
             self.skip(is_space);
-            if self.peek(0) != b'=' {
-                return Err("expected =");
-            }
-            self.at += 1;
+            self.expect(b'=', "expected =")?;
             self.skip(is_space);
             let quote = self.peek(0);
             if quote != b'\'' && quote != b'"' {
@@ -190,25 +185,12 @@ impl<'t> Cursor<'t> {
             }
             self.at += 1;
             let value = self.value(quote)?;
-            if self.peek(0) != quote {
-                return Err("expected ' or \"");
-            }
-            self.at += 1;
+            self.expect(quote, "expected ' or \"")?;
             self.skip(is_space);
             attributes.push((name, value));
         }
-        let opens = match self.peek(0) {
-            b'>' => true,
-            b'/' => {
-                self.at += 1;
-                if self.peek(0) != b'>' {
-                    return Err(CLOSE);
-                }
-                false
-            }
-            _ => return Err(CLOSE),
-        };
-        self.at += 1;
+        let opens = self.expect(b'/', CLOSE).is_err();
+        self.expect(b'>', CLOSE)?;
         Ok((Element { name, attributes }, opens))
     }
 
@@ -258,11 +240,7 @@ impl<'t> Cursor<'t> {
             self.at += 1;
         }
         encode(code, value)?;
-        if self.peek(0) != b';' {
-            return Err("expected ;");
-        }
-        self.at += 1;
-        Ok(())
+        self.expect(b';', "expected ;")
     }
 }
 

@@ -92,15 +92,15 @@ impl<'e> Repeated<'e> {
     }
 
     /// `index` when it is below `count`; otherwise 0, and the scene will be refused.
-    fn within(&mut self, item: &Item<'_>, kind: &str, what: &str, index: i32, count: usize) -> usize {
+    fn within(&mut self, item: &Item<'_>, what: &str, index: i32, count: usize) -> usize {
         match usize::try_from(index) {
             Ok(index) if index < count => index,
             _ => {
                 self.undefined.get_or_insert_with(|| {
                     format!(
-                        "{kind} {} names {what} {index}, but the scene has {count}; the original would read memory \
-                         that is not its own",
-                        item.number()
+                        "{} names {what} {index}, but the scene has {count}; the original would read memory that is \
+                         not its own",
+                        item.who()
                     )
                 });
                 0
@@ -126,8 +126,8 @@ impl<'e> Repeated<'e> {
         let mut edges = Vec::new();
         for item in self.all("edge") {
             let (i, j, radius) = (item.index("i")?, item.index("j")?, item.radius(0.015)?);
-            let first = self.within(&item, "edge", "particle", i, particles);
-            let second = self.within(&item, "edge", "particle", j, particles);
+            let first = self.within(&item, "particle", i, particles);
+            let second = self.within(&item, "particle", j, particles);
             edges.push(Edge { first, second, radius });
         }
         Ok(edges)
@@ -145,7 +145,7 @@ impl<'e> Repeated<'e> {
             // The original calls simple gravity a constant force in its messages, too.
             let called = if *kind == ForceKind::SimpleGravity { ForceKind::Constant } else { *kind };
             for item in Item::all(self.elements, kind.element(), called.element()) {
-                forces.push(kind.read(&mut ForceItem { item, kind: *kind, scene: self, particles, edges })?);
+                forces.push(kind.read(&mut ForceItem { item, scene: self, particles, edges })?);
             }
         }
         Ok(forces)
@@ -164,7 +164,7 @@ impl<'e> Repeated<'e> {
                 return Err(item.refusal("value of ", "i", &end));
             }
             let color = item.color()?;
-            colors.push((self.within(&item, name, what, index, count), color));
+            colors.push((self.within(&item, what, index, count), color));
         }
         Ok(colors)
     }
@@ -189,7 +189,6 @@ impl<'e> Repeated<'e> {
 /// The attributes of a force.
 struct ForceItem<'e, 's> {
     item: Item<'e>,
-    kind: ForceKind,
     scene: &'s mut Repeated<'e>,
     particles: usize,
     edges: usize,
@@ -200,12 +199,12 @@ impl Source for ForceItem<'_, '_> {
 
     fn edge(&mut self, name: &'static str) -> Result<usize, Refusal> {
         let index = self.item.index(name)?;
-        Ok(self.scene.within(&self.item, self.kind.element(), "edge", index, self.edges))
+        Ok(self.scene.within(&self.item, "edge", index, self.edges))
     }
 
     fn particle(&mut self, name: &'static str) -> Result<usize, Refusal> {
         let index = self.item.index(name)?;
-        Ok(self.scene.within(&self.item, self.kind.element(), "particle", index, self.particles))
+        Ok(self.scene.within(&self.item, "particle", index, self.particles))
     }
 
     fn number(&mut self, name: &'static str, default: Option<f64>, _: Option<&str>) -> Result<f64, Refusal> {

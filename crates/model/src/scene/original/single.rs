@@ -1,6 +1,5 @@
 //! The elements of which only the first counts, with the original's words about them (scene-format.md 4).
-use super::markup::Element;
-use super::{Refusal, values};
+use super::{Refusal, item::Item, markup::Element, values};
 use crate::scene::model::{Collision, CollisionDetection, Color, Integrator, Viewport};
 use fosssim_num::vector::Vec2;
 
@@ -11,10 +10,17 @@ fn refuse<T>(text: &str) -> Result<T, Refusal> {
     Err(Refusal::message(text.as_bytes(), 1))
 }
 
-/// A scalar of a single element: the messages for a missing and for a bad one.
-fn scalar(element: &Element<'_>, name: &str, missing: &str, bad: &str) -> Result<f64, Refusal> {
-    let Some(text) = element.attribute(name) else { return refuse(missing) };
-    values::scalar(text).map_or_else(|| refuse(bad), Ok)
+/// A scalar of a single element, which messages call `kind`; the value is to be `what`.
+fn scalar(element: &Element<'_>, kind: &str, name: &str, what: &str) -> Result<f64, Refusal> {
+    let missing = || refuse(&format!("No {kind} '{name}' attribute specified. Exiting."));
+    optional(element, kind, name, what)?.map_or_else(missing, Ok)
+}
+
+/// The same, where it may be absent.
+fn optional(element: &Element<'_>, kind: &str, name: &str, what: &str) -> Result<Option<f64>, Refusal> {
+    let Some(text) = element.attribute(name) else { return Ok(None) };
+    let bad = || refuse(&format!("Failed to parse '{name}' attribute for {kind}. Value must be {what}. Exiting."));
+    values::scalar(text).map_or_else(bad, |value| Ok(Some(value)))
 }
 
 impl<'e> Singles<'e> {
@@ -29,44 +35,23 @@ impl<'e> Singles<'e> {
 
     pub(super) fn duration(&self) -> Result<f64, Refusal> {
         let Some(element) = self.first("duration") else { return refuse("No duration specified. Exiting.") };
-        scalar(
-            element,
-            "time",
-            "No duration 'time' attribute specified. Exiting.",
-            "Failed to parse 'time' attribute for duration. Value must be numeric. Exiting.",
-        )
+        scalar(element, "duration", "time", "numeric")
     }
 
     pub(super) fn max_frequency(&self) -> Result<Option<f64>, Refusal> {
-        let Some(element) = self.first("maxsimfreq") else { return Ok(None) };
-        let missing = "No maxsimfreq 'max' attribute specified. Exiting.";
-        let bad = "Failed to parse 'max' attribute for maxsimfreq. Value must be scalar. Exiting.";
-        scalar(element, "max", missing, bad).map(Some)
+        let kind = "maxsimfreq";
+        self.first(kind).map(|element| scalar(element, kind, "max", "scalar")).transpose()
     }
 
     pub(super) fn viewport(&self) -> Result<Option<Viewport>, Refusal> {
         let Some(element) = self.first("viewport") else { return Ok(None) };
-        let number = |name: &str| {
-            let missing = format!("No viewport '{name}' attribute specified. Exiting.");
-            let bad = format!("Failed to parse '{name}' attribute for viewport. Value must be scalar. Exiting.");
-            scalar(element, name, &missing, &bad)
-        };
+        let number = |name: &str| scalar(element, "viewport", name, "scalar");
         Ok(Some(Viewport { center: Vec2::new(number("cx")?, number("cy")?), size: number("size")? }))
     }
 
     pub(super) fn background(&self) -> Result<Option<Color>, Refusal> {
-        let Some(element) = self.first("backgroundcolor") else { return Ok(None) };
-        let component = |name: &str| {
-            let start = format!("Failed to parse value of {name} attribute for backgroundcolor.");
-            let bad = format!("{start} Value must be scalar. Exiting.");
-            let value = scalar(element, name, &format!("{start} Exiting."), &bad)?;
-            if (0.0..=1.0).contains(&value) {
-                Ok(value)
-            } else {
-                refuse(&format!("{start} Invalid color specified. Valid range is 0...1"))
-            }
-        };
-        Ok(Some(Color { red: component("r")?, green: component("g")?, blue: component("b")? }))
+        let name = "backgroundcolor";
+        self.first(name).map(|element| Item::single(element, name).color()).transpose()
     }
 
     pub(super) fn description(&self) -> Result<Option<&'e [u8]>, Refusal> {
@@ -84,22 +69,13 @@ impl<'e> Singles<'e> {
     /// The integrator and the time step.
     pub(super) fn integrator(&self) -> Result<(Integrator, f64), Refusal> {
         let Some(element) = self.first("integrator") else { return refuse("No integrator specified. Exiting.") };
-        let integrator = match element.attribute("type") {
-            None => return refuse("No integrator 'type' attribute specified. Exiting."),
-            Some(b"explicit-euler") => Integrator::ExplicitEuler,
-            Some(b"forward-backward-euler") => Integrator::ForwardBackwardEuler,
-            Some(b"symplectic-euler") => Integrator::SymplecticEuler,
-            Some(b"implicit-euler") => Integrator::ImplicitEuler,
-            Some(b"linearized-implicit-euler") => Integrator::LinearizedImplicitEuler,
-            Some(_) => return refuse("Invalid integrator 'type' attribute specified. Exiting."),
+        let Some(written) = element.attribute("type") else {
+            return refuse("No integrator 'type' attribute specified. Exiting.");
         };
-        let time_step = scalar(
-            element,
-            "dt",
-            "No integrator 'dt' attribute specified. Exiting.",
-            "Failed to parse 'dt' attribute for integrator. Value must be numeric. Exiting.",
-        )?;
-        Ok((integrator, time_step))
+        let Some((_, integrator)) = Integrator::NAMED.into_iter().find(|(name, _)| name.as_bytes() == written) else {
+            return refuse("Invalid integrator 'type' attribute specified. Exiting.");
+        };
+        Ok((integrator, scalar(element, "integrator", "dt", "numeric")?))
     }
 
     /// Every word but the contest's detection has no effect.
@@ -113,10 +89,7 @@ impl<'e> Singles<'e> {
     pub(super) fn collision(&self) -> Result<Collision, Refusal> {
         let Some(element) = self.first("collision") else { return Ok(Collision::None) };
         let number = |name: &str, default: f64| {
-            let Some(text) = element.attribute(name) else { return Ok(default) };
-            let bad =
-                format!("Failed to parse '{name}' attribute for collision handler. Value must be numeric. Exiting.");
-            values::scalar(text).map_or_else(|| refuse(&bad), Ok)
+            optional(element, "collision handler", name, "numeric").map(|value| value.unwrap_or(default))
         };
         let restitution = number("COR", 1.0)?;
         match element.attribute("type") {

@@ -1,21 +1,11 @@
 //! Numbers as a C++ stream extracts them: the longest prefix counts, the rest is ignored (scene-format.md 2).
+use crate::scene::numbers::{digits, mantissa};
 
 /// A 64-bit float, correctly rounded. Fails without digits, with an exponent sign or letter without digits behind it,
 /// and on overflow; underflow gives zero.
 pub(super) fn scalar(text: &[u8]) -> Option<f64> {
     let text = trim(text);
-    let sign = usize::from(matches!(text.first(), Some(b'+' | b'-')));
-    let whole = digits(text, sign);
-    let mut end = sign + whole;
-    let mut any = whole > 0;
-    if text.get(end) == Some(&b'.') {
-        let fraction = digits(text, end + 1);
-        any |= fraction > 0;
-        end += 1 + fraction;
-    }
-    if !any {
-        return None;
-    }
+    let mut end = mantissa(text)?;
     if matches!(text.get(end), Some(b'e' | b'E')) {
         end += 1;
         end += usize::from(matches!(text.get(end), Some(b'+' | b'-')));
@@ -67,11 +57,6 @@ fn long(text: &[u8]) -> Option<i64> {
 fn trim(text: &[u8]) -> &[u8] {
     let start = text.iter().position(|byte| !matches!(byte, b' ' | b'\t'..=b'\r')).unwrap_or(text.len());
     &text[start..]
-}
-
-/// How many digits stand at `from`.
-fn digits(text: &[u8], from: usize) -> usize {
-    text.get(from..).unwrap_or_default().iter().take_while(|byte| byte.is_ascii_digit()).count()
 }
 
 #[cfg(test)]

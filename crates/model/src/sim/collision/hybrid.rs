@@ -19,8 +19,8 @@ use super::{
 pub(super) struct HybridScratch {
     hits: Vec<Impulse>,
     round_start: Vec<f64>,
-    positions: Vec<f64>,
-    velocities: Vec<f64>,
+    /// Where the geometric part stands.
+    state: State,
     builder: Builder,
     zones: Zones,
     merged: Zones,
@@ -45,7 +45,15 @@ pub(super) fn handle<O: Observer>(
     let mut round = 0;
     let mut done = false;
     while i64::from(round) < i64::from(max_iterations) && !done {
-        detect(bodies, detector, Stage::Impulses { round }, q_start, &mut state.positions, scratch, observer)?;
+        detect(
+            bodies,
+            detector,
+            Stage::Impulses { round },
+            q_start,
+            &mut state.positions,
+            &mut scratch.hits,
+            observer,
+        )?;
         if scratch.hits.is_empty() {
             done = true;
         } else {
@@ -64,15 +72,12 @@ pub(super) fn handle<O: Observer>(
         return Ok(());
     }
     // The geometric part goes on with these values, unless somebody steers otherwise.
-    scratch.positions.clone_from(&state.positions);
-    scratch.velocities.clone_from(&state.velocities);
+    scratch.state.clone_from(state);
     if synchronise(observer, state) == Resume::Synchronised {
-        scratch.positions.clone_from(&state.positions);
-        scratch.velocities.clone_from(&state.velocities);
+        scratch.state.clone_from(state);
     }
     geometric(bodies, law, detector, scratch, q_start, observer)?;
-    state.positions.clone_from(&scratch.positions);
-    state.velocities.clone_from(&scratch.velocities);
+    state.clone_from(&scratch.state);
     Ok(())
 }
 
@@ -86,36 +91,30 @@ fn geometric<O: Observer>(
     q_start: &[f64],
     observer: &mut O,
 ) -> Result<(), StepError> {
+    let HybridScratch { hits, state, builder, zones, merged, shown, .. } = scratch;
     let mut round = 0;
-    let mut positions = std::mem::take(&mut scratch.positions);
-    let result = (|| {
-        detect(bodies, detector, Stage::Geometric { round }, q_start, &mut positions, scratch, observer)?;
-        let HybridScratch { hits, builder, zones, shown, .. } = scratch;
-        builder.begin(bodies.particles());
-        builder.add_hits(bodies, hits);
-        builder.finish(zones);
-        zones.show(shown, |zones| observer.zones(round, zones));
-        loop {
-            round += 1;
-            for zone in scratch.zones.iter() {
-                observer.failsafe(round, &zone);
-                failsafe::apply(bodies, law.time_step, zone, q_start, &mut positions, &mut scratch.velocities);
-            }
-            detect(bodies, detector, Stage::Geometric { round }, q_start, &mut positions, scratch, observer)?;
-            let HybridScratch { hits, builder, zones, merged, shown, .. } = scratch;
-            builder.begin(bodies.particles());
-            builder.add_zones(zones);
-            builder.add_hits(bodies, hits);
-            builder.finish(merged);
-            merged.show(shown, |zones| observer.zones(round, zones));
-            if zones == merged {
-                return Ok(());
-            }
-            std::mem::swap(zones, merged);
+    detect(bodies, detector, Stage::Geometric { round }, q_start, &mut state.positions, hits, observer)?;
+    builder.begin(bodies.particles());
+    builder.add_hits(bodies, hits);
+    builder.finish(zones);
+    zones.show(shown, |zones| observer.zones(round, zones));
+    loop {
+        round += 1;
+        for zone in zones.iter() {
+            observer.failsafe(round, &zone);
+            failsafe::apply(bodies, law.time_step, zone, q_start, &mut state.positions, &mut state.velocities);
         }
-    })();
-    scratch.positions = positions;
-    result
+        detect(bodies, detector, Stage::Geometric { round }, q_start, &mut state.positions, hits, observer)?;
+        builder.begin(bodies.particles());
+        builder.add_zones(zones);
+        builder.add_hits(bodies, hits);
+        builder.finish(merged);
+        merged.show(shown, |zones| observer.zones(round, zones));
+        if zones == merged {
+            return Ok(());
+        }
+        std::mem::swap(zones, merged);
+    }
 }
 
 /// One pass that collects its hits and answers none of them.
@@ -125,10 +124,9 @@ fn detect<O: Observer>(
     stage: Stage,
     q_start: &[f64],
     q_end: &mut [f64],
-    scratch: &mut HybridScratch,
+    hits: &mut Vec<Impulse>,
     observer: &mut O,
 ) -> Result<(), StepError> {
-    let hits = &mut scratch.hits;
     hits.clear();
     let pass = Pass { stage, index: detector.passes() };
     detector.run(bodies, pass, q_start, q_end, observer, |_, impulse, _| {

@@ -115,24 +115,19 @@ impl Detector {
         if self.has_lanes && !matches!(observer.wanted(), Wanted::Calls) {
             hits = self.run_in_blocks(bodies, q_start, q_end, observer, &mut react, &mut place)?;
         }
-        if place.first < bodies.particles() {
-            let mut context = PassContext { bodies, q_start, q_end, observer, react, hits };
-            while place.first < bodies.particles() {
-                let first = place.first;
-                for (kind, seconds) in PairKind::ALL.into_iter().zip(bodies.objects().row(place)) {
-                    for second in seconds {
-                        if kind != PairKind::ParticleEdge || !is_end(bodies.edges[second], first) {
-                            self.look(pair(kind, first, second), &mut context)?;
-                        }
+        let mut context = PassContext { pass, bodies, q_start, q_end, observer, react, hits };
+        while place.first < bodies.particles() {
+            let first = place.first;
+            for (kind, seconds) in PairKind::ALL.into_iter().zip(bodies.objects().row(place)) {
+                for second in seconds {
+                    if kind != PairKind::ParticleEdge || !is_end(bodies.edges[second], first) {
+                        self.look(pair(kind, first, second), &mut context)?;
                     }
                 }
-                place = PassCursor::of(first + 1);
             }
-            hits = context.hits;
-            context.observer.end_pass(pass, hits);
-        } else {
-            observer.end_pass(pass, hits);
+            place = PassCursor::of(first + 1);
         }
+        context.observer.end_pass(pass, context.hits);
         if is_slow {
             self.counts.subnormal += (SUBNORMAL_WORK - 1) * (self.counts.work() - begin);
         }
@@ -193,11 +188,11 @@ impl Detector {
             },
             time => Decision::Miss { time },
         };
-        let PassContext { bodies, q_start, ref q_end, ref mut observer, .. } = *context;
+        let PassContext { pass, bodies, q_start, ref q_end, ref mut observer, .. } = *context;
         let decision = match observer.wanted() {
             Wanted::Calls => {
                 let decision = observer.steers().map_or(decision, |steer| steer.decide(pair, decision));
-                observer.detection(&Detection { pair, polynomials, decision, q_start, q_end });
+                observer.detection(&Detection { pass, pair, polynomials, decision, q_start, q_end });
                 decision
             }
             Wanted::Bytes(bytes) => {
@@ -216,12 +211,7 @@ impl Detector {
 
     /// Takes over where a pair's particles end now. Gives these, some of them more than once.
     fn displace(&mut self, bodies: &Bodies, pair: Pair, q_start: &[f64], q_end: &[f64]) -> [usize; 3] {
-        let (first, second) = (pair.first as usize, pair.second as usize);
-        let moved = match pair.kind {
-            PairKind::ParticleParticle => [first, second, second],
-            PairKind::ParticleEdge => [first, bodies.edges[second][0], bodies.edges[second][1]],
-            PairKind::ParticleHalfPlane => [first; 3],
-        };
+        let moved = bodies.particles_of(pair);
         for particle in moved {
             put(&mut self.displacements, particle, at(q_end, particle) - at(q_start, particle));
         }
@@ -231,6 +221,7 @@ impl Detector {
 
 /// The subject of a pass: the scene, where the step starts and ends, the observer, and the answer to hits.
 struct PassContext<'a, O, R> {
+    pass: Pass,
     bodies: &'a Bodies,
     q_start: &'a [f64],
     q_end: &'a mut [f64],

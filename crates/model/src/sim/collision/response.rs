@@ -65,22 +65,21 @@ pub(super) struct Response {
 impl Response {
     /// Changes velocities and end positions.
     pub fn apply(&self, q: &mut [f64], v: &mut [f64]) {
-        if let Some(change) = self.gain {
-            put(q, change.particle, at(q, change.particle) + change.position);
-        }
-        for change in self.loss.iter().flatten() {
-            put(q, change.particle, at(q, change.particle) - change.position);
-        }
+        self.change(q, |change| change.position);
         self.apply_velocities(v);
     }
 
     /// Changes velocities only (`simple`).
     pub fn apply_velocities(&self, v: &mut [f64]) {
-        if let Some(change) = self.gain {
-            put(v, change.particle, at(v, change.particle) + change.velocity);
+        self.change(v, |change| change.velocity);
+    }
+
+    fn change(&self, array: &mut [f64], of: fn(&Change) -> Vec2) {
+        if let Some(change) = &self.gain {
+            put(array, change.particle, at(array, change.particle) + of(change));
         }
         for change in self.loss.iter().flatten() {
-            put(v, change.particle, at(v, change.particle) - change.velocity);
+            put(array, change.particle, at(array, change.particle) - of(change));
         }
     }
 }

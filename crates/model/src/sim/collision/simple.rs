@@ -32,7 +32,7 @@ pub(super) fn handle<O: Observer>(
         Wanted::Calls => None,
         Wanted::Bytes(_) | Wanted::Nothing => nearby.and_then(|nearby| nearby.find(x)).map(NearPairs::sorted),
     };
-    let mut looking = Looking { bodies, factor: law.factor, q_start, x, v, observer, hits: 0 };
+    let mut looking = Looking { pass, bodies, factor: law.factor, q_start, x, v, observer, hits: 0 };
     for i in 0..bodies.particles() {
         let [particles, edges, half_planes] = bodies.objects().row(PassCursor::of(i));
         if let Some(found) = &mut found {
@@ -51,6 +51,7 @@ pub(super) fn handle<O: Observer>(
 
 /// A pass at work.
 struct Looking<'a, O> {
+    pass: Pass,
     bodies: &'a Bodies,
     factor: f64,
     q_start: &'a [f64],
@@ -95,8 +96,8 @@ impl<O: Observer> Looking<'_, O> {
         let pair = pair(kind, first, second);
         let decision = normal.map_or(Decision::Miss { time: Time::None }, |normal| Decision::Hit { time: 0.0, normal });
         let decision = self.observer.steers().map_or(decision, |steer| steer.decide(pair, decision));
-        let (q_start, q_end) = (self.q_start, self.x);
-        self.observer.detection(&Detection { pair, polynomials: &[], decision, q_start, q_end });
+        let (pass, q_start, q_end) = (self.pass, self.q_start, self.x);
+        self.observer.detection(&Detection { pass, pair, polynomials: &[], decision, q_start, q_end });
         if let Decision::Hit { normal, .. } = decision {
             self.hits += 1;
             respond(self, normal).apply_velocities(self.v);

@@ -91,15 +91,9 @@ impl Builder {
     /// Appends one zone per hit: the particles of the pair, and the flag for a half-plane.
     pub fn add_hits(&mut self, bodies: &Bodies, hits: &[Impulse]) {
         for Impulse { pair, .. } in hits {
-            match pair.kind {
-                PairKind::ParticleParticle => self.join(pair.first, pair.second),
-                PairKind::ParticleEdge => {
-                    for end in bodies.edges[pair.second as usize] {
-                        #[expect(clippy::cast_possible_truncation, reason = "particle indices fit into 32 bits")]
-                        self.join(pair.first, end as u32);
-                    }
-                }
-                PairKind::ParticleHalfPlane => {}
+            for particle in bodies.particles_of(*pair) {
+                #[expect(clippy::cast_possible_truncation, reason = "particle indices fit into 32 bits")]
+                self.join(pair.first, particle as u32);
             }
             self.sets.push((pair.first, pair.kind == PairKind::ParticleHalfPlane));
         }

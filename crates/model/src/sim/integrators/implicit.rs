@@ -1,22 +1,26 @@
 //! implicit-euler by Newton's method (simulation.md 4).
 //!
 //! The original iterates without limit and hangs when Newton's method does not converge; here the step ends with
-//! [`DoesNotConverge`] instead.
-use super::{DoesNotConverge, Effort, ImplicitScratch, system::System};
-use crate::sim::state::State;
-use fosssim_num::tolerances::{NEWTON_ITERATIONS, NEWTON_UPDATE};
+//! [`StepError::Newton`] instead.
+use super::{Effort, ImplicitScratch, system::System};
+use crate::sim::{state::State, step_error::StepError};
+use fosssim_num::{
+    tolerances::{NEWTON_ITERATIONS, NEWTON_UPDATE},
+    vector::same_bits,
+};
 
 /// Iterates until the update of the velocities is small (or NaN), then advances the state by `dx`, `dv`.
 ///
 /// An iteration depends on `dv` alone, so a `dv` that comes back exactly proves an endless cycle: one is remembered at
 /// each power of two of the count (Brent's method).
 pub(super) fn advance(
+    step: u32,
     system: &mut System<'_>,
     rhs: &mut [f64],
     scratch: &mut ImplicitScratch,
     effort: &mut Effort,
     state: &mut State,
-) -> Result<(), DoesNotConverge> {
+) -> Result<(), StepError> {
     let (bodies, h) = (system.bodies, system.h);
     let entries = rhs.len();
     for (dx, velocity) in scratch.dx.iter_mut().zip(&state.velocities) {
@@ -28,14 +32,17 @@ pub(super) fn advance(
     let mut update = f64::INFINITY;
     let mut iteration = 0_u32;
     while update >= NEWTON_UPDATE {
-        if iteration == NEWTON_ITERATIONS || !effort.iterate(entries) {
-            return Err(DoesNotConverge);
+        if iteration == NEWTON_ITERATIONS {
+            return Err(StepError::Newton { step });
+        }
+        if !effort.iterate(entries) {
+            return Err(StepError::Work { step });
         }
         let ImplicitScratch { x, v, dx, dv, earlier, .. } = &mut *scratch;
         if iteration.is_power_of_two() {
             earlier.copy_from_slice(dv);
         } else if iteration > 1 && same_bits(earlier, dv) {
-            return Err(DoesNotConverge);
+            return Err(StepError::Newton { step });
         }
         iteration += 1;
         for k in 0..entries {
@@ -61,10 +68,6 @@ pub(super) fn advance(
         state.velocities[k] += scratch.dv[k];
     }
     Ok(())
-}
-
-fn same_bits(a: &[f64], b: &[f64]) -> bool {
-    a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
 }
 
 /// The Euclidean norm, with the squares of even and of odd entries summed apart.

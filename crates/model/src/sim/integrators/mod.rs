@@ -1,23 +1,19 @@
-//! The time integrators (simulation.md 4): one file per method, and the dense system of the implicit ones.
+//! The time integrators (simulation.md 4): the implicit ones in a file each, and the dense system that they solve.
+//!
+//! Explicit Euler moves the positions with the old velocities, `x += h v`, then `v += h F / m`. Forward-backward Euler,
+//! also called symplectic, moves them with the new ones, `v += h F / m`, then `x += h v`.
 //!
 //! An integrator turns positions and velocities at the start of a step into those at its end. Fixed particles feel no
 //! force, but their own velocity moves them.
-mod explicit;
 mod implicit;
 mod linearized;
-mod symplectic;
 mod system;
 
-use super::{bodies::Bodies, forces::Forces, observer::Steer, state::State};
+use super::{bodies::Bodies, forces::Forces, observer::Steer, state::State, step_error::StepError};
 use crate::scene::{Integrator, Scene};
 use fosssim_num::linear::Workspace;
 use nalgebra::DMatrix;
 use system::System;
-
-/// The update's norm stays above the bound after too many iterations, or the iterates repeat; or the work that is
-/// allowed is used up.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct DoesNotConverge;
 
 /// The scene's integrator with its scratch arrays.
 #[derive(Debug, Clone)]
@@ -64,18 +60,16 @@ impl Stepper {
     /// Sets the scene's integrator up.
     pub fn new(scene: &Scene) -> Self {
         let entries = 2 * scene.particles.len();
-        let implicit = match scene.integrator {
-            Integrator::ImplicitEuler | Integrator::LinearizedImplicitEuler => Some(Box::new(ImplicitScratch {
-                matrix: DMatrix::zeros(2 * scene.particles.len(), 2 * scene.particles.len()),
-                workspace: Workspace::default(),
-                x: vec![0.0; entries],
-                v: vec![0.0; entries],
-                dx: vec![0.0; entries],
-                dv: vec![0.0; entries],
-                earlier: vec![0.0; entries],
-            })),
-            Integrator::ExplicitEuler | Integrator::ForwardBackwardEuler | Integrator::SymplecticEuler => None,
+        let scratch = || ImplicitScratch {
+            matrix: DMatrix::zeros(entries, entries),
+            workspace: Workspace::default(),
+            x: vec![0.0; entries],
+            v: vec![0.0; entries],
+            dx: vec![0.0; entries],
+            dv: vec![0.0; entries],
+            earlier: vec![0.0; entries],
         };
+        let implicit = scene.integrator.is_implicit().then(|| Box::new(scratch()));
         Self {
             kind: scene.integrator,
             time_step: scene.time_step,
@@ -98,33 +92,29 @@ impl Stepper {
         self.effort.most = most;
     }
 
-    /// Whether more work would have been done than was allowed.
-    pub fn is_beyond_limit(&self) -> bool {
-        self.effort.done > self.effort.most
-    }
-
     /// Whether the method needs the Hessians of the forces.
     pub fn is_implicit(&self) -> bool {
         self.implicit.is_some()
     }
 
-    /// Advances `state` by one time step. `steer` hears of the systems that are solved.
+    /// Advances `state` by one time step, this one. `steer` hears of the systems that are solved.
     ///
     /// # Errors
-    /// [`DoesNotConverge`] from Newton's method of implicit-euler, also where the work that is allowed does not suffice
-    /// ([`Stepper::is_beyond_limit`]); the state is unchanged then.
+    /// [`StepError::Newton`], or [`StepError::Work`] beyond the work that is allowed, from implicit-euler; the state is
+    /// unchanged then.
     pub fn advance<'a>(
         &mut self,
+        step: u32,
         bodies: &'a Bodies,
         forces: &'a mut Forces,
         state: &mut State,
         steer: Option<&'a mut dyn Steer>,
-    ) -> Result<(), DoesNotConverge> {
+    ) -> Result<(), StepError> {
         let h = self.time_step;
         match (self.kind, self.implicit.as_deref_mut()) {
             (Integrator::ImplicitEuler, Some(scratch)) => {
                 let mut system = System { bodies, forces, h, steer };
-                implicit::advance(&mut system, &mut self.gradient, scratch, &mut self.effort, state)?;
+                implicit::advance(step, &mut system, &mut self.gradient, scratch, &mut self.effort, state)?;
             }
             (Integrator::LinearizedImplicitEuler, Some(scratch)) => {
                 let mut system = System { bodies, forces, h, steer };
@@ -132,11 +122,13 @@ impl Stepper {
             }
             (Integrator::ExplicitEuler, _) => {
                 self.force(bodies, forces, state);
-                explicit::advance(bodies, h, &self.gradient, state);
+                add_scaled(&mut state.positions, h, &state.velocities);
+                add_scaled_accelerations(&mut state.velocities, h, &self.gradient, &bodies.masses);
             }
             (Integrator::ForwardBackwardEuler | Integrator::SymplecticEuler, _) => {
                 self.force(bodies, forces, state);
-                symplectic::advance(bodies, h, &self.gradient, state);
+                add_scaled_accelerations(&mut state.velocities, h, &self.gradient, &bodies.masses);
+                add_scaled(&mut state.positions, h, &state.velocities);
             }
             (Integrator::ImplicitEuler | Integrator::LinearizedImplicitEuler, None) => {
                 unreachable!("the implicit methods are set up with their scratch")

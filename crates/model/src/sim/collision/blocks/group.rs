@@ -216,7 +216,7 @@ fn store_edges<S: Simd>(
     let ends = search_ends(&distance) & search_ends(&approach);
     let fours = [[o0, o1, o2, o3], [o4, f0, f1, f2], [s0, s1, s2, a0], [a1, a2, a3, a4]];
     Lanes::store_by_lane(&fours, stride, rows);
-    let known = small + (!excludes_edge(ends, distance, beyond_first, before_second, approach)).as_numbers();
+    let known = small + (!excludes_edge(ends, distance, beyond_first, before_second, approach)).or_zero(1.0);
     Lanes::store_by_lane(&[[a5, known, known, known]], stride, &mut rows[16..]);
     largest
 }
@@ -233,7 +233,7 @@ fn store<S: Simd>(
     let excluded = excludes_two(overlap, approach);
     let ([a, b, c], [d, e]) = (overlap, approach);
     let all = [a, b, c, d, e];
-    let known = small(simd, &all) + (!excluded).as_numbers();
+    let known = small(simd, &all) + (!excluded).or_zero(1.0);
     for lanes in &all {
         largest = largest.max(lanes.abs());
     }

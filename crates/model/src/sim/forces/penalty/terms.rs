@@ -34,20 +34,12 @@ impl PenaltyTerms {
     pub fn visit(&mut self, x: &[f64], mut hear: impl FnMut(Pair, &[(usize, Vec2)])) {
         let Self { bodies, penalty: Penalty { law, pairs }, gradient } = self;
         pairs.visit(x, |pair| {
-            let first = pair.first as usize;
-            let mut terms = [(first, Vec2::zeros()); 3];
             let count = match pair.kind {
-                PairKind::ParticleParticle => {
-                    terms[1].0 = pair.second as usize;
-                    2
-                }
-                PairKind::ParticleEdge => {
-                    let [from, to] = bodies.edges[pair.second as usize];
-                    (terms[1].0, terms[2].0) = (from, to);
-                    3
-                }
+                PairKind::ParticleParticle => 2,
+                PairKind::ParticleEdge => 3,
                 PairKind::ParticleHalfPlane => 1,
             };
+            let mut terms = bodies.particles_of(pair).map(|particle| (particle, Vec2::zeros()));
             let terms = &mut terms[..count];
             terms.iter().for_each(|(particle, _)| put(gradient, *particle, Vec2::zeros()));
             law.add(bodies, pair, x, gradient);
