@@ -2,9 +2,12 @@
 //! that hold explanations and scenes to what such programs do.
 #![forbid(unsafe_code)]
 
+pub mod corpus;
+pub mod dice;
 pub mod mutants;
 pub mod operators;
 pub mod outside;
 pub mod right;
+pub mod runs;
 pub mod sight;
 pub mod witness;

@@ -1,11 +1,13 @@
 //! The explanations of programs whose mistake the catalogue does not have: the measure of explanations where they can't
 //! know.
-use crate::mutants::{Mutant, mutants};
+use crate::{
+    mutants::{Mutant, mutants},
+    runs::{is_accepted, options, trace},
+};
 use fosssim_oracle::{
     assignments::Assignment,
     diagnose::{About, Explanation, probe_scenes, refuted, several},
     evidence::{Keep, examine},
-    judge::{fair::FairVerdict, replay::Options},
     report::words::explanation::{details, what},
     scene::Scene,
     student::{self, Area, Student},
@@ -41,14 +43,14 @@ pub struct Rated {
 /// The explanations of a program after it has run on the probe scenes.
 #[must_use]
 pub fn told_of(student: Student) -> Vec<Explanation> {
-    let options = Options { threads: 1, fair: true, ..Options::default() };
     let (mut explained, mut right): (Vec<Vec<Explanation>>, Vec<Scene>) = (Vec::new(), Vec::new());
     for (_, scene) in probe_scenes(Assignment::DEFAULT) {
-        let trace = student::trace(&scene, student).unwrap_or_else(|(bytes, _)| bytes);
-        let examined = examine(&scene, &trace[..], Keep::All, &options, &mut ());
-        match &examined.outcome.fair {
-            Some(fair) if fair.verdict == FairVerdict::Accepted => right.push(scene.clone()),
-            _ => explained.push(examined.explain()),
+        let trace = trace(&scene, student);
+        let examined = examine(&scene, &trace[..], Keep::All, &options(true), &mut ());
+        if is_accepted(&examined.outcome) {
+            right.push(scene.clone());
+        } else {
+            explained.push(examined.explain());
         }
     }
     let traces: Vec<&[Explanation]> = explained.iter().map(Vec::as_slice).collect();
@@ -56,10 +58,11 @@ pub fn told_of(student: Student) -> Vec<Explanation> {
     several(traces, &refuted)
 }
 
-/// Asks about the mutants with these numbers, several at a time. The answers come in the mutants' order.
-pub fn rated(wanted: impl Fn(usize) -> bool) -> Vec<Rated> {
+/// Asks about some mutants, several at a time; each is told by its number and by itself. The answers come in the mutants'
+/// order.
+pub fn rated(wanted: impl Fn(usize, &Mutant) -> bool) -> Vec<Rated> {
     let wanted: Vec<&Mutant> =
-        mutants().enumerate().filter(|(number, _)| wanted(*number)).map(|(_, mutant)| mutant).collect();
+        mutants().enumerate().filter(|(number, mutant)| wanted(*number, mutant)).map(|(_, mutant)| mutant).collect();
     let rate = |mutant: &'static Mutant| {
         let told = told_of(Student::default().with_change(&mutant.change));
         Rated { id: mutant.id, what: mutant.what, rating: overall(mutant, &told), told }
@@ -85,8 +88,7 @@ fn rating(mutant: &Mutant, told: &Explanation) -> Rating {
         (None, About::Stage(fault)) => (fault.areas().contains(&mutant.area), fault.kind().into_iter().collect()),
         (None, about) => (is_of_polynomials(mutant), about.kinds()),
     };
-    let is_of_other_kind =
-        !mutant.kind.is_empty() && !kinds.is_empty() && kinds.iter().all(|kind| kind.name() != mutant.kind);
+    let is_of_other_kind = mutant.kind.is_some_and(|kind| !kinds.is_empty() && !kinds.contains(&kind));
     if !is_there || is_of_other_kind {
         return Rating::Misleading;
     }

@@ -2,53 +2,9 @@
 use crate::{
     mutants::mutants,
     operators::{equivalent, mutations},
+    runs::Watched,
 };
-use fosssim_oracle::{
-    judge::{
-        fair::FairVerdict,
-        replay::{Options, judge},
-    },
-    scene::Scene,
-    student::{self, CATALOGUE, RowKind, Student},
-};
-
-/// A scene with the trace of a right program.
-#[derive(Debug)]
-pub struct Watched {
-    /// Its name.
-    pub name: String,
-    /// The scene.
-    pub scene: Scene,
-    right: Vec<u8>,
-}
-
-impl Watched {
-    /// Prepares a scene.
-    #[must_use]
-    pub fn new(name: String, scene: Scene) -> Self {
-        let right = trace(&scene, Student::default());
-        Self { name, scene, right }
-    }
-
-    /// Whether the fair rules refuse what this program writes; a program that does not come to an end has written less.
-    #[must_use]
-    pub fn refuses(&self, student: Student) -> bool {
-        let trace = trace(&self.scene, student);
-        let options = Options { threads: 1, fair: true, ..Options::default() };
-        let refused = || judge(&self.scene, &trace[..], &options, &mut ()).fair.map(|fair| fair.verdict);
-        trace != self.right && refused() != Some(FairVerdict::Accepted)
-    }
-
-    /// How long it takes to look at the scene, roughly.
-    #[must_use]
-    pub fn work(&self) -> usize {
-        self.right.len()
-    }
-}
-
-fn trace(scene: &Scene, student: Student) -> Vec<u8> {
-    student::trace(scene, student).unwrap_or_else(|(bytes, _)| bytes)
-}
+use fosssim_oracle::student::{CATALOGUE, RowKind, Student};
 
 /// A program with one mistake.
 #[derive(Debug)]

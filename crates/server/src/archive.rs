@@ -57,20 +57,12 @@ pub enum ArchiveError {
     Folder(io::Error),
 }
 
-/// Where what is in an archive goes.
-enum Target<'a> {
-    /// Nowhere: it is only looked at.
-    Nowhere,
-    /// Into this folder.
-    Folder(&'a Path),
-}
-
 /// Looks an archive through to its end and returns the paths of its files.
 ///
 /// # Errors
 /// Its fault.
 pub fn look_through(archive: &Path, limits: ArchiveLimits) -> Result<Vec<PathBuf>, ArchiveError> {
-    walk(archive, limits, &Target::Nowhere)
+    walk(archive, limits, None)
 }
 
 /// Unpacks an archive into a folder that is there and empty.
@@ -78,13 +70,14 @@ pub fn look_through(archive: &Path, limits: ArchiveLimits) -> Result<Vec<PathBuf
 /// # Errors
 /// The first thing that is wrong with it; the folder may hold a part of it then.
 pub fn unpack(archive: &Path, folder: &Path, limits: ArchiveLimits) -> Result<Vec<PathBuf>, ArchiveError> {
-    walk(archive, limits, &Target::Folder(folder))
+    walk(archive, limits, Some(folder))
 }
 
 /// An archive being walked through.
 struct Walk<'a> {
     limits: ArchiveLimits,
-    target: &'a Target<'a>,
+    /// Where what is in the archive goes; nowhere where it is only looked at.
+    folder: Option<&'a Path>,
     entries: usize,
     bytes: u64,
     seen: BTreeSet<PathBuf>,
@@ -92,11 +85,11 @@ struct Walk<'a> {
     files: Vec<PathBuf>,
 }
 
-fn walk(archive: &Path, limits: ArchiveLimits, target: &Target<'_>) -> Result<Vec<PathBuf>, ArchiveError> {
+fn walk(archive: &Path, limits: ArchiveLimits, folder: Option<&Path>) -> Result<Vec<PathBuf>, ArchiveError> {
     let file = File::open(archive).map_err(ArchiveError::Folder)?;
     let mut walk = Walk {
         limits,
-        target,
+        folder,
         entries: 0,
         bytes: 0,
         seen: BTreeSet::new(),
@@ -231,7 +224,7 @@ impl Walk<'_> {
             return Ok(());
         }
         self.within_folders(&path.join("a file"), name)?;
-        if let Target::Folder(folder) = self.target {
+        if let Some(folder) = self.folder {
             fs::create_dir_all(folder.join(path)).map_err(ArchiveError::Folder)?;
         }
         Ok(())
@@ -246,9 +239,9 @@ impl Walk<'_> {
         if path.as_os_str().is_empty() || self.folders.contains(&path) || !self.seen.insert(path.clone()) {
             return Err(ArchiveError::Twice(shown(name)));
         }
-        match self.target {
-            Target::Nowhere => self.copy(input, &mut io::sink())?,
-            Target::Folder(folder) => {
+        match self.folder {
+            None => self.copy(input, &mut io::sink())?,
+            Some(folder) => {
                 let place = folder.join(&path);
                 if let Some(parent) = place.parent() {
                     fs::create_dir_all(parent).map_err(ArchiveError::Folder)?;

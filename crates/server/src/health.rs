@@ -2,7 +2,7 @@
 //! work to others, and a suite by which nothing can be graded waits for staff.
 use crate::{
     db::{DbError, Transaction},
-    queue::{Claimant, QueuePolicy},
+    queue::{Claimant, QueuePolicy, millis},
     values,
 };
 use std::time::Duration;
@@ -18,7 +18,7 @@ const BROKEN: i64 = 5;
 
 /// How long after its last sign of life a worker counts as alive, in milliseconds.
 pub fn recent(policy: &QueuePolicy) -> i64 {
-    i64::try_from(2 * policy.lease.as_millis()).unwrap_or(i64::MAX)
+    millis(policy.lease * 2)
 }
 
 /// A worker is alive, and can or can't grade.

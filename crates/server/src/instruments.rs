@@ -75,9 +75,9 @@ impl Instruments {
         page.0.register(Box::new(self.seconds.clone()))?;
         page.0.register(Box::new(self.in_flight.clone()))?;
         page.0.register(Box::new(ProcessCollector::for_self()))?;
-        page.gauge("build_info", "The version of the server.", "version", &[(env!("CARGO_PKG_VERSION"), 1)])?;
+        page.gauge("build_info", "The version of the server.", "version", &[(env!("CARGO_PKG_VERSION"), 1.0)])?;
         let pools = database.pools();
-        let most: Vec<(&str, i64)> = pools.iter().map(|pool| (pool.name, pool.most.into())).collect();
+        let most: Vec<(&str, f64)> = pools.iter().map(|pool| (pool.name, pool.most.into())).collect();
         page.gauge("database_connections_max", "The most connections that a pool opens.", "pool", &most)?;
         let connections =
             Opts::new("fosssim_database_connections", "Open connections to the database, by pool and state.");
@@ -88,14 +88,12 @@ impl Instruments {
         }
         page.0.register(Box::new(connections))?;
         let (waiting, timeouts) = database.waits();
-        page.number("database_waiting", "Transactions that wait for a connection.", waiting)?;
-        let timeouts = i64::try_from(timeouts).unwrap_or(i64::MAX);
+        page.number("database_waiting", "Transactions that wait for a connection.", waiting as f64)?;
         let help = "Transactions that were given up because no connection was free in time.";
-        page.counter("database_timeouts_total", help, "", &[("", timeouts)])?;
+        page.counter("database_timeouts_total", help, "", &[("", timeouts as f64)])?;
         if let Some((free, size)) = storage.disk() {
-            let bytes = |bytes: u64| i64::try_from(bytes).unwrap_or(i64::MAX);
-            page.number("disk_free_bytes", "Free room on the data folder's disk.", bytes(free))?;
-            page.number("disk_size_bytes", "The size of the data folder's disk.", bytes(size))?;
+            page.number("disk_free_bytes", "Free room on the data folder's disk.", free as f64)?;
+            page.number("disk_size_bytes", "The size of the data folder's disk.", size as f64)?;
         }
         page.number("database_up", "Whether the database answers.", queue.is_some().into())?;
         if let Some(queue) = queue {
@@ -136,32 +134,32 @@ pub struct Metrics {
 struct MetricsPage(Registry);
 
 impl MetricsPage {
-    fn gauge(&self, name: &str, help: &str, label: &str, values: &[(&str, i64)]) -> Result<(), prometheus::Error> {
+    fn gauge(&self, name: &str, help: &str, label: &str, values: &[(&str, f64)]) -> Result<(), prometheus::Error> {
         let labels: Vec<&str> = Some(label).filter(|label| !label.is_empty()).into_iter().collect();
         let series = GaugeVec::new(Opts::new(format!("fosssim_{name}"), help), &labels)?;
         for (of, value) in values {
-            series.with_label_values(&[*of][..labels.len()]).set(*value as f64);
+            series.with_label_values(&[*of][..labels.len()]).set(*value);
         }
         self.0.register(Box::new(series))
     }
 
-    fn counter(&self, name: &str, help: &str, label: &str, values: &[(&str, i64)]) -> Result<(), prometheus::Error> {
+    fn counter(&self, name: &str, help: &str, label: &str, values: &[(&str, f64)]) -> Result<(), prometheus::Error> {
         let labels: Vec<&str> = Some(label).filter(|label| !label.is_empty()).into_iter().collect();
         let series = CounterVec::new(Opts::new(format!("fosssim_{name}"), help), &labels)?;
         for (of, value) in values {
-            series.with_label_values(&[*of][..labels.len()]).inc_by(*value as f64);
+            series.with_label_values(&[*of][..labels.len()]).inc_by(*value);
         }
         self.0.register(Box::new(series))
     }
 
-    fn number(&self, name: &str, help: &str, value: i64) -> Result<(), prometheus::Error> {
+    fn number(&self, name: &str, help: &str, value: f64) -> Result<(), prometheus::Error> {
         self.gauge(name, help, "", &[("", value)])
     }
 
     /// The database's numbers about the queue.
     fn queue(&self, queue: &Metrics) -> Result<(), prometheus::Error> {
         let named = |counts: &'_ [(String, i64)], name: &str| {
-            counts.iter().find(|(known, _)| known == name).map_or(0, |(_, count)| *count)
+            counts.iter().find(|(known, _)| known == name).map_or(0.0, |(_, count)| *count as f64)
         };
         for (name, help, counts) in [
             ("jobs", "Gradings by state.", &queue.jobs),
@@ -171,11 +169,9 @@ impl MetricsPage {
             self.gauge(name, help, "state", &states.map(|state| (state, named(counts, state))))?;
         }
         let help = "How long the oldest waiting upload has waited.";
-        let oldest = GaugeVec::new(Opts::new("fosssim_oldest_waiting_seconds", help), &[])?;
-        oldest.with_label_values::<&str>(&[]).set(queue.oldest.max(0) as f64 / 1000.0);
-        self.0.register(Box::new(oldest))?;
+        self.number("oldest_waiting_seconds", help, queue.oldest.max(0) as f64 / 1000.0)?;
         let idle = queue.workers - queue.working - queue.aside;
-        let by_state = [("working", queue.working), ("idle", idle), ("aside", queue.aside)];
+        let by_state = [("working", queue.working as f64), ("idle", idle as f64), ("aside", queue.aside as f64)];
         let help = "Workers that were seen lately: they grade, wait for a job, or can't grade.";
         self.gauge("workers_by_state", help, "state", &by_state)?;
         for (name, help, value) in [
@@ -185,12 +181,12 @@ impl MetricsPage {
             ("jobs_paused", "Jobs that wait for staff: nothing can be graded by their suite.", queue.paused),
             ("suspicions", "Scenes in which the reference may be wrong, undecided.", queue.suspicions),
         ] {
-            self.number(name, help, value)?;
+            self.number(name, help, value as f64)?;
         }
-        self.counter("submissions_total", "Submissions.", "", &[("", queue.submissions)])?;
+        self.counter("submissions_total", "Submissions.", "", &[("", queue.submissions as f64)])?;
         let kinds = ["graded", "failed try", "late answer", "buried"];
         let kinds = kinds.map(|kind| (kind.replace(' ', "_"), named(&queue.events, kind)));
-        let kinds: Vec<(&str, i64)> = kinds.iter().map(|(kind, count)| (kind.as_str(), *count)).collect();
+        let kinds: Vec<(&str, f64)> = kinds.iter().map(|(kind, count)| (kind.as_str(), *count)).collect();
         self.counter("events_total", "Results, and what went wrong with jobs.", "kind", &kinds)
     }
 }

@@ -8,6 +8,7 @@ use crate::{
     task::{JUDGE_ERROR, Outcome, rounded},
     values,
 };
+use std::time::Duration;
 
 /// Writes the result of a job, if its lease still holds; a late one is noted and changes nothing.
 ///
@@ -37,7 +38,7 @@ pub async fn fail(
     fault: &str,
 ) -> Result<Failure, DbError> {
     let fault = &health::without_paths(fault);
-    let failure = queue::fail(transaction, policy, lease, fault).await?;
+    let failure = queue::fail(transaction, policy, lease, fault, Duration::ZERO).await?;
     if failure == Failure::Late {
         note_late(transaction, lease, "a failure").await?;
         return Ok(failure);

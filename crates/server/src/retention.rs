@@ -3,7 +3,8 @@
 //! long.
 use crate::{
     db::{Database, DbError, Transaction},
-    store::{Digest, Names, Store, StoreError},
+    queue::millis,
+    store::{Digest, Store, StoreError},
     values,
 };
 use std::{collections::HashSet, time::Duration};
@@ -47,10 +48,10 @@ pub async fn give_up(
     least: Duration,
 ) -> Result<GivenUp, RetentionError> {
     let submissions = match keep {
-        Some(keep) => give_up_submissions(database, i64::try_from(keep.as_millis()).unwrap_or(i64::MAX)).await?,
+        Some(keep) => give_up_submissions(database, millis(keep)).await?,
         None => 0,
     };
-    let artefacts = store.give_up(least, &mut Named { database }).await?;
+    let artefacts = store.give_up(least, |digests| named(database, digests)).await?;
     Ok(GivenUp { submissions, artefacts })
 }
 
@@ -93,39 +94,31 @@ async fn give_up_submissions(database: &Database, keep: i64) -> Result<u64, DbEr
     Ok(submissions)
 }
 
-/// The digests that the database names.
-struct Named<'a> {
-    database: &'a Database,
-}
-
-impl Names for Named<'_> {
-    type Error = RetentionError;
-
-    async fn named(&mut self, digests: &[Digest]) -> Result<HashSet<Digest>, RetentionError> {
-        let mut transaction = self.database.read().await?;
-        let suites = suites(&mut transaction).await?;
-        let wanted = serde_json::to_string(digests).unwrap_or_default();
-        let statement = "SELECT wanted.value AS digest FROM {each}
-            WHERE EXISTS (SELECT 1 FROM submission
-                   WHERE submission.digest = wanted.value AND submission.removed_at IS NULL)
-               OR EXISTS (SELECT 1 FROM result_file
-                   JOIN result ON result.id = result_file.result
-                   JOIN submission ON submission.id = result.submission
-                   WHERE result_file.digest = wanted.value AND submission.removed_at IS NULL)
-               OR EXISTS (SELECT 1 FROM job_file JOIN job ON job.id = job_file.job
-                   WHERE job_file.digest = wanted.value AND job.state IN ('waiting', 'running'))
-               OR EXISTS (SELECT 1 FROM result JOIN submission ON submission.id = result.submission
-                   WHERE {strpos}(result.task, '\"archive\":\"') > 0
-                       AND substr(result.task, {strpos}(result.task, '\"archive\":\"') + 11, 64) = wanted.value
-                       AND submission.removed_at IS NULL)";
-        let rows = transaction.rows(statement, values![wanted]).await?;
-        let mut named: HashSet<Digest> =
-            digests.iter().filter(|digest| suites.contains(digest.as_str())).cloned().collect();
-        for row in &rows {
-            named.extend(row.text("digest")?.parse::<Digest>());
-        }
-        Ok(named)
+/// Those of these digests that the database names.
+async fn named(database: &Database, digests: Vec<Digest>) -> Result<HashSet<Digest>, RetentionError> {
+    let mut transaction = database.read().await?;
+    let suites = suites(&mut transaction).await?;
+    let wanted = serde_json::to_string(&digests).unwrap_or_default();
+    let statement = "SELECT wanted.value AS digest FROM {each}
+        WHERE EXISTS (SELECT 1 FROM submission
+               WHERE submission.digest = wanted.value AND submission.removed_at IS NULL)
+           OR EXISTS (SELECT 1 FROM result_file
+               JOIN result ON result.id = result_file.result
+               JOIN submission ON submission.id = result.submission
+               WHERE result_file.digest = wanted.value AND submission.removed_at IS NULL)
+           OR EXISTS (SELECT 1 FROM job_file JOIN job ON job.id = job_file.job
+               WHERE job_file.digest = wanted.value AND job.state IN ('waiting', 'running'))
+           OR EXISTS (SELECT 1 FROM result JOIN submission ON submission.id = result.submission
+               WHERE {strpos}(result.task, '\"archive\":\"') > 0
+                   AND substr(result.task, {strpos}(result.task, '\"archive\":\"') + 11, 64) = wanted.value
+                   AND submission.removed_at IS NULL)";
+    let rows = transaction.rows(statement, values![wanted]).await?;
+    let mut named: HashSet<Digest> =
+        digests.iter().filter(|digest| suites.contains(digest.as_str())).cloned().collect();
+    for row in &rows {
+        named.extend(row.text("digest")?.parse::<Digest>());
     }
+    Ok(named)
 }
 
 /// Archives of suites that settings name, or jobs that are still to be done.

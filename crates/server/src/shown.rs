@@ -1,7 +1,7 @@
 //! The part of a grade that students see while groups that its suite hides are withheld: as if there were no such
 //! groups.
 use crate::{
-    grade_file::{GradeFile, GroupInFile, SceneInFile},
+    grade_file::{GradeFile, GradeInFile, GroupInFile, SceneInFile},
     store::{Store, StoreError},
     task::{Outcome, OutputFile},
 };
@@ -56,8 +56,7 @@ fn read(grade: impl io::Read) -> Option<GradeFile> {
 
 /// The scenes that are not accepted, hidden ones, too.
 fn failed(report: &GradeFile) -> String {
-    let groups = report.grades.iter().flat_map(|grade| &grade.groups);
-    let scenes = groups.flat_map(|group| &group.scenes).filter(|scene| scene.code != "AC");
+    let scenes = report.grades.iter().flat_map(GradeInFile::scenes).filter(|scene| scene.code != "AC");
     // A name with a line break would make two lines.
     scenes.map(|scene| format!("{} {}\n", scene.code, scene.scene.replace('\n', " "))).collect()
 }

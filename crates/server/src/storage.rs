@@ -53,10 +53,7 @@ impl Storage {
                 fault
             }
         };
-        match fault {
-            None => Ok(()),
-            Some(fault) => Err(Problem::unavailable(fault)),
-        }
+        fault.map_or(Ok(()), |fault| Err(Problem::unavailable(fault)))
     }
 
     async fn fault(&self) -> Option<&'static str> {

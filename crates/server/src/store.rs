@@ -7,9 +7,9 @@ mod read;
 mod sweep;
 
 pub use read::Opened;
-pub use sweep::Names;
 
 use crate::secret::hex;
+use futures_util::TryStreamExt;
 use object_store::{
     ObjectStore, ObjectStoreExt, PutPayload, WriteMultipart, local::LocalFileSystem, path::Path as Key,
 };
@@ -23,7 +23,7 @@ use std::{
     time::{Duration, SystemTime, UNIX_EPOCH},
 };
 use thiserror::Error;
-use tokio::io::AsyncReadExt;
+use tokio_util::io::ReaderStream;
 use utoipa::ToSchema;
 
 /// How much is read at a time.
@@ -39,7 +39,7 @@ const FRESH: Duration = Duration::from_secs(6 * 3600);
 
 /// The SHA-256 of an artefact's bytes, in lower-case hexadecimal.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(try_from = "String", into = "String")]
+#[serde(try_from = "String")]
 pub struct Digest(String);
 
 /// An artefact's name and size.
@@ -97,13 +97,9 @@ impl Digest {
         &self.0[..12]
     }
 
-    fn key(&self) -> Key {
-        Key::from(format!("{KEPT}/{}/{}", &self.0[..2], &self.0[2..]))
-    }
-
-    /// Where it is put aside before it is given up.
-    fn aside(&self) -> Key {
-        Key::from(format!("{ASIDE}/{}/{}", &self.0[..2], &self.0[2..]))
+    /// Where it lies, in one of the two places.
+    fn key(&self, place: &str) -> Key {
+        Key::from(format!("{place}/{}/{}", &self.0[..2], &self.0[2..]))
     }
 }
 
@@ -124,12 +120,6 @@ impl TryFrom<String> for Digest {
 
     fn try_from(text: String) -> Result<Self, String> {
         text.parse()
-    }
-}
-
-impl From<Digest> for String {
-    fn from(digest: Digest) -> Self {
-        digest.0
     }
 }
 
@@ -204,7 +194,7 @@ impl Store {
     pub async fn put(&self, bytes: Vec<u8>) -> Result<Artefact, StoreError> {
         let artefact = Artefact { digest: Digest::of(&bytes), size: bytes.len() as u64 };
         if !self.has_fresh(&artefact.digest).await? {
-            self.objects.put(&artefact.digest.key(), PutPayload::from(bytes)).await?;
+            self.objects.put(&artefact.digest.key(KEPT), PutPayload::from(bytes)).await?;
         }
         Ok(artefact)
     }
@@ -218,19 +208,13 @@ impl Store {
         if self.has_fresh(&artefact.digest).await? {
             return Ok(artefact);
         }
-        let mut input = tokio::fs::File::open(file).await?;
+        let (mut pieces, mut hasher) = (pieces(file).await?, Sha256::new());
         // An upload that is not completed never shows under its name.
-        let mut upload = WriteMultipart::new(self.objects.put_multipart(&artefact.digest.key()).await?);
-        let mut hasher = Sha256::new();
-        let mut chunk = vec![0; CHUNK];
-        loop {
-            let read = input.read(&mut chunk).await?;
-            if read == 0 {
-                break;
-            }
-            hasher.update(&chunk[..read]);
+        let mut upload = WriteMultipart::new(self.objects.put_multipart(&artefact.digest.key(KEPT)).await?);
+        while let Some(piece) = pieces.try_next().await? {
+            hasher.update(&piece);
             upload.wait_for_capacity(4).await?;
-            upload.write(&chunk[..read]);
+            upload.write(&piece);
         }
         if hex(&hasher.finalize()) != artefact.digest.0 {
             upload.abort().await?;
@@ -245,12 +229,12 @@ impl Store {
     /// # Errors
     /// When the store fails.
     pub async fn has(&self, digest: &Digest) -> Result<bool, StoreError> {
-        Ok(self.age(&digest.key()).await?.is_some() || self.age(&digest.aside()).await?.is_some())
+        Ok(self.age(&digest.key(KEPT)).await?.is_some() || self.age(&digest.key(ASIDE)).await?.is_some())
     }
 
     /// Whether there is one that nobody will give up soon.
     async fn has_fresh(&self, digest: &Digest) -> Result<bool, StoreError> {
-        Ok(self.age(&digest.key()).await?.is_some_and(|age| age < FRESH))
+        Ok(self.age(&digest.key(KEPT)).await?.is_some_and(|age| age < FRESH))
     }
 
     /// How long ago an object was written; nothing when there is none.
@@ -274,17 +258,15 @@ fn age(meta: &object_store::ObjectMeta) -> Duration {
 /// # Errors
 /// When it can't be read.
 pub async fn digest_of_file(file: &Path) -> io::Result<Artefact> {
-    let mut input = tokio::fs::File::open(file).await?;
-    let mut hasher = Sha256::new();
-    let mut size = 0;
-    let mut chunk = vec![0; CHUNK];
-    loop {
-        let read = input.read(&mut chunk).await?;
-        if read == 0 {
-            break;
-        }
-        size += read as u64;
-        hasher.update(&chunk[..read]);
+    let (mut pieces, mut hasher, mut size) = (pieces(file).await?, Sha256::new(), 0);
+    while let Some(piece) = pieces.try_next().await? {
+        size += piece.len() as u64;
+        hasher.update(&piece);
     }
     Ok(Artefact { digest: Digest(hex(&hasher.finalize())), size })
+}
+
+/// A file in pieces, so that it is never held whole.
+async fn pieces(file: &Path) -> io::Result<ReaderStream<tokio::fs::File>> {
+    Ok(ReaderStream::with_capacity(tokio::fs::File::open(file).await?, CHUNK))
 }

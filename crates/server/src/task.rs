@@ -97,10 +97,9 @@ impl Suite {
     }
 }
 
-/// The result of a grading: as the grader tells it (`F` are files of its own), as a worker brings it and as the service
-/// shows it.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-pub struct Outcome<F = OutputFile> {
+/// The result of a grading: as the grader tells it, as a worker brings it and as the service shows it.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct Outcome {
     /// The verdict in words.
     #[schema(max_length = 200)]
     pub verdict: String,
@@ -135,7 +134,7 @@ pub struct Outcome<F = OutputFile> {
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub seconds: String,
     /// Reports and logs; empty in lists.
-    pub files: Vec<F>,
+    pub files: Vec<OutputFile>,
     /// The part that students see while groups are withheld, as [`Shown`](crate::shown::Shown) keeps it; nothing while
     /// nobody has looked.
     #[serde(skip)]
@@ -155,44 +154,17 @@ pub struct WrongScene {
     pub answer: String,
 }
 
-impl<F> Outcome<F> {
-    /// The same with other files.
-    pub fn with_files<G>(self, files: Vec<G>) -> Outcome<G> {
-        Outcome {
-            verdict: self.verdict,
-            code: self.code,
-            points: self.points,
-            max_points: self.max_points,
-            summary: self.summary,
-            version: self.version,
-            grader: self.grader,
-            essence: self.essence,
-            wrong: self.wrong,
-            seconds: self.seconds,
-            files,
-            shown: self.shown,
-            failed: self.failed,
-        }
-    }
-}
-
 impl Outcome {
     /// The outcome of a job that was tried too often: our fault, and nobody's zero. Why is staff's to read, in the job.
     pub fn judge_error() -> Self {
         Self {
             verdict: "judge error".to_owned(),
             code: JUDGE_ERROR.to_owned(),
-            points: None,
-            max_points: None,
             summary: "the grader failed, which is no fault of the submission; the course's staff is told".to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            grader: String::new(),
-            essence: String::new(),
-            wrong: Vec::new(),
             seconds: "0".to_owned(),
-            files: Vec::new(),
             shown: Some(String::new()),
-            failed: None,
+            ..Self::default()
         }
     }
 }

@@ -39,10 +39,10 @@ pub struct Manners {
 }
 
 /// Whether the lease still holds.
-#[derive(Serialize, Deserialize, ToSchema)]
-pub(crate) struct LeaseAnswer {
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct LeaseAnswer {
     /// If not, somebody else has the job and nothing was changed.
-    pub(crate) held: bool,
+    pub held: bool,
 }
 
 impl From<bool> for LeaseAnswer {

@@ -3,54 +3,27 @@
 //! usage: `fair-table CORPUS [--all]`. The folder holds `verdicts.jsonl`, `scenes/` and `submissions/`. Without `--all`
 //! only rows where the two differ, and rows of correct kinds that fair refuses, are printed; the summary counts all.
 #![forbid(unsafe_code)]
-use std::{collections::BTreeMap, path::Path};
-
 use anyhow::Context;
-use fosssim_oracle::{
-    judge::{
-        Overall,
-        fair::{FairVerdict, Judgement},
-        replay::{self, Options},
-    },
-    scene::original,
+use fosssim_lab::{
+    corpus::{self, CorpusRow},
+    runs::judged,
 };
+use fosssim_oracle::judge::{Overall, fair::Judgement};
 use rayon::prelude::*;
-use serde::Deserialize;
-
-#[derive(Deserialize)]
-struct Row {
-    submission: String,
-    kind: String,
-    scene: String,
-    overall: String,
-    trace_file: Option<String>,
-    trace_equals_reference: Option<bool>,
-}
+use std::{collections::BTreeMap, path::Path};
 
 fn main() -> anyhow::Result<()> {
     let mut arguments = std::env::args().skip(1);
     let corpus = arguments.next().context("usage: fair-table CORPUS [--all]")?;
-    let all = arguments.next().is_some();
-    let corpus = Path::new(&corpus);
-    let text = std::fs::read_to_string(corpus.join("verdicts.jsonl")).context("no verdicts.jsonl there")?;
-    let rows: Vec<Row> = text.lines().map(serde_json::from_str).collect::<Result<_, _>>()?;
+    let (corpus, all) = (Path::new(&corpus), arguments.next().is_some());
+    let rows = corpus::rows(corpus)?;
     let judged: Vec<Option<(Overall, Judgement)>> =
         rows.par_iter().map(|row| judge(corpus, row)).collect::<anyhow::Result<_>>()?;
-    let mut summary: BTreeMap<(&str, &str, &str), u32> = BTreeMap::new();
+    let mut summary: BTreeMap<(&str, String, String), u32> = BTreeMap::new();
     for (row, judged) in rows.iter().zip(&judged) {
         let Some((overall, fair)) = judged else { continue };
-        let parity = match overall {
-            Overall::Passed => "passed",
-            Overall::Failed => "failed",
-            Overall::None => "none",
-        };
+        let [parity, verdict] = [format!("{overall:?}"), format!("{:?}", fair.verdict)].map(|word| word.to_lowercase());
         anyhow::ensure!(parity == row.overall, "{} {}: parity says {parity}", row.submission, row.scene);
-        let verdict = match fair.verdict {
-            FairVerdict::Accepted => "accepted",
-            FairVerdict::Rejected => "rejected",
-            FairVerdict::None => "none",
-        };
-        *summary.entry((&row.kind, parity, verdict)).or_default() += 1;
         let differ = (parity == "passed") != (verdict == "accepted");
         if all || differ || (row.kind == "a" && verdict != "accepted") {
             let same = if row.trace_equals_reference == Some(true) { " (the reference's bytes)" } else { "" };
@@ -62,6 +35,7 @@ fn main() -> anyhow::Result<()> {
                 reason(fair)
             );
         }
+        *summary.entry((row.kind.as_str(), parity, verdict)).or_default() += 1;
     }
     println!();
     for ((kind, parity, fair), count) in summary {
@@ -70,13 +44,9 @@ fn main() -> anyhow::Result<()> {
     Ok(())
 }
 
-fn judge(corpus: &Path, row: &Row) -> anyhow::Result<Option<(Overall, Judgement)>> {
-    let Some(file) = &row.trace_file else { return Ok(None) };
-    let scene = std::fs::read(corpus.join("scenes").join(format!("{}.xml", row.scene)))?;
-    let scene = original::read(&scene).with_context(|| row.scene.clone())?.scene;
-    let trace = zstd::Decoder::new(std::fs::File::open(corpus.join(file))?)?;
-    let options = Options { threads: 1, fair: true, ..Options::default() };
-    let outcome = replay::judge(&scene, trace, &options, &mut ());
+fn judge(corpus: &Path, row: &CorpusRow) -> anyhow::Result<Option<(Overall, Judgement)>> {
+    let Some((scene, trace)) = row.read(corpus)? else { return Ok(None) };
+    let outcome = judged(&scene, &trace);
     Ok(outcome.fair.map(|fair| (outcome.parity.overall, *fair)))
 }
 

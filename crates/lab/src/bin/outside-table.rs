@@ -5,17 +5,12 @@
 #![forbid(unsafe_code)]
 use std::process::ExitCode;
 
-use fosssim_lab::{
-    mutants::mutants,
-    outside::{Rated, Rating, rated},
-};
+use fosssim_lab::outside::{Rated, Rating, rated};
 use fosssim_oracle::report::words::explanation::{details, what};
 
 fn main() -> ExitCode {
     let part = std::env::args().nth(1).unwrap_or_default();
-    let wanted: Vec<usize> =
-        mutants().enumerate().filter(|(_, mutant)| mutant.id.contains(&part)).map(|(number, _)| number).collect();
-    let all: Vec<Rated> = rated(|number| wanted.contains(&number));
+    let all: Vec<Rated> = rated(|_, mutant| mutant.id.contains(&part));
     for one in &all {
         println!("{:<32} {:<10} ({})", one.id, format!("{:?}", one.rating), one.what);
         for told in &one.told {

@@ -10,54 +10,20 @@
 //! folder; names and descriptions are for people to give.
 #![forbid(unsafe_code)]
 use anyhow::Context;
-use fosssim_lab::sight::{Watched, WrongProgram, witnesses, wrong_programs};
+use fosssim_lab::{
+    dice::Dice,
+    runs::{Watched, frames, is_accepted, judged},
+    sight::{WrongProgram, witnesses, wrong_programs},
+};
 use fosssim_oracle::{
-    judge::{
-        Outcome, Overall,
-        fair::{FairVerdict, borderline},
-        replay::{Options, judge},
-    },
+    judge::{Overall, fair::borderline},
     num::vector::Vec2,
     scene::{self, Collision, Display, Edge, Force, HalfPlane, Integrator, Particle, Scene},
     student::{self, CATALOGUE, Row, RowKind, Student},
-    suite::{
-        coverage::{Coverage, Pairing},
-        plan,
-    },
-    trace::{Frame, Layout, Reader},
+    suite::coverage::{Coverage, Pairing},
 };
 use rayon::prelude::*;
 use std::path::PathBuf;
-
-/// Marsaglia's xorshift64* (Vigna, "An experimental exploration of Marsaglia's xorshift generators", 2016).
-struct Dice(u64);
-
-impl Dice {
-    fn of(seed: u64, run: u64) -> Self {
-        let mut dice = Self((seed ^ run.wrapping_mul(0x9e37_79b9_7f4a_7c15)) | 1);
-        for _ in 0..4 {
-            dice.below(2);
-        }
-        dice
-    }
-
-    fn below(&mut self, end: usize) -> usize {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        ((self.0.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 33) % end.max(1) as u64) as usize
-    }
-
-    fn one<T: Copy>(&mut self, of: &[T]) -> T {
-        of[self.below(of.len())]
-    }
-
-    /// A multiple of `unit` between `-most` and `most` of them.
-    fn number(&mut self, most: i32, unit: f64) -> f64 {
-        let whole = i32::try_from(self.below((2 * most + 1) as usize)).unwrap_or(0) - most;
-        f64::from(whole) * unit
-    }
-}
 
 /// A random scene: some groups of bodies far apart, numbered at random.
 fn draw(dice: &mut Dice) -> Scene {
@@ -174,10 +140,7 @@ struct WantedEvents {
 impl WantedEvents {
     /// The wanted properties that a scene has; without the programs where only `pairings` are asked for.
     fn of(&self, scene: &Scene, programs: &[WrongProgram]) -> Self {
-        let pairings = gain(scene, &self.pairings);
-        if !is_tidy(scene) || scene.particles.is_empty() || Coverage::of(scene).is_err() {
-            return Self::default();
-        }
+        let Some(pairings) = gain(scene, &self.pairings) else { return Self::default() };
         let watched = Watched::new(String::new(), scene.clone());
         let refused = self.programs.iter().filter(|(number, _)| watched.refuses(programs[*number].student));
         Self { pairings, programs: refused.copied().collect() }
@@ -195,13 +158,13 @@ const PROGRAM: f64 = 6.0;
 /// others.
 const SHOWN: usize = 500;
 
-/// The missing pairs of properties that a scene has.
-fn gain(scene: &Scene, missing: &[Pairing]) -> Vec<Pairing> {
+/// The missing pairs of properties that a scene has; nothing of one that is of no use.
+fn gain(scene: &Scene, missing: &[Pairing]) -> Option<Vec<Pairing>> {
     if scene.particles.is_empty() || !is_tidy(scene) {
-        return Vec::new();
+        return None;
     }
-    let Ok(coverage) = Coverage::of(scene) else { return Vec::new() };
-    missing.iter().copied().filter(|one| coverage.has(*one)).collect()
+    let coverage = Coverage::of(scene).ok()?;
+    Some(missing.iter().copied().filter(|one| coverage.has(*one)).collect())
 }
 
 /// Variants whose own roundings decide whether something touches exactly at a step's end (`tests/it/samples.rs`).
@@ -216,28 +179,21 @@ fn is_fair(scene: &Scene) -> bool {
     let passes = judged(scene, &right).parity.overall == Overall::Passed;
     let is_alike = |row: &Row| {
         let Ok(trace) = student::trace(scene, Student::new(Some(row.mistake))) else { return false };
-        let fair = judged(scene, &trace).fair.is_some_and(|fair| fair.verdict == FairVerdict::Accepted);
         let ends = ends(scene, &trace);
         let close =
             ends.len() == states.len() && ends.iter().zip(&states).all(|(one, other)| (one - other).abs() < 1e-9);
-        fair && (close || ROUNDING.contains(&row.id))
+        is_accepted(&judged(scene, &trace)) && (close || ROUNDING.contains(&row.id))
     };
     let mut variants = CATALOGUE.iter().filter(|row| row.kind == RowKind::Variant && row.id != "scale-1e-6");
     passes && states.iter().all(|number| number.abs() < 1e3) && variants.all(is_alike)
 }
 
-fn judged(scene: &Scene, trace: &[u8]) -> Outcome {
-    judge(scene, trace, &Options { threads: 1, fair: true, ..Options::default() }, &mut ())
-}
-
 /// Positions and velocities of all records of a trace.
 fn ends(scene: &Scene, trace: &[u8]) -> Vec<f64> {
-    let (mut reader, mut frame, mut all) = (Reader::of_slice(trace, Layout::of(scene)), Frame::default(), Vec::new());
-    while reader.next(&mut frame).unwrap_or(false) {
-        all.extend_from_slice(&frame.state.positions);
-        all.extend_from_slice(&frame.state.velocities);
-    }
-    all
+    frames(scene, trace)
+        .into_iter()
+        .flat_map(|frame| [frame.state.positions, frame.state.velocities].concat())
+        .collect()
 }
 
 /// How long it takes to look at a scene, roughly.
@@ -302,13 +258,10 @@ fn main() -> anyhow::Result<()> {
     let tries: u64 = arguments.next().map_or(Ok(200_000), |text| text.parse())?;
     let seed: u64 = arguments.next().map_or(Ok(1), |text| text.parse())?;
     let folder: Option<PathBuf> = arguments.next().map(PathBuf::from);
-    let mut coverage = Coverage::default();
-    let mut watched = Vec::new();
-    for task in plan::find(&suite)?.scenes() {
-        coverage.add(&Coverage::of(&task.scene)?);
-        watched.push(Watched::new(task.name.clone(), task.scene.clone()));
+    let (watched, mut coverage) = (Watched::of_suite(&suite)?, Coverage::default());
+    for watched in &watched {
+        coverage.add(&Coverage::of(&watched.scene)?);
     }
-    watched.sort_by_key(Watched::work);
     let programs = wrong_programs();
     let lacking = |number: usize| {
         let refusing = witnesses(&watched, programs[number].student, WITNESSES).len();
@@ -358,7 +311,7 @@ fn round(wanted: &WantedEvents, programs: &[WrongProgram], tries: u64, seed: u64
         .into_par_iter()
         .map(|run| {
             let scene = of(run);
-            (gain(&scene, &wanted.pairings).len() as f64 / (300.0 + work(&scene)), run)
+            (gain(&scene, &wanted.pairings).map_or(0, |has| has.len()) as f64 / (300.0 + work(&scene)), run)
         })
         .collect();
     let by_worth = |one: &(f64, u64), other: &(f64, u64)| other.0.total_cmp(&one.0).then(one.1.cmp(&other.1));

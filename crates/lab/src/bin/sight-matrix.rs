@@ -5,14 +5,14 @@
 //! It prints the programs that fewer than three scenes of the suite refuse, or no probe scene, with those that do, and
 //! the figures that `docs/fair.md` names. It ends with status 1 when there is such a program.
 #![forbid(unsafe_code)]
-use std::process::ExitCode;
-
 use fosssim_lab::{
     operators::{EQUIVALENT, mutations},
-    sight::{Watched, WrongProgram, witnesses, wrong_programs},
+    runs::Watched,
+    sight::{WrongProgram, witnesses, wrong_programs},
 };
-use fosssim_oracle::{assignments::Assignment, diagnose::probe_scenes, suite::plan};
+use fosssim_oracle::assignments::Assignment;
 use rayon::prelude::*;
+use std::process::ExitCode;
 
 /// The number of scenes of the suite that have to refuse each wrong program.
 const WANTED: usize = 3;
@@ -22,14 +22,7 @@ fn main() -> anyhow::Result<ExitCode> {
     let suite = arguments.next().unwrap_or_else(|| Assignment::DEFAULT.key().to_owned());
     let part = arguments.next().unwrap_or_default();
     let enough: usize = arguments.next().map_or(Ok(WANTED), |text| text.parse())?;
-    let plan = plan::find(&suite)?;
-    let mut scenes: Vec<Watched> =
-        plan.scenes().map(|task| Watched::new(task.name.clone(), task.scene.clone())).collect();
-    scenes.sort_by_key(Watched::work);
-    let probes: Vec<Watched> = probe_scenes(Assignment::DEFAULT)
-        .into_iter()
-        .map(|(name, scene)| Watched::new(format!("probe/{name}"), scene))
-        .collect();
+    let (scenes, probes) = (Watched::of_suite(&suite)?, Watched::probes());
     let programs: Vec<WrongProgram> = wrong_programs().into_iter().filter(|one| one.name.contains(&part)).collect();
     let seen: Vec<(Vec<&str>, Vec<&str>)> = programs
         .par_iter()

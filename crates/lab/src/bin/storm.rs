@@ -8,6 +8,7 @@
 //! or left off. The same seed makes the same traces. A panic ends the storm and leaves the trace as `storm-TARGET-RUN`
 //! in the working folder.
 #![forbid(unsafe_code)]
+use fosssim_lab::dice::Dice;
 use rayon::prelude::*;
 use std::{
     panic::{AssertUnwindSafe, catch_unwind},
@@ -23,30 +24,6 @@ mod entries;
 
 /// Runs between two lines of progress.
 const BLOCK: u64 = 250_000;
-
-/// Marsaglia's xorshift64* (Vigna, "An experimental exploration of Marsaglia's xorshift generators", 2016).
-struct Dice(u64);
-
-impl Dice {
-    fn of(seed: u64, run: u64) -> Self {
-        let mut dice = Self((seed ^ run.wrapping_mul(0x9e37_79b9_7f4a_7c15)) | 1);
-        for _ in 0..4 {
-            dice.throw();
-        }
-        dice
-    }
-
-    fn throw(&mut self) -> u64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        self.0.wrapping_mul(0x2545_f491_4f6c_dd1d)
-    }
-
-    fn below(&mut self, end: usize) -> usize {
-        (self.throw() % end.max(1) as u64) as usize
-    }
-}
 
 /// One change. The first byte chooses the scene and stays.
 fn change(bytes: &mut Vec<u8>, dice: &mut Dice) {

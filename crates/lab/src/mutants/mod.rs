@@ -6,7 +6,10 @@ mod coefficients;
 mod contacts;
 mod motions;
 
-use fosssim_oracle::student::{Area, hooks::Change};
+use fosssim_oracle::{
+    sim::PairKind,
+    student::{Area, hooks::Change},
+};
 
 /// A mistake outside of the catalogue.
 #[derive(Debug)]
@@ -15,8 +18,8 @@ pub struct Mutant {
     pub id: &'static str,
     /// Where it is made.
     pub area: Area,
-    /// The kind of pair that it is made for, as explanations call it; empty where it is made for all.
-    pub kind: &'static str,
+    /// The kind of pair that it is made for; nothing where it is made for all.
+    pub kind: Option<PairKind>,
     /// The mistake, in words.
     pub what: &'static str,
     /// The least that a right explanation has to say: one of these words stands in its sentence, its key, or its exact
@@ -26,15 +29,29 @@ pub struct Mutant {
     pub change: Change,
 }
 
-const fn row(
-    id: &'static str,
-    area: Area,
-    kind: &'static str,
-    what: &'static str,
-    told_by: &'static [&'static str],
-    change: Change,
-) -> Mutant {
-    Mutant { id, area, kind, what, told_by, change }
+/// A mutant that does not change anything yet.
+const fn mutant(id: &'static str, area: Area, what: &'static str) -> Mutant {
+    let kind = match area {
+        Area::ParticleParticle => Some(PairKind::ParticleParticle),
+        Area::ParticleEdge => Some(PairKind::ParticleEdge),
+        Area::ParticleHalfPlane => Some(PairKind::ParticleHalfPlane),
+        _ => None,
+    };
+    Mutant { id, area, kind, what, told_by: &[], change: Change::Limit(|most| most) }
+}
+
+impl Mutant {
+    const fn at(self, kind: PairKind) -> Self {
+        Self { kind: Some(kind), ..self }
+    }
+
+    const fn told_by(self, told_by: &'static [&'static str]) -> Self {
+        Self { told_by, ..self }
+    }
+
+    const fn by(self, change: Change) -> Self {
+        Self { change, ..self }
+    }
 }
 
 /// All mutants.

@@ -4,7 +4,7 @@
 //! instead (Offutt, "A practical system for mutation testing", 1994): indices exchanged or off by one, lists without
 //! their first or last entry, values of before, conditions that always or never hold, blocks left early, numbers with
 //! another sign or factor. They measure whether the scenes can tell a wrong program from a right one:
-//! `scripts/mutation-matrix` counts the scenes that refuse each, and [`EQUIVALENT`] says of each that no scene can
+//! `scripts/sight-matrix` counts the scenes that refuse each, and [`EQUIVALENT`] says of each that no scene can
 //! refuse why not.
 mod equivalent;
 mod places;

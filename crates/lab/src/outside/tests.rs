@@ -153,7 +153,7 @@ fn beside_an_unknown_mistake_nothing_else_is_told() {
 /// helps. `outside-table` has all.
 #[test]
 fn of_unknown_mistakes_the_place_is_told_and_none_is_taken_for_another() {
-    let rated: Vec<Rated> = rated(|number| number % 4 == 1);
+    let rated: Vec<Rated> = rated(|number, _| number % 4 == 1);
     let misleading: Vec<&Rated> = rated.iter().filter(|one| one.rating == Rating::Misleading).collect();
     assert!(misleading.is_empty(), "{misleading:#?}");
     let open: Vec<&Rated> = rated.iter().filter(|one| one.rating == Rating::Unknown).collect();

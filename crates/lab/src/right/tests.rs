@@ -1,12 +1,7 @@
 use super::*;
+use crate::runs::judged;
 use fosssim_model::{assignments::Assignment, scene};
-use fosssim_oracle::{
-    judge::{
-        fair::FairVerdict,
-        replay::{Options, judge},
-    },
-    suite::library,
-};
+use fosssim_oracle::{judge::fair::FairVerdict, suite::library};
 
 /// A scene of linearised implicit steps whose bodies have these masses.
 fn scene(masses: [f64; 3]) -> Scene {
@@ -26,8 +21,7 @@ fn scene(masses: [f64; 3]) -> Scene {
 /// The verdict on what a program writes of a scene.
 fn verdict(scene: &Scene, arithmetic: Arithmetic) -> FairVerdict {
     let trace = arithmetic.trace(scene, |_, _| ()).unwrap_or_else(|_| panic!("{} ends early", arithmetic.name));
-    let options = Options { threads: 1, fair: true, ..Options::default() };
-    judge(scene, &trace[..], &options, &mut ()).fair.expect("the fair rules were asked").verdict
+    judged(scene, &trace).fair.expect("the fair rules were asked").verdict
 }
 
 #[test]

@@ -1,21 +1,15 @@
 //! The small form of `scripts/sight-matrix`.
-use super::{Watched, witnesses, wrong_programs};
-use crate::operators::{equivalent, mutations};
-use fosssim_oracle::{assignments::Assignment, diagnose::probe_scenes, student::Student, suite::plan};
-
-fn watched(suite: &str) -> Vec<Watched> {
-    let plan = plan::find(suite).expect("a suite");
-    let mut scenes: Vec<Watched> =
-        plan.scenes().map(|task| Watched::new(task.name.clone(), task.scene.clone())).collect();
-    scenes.sort_by_key(Watched::work);
-    scenes
-}
+use super::{witnesses, wrong_programs};
+use crate::{
+    operators::{equivalent, mutations},
+    runs::Watched,
+};
+use fosssim_oracle::student::Student;
 
 #[test]
 fn every_eighth_wrong_program_is_refused_by_three_scenes_and_seen_by_a_probe() {
-    let (scenes, programs) = (watched("t2m2"), wrong_programs());
-    let probes: Vec<Watched> =
-        probe_scenes(Assignment::T2M2).into_iter().map(|(name, scene)| Watched::new(name, scene)).collect();
+    let (scenes, programs) = (Watched::of_suite("t2m2").expect("a suite"), wrong_programs());
+    let probes = Watched::probes();
     assert!(programs.len() > 800, "{}", programs.len());
     let unseen: Vec<String> = programs
         .iter()
@@ -31,7 +25,7 @@ fn every_eighth_wrong_program_is_refused_by_three_scenes_and_seen_by_a_probe() {
 
 #[test]
 fn no_scene_refuses_a_mutation_that_is_said_to_change_nothing() {
-    let scenes = watched("t2m2");
+    let scenes = Watched::of_suite("t2m2").expect("a suite");
     let refused: Vec<String> = mutations()
         .into_iter()
         .filter(|mutation| equivalent(*mutation).is_some())

@@ -1,13 +1,10 @@
 //! All that is said of the stages of sample programs on the probe scenes is true, and every sort of sentence is said.
 use super::{MOST, checked};
-use crate::mutants::mutants;
+use crate::{mutants::mutants, runs::judged};
 use fosssim_oracle::{
     assignments::Assignment,
     diagnose::{About, StageFault, StepStage, WrongZoneRounds, explain_stages, probe_scenes},
-    judge::{
-        FindingDetail,
-        replay::{Options, judge},
-    },
+    judge::FindingDetail,
     scene::Collision,
     sim::Stage,
     student::{self, Area, CATALOGUE, Mistake, Row, RowKind, Student},
@@ -134,8 +131,7 @@ fn what_is_said_of_stages_does_not_lie_behind_the_first_divergence() {
         .filter_map(|((id, student), (name, scene))| {
             let trace = student::trace_within(scene, *student, MOST).unwrap_or_else(|(bytes, _)| bytes);
             let told = explain_stages(scene, &trace)?;
-            let options = Options { threads: 1, fair: true, ..Options::default() };
-            let first = judge(scene, &trace[..], &options, &mut ()).fair?.findings.first_divergence?;
+            let first = judged(scene, &trace).fair?.findings.first_divergence?;
             let behind_failsafe = match first.detail {
                 FindingDetail::PassPositions { place } => place.pass.stage == Stage::Geometric { round: 1 },
                 _ => false,

@@ -8,7 +8,7 @@ use crate::{
     task::{Outcome, Suite, Task},
     values,
     wire::{Claimed, Manners},
-    worker::{Answer, JobSource, LocalSource, REPORTS, SourceError},
+    worker::{JobSource, LocalSource, REPORTS, SourceError},
 };
 use std::path::Path;
 
@@ -68,13 +68,7 @@ impl Remote {
     /// # Errors
     /// When the database does not answer.
     pub async fn claim(&self, is_idle: bool) -> Result<Option<Claimed>, Problem> {
-        let job = self.source().claim(is_idle).await?;
-        Ok(job.map(|job| Claimed {
-            lease: job.lease,
-            renew_every: u64::try_from(job.renew_every.as_millis()).unwrap_or(u64::MAX),
-            task: job.task,
-            alone: job.alone,
-        }))
+        Ok(self.source().claim(is_idle).await?)
     }
 
     /// Says that it is alive, with this many slots, or why it can't grade.
@@ -93,7 +87,7 @@ impl Remote {
     /// # Errors
     /// When the database does not answer.
     pub async fn renew(&self, lease: &Lease, progress: Option<Progress>) -> Result<bool, Problem> {
-        Ok(self.owns(lease).await? && self.source().renew(lease, progress).await? == Answer::Held)
+        Ok(self.owns(lease).await? && self.source().renew(lease, progress).await?.held)
     }
 
     /// Gives a job back.
@@ -101,7 +95,7 @@ impl Remote {
     /// # Errors
     /// When the database does not answer.
     pub async fn release(&self, lease: &Lease) -> Result<bool, Problem> {
-        Ok(self.owns(lease).await? && self.source().release(lease).await? == Answer::Held)
+        Ok(self.owns(lease).await? && self.source().release(lease).await?.held)
     }
 
     /// Says that a try came to nothing.
@@ -109,7 +103,7 @@ impl Remote {
     /// # Errors
     /// When the database does not answer.
     pub async fn fail(&self, lease: &Lease, fault: &str) -> Result<bool, Problem> {
-        Ok(self.owns(lease).await? && self.source().fail(lease, &plain(fault, 2000)).await? == Answer::Held)
+        Ok(self.owns(lease).await? && self.source().fail(lease, &plain(fault, 2000)).await?.held)
     }
 
     /// Brings a result. It is looked at as what a stranger says: of files it may name those that it stored for this
@@ -122,7 +116,7 @@ impl Remote {
             return Ok(false);
         }
         let outcome = self.checked(lease, outcome).await?;
-        Ok(self.source().finish(lease, &outcome).await? == Answer::Held)
+        Ok(self.source().finish(lease, &outcome).await?.held)
     }
 
     async fn checked(&self, lease: &Lease, outcome: &Outcome) -> Result<Outcome, Problem> {

@@ -96,7 +96,7 @@ async fn replay(
     };
     std::fs::create_dir(&work)?;
     let graded = program.grade(&past.task, &submission, suite.as_deref(), &work, stop.clone()).await;
-    let graded = graded.map_err(|fault| anyhow!("result {}: {fault}", past.number))?;
+    let graded = graded.map_err(|fault| anyhow!("result {}: {fault}", past.number))?.outcome;
     let before = match &past.report {
         Some(digest) => Some(essence(&store.bytes(digest, 1 << 30).await.context("the report of then")?)?),
         None => None,

@@ -10,7 +10,7 @@ use crate::{
     queue::{Notifier, QueuePolicy},
     secret,
     store::Store,
-    worker::{self, JobSource, Liveness, LocalSource, Options, Program, RemoteSource, SourceError},
+    worker::{self, JobSource, Liveness, LocalSource, Program, RemoteSource, SourceError},
 };
 use anyhow::{Context, Result, bail};
 use std::{
@@ -80,9 +80,10 @@ async fn work_for(server: &str, token_file: &Path, arguments: &WorkerArguments, 
     heartbeat::ready();
     // A worker whose server is away is well: it goes on trying, and has what it holds.
     tokio::spawn(heartbeat::beat(folders.data.clone(), async || true));
-    tracing::info!(worker = name, server, slots = slots(arguments.slots), grader = %grader.display(), "working");
-    let options = Options { slots: slots(arguments.slots), folder: folder.clone() };
-    let worked = worker::work(source, Program::new(grader, arguments.work.threads.get()), options, stop).await;
+    let slots = slots(arguments.slots);
+    tracing::info!(worker = name, server, slots, grader = %grader.display(), "working");
+    let program = Program::new(grader, arguments.work.threads.get());
+    let worked = worker::work(source, program, slots, folder.clone(), stop).await;
     drop(std::fs::remove_dir_all(folder));
     drop(alive);
     worked.with_context(|| server.to_owned())?;
@@ -168,7 +169,7 @@ impl Local {
             name.clone(),
         );
         let folder = self.folders.work(&name);
-        let options = Options { slots, folder: folder.clone() };
+        let program = Program::new(self.grader.clone(), work.threads.get());
         let watching = async {
             loop {
                 tokio::time::sleep(self.policy.tick_every().max(Duration::from_millis(500))).await;
@@ -178,7 +179,7 @@ impl Local {
             }
         };
         tokio::select! {
-            worked = worker::work(source, Program::new(self.grader.clone(), work.threads.get()), options, stop) => worked?,
+            worked = worker::work(source, program, slots, folder.clone(), stop) => worked?,
             () = watching => {}
         }
         drop(std::fs::remove_dir_all(folder));

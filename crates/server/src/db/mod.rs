@@ -18,7 +18,7 @@ pub use fault::DbError;
 pub use migrate::{LATEST, MigrateError, changes_after, migrate, version};
 pub(crate) use pooler::is_pooled;
 pub use transaction::Transaction;
-use transaction::Turn;
+use transaction::{Inner, Turn};
 pub use value::{Column, FromRow, Row, Value};
 pub(crate) use value::{from_row, read_row};
 
@@ -199,13 +199,9 @@ impl Database {
         match &self.engine {
             // A transaction that begins as a reader could not become the writer when another has written meanwhile.
             Engine::Sqlite { writer, .. } => {
-                let (inner, turn) = self.waited(|| writer.begin_with("BEGIN IMMEDIATE"), true).await?;
-                Ok(Transaction::sqlite(inner, turn))
+                self.waited(Inner::Sqlite, || writer.begin_with("BEGIN IMMEDIATE"), true).await
             }
-            Engine::Postgres { pool, .. } => {
-                let (inner, turn) = self.waited(|| pool.begin_with(BEGIN), true).await?;
-                Ok(Transaction::postgres(inner, turn))
-            }
+            Engine::Postgres { pool, .. } => self.waited(Inner::Postgres, || pool.begin_with(BEGIN), true).await,
         }
     }
 
@@ -215,14 +211,10 @@ impl Database {
     /// When the database can't be reached.
     pub async fn read(&self) -> Result<Transaction, DbError> {
         match &self.engine {
-            Engine::Sqlite { readers, .. } => {
-                let (inner, turn) = self.waited(|| readers.begin(), false).await?;
-                Ok(Transaction::sqlite(inner, turn))
-            }
+            Engine::Sqlite { readers, .. } => self.waited(Inner::Sqlite, || readers.begin(), false).await,
             Engine::Postgres { pool, .. } => {
                 let begin = "BEGIN ISOLATION LEVEL REPEATABLE READ, READ ONLY";
-                let (inner, turn) = self.waited(|| pool.begin_with(begin), true).await?;
-                Ok(Transaction::postgres(inner, turn))
+                self.waited(Inner::Postgres, || pool.begin_with(begin), true).await
             }
         }
     }
@@ -230,20 +222,21 @@ impl Database {
     /// Waits for a turn, where they are counted, and for a transaction to begin, and counts that.
     async fn waited<T, F: Future<Output = Result<T, sqlx::Error>>>(
         &self,
+        make: fn(T) -> Inner,
         begin: impl FnOnce() -> F,
         in_turn: bool,
-    ) -> Result<(T, Turn), sqlx::Error> {
+    ) -> Result<Transaction, DbError> {
         let waiting = Waiting::begin(&self.waits.waiting);
         let begun = async {
             let turn = if in_turn { self.turn().await? } else { None };
-            Ok((begin().await?, turn))
+            Ok::<_, sqlx::Error>(Transaction::new(make(begin().await?), turn))
         }
         .await;
         drop(waiting);
         if matches!(begun, Err(sqlx::Error::PoolTimedOut)) {
             self.waits.timeouts.fetch_add(1, Ordering::Relaxed);
         }
-        begun
+        Ok(begun?)
     }
 
     /// How its connections are used.

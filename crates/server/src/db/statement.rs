@@ -66,17 +66,8 @@ pub(super) fn text(statement: &str, dialect: Dialect) -> String {
     if dialect == Dialect::Sqlite {
         return text;
     }
-    let mut counted = String::with_capacity(text.len() + 16);
-    let mut count = 0;
-    for c in text.chars() {
-        if c == '?' {
-            count += 1;
-            counted.push_str(&format!("${count}"));
-        } else {
-            counted.push(c);
-        }
-    }
-    counted
+    let counted = |(count, part): (usize, &str)| if count > 0 { format!("${count}{part}") } else { part.to_owned() };
+    text.split('?').enumerate().map(counted).collect()
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ pub struct Transaction(Inner, #[expect(dead_code, reason = "held, and given back
 pub(super) type Turn = Option<OwnedSemaphorePermit>;
 
 #[derive(Debug)]
-enum Inner {
+pub(super) enum Inner {
     Sqlite(sqlx::Transaction<'static, Sqlite>),
     Postgres(sqlx::Transaction<'static, Postgres>),
 }
@@ -32,12 +32,8 @@ macro_rules! query {
 }
 
 impl Transaction {
-    pub(super) fn sqlite(inner: sqlx::Transaction<'static, Sqlite>, turn: Turn) -> Self {
-        Self(Inner::Sqlite(inner), turn)
-    }
-
-    pub(super) fn postgres(inner: sqlx::Transaction<'static, Postgres>, turn: Turn) -> Self {
-        Self(Inner::Postgres(inner), turn)
+    pub(super) fn new(inner: Inner, turn: Turn) -> Self {
+        Self(inner, turn)
     }
 
     /// Which database it is.

@@ -130,7 +130,7 @@ async fn work(database: &Database, policy: &QueuePolicy, lti: &Lti, claim: &Clai
                 ServiceFault::Refused(_) => (REFUSED, Duration::ZERO),
             };
             let patient = QueuePolicy { max_failures: tries, longest_wait: LONGEST_WAIT, ..*policy };
-            let failure = queue::fail_for(&mut transaction, &patient, &claim.lease, &text, least).await?;
+            let failure = queue::fail(&mut transaction, &patient, &claim.lease, &text, least).await?;
             match (failure, serde_json::from_str::<Order>(&claim.payload)) {
                 (Failure::Buried, _) => {
                     score::give_up(&mut transaction, &claim.payload, &text).await?;

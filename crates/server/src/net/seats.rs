@@ -3,7 +3,10 @@
 use std::{
     collections::{BTreeMap, HashMap},
     net::IpAddr,
-    sync::{Arc, Mutex, MutexGuard, PoisonError},
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicU64, Ordering},
+    },
 };
 use tokio_util::sync::CancellationToken;
 
@@ -35,8 +38,8 @@ struct Guests {
 pub(super) struct Seat {
     address: IpAddr,
     cut: CancellationToken,
-    /// Since when it waits.
-    waits: Mutex<Option<u64>>,
+    /// The number by which it waits; 0 where it does not.
+    waits: AtomicU64,
     seats: Seats,
 }
 
@@ -71,7 +74,7 @@ impl Seats {
         guests.taken += 1;
         guests.waiting.insert(number, cut.clone());
         drop(plan);
-        Some(Seat { address, cut, waits: Mutex::new(Some(number)), seats: self.clone() })
+        Some(Seat { address, cut, waits: AtomicU64::new(number), seats: self.clone() })
     }
 
     /// Ends the connection that waits longest, of the address that has most of those.
@@ -113,17 +116,11 @@ impl Seat {
         self.cut.clone()
     }
 
-    fn waits(&self) -> MutexGuard<'_, Option<u64>> {
-        self.waits.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     /// It has sent a whole request: its place is its own.
     pub(super) fn asked(&self) {
         let mut plan = self.seats.plan();
-        if let Some(number) = self.waits().take()
-            && let Some(guests) = plan.addresses.get_mut(&self.address)
-        {
-            guests.waiting.remove(&number);
+        if let Some(guests) = plan.addresses.get_mut(&self.address) {
+            guests.waiting.remove(&self.waits.swap(0, Ordering::Relaxed));
         }
     }
 
@@ -136,7 +133,7 @@ impl Seat {
         let number = plan.next();
         if let Some(guests) = plan.addresses.get_mut(&self.address) {
             guests.waiting.insert(number, self.cut.clone());
-            *self.waits() = Some(number);
+            self.waits.store(number, Ordering::Relaxed);
         }
     }
 }

@@ -5,12 +5,11 @@
 //! do not hold up another's first. Jobs of a regrade come later by a head start for uploads, and then one by one. Ranks
 //! do not change, and time goes on: so whatever waits is passed only by a bounded number of others, which is what
 //! ageing is for, and the place of a job in the queue is a count.
-use super::{Lane, millis};
+use super::Lane;
 use crate::{
     db::{DbError, Transaction},
     values,
 };
-use std::time::Duration;
 
 /// Whose turn a job uses up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,26 +23,21 @@ pub enum Turn {
 }
 
 impl Turn {
-    /// How much later a further job of the same owner comes.
-    fn spacing(self) -> Duration {
-        match self {
-            Self::Student(_) => Duration::from_secs(600),
-            Self::Campaign(_) => Duration::from_secs(20),
-            Self::Score(..) => Duration::ZERO,
-        }
-    }
-
-    /// How much later than an upload of the same moment its first job comes.
-    fn delay(self) -> Duration {
-        match self {
-            Self::Student(_) | Self::Score(..) => Duration::ZERO,
-            Self::Campaign(_) => Duration::from_secs(1800),
-        }
-    }
-
     /// How much later a further job of the same owner comes, in milliseconds.
     pub(crate) fn spacing_millis(self) -> i64 {
-        millis(self.spacing())
+        match self {
+            Self::Student(_) => 600_000,
+            Self::Campaign(_) => 20_000,
+            Self::Score(..) => 0,
+        }
+    }
+
+    /// How much later than an upload of the same moment its first job comes, in milliseconds.
+    fn delay_millis(self) -> i64 {
+        match self {
+            Self::Student(_) | Self::Score(..) => 0,
+            Self::Campaign(_) => 1_800_000,
+        }
     }
 
     /// The rank of its next job.
@@ -53,7 +47,7 @@ impl Turn {
         let statement = "SELECT max(rank) AS last, {now} AS now FROM job
             WHERE fair_key = ? AND state IN ('waiting', 'running')";
         let last = transaction.one(statement, values![self.key()]).await?;
-        let own = last.int("now")? + millis(self.delay());
+        let own = last.int("now")? + self.delay_millis();
         Ok(last.maybe_int("last")?.map_or(own, |last| own.max(last + self.spacing_millis())))
     }
 

@@ -102,24 +102,11 @@ pub async fn release(transaction: &mut Transaction, lease: &Lease) -> Result<boo
     Ok(changed > 0)
 }
 
-/// Says that this try came to nothing, and why.
+/// Says that this try came to nothing, and why. The next one comes no sooner than `least` from now.
 ///
 /// # Errors
 /// An error of the database.
 pub async fn fail(
-    transaction: &mut Transaction,
-    policy: &QueuePolicy,
-    lease: &Lease,
-    fault: &str,
-) -> Result<Failure, DbError> {
-    fail_for(transaction, policy, lease, fault, Duration::ZERO).await
-}
-
-/// The same, and the next try comes no sooner than `least` from now.
-///
-/// # Errors
-/// An error of the database.
-pub async fn fail_for(
     transaction: &mut Transaction,
     policy: &QueuePolicy,
     lease: &Lease,
@@ -139,11 +126,7 @@ pub async fn fail_for(
         wait: policy.wait(failures).max(least).min(A_DAY),
         fault,
     };
-    if failures >= i64::from(policy.max_failures) {
-        bury(transaction, &loss).await
-    } else {
-        retry(transaction, &loss).await
-    }
+    lose(transaction, loss, failures >= i64::from(policy.max_failures)).await
 }
 
 /// A try that came to nothing, with what its job has counted by now.
@@ -173,44 +156,26 @@ pub(super) async fn die(
         wait: policy.wait_after_death(lone_deaths),
         fault,
     };
-    if lone_deaths >= policy.max_lone_deaths() {
-        bury(transaction, &loss).await
-    } else {
-        retry(transaction, &loss).await
+    lose(transaction, loss, lone_deaths >= policy.max_lone_deaths()).await
+}
+
+/// Buries a job that has had its last try, or has it wait again; one that is suspected by now after the others.
+async fn lose(transaction: &mut Transaction, loss: Loss<'_>, is_last: bool) -> Result<Failure, DbError> {
+    let Loss { job, failures, deaths, lone_deaths, wait, fault } = loss;
+    if is_last {
+        let statement = "UPDATE job SET state = 'buried', failures = ?, deaths = ?, lone_deaths = ?,
+               finished_at = {now}, lease_key = NULL, lease_until = NULL, last_fault = ?
+            WHERE id = ?";
+        transaction.execute(statement, values![failures, deaths, lone_deaths, fault, job]).await?;
+        return Ok(Failure::Buried);
     }
-}
-
-async fn bury(transaction: &mut Transaction, loss: &Loss<'_>) -> Result<Failure, DbError> {
-    let statement = "UPDATE job SET state = 'buried', failures = ?, deaths = ?, lone_deaths = ?, finished_at = {now},
-           lease_key = NULL, lease_until = NULL, last_fault = ?
-        WHERE id = ?";
-    transaction.execute(statement, values![loss.failures, loss.deaths, loss.lone_deaths, loss.fault, loss.job]).await?;
-    Ok(Failure::Buried)
-}
-
-/// Has a job wait again; one that is suspected by now after the others.
-async fn retry(transaction: &mut Transaction, loss: &Loss<'_>) -> Result<Failure, DbError> {
-    let later = if loss.failures + loss.deaths >= SUSPECTED_AFTER { millis(SUSPECTED_LATER) } else { 0 };
+    let later = if failures + deaths >= SUSPECTED_AFTER { millis(SUSPECTED_LATER) } else { 0 };
     let statement =
         "UPDATE job SET state = 'waiting', failures = ?, deaths = ?, lone_deaths = ?, run_after = {now} + ?,
            rank = CASE WHEN ? > 0 AND rank < {now} + ? THEN {now} + ? ELSE rank END, failed_by = worker,
            worker = NULL, lease_key = NULL, lease_until = NULL, last_fault = ?
         WHERE id = ?";
-    transaction
-        .execute(
-            statement,
-            values![
-                loss.failures,
-                loss.deaths,
-                loss.lone_deaths,
-                millis(loss.wait),
-                later,
-                later,
-                later,
-                loss.fault,
-                loss.job
-            ],
-        )
-        .await?;
+    let values = values![failures, deaths, lone_deaths, millis(wait), later, later, later, fault, job];
+    transaction.execute(statement, values).await?;
     Ok(Failure::Retried)
 }

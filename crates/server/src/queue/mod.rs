@@ -19,7 +19,7 @@ mod tick;
 
 pub use claim::{Claimant, claim, is_due};
 pub use enqueue::{NewJob, Turn, cancel, enqueue, waits};
-pub use hold::{Completion, Failure, Progress, complete, fail, fail_for, payload, release, renew};
+pub use hold::{Completion, Failure, Progress, complete, fail, payload, release, renew};
 pub use notifier::{Notifier, Subscription};
 pub use place::{Place, place};
 pub use tick::{Buried, Tick, abandon, tick};
@@ -30,8 +30,7 @@ use std::time::Duration;
 use utoipa::ToSchema;
 
 /// The kind of work that a job is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Lane {
     /// Workers grade.
     Grading,
@@ -169,7 +168,7 @@ impl Claim {
 }
 
 /// Milliseconds, as the database counts.
-fn millis(duration: Duration) -> i64 {
+pub(crate) fn millis(duration: Duration) -> i64 {
     i64::try_from(duration.as_millis()).unwrap_or(i64::MAX)
 }
 

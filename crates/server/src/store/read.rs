@@ -1,5 +1,5 @@
 //! Reading artefacts: in pieces, so that memory is the same for each, however large it is.
-use super::{Digest, Store, StoreError};
+use super::{ASIDE, Digest, KEPT, Store, StoreError};
 use crate::secret::hex;
 use axum::body::Bytes;
 use futures_util::{StreamExt, TryStreamExt, stream::BoxStream};
@@ -28,10 +28,10 @@ impl Store {
     /// When there is none, it is damaged, or the store fails.
     pub async fn open(&self, digest: &Digest, range: Option<Range<u64>>) -> Result<Opened, StoreError> {
         let options = || GetOptions { range: range.clone().map(GetRange::Bounded), ..GetOptions::default() };
-        let mut found = self.objects.get_opts(&digest.key(), options()).await;
+        let mut found = self.objects.get_opts(&digest.key(KEPT), options()).await;
         // A file that is put aside may be named since, and comes back.
         if matches!(found, Err(object_store::Error::NotFound { .. })) {
-            found = self.objects.get_opts(&digest.aside(), options()).await;
+            found = self.objects.get_opts(&digest.key(ASIDE), options()).await;
         }
         let found = match found {
             Err(object_store::Error::NotFound { .. }) => return Err(StoreError::Missing(digest.clone())),

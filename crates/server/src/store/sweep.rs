@@ -12,17 +12,9 @@ use std::{
 /// Artefacts that are asked about at a time.
 const BATCH: usize = 500;
 
-/// Which of these artefacts something names.
-pub trait Names: Send {
-    /// The error when they are asked for.
-    type Error: From<StoreError>;
-
-    /// Those of these digests that are named.
-    fn named(&mut self, digests: &[Digest]) -> impl Future<Output = Result<HashSet<Digest>, Self::Error>> + Send;
-}
-
 impl Store {
-    /// Gives up every artefact that is older than `least` and not named; how many these were.
+    /// Gives up every artefact that is older than `least` and not named; how many these were. `named` tells which of
+    /// some digests are.
     ///
     /// Anybody who stores one of them at this very moment does not lose it: it is put aside first, where it is still
     /// read, and looked at again there, at once and every time from then on. When it is named by then it comes back. It
@@ -31,18 +23,22 @@ impl Store {
     ///
     /// # Errors
     /// When the store fails, or nobody can say what is named. What was put aside is looked at again the next time.
-    pub async fn give_up<N: Names>(&self, least: Duration, names: &mut N) -> Result<usize, N::Error> {
+    pub async fn give_up<E: From<StoreError>, F: Future<Output = Result<HashSet<Digest>, E>>>(
+        &self,
+        least: Duration,
+        mut named: impl FnMut(Vec<Digest>) -> F,
+    ) -> Result<usize, E> {
         let mut batches = self.list(KEPT).try_chunks(BATCH);
         while let Some(batch) = batches.next().await {
             let mut batch = batch.map_err(|error| error.1)?;
             batch.retain(|(_, age)| *age >= least);
             let digests: Vec<Digest> = batch.into_iter().map(|(digest, _)| digest).collect();
-            let named = names.named(&digests).await?;
+            let named = named(digests.clone()).await?;
             for digest in digests.iter().filter(|digest| !named.contains(digest)) {
-                self.rename(&digest.key(), &digest.aside()).await?;
+                self.rename(&digest.key(KEPT), &digest.key(ASIDE)).await?;
                 // In a bucket it is a copy, and new.
                 if let Some(folder) = &self.folder {
-                    renew(&folder.join(digest.aside().as_ref()));
+                    renew(&folder.join(digest.key(ASIDE).as_ref()));
                 }
             }
         }
@@ -50,13 +46,12 @@ impl Store {
         let mut batches = self.list(ASIDE).try_chunks(BATCH);
         while let Some(batch) = batches.next().await {
             let batch = batch.map_err(|error| error.1)?;
-            let digests: Vec<Digest> = batch.iter().map(|(digest, _)| digest.clone()).collect();
-            let named = names.named(&digests).await?;
+            let named = named(batch.iter().map(|(digest, _)| digest.clone()).collect()).await?;
             for (digest, age) in batch {
                 if named.contains(&digest) {
-                    self.rename(&digest.aside(), &digest.key()).await?;
+                    self.rename(&digest.key(ASIDE), &digest.key(KEPT)).await?;
                 } else if age >= least {
-                    match self.objects.delete(&digest.aside()).await {
+                    match self.objects.delete(&digest.key(ASIDE)).await {
                         Ok(()) => given_up += 1,
                         Err(object_store::Error::NotFound { .. }) => {}
                         Err(error) => return Err(StoreError::from(error).into()),

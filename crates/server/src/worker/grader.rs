@@ -8,7 +8,13 @@ use thiserror::Error;
 use tokio_util::sync::CancellationToken;
 
 /// The result of a grading, with its files still in the working folder.
-pub type Graded = Outcome<NewFile>;
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Graded {
+    /// The result, without files.
+    pub outcome: Outcome,
+    /// Its files.
+    pub files: Vec<NewFile>,
+}
 
 /// A file that belongs to a result.
 #[derive(Debug, Clone, PartialEq, Eq)]

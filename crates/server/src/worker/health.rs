@@ -22,8 +22,9 @@ const LONGEST_WAIT: Duration = Duration::from_secs(60);
 /// The health of a worker. Cloning it is cheap, and all slots share it.
 #[derive(Debug, Clone)]
 pub(super) struct Health<G> {
-    grader: G,
-    folder: PathBuf,
+    pub(super) grader: G,
+    /// Where jobs and proofs get their folders.
+    pub(super) folder: PathBuf,
     is_proven: Arc<AtomicBool>,
     /// Held by the slot that asks for proofs until there is one; the others wait for it.
     asking: Arc<Mutex<()>>,

@@ -1,5 +1,5 @@
 //! The source of workers that hold the database themselves: those within the server, and those of who wants it so.
-use super::{Answer, ClaimedJob, GRACE, JobSource, SourceError};
+use super::{GRACE, JobSource, SourceError};
 use crate::{
     db::{Database, DbError},
     health, ledger,
@@ -7,6 +7,7 @@ use crate::{
     shown::{self, KeptTexts},
     store::{Artefact, Digest, Store, StoreError},
     task::{Outcome, Task},
+    wire::{Claimed, LeaseAnswer},
 };
 use std::{path::Path, time::Duration};
 use tokio::sync::Mutex;
@@ -72,7 +73,7 @@ fn longest(task: &Task, policy: &QueuePolicy) -> Duration {
 }
 
 impl JobSource for LocalSource {
-    async fn claim(&self, is_idle: bool) -> Result<Option<ClaimedJob>, SourceError> {
+    async fn claim(&self, is_idle: bool) -> Result<Option<Claimed>, SourceError> {
         let claimant = Claimant { worker: &self.worker, is_idle, token: self.token };
         ledger::tick(&self.database, &self.policy).await?;
         loop {
@@ -86,13 +87,9 @@ impl JobSource for LocalSource {
             let Some(claim) = claim else { return Ok(None) };
             match serde_json::from_str(&claim.payload) {
                 Ok(task) => {
-                    let alone = claim.is_suspected();
-                    return Ok(Some(ClaimedJob {
-                        lease: claim.lease,
-                        renew_every: self.policy.renew_every(),
-                        task,
-                        alone,
-                    }));
+                    let (alone, renew_every) = (claim.is_suspected(), self.policy.renew_every());
+                    let renew_every = u64::try_from(renew_every.as_millis()).unwrap_or(u64::MAX);
+                    return Ok(Some(Claimed { lease: claim.lease, renew_every, task, alone }));
                 }
                 // Written by another version of the program: not this worker's to do.
                 Err(error) => {
@@ -106,7 +103,7 @@ impl JobSource for LocalSource {
         self.subscription.lock().await.wait(patience.min(LOOK_EVERY)).await;
     }
 
-    async fn renew(&self, lease: &Lease, progress: Option<Progress>) -> Result<Answer, SourceError> {
+    async fn renew(&self, lease: &Lease, progress: Option<Progress>) -> Result<LeaseAnswer, SourceError> {
         // A step of the clock is noticed before it can end a lease.
         ledger::tick(&self.database, &self.policy).await?;
         let mut transaction = self.database.begin().await?;
@@ -119,10 +116,10 @@ impl JobSource for LocalSource {
             None => false,
         };
         transaction.commit().await?;
-        Ok(if held { Answer::Held } else { Answer::Lost })
+        Ok(held.into())
     }
 
-    async fn finish(&self, lease: &Lease, outcome: &Outcome) -> Result<Answer, SourceError> {
+    async fn finish(&self, lease: &Lease, outcome: &Outcome) -> Result<LeaseAnswer, SourceError> {
         for file in &outcome.files {
             if !self.store.has(&file.artefact.digest).await? {
                 return Err(SourceError::Refused(format!("{} is not in the store", file.name)));
@@ -133,27 +130,24 @@ impl JobSource for LocalSource {
         let mut transaction = self.database.begin().await?;
         let completion = ledger::finish(&mut transaction, lease, &outcome).await?;
         self.notifier.commit(transaction).await?;
-        Ok(match completion {
-            Completion::Done | Completion::Repeated => Answer::Held,
-            Completion::Late => Answer::Lost,
-        })
+        Ok((completion != Completion::Late).into())
     }
 
-    async fn release(&self, lease: &Lease) -> Result<Answer, SourceError> {
+    async fn release(&self, lease: &Lease) -> Result<LeaseAnswer, SourceError> {
         let mut transaction = self.database.begin().await?;
         let held = queue::release(&mut transaction, lease).await?;
         self.notifier.commit(transaction).await?;
-        Ok(if held { Answer::Held } else { Answer::Lost })
+        Ok(held.into())
     }
 
-    async fn fail(&self, lease: &Lease, fault: &str) -> Result<Answer, SourceError> {
+    async fn fail(&self, lease: &Lease, fault: &str) -> Result<LeaseAnswer, SourceError> {
         let mut transaction = self.database.begin().await?;
         let failure = ledger::fail(&mut transaction, &self.policy, lease, fault).await?;
         self.notifier.commit(transaction).await?;
         if failure == Failure::Buried {
             tracing::error!(job = lease.job, fault, "a job was tried too often");
         }
-        Ok(if failure == Failure::Late { Answer::Lost } else { Answer::Held })
+        Ok((failure != Failure::Late).into())
     }
 
     async fn fetch(&self, _: &Lease, digest: &Digest, file: &Path) -> Result<(), SourceError> {

@@ -21,6 +21,6 @@ use program::GRACE;
 pub use program::{Program, REPORTS, STAFF_PAGE};
 pub(crate) use reading::essence;
 pub use remote::RemoteSource;
-pub use slots::{Options, work};
-pub use source::{Answer, ClaimedJob, JobSource, SourceError};
+pub use slots::work;
+pub use source::{JobSource, SourceError};
 pub use suite_check::check_suite;

@@ -242,21 +242,18 @@ impl Grader for Program {
                 return Err(GraderFault::Failed(format!("the grader was ended by signal {signal}: {}", said())));
             }
         }
-        let mut graded = reading::read_grade(&folder.join("grade.json")).map_err(GraderFault::Failed)?;
-        graded.grader = grader;
+        let mut outcome = reading::read_grade(&folder.join("grade.json")).map_err(GraderFault::Failed)?;
+        outcome.grader = grader;
         if stopped {
-            graded.summary = format!("stopped after {} seconds; {}", task.seconds, graded.summary);
+            outcome.summary = format!("stopped after {} seconds; {}", task.seconds, outcome.summary);
         }
-        graded.files = REPORTS
-            .iter()
-            .map(|(_, file, media_type)| NewFile {
-                name: (*file).to_owned(),
-                media_type: (*media_type).to_owned(),
-                path: folder.join(file),
-            })
-            .filter(|file| file.path.exists())
-            .collect();
-        Ok(graded)
+        let new = |(_, name, media_type): &(_, &str, &str)| NewFile {
+            name: (*name).to_owned(),
+            media_type: (*media_type).to_owned(),
+            path: folder.join(name),
+        };
+        let files = REPORTS.iter().map(new).filter(|file| file.path.exists()).collect();
+        Ok(Graded { outcome, files })
     }
 }
 

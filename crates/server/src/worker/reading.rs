@@ -1,9 +1,8 @@
 //! The grader's words about a submission, as far as the service understands them; the rest goes to people.
-use super::Graded;
 use crate::{
     grade_file::{GradeFile, SceneInFile},
     store::Digest,
-    task::WrongScene,
+    task::{Outcome, WrongScene},
 };
 use serde_json::Value;
 use std::{fs, path::Path};
@@ -16,7 +15,7 @@ const SCHEMAS: std::ops::RangeInclusive<u32> = 3..=4;
 const MEASURED: [&str; 5] = ["cpu_seconds", "wall_seconds", "memory_bytes", "cached", "sandbox"];
 
 /// Numbers keep their digits: the text that the grader wrote is what counts.
-pub(super) fn read_grade(file: &Path) -> Result<Graded, String> {
+pub(super) fn read_grade(file: &Path) -> Result<Outcome, String> {
     let bytes = fs::read(file).map_err(|error| format!("the grader wrote no grade.json: {error}"))?;
     let damaged = |error: serde_json::Error| format!("grade.json can't be read: {error}");
     let report: GradeFile = serde_json::from_slice(&bytes).map_err(damaged)?;
@@ -36,20 +35,17 @@ pub(super) fn read_grade(file: &Path) -> Result<Graded, String> {
     if let Some(mistake) = grade.likely_mistakes.first() {
         summary = format!("{summary}; {}", mistake.text);
     }
-    Ok(Graded {
+    Ok(Outcome {
         verdict: grade.verdict.clone(),
         code: grade.code.clone(),
         points: grade.points.as_ref().map(ToString::to_string),
         max_points: grade.max_points.as_ref().map(ToString::to_string),
         summary,
         version: report.version,
-        grader: String::new(),
         essence: Digest::of(essence(&bytes).map_err(damaged)?.as_bytes()).to_string(),
         wrong: wrong(&scenes),
         seconds: "0".to_owned(),
-        files: Vec::new(),
-        shown: None,
-        failed: None,
+        ..Outcome::default()
     })
 }
 

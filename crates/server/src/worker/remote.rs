@@ -1,5 +1,5 @@
 //! The source of workers on other machines: a server over HTTP. They hold a token, no password of a database.
-use super::{Answer, ClaimedJob, JobSource, SourceError};
+use super::{JobSource, SourceError};
 use crate::{
     queue::{Lease, Progress},
     store::{Artefact, Digest, digest_of_file},
@@ -80,9 +80,12 @@ impl RemoteSource {
         asked.map_err(|error| SourceError::Away(error.to_string()))?
     }
 
-    async fn held(&self, path: &'static str, body: impl Serialize + Send + 'static) -> Result<Answer, SourceError> {
-        let held: LeaseAnswer = self.call(move |parts| parts.json(path, &body)).await?;
-        Ok(if held.held { Answer::Held } else { Answer::Lost })
+    async fn held(
+        &self,
+        path: &'static str,
+        body: impl Serialize + Send + 'static,
+    ) -> Result<LeaseAnswer, SourceError> {
+        self.call(move |parts| parts.json(path, &body)).await
     }
 }
 
@@ -142,45 +145,38 @@ fn checked(mut answer: Response<Body>) -> Result<Response<Body>, SourceError> {
 }
 
 impl JobSource for RemoteSource {
-    async fn claim(&self, is_idle: bool) -> Result<Option<ClaimedJob>, SourceError> {
-        let claimed: Option<Claimed> = self
-            .call(move |parts| {
-                let path = if is_idle { "claim" } else { "claim?idle=false" };
-                let mut answer = checked(parts.post(path, &serde_json::json!({}))?)?;
-                if answer.status() == 204 {
-                    return Ok(None);
-                }
-                let text = answer.body_mut().with_config().limit(ANSWER).read_to_vec().map_err(away)?;
-                serde_json::from_slice(&text)
-                    .map(Some)
-                    .map_err(|error| SourceError::Refused(format!("the job can't be read: {error}")))
-            })
-            .await?;
-        Ok(claimed.map(|claimed| ClaimedJob {
-            lease: claimed.lease,
-            renew_every: Duration::from_millis(claimed.renew_every),
-            task: claimed.task,
-            alone: claimed.alone,
-        }))
+    async fn claim(&self, is_idle: bool) -> Result<Option<Claimed>, SourceError> {
+        self.call(move |parts| {
+            let path = if is_idle { "claim" } else { "claim?idle=false" };
+            let mut answer = checked(parts.post(path, &serde_json::json!({}))?)?;
+            if answer.status() == 204 {
+                return Ok(None);
+            }
+            let text = answer.body_mut().with_config().limit(ANSWER).read_to_vec().map_err(away)?;
+            serde_json::from_slice(&text)
+                .map(Some)
+                .map_err(|error| SourceError::Refused(format!("the job can't be read: {error}")))
+        })
+        .await
     }
 
     async fn wait(&self, patience: Duration) {
         tokio::time::sleep(patience.min(ASK_EVERY)).await;
     }
 
-    async fn renew(&self, lease: &Lease, progress: Option<Progress>) -> Result<Answer, SourceError> {
+    async fn renew(&self, lease: &Lease, progress: Option<Progress>) -> Result<LeaseAnswer, SourceError> {
         self.held("renew", Renewal { lease: lease.clone(), progress }).await
     }
 
-    async fn finish(&self, lease: &Lease, outcome: &Outcome) -> Result<Answer, SourceError> {
+    async fn finish(&self, lease: &Lease, outcome: &Outcome) -> Result<LeaseAnswer, SourceError> {
         self.held("finish", Finished { lease: lease.clone(), outcome: outcome.clone() }).await
     }
 
-    async fn release(&self, lease: &Lease) -> Result<Answer, SourceError> {
+    async fn release(&self, lease: &Lease) -> Result<LeaseAnswer, SourceError> {
         self.held("release", lease.clone()).await
     }
 
-    async fn fail(&self, lease: &Lease, fault: &str) -> Result<Answer, SourceError> {
+    async fn fail(&self, lease: &Lease, fault: &str) -> Result<LeaseAnswer, SourceError> {
         self.held("fail", JobFault { lease: lease.clone(), fault: fault.to_owned() }).await
     }
 

@@ -1,11 +1,12 @@
 //! A worker's slots: each does one job after another.
 use super::{
-    Answer, ClaimedJob, Grader, GraderFault, JobSource, PROGRESS, SourceError,
+    Grader, GraderFault, JobSource, PROGRESS, SourceError,
     health::{Health, job_folder},
 };
 use crate::{
     queue::{Lease, Progress},
     task::{Outcome, OutputFile, Suite},
+    wire::Claimed,
 };
 use std::{
     fs::File,
@@ -36,35 +37,27 @@ const MANY_SCENES: u32 = 1_000_000;
 /// The folder of a job in which its grader works.
 const WORK: &str = "work";
 
-/// How a worker works.
-#[derive(Debug, Clone)]
-pub struct Options {
-    /// Jobs at one time.
-    pub slots: usize,
-    /// Where jobs get their folders; emptied by who owns it, not by the slots.
-    pub folder: PathBuf,
-}
-
-/// Does jobs until `stop` is cancelled; then gives back what it holds, and ends.
+/// Does jobs, one in each slot, until `stop` is cancelled; then gives back what it holds, and ends. Jobs get folders in
+/// this one, which is emptied by who owns it, not by the slots.
 ///
 /// # Errors
 /// When the source does not know the worker any more: what it holds counts for nothing.
 pub async fn work<D: JobSource, G: Grader>(
     source: D,
     grader: G,
-    options: Options,
+    slots: usize,
+    folder: PathBuf,
     stop: CancellationToken,
 ) -> Result<(), SourceError> {
     let gate = Arc::new(RwLock::new(()));
-    let health = Health::new(grader.clone(), options.folder.clone());
-    let mut slots = tokio::task::JoinSet::new();
-    for _ in 0..options.slots {
-        let (source, grader, health) = (source.clone(), grader.clone(), health.clone());
-        slots.spawn(slot(source, grader, health, options.folder.clone(), gate.clone(), stop.clone()));
+    let health = Health::new(grader, folder);
+    let mut running = tokio::task::JoinSet::new();
+    for _ in 0..slots {
+        running.spawn(slot(source.clone(), health.clone(), gate.clone(), stop.clone()));
     }
     let ticking = async {
         loop {
-            let slots = if health.is_proven() { options.slots } else { 0 };
+            let slots = if health.is_proven() { slots } else { 0 };
             match source.tick(slots, health.fault().as_deref()).await {
                 Ok(()) => {}
                 Err(SourceError::Dismissed) => return SourceError::Dismissed,
@@ -78,18 +71,11 @@ pub async fn work<D: JobSource, G: Grader>(
     };
     tokio::select! {
         error = ticking => Err(error),
-        () = async { while slots.join_next().await.is_some() {} } => Ok(()),
+        () = async { while running.join_next().await.is_some() {} } => Ok(()),
     }
 }
 
-async fn slot<D: JobSource, G: Grader>(
-    source: D,
-    grader: G,
-    health: Health<G>,
-    folder: PathBuf,
-    gate: Arc<RwLock<()>>,
-    stop: CancellationToken,
-) {
+async fn slot<D: JobSource, G: Grader>(source: D, health: Health<G>, gate: Arc<RwLock<()>>, stop: CancellationToken) {
     let mut wait = FIRST_WAIT;
     while health.well(&stop).await {
         let pass = SlotPermit::through(&gate).await;
@@ -107,9 +93,7 @@ async fn slot<D: JobSource, G: Grader>(
                 // A panic is this job's, not the worker's.
                 let lease = job.lease.clone();
                 let pass = pass.for_job(job.alone, gate.clone());
-                let running =
-                    run(source.clone(), grader.clone(), health.clone(), job, folder.clone(), pass, stop.clone());
-                let done = tokio::spawn(running);
+                let done = tokio::spawn(run(source.clone(), health.clone(), job, pass, stop.clone()));
                 if let Err(error) = done.await {
                     tracing::error!(job = lease.job, %error, "the worker failed");
                     settle(&source, &lease, JobEnding::Failed(format!("the worker failed: {error}")), &stop).await;
@@ -168,23 +152,28 @@ enum JobEnding {
 
 async fn run<D: JobSource, G: Grader>(
     source: D,
-    grader: G,
     health: Health<G>,
-    job: ClaimedJob,
-    folder: PathBuf,
+    job: Claimed,
     pass: impl Future<Output = SlotPermit>,
     stop: CancellationToken,
 ) {
     let lost = CancellationToken::new();
-    let folder = job_folder(&folder);
+    let folder = job_folder(&health.folder);
     let progress = folder.as_ref().ok().map(|folder| folder.path().join(WORK).join(PROGRESS));
-    let keeping = tokio::spawn(keep(source.clone(), job.lease.clone(), job.renew_every, progress, lost.clone()));
+    let every = Duration::from_millis(job.renew_every);
+    let keeping = tokio::spawn(keep(source.clone(), job.lease.clone(), every, progress, lost.clone()));
     let _pass = pass.await;
     let ending = match folder {
         Err(error) => JobEnding::Failed(format!("no folder for the job: {error}")),
         Ok(folder) => {
             let halt = CancellationToken::new();
-            let grading = attempt(&source, &grader, &job, folder.path(), halt.clone());
+            let grading = async {
+                match attempt(&source, &health.grader, &job, folder.path(), halt.clone()).await {
+                    Ok(outcome) => JobEnding::Finished(Box::new(outcome)),
+                    Err(GraderFault::Stopped) => JobEnding::GivenBack,
+                    Err(GraderFault::Failed(fault)) => JobEnding::Failed(fault),
+                }
+            };
             tokio::pin!(grading);
             let ending = tokio::select! {
                 ending = &mut grading => Some(ending),
@@ -231,8 +220,8 @@ async fn keep<D: JobSource>(source: D, lease: Lease, every: Duration, file: Opti
         renewed = tokio::time::Instant::now();
         told = progress;
         match source.renew(&lease, progress).await {
-            Ok(Answer::Held) => {}
-            Ok(Answer::Lost) => {
+            Ok(answer) if answer.held => {}
+            Ok(_) => {
                 tracing::warn!(job = lease.job, attempt = lease.attempt, "the lease is lost");
                 return lost.cancel();
             }
@@ -251,31 +240,17 @@ fn progress_in(file: &Path) -> Option<Progress> {
     (progress.done <= progress.all && progress.all <= MANY_SCENES).then_some(progress)
 }
 
-/// Fetches what the job needs, grades, and stores what came of it.
-async fn attempt<D: JobSource, G: Grader>(
-    source: &D,
-    grader: &G,
-    job: &ClaimedJob,
-    folder: &Path,
-    halt: CancellationToken,
-) -> JobEnding {
-    match try_attempt(source, grader, job, folder, halt).await {
-        Ok(outcome) => JobEnding::Finished(Box::new(outcome)),
-        Err(GraderFault::Stopped) => JobEnding::GivenBack,
-        Err(GraderFault::Failed(fault)) => JobEnding::Failed(fault),
-    }
-}
-
 impl From<SourceError> for GraderFault {
     fn from(error: SourceError) -> Self {
         Self::Failed(error.to_string())
     }
 }
 
-async fn try_attempt<D: JobSource, G: Grader>(
+/// Fetches what the job needs, grades, and stores what came of it.
+async fn attempt<D: JobSource, G: Grader>(
     source: &D,
     grader: &G,
-    job: &ClaimedJob,
+    job: &Claimed,
     folder: &Path,
     halt: CancellationToken,
 ) -> Result<Outcome, GraderFault> {
@@ -299,7 +274,7 @@ async fn try_attempt<D: JobSource, G: Grader>(
         files.push(OutputFile { name: file.name.clone(), media_type: file.media_type.clone(), artefact });
     }
     let seconds = format!("{:.3}", start.elapsed().as_secs_f64());
-    Ok(Outcome { seconds, ..graded.with_files(files) })
+    Ok(Outcome { seconds, files, ..graded.outcome })
 }
 
 /// Asks a source that is away a few times more: a hiccup of the network costs no try.
@@ -332,8 +307,8 @@ async fn settle<D: JobSource>(source: &D, lease: &Lease, ending: JobEnding, stop
             JobEnding::Lost => return,
         };
         match answer {
-            Ok(Answer::Held) => return,
-            Ok(Answer::Lost) => return tracing::warn!(job = lease.job, "too late: the lease is lost"),
+            Ok(answer) if answer.held => return,
+            Ok(_) => return tracing::warn!(job = lease.job, "too late: the lease is lost"),
             Err(error @ (SourceError::Refused(_) | SourceError::Dismissed)) => {
                 return tracing::error!(job = lease.job, %error, "the result is refused; the lease will run out");
             }

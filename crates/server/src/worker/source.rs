@@ -2,32 +2,11 @@
 use crate::{
     queue::{Lease, Progress},
     store::{Artefact, Digest},
-    task::{Outcome, Task},
+    task::Outcome,
+    wire::{Claimed, LeaseAnswer},
 };
 use std::{future::Future, path::Path, time::Duration};
 use thiserror::Error;
-
-/// A job that was claimed.
-#[derive(Debug, Clone)]
-pub struct ClaimedJob {
-    /// The lease to show from now on.
-    pub lease: Lease,
-    /// How often to renew it.
-    pub renew_every: Duration,
-    /// The task.
-    pub task: Task,
-    /// Whether nothing else may run beside it in this worker: it may have killed workers before.
-    pub alone: bool,
-}
-
-/// Whether the lease still holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Answer {
-    /// It does, or did: what was asked is done.
-    Held,
-    /// It does not: somebody else has the job, and nothing was changed.
-    Lost,
-}
 
 /// Why a source did not answer.
 #[derive(Debug, Error)]
@@ -47,7 +26,7 @@ pub enum SourceError {
 pub trait JobSource: Clone + Send + Sync + 'static {
     /// The next job, if there is one. Not to be interrupted: the source might have given away a job that nobody gets. A
     /// worker that is idle also gets jobs that must run alone.
-    fn claim(&self, is_idle: bool) -> impl Future<Output = Result<Option<ClaimedJob>, SourceError>> + Send;
+    fn claim(&self, is_idle: bool) -> impl Future<Output = Result<Option<Claimed>, SourceError>> + Send;
 
     /// Waits until there may be a job, or `patience` is over. May be interrupted.
     fn wait(&self, patience: Duration) -> impl Future<Output = ()> + Send;
@@ -57,16 +36,17 @@ pub trait JobSource: Clone + Send + Sync + 'static {
         &self,
         lease: &Lease,
         progress: Option<Progress>,
-    ) -> impl Future<Output = Result<Answer, SourceError>> + Send;
+    ) -> impl Future<Output = Result<LeaseAnswer, SourceError>> + Send;
 
     /// Brings the result. Saying it twice is no harm.
-    fn finish(&self, lease: &Lease, outcome: &Outcome) -> impl Future<Output = Result<Answer, SourceError>> + Send;
+    fn finish(&self, lease: &Lease, outcome: &Outcome)
+    -> impl Future<Output = Result<LeaseAnswer, SourceError>> + Send;
 
     /// Gives the job back at no cost.
-    fn release(&self, lease: &Lease) -> impl Future<Output = Result<Answer, SourceError>> + Send;
+    fn release(&self, lease: &Lease) -> impl Future<Output = Result<LeaseAnswer, SourceError>> + Send;
 
     /// Says that the try came to nothing through no fault of the submission.
-    fn fail(&self, lease: &Lease, fault: &str) -> impl Future<Output = Result<Answer, SourceError>> + Send;
+    fn fail(&self, lease: &Lease, fault: &str) -> impl Future<Output = Result<LeaseAnswer, SourceError>> + Send;
 
     /// Copies an artefact of the job into a new file.
     fn fetch(

@@ -65,7 +65,7 @@ async fn complete(database: &Database, lease: &Lease) -> Completion {
 
 async fn fail(database: &Database, lease: &Lease) -> Failure {
     let mut transaction = database.begin().await.expect("a transaction");
-    let failure = queue::fail(&mut transaction, &POLICY, lease, "it broke").await.expect("an answer");
+    let failure = queue::fail(&mut transaction, &POLICY, lease, "it broke", Duration::ZERO).await.expect("an answer");
     transaction.commit().await.expect("commit");
     failure
 }

@@ -5,22 +5,19 @@ use crate::support::{
 };
 use fosssim_server::{
     retention,
-    store::{Digest, Names, Store, StoreError},
+    store::{Digest, Store, StoreError},
     values,
 };
 use std::{collections::HashSet, time::Duration};
 
 on_both_engines!(old_uploads_go_and_grades_stay);
 
-/// The digests that a test says are named.
-struct Named<F>(F);
-
-impl<F: FnMut(&Digest) -> bool + Send> Names for Named<F> {
-    type Error = StoreError;
-
-    async fn named(&mut self, digests: &[Digest]) -> Result<HashSet<Digest>, StoreError> {
-        Ok(digests.iter().filter(|digest| (self.0)(digest)).cloned().collect())
-    }
+/// Those of these digests that a test says are named.
+fn named(
+    digests: Vec<Digest>,
+    is_named: impl FnMut(&Digest) -> bool,
+) -> std::future::Ready<Result<HashSet<Digest>, StoreError>> {
+    std::future::ready(Ok(digests.into_iter().filter(is_named).collect()))
 }
 
 async fn old_uploads_go_and_grades_stay(fresh: Fresh) {
@@ -100,18 +97,18 @@ fn what_somebody_stores_meanwhile_is_not_lost() {
             std::fs::write(part(end), b"tw").expect("written");
             age(&part(end), hours);
         }
-        assert_eq!(store.give_up(day, &mut Named(|_: &Digest| false)).await.expect("done"), 1, "the old part");
+        assert_eq!(store.give_up(day, |digests| named(digests, |_| false)).await.expect("done"), 1, "the old part");
         assert!(!part("1").exists() && part("2").exists());
         // A file that is put aside lies there for a day, and is read meanwhile.
         assert_eq!(store.bytes(&one, 10).await.expect("the bytes"), b"one");
         age(&place("aside", &one), 25);
-        assert_eq!(store.give_up(day, &mut Named(|_: &Digest| false)).await.expect("done"), 1);
+        assert_eq!(store.give_up(day, |digests| named(digests, |_| false)).await.expect("done"), 1);
         assert!(!store.has(&one).await.expect("the store") && store.has(&two).await.expect("the store"));
         // A file that a server had put aside before it died comes back when it is named.
         age(&place("sha256", &two), 48);
         std::fs::create_dir_all(place("aside", &two).parent().expect("a folder")).expect("a folder");
         std::fs::rename(place("sha256", &two), place("aside", &two)).expect("moved");
-        assert_eq!(store.give_up(day, &mut Named(|name: &Digest| *name == two)).await.expect("done"), 0);
+        assert_eq!(store.give_up(day, |digests| named(digests, |name| *name == two)).await.expect("done"), 0);
         assert_eq!(store.bytes(&two, 10).await.expect("the bytes"), b"two");
     });
 }
@@ -186,15 +183,17 @@ mod bucket {
                 store.bytes(&large_one, 1).await.is_err() && !store.has(&Digest::of(b"none")).await.expect("an answer")
             );
             let long = Duration::from_secs(3600);
-            assert_eq!(store.give_up(long, &mut Named(|_: &Digest| false)).await.expect("done"), 0, "too young");
+            assert_eq!(store.give_up(long, |digests| named(digests, |_| false)).await.expect("done"), 0, "too young");
             // Nothing names either of them for a moment: put aside, and read all the same.
             let aside = Duration::ZERO;
             let mut count = 0;
-            let mut named_later = Named(|name: &Digest| {
-                count += usize::from(*name == small);
-                *name == small && count > 1
-            });
-            assert_eq!(store.give_up(aside, &mut named_later).await.expect("done"), 1, "the large one alone");
+            let named_later = |digests| {
+                named(digests, |name| {
+                    count += usize::from(*name == small);
+                    *name == small && count > 1
+                })
+            };
+            assert_eq!(store.give_up(aside, named_later).await.expect("done"), 1, "the large one alone");
             assert!(!store.has(&large_one).await.expect("an answer"));
             assert_eq!(store.bytes(&small, 10).await.expect("it came back"), b"small");
         });

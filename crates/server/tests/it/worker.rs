@@ -3,9 +3,9 @@ use crate::support::engines::{Fresh, run};
 use fosssim_server::{
     queue::{self, Lane, NewJob, Notifier, QueuePolicy, Turn},
     store::{Artefact, Store},
-    task::{Form, Input, Suite, Task},
+    task::{Form, Input, Outcome, Suite, Task},
     values,
-    worker::{self, Graded, Grader, GraderFault, LocalSource, Options},
+    worker::{self, Graded, Grader, GraderFault, LocalSource},
 };
 use std::{
     path::Path,
@@ -54,21 +54,14 @@ impl Grader for Watchful {
         }
         self.running.fetch_sub(1, Ordering::SeqCst);
         self.done.fetch_add(1, Ordering::SeqCst);
-        Ok(Graded {
+        let outcome = Outcome {
             verdict: "accepted".to_owned(),
             code: "AC".to_owned(),
-            points: None,
-            max_points: None,
-            summary: String::new(),
             version: "test".to_owned(),
-            grader: String::new(),
-            essence: String::new(),
-            wrong: Vec::new(),
             seconds: "0".to_owned(),
-            shown: None,
-            failed: None,
-            files: Vec::new(),
-        })
+            ..Outcome::default()
+        };
+        Ok(Graded { outcome, files: Vec::new() })
     }
 }
 
@@ -145,13 +138,13 @@ fn a_broken_worker_costs_no_job_its_tries() {
             let stop = CancellationToken::new();
             let (good, broken) = (Watchful::default(), Broken { knows, tried: Arc::default() });
             let policy = QueuePolicy::default();
-            let options = |name: &str| Options { slots: 2, folder: folder.path().join(name) };
+            let place = |name: &str| folder.path().join(name);
             let source = |name: &str| {
                 LocalSource::new(fresh.database.clone(), store.clone(), Notifier::default(), policy, name.to_owned())
             };
             let workers = [
-                tokio::spawn(worker::work(source("broken"), broken.clone(), options("broken"), stop.clone())),
-                tokio::spawn(worker::work(source("good"), good.clone(), options("good"), stop.clone())),
+                tokio::spawn(worker::work(source("broken"), broken.clone(), 2, place("broken"), stop.clone())),
+                tokio::spawn(worker::work(source("good"), good.clone(), 2, place("good"), stop.clone())),
             ];
             while count(&fresh, "done").await < 30 {
                 assert_eq!(count(&fresh, "buried").await, 0);
@@ -184,8 +177,8 @@ fn a_job_that_may_kill_its_worker_runs_alone() {
             QueuePolicy::default(),
             "worker".to_owned(),
         );
-        let options = Options { slots: 3, folder: folder.path().join("work") };
-        let working = tokio::spawn(worker::work(source, grader.clone(), options, stop.clone()));
+        let place = folder.path().join("work");
+        let working = tokio::spawn(worker::work(source, grader.clone(), 3, place, stop.clone()));
         while grader.done.load(Ordering::SeqCst) < 12 {
             assert!(!working.is_finished(), "the worker gave up");
             tokio::time::sleep(Duration::from_millis(5)).await;

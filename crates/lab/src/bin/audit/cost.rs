@@ -4,23 +4,15 @@
 //! A trace chooses the state that each step starts from. Here whole states are drawn: small and subnormal numbers,
 //! crowds of bodies in one place, numbers of very different sizes. For each scene the slowest trace is shown, with the
 //! processor time of judging it by both rule books and of explaining it.
-use super::Random;
+use super::{Random, forged::scenes};
+use fosssim_lab::runs::{frames, judged, reference};
 use fosssim_oracle::{
     diagnose,
-    judge::replay::{self, Options},
     scene::{Scene, original},
-    sim::{RootSearch, Simulation},
-    trace::{Frame, Layout, Reader, Recorder, Writer},
+    trace::{Frame, Layout, Writer},
 };
-use std::{
-    path::Path,
-    process::ExitCode,
-    sync::{
-        Mutex,
-        atomic::{AtomicUsize, Ordering},
-    },
-    time::Duration,
-};
+use rayon::prelude::*;
+use std::{path::Path, process::ExitCode, time::Duration};
 
 /// The number of scenes that are shown, the slowest first.
 const SHOWN: usize = 25;
@@ -29,80 +21,46 @@ const SHOWN: usize = 25;
 const SIZES: [f64; 16] =
     [-320.0, -250.0, -160.0, -156.0, -155.0, -154.0, -150.0, -110.0, -80.0, -52.0, -30.0, -8.0, 0.0, 8.0, 60.0, 150.0];
 
-/// The slowest trace of a scene.
-struct Slowest {
-    time: Duration,
-    name: String,
-    what: String,
-}
+/// The slowest trace of a scene: how long it took, the scene's name, and how it was drawn and judged.
+type Slowest = (Duration, String, String);
 
 /// Tries this number of traces of each scene.
 pub fn run(of_each: u64, seed: u64, corpus: Option<&Path>) -> ExitCode {
-    let mut scenes = super::forged::scenes(corpus);
+    let mut scenes = scenes(corpus);
     if let Ok(part) = std::env::var("SCENE") {
         scenes.retain(|(name, _)| name.contains(&part));
     }
-    let (next, found) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
-    let work = || {
-        loop {
-            let number = next.fetch_add(1, Ordering::Relaxed);
-            let Some((name, bytes)) = scenes.get(number) else { return };
-            let Ok(read) = original::read(bytes) else { continue };
-            let Some(frames) = own(&read.scene) else { continue };
-            let mut random = Random::new(seed, number as u64);
-            let mut slowest: Option<Slowest> = None;
-            for _ in 0..of_each {
-                let (trace, what) = drawn(&mut random, &read.scene, &frames);
-                let begin = processor_time();
-                let options = Options { threads: 1, fair: true, ..Options::default() };
-                let outcome = replay::judge(&read.scene, &trace[..], &options, &mut ());
-                let judged = processor_time().saturating_sub(begin);
-                drop(diagnose::explain(&read.scene, &trace));
-                let time = processor_time().saturating_sub(begin);
-                if slowest.as_ref().is_none_or(|slowest| slowest.time < time) {
-                    let what = format!(
-                        "judging {:.3} s; {what}; {} steps judged, {:?}",
-                        judged.as_secs_f64(),
-                        outcome.steps_judged,
-                        outcome.stop
-                    );
-                    slowest = Some(Slowest { time, name: name.clone(), what });
-                }
-            }
-            found.lock().expect("no other thread has panicked").extend(slowest);
-        }
+    let slowest = |(number, (name, bytes)): (usize, &(String, Vec<u8>))| {
+        let scene = original::read(bytes).ok()?.scene;
+        let frames = frames(&scene, &reference(&scene)?);
+        let mut random = Random::new(seed, number as u64);
+        let tried = (0..of_each).map(|_| tried(&mut random, name, &scene, &frames));
+        tried.max_by_key(|one| one.0)
     };
-    std::thread::scope(|scope| {
-        let threads = std::thread::available_parallelism().map_or(1, usize::from);
-        (0..threads).for_each(|_| _ = scope.spawn(work));
-    });
-    let mut found = found.into_inner().expect("no thread has panicked");
-    found.sort_by_key(|slowest| std::cmp::Reverse(slowest.time));
-    for Slowest { time, name, what } in found.iter().take(SHOWN) {
+    let mut found: Vec<Slowest> = scenes.par_iter().enumerate().filter_map(slowest).collect();
+    found.sort_by_key(|one| std::cmp::Reverse(one.0));
+    for (time, name, what) in found.iter().take(SHOWN) {
         println!("{:>9.3} s  {name}: {what}", time.as_secs_f64());
     }
     ExitCode::SUCCESS
+}
+
+/// Judges and explains a drawn trace.
+fn tried(random: &mut Random, name: &str, scene: &Scene, frames: &[Frame]) -> Slowest {
+    let (trace, what) = drawn(random, scene, frames);
+    let begin = processor_time();
+    let outcome = judged(scene, &trace);
+    let seconds = processor_time().saturating_sub(begin).as_secs_f64();
+    drop(diagnose::explain(scene, &trace));
+    let time = processor_time().saturating_sub(begin);
+    let (steps, stop) = (outcome.steps_judged, outcome.stop);
+    (time, name.to_owned(), format!("judging {seconds:.3} s; {what}; {steps} steps judged, {stop:?}"))
 }
 
 /// The processor time of this thread so far.
 fn processor_time() -> Duration {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
     Duration::from_nanos(text.split(' ').next().and_then(|word| word.parse().ok()).unwrap_or(0))
-}
-
-/// The reference's own records.
-fn own(scene: &Scene) -> Option<Vec<Frame>> {
-    let layout = Layout::of(scene);
-    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
-    let mut recorder = Recorder::start(Vec::new(), layout, simulation.state());
-    (0..layout.steps).try_for_each(|_| simulation.step(&mut recorder)).ok()?;
-    let trace = recorder.finish().ok()?.0;
-    let (mut reader, mut frames) = (Reader::of_slice(&trace, layout), Vec::new());
-    let mut frame = Frame::default();
-    while reader.next(&mut frame).ok()? {
-        frames.push(std::mem::take(&mut frame));
-    }
-    Some(frames)
 }
 
 /// A trace with drawn states, and how they were drawn.

@@ -1,23 +1,14 @@
 //! Random traces on random scenes: polynomials with factors, roundings and lost coefficients, near the bounds of what
 //! is right. Judging by the shortcuts and the full way have to say the same to the last field.
-use super::{Random, lanes};
+use super::{Random, judging::both_ways, lanes};
+use fosssim_lab::runs::{frames, is_accepted, reference};
 use fosssim_oracle::{
-    judge::{
-        fair::FairVerdict,
-        replay::{self, Options},
-    },
     scene::Scene,
-    sim::{RootSearch, Simulation},
     student::{self, CATALOGUE, Student},
-    trace::{Frame, Layout, Reader, Recorder, Writer},
+    trace::{Layout, Writer},
 };
-use std::{
-    process::ExitCode,
-    sync::{
-        Mutex,
-        atomic::{AtomicU64, Ordering},
-    },
-};
+use rayon::prelude::*;
+use std::process::ExitCode;
 
 /// Programs with other polynomials that are right; half of the traces are theirs, the others begin with the
 /// reference's.
@@ -28,74 +19,51 @@ const SHOWN: usize = 20;
 
 /// Compares this number of traces.
 pub fn run(traces: u64, seed: u64) -> ExitCode {
-    let (next, accepted) = (AtomicU64::new(0), AtomicU64::new(0));
-    let differing = Mutex::new(Vec::new());
-    let work = || {
-        loop {
-            let number = next.fetch_add(1, Ordering::Relaxed);
-            if number >= traces {
-                return;
-            }
-            let mut random = Random::new(seed, number);
-            let scene = lanes::draw(&mut random);
-            let Some(trace) = draw(&mut random, &scene) else { continue };
-            for fair in [true, false] {
-                let [one, other] = [false, true].map(|one_by_one| {
-                    let options = Options { threads: 1, fair, one_by_one, ..Options::default() };
-                    replay::judge(&scene, &trace[..], &options, &mut ())
-                });
-                if one.fair.as_ref().is_some_and(|fair| fair.verdict == FairVerdict::Accepted) {
-                    accepted.fetch_add(1, Ordering::Relaxed);
-                }
-                let [one, other] = [one, other].map(|outcome| format!("{outcome:?}"));
-                if one != other {
-                    let mut differing = differing.lock().expect("no other thread has panicked");
-                    let first = one.bytes().zip(other.bytes()).take_while(|(one, other)| one == other).count();
-                    let parts = [one, other]
-                        .map(|text| text.chars().skip(first.saturating_sub(200)).take(400).collect::<String>());
-                    differing
-                        .push((number, format!("fair {fair}, {:?}:\n  {}\n  {}", scene.collision, parts[0], parts[1])));
-                }
-            }
-        }
-    };
-    std::thread::scope(|scope| {
-        let threads = std::thread::available_parallelism().map_or(1, usize::from);
-        (0..threads).for_each(|_| _ = scope.spawn(work));
-    });
-    let mut differing = differing.into_inner().expect("no thread has panicked");
-    differing.sort();
-    println!(
-        "{traces} traces, {} accepted by the fair rules, {} outcomes differ",
-        accepted.into_inner(),
-        differing.len()
-    );
-    for (number, what) in differing.iter().take(SHOWN) {
-        println!("trace {number}, {what}");
-    }
+    let compared: Vec<(bool, Vec<String>)> =
+        (0..traces).into_par_iter().filter_map(|number| compare(number, seed)).collect();
+    let accepted = compared.iter().filter(|(accepted, _)| *accepted).count();
+    let differing: Vec<&String> = compared.iter().flat_map(|(_, differing)| differing).collect();
+    println!("{traces} traces, {accepted} accepted by the fair rules, {} outcomes differ", differing.len());
+    differing.iter().take(SHOWN).for_each(|what| println!("{what}"));
     ExitCode::from(u8::from(!differing.is_empty()))
+}
+
+/// Whether the fair rules accept a trace, and how its outcomes differ around the first place.
+fn compare(number: u64, seed: u64) -> Option<(bool, Vec<String>)> {
+    let mut random = Random::new(seed, number);
+    let scene = lanes::draw(&mut random);
+    let trace = draw(&mut random, &scene)?;
+    let mut differing = Vec::new();
+    let mut accepted = false;
+    for fair in [false, true] {
+        let outcomes = both_ways(&scene, &trace, fair);
+        accepted |= is_accepted(&outcomes[0]);
+        let [one, other] = outcomes.map(|outcome| format!("{outcome:?}"));
+        if one != other {
+            let first = one.bytes().zip(other.bytes()).take_while(|(one, other)| one == other).count();
+            let [one, other] =
+                [one, other].map(|text| text.chars().skip(first.saturating_sub(200)).take(400).collect::<String>());
+            differing.push(format!("trace {number}, fair {fair}, {:?}:\n  {one}\n  {other}", scene.collision));
+        }
+    }
+    Some((accepted, differing))
 }
 
 /// A trace; none where the scene has no result.
 fn draw(random: &mut Random, scene: &Scene) -> Option<Vec<u8>> {
-    let layout = Layout::of(scene);
     let own = if random.chance(2) {
         let id = VARIANTS[random.below(VARIANTS.len() as u64) as usize];
         let row = CATALOGUE.iter().find(|row| row.id == id).expect("a variant");
         student::trace(scene, Student::new(Some(row.mistake))).ok()?
     } else {
-        let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
-        let mut recorder = Recorder::start(Vec::new(), layout, simulation.state());
-        (0..layout.steps).try_for_each(|_| simulation.step(&mut recorder)).ok()?;
-        recorder.finish().expect("memory").0
+        reference(scene)?
     };
     let factors = RandomFactors::draw(random);
     let noise = [0.0, 1.0, random.log(0.0, 3.0)][random.below(3) as usize];
     let every = 1 + random.below(40);
     let seed = random.bits();
-    let (mut reader, mut writer) = (Reader::of_slice(&own, layout), Writer::new(Vec::new(), layout));
-    let (mut frame, mut number) = (Frame::default(), 0_u64);
-    while reader.next(&mut frame).ok()? {
+    let mut writer = Writer::new(Vec::new(), Layout::of(scene));
+    for (number, mut frame) in (0_u64..).zip(frames(scene, &own)) {
         // Both records of a step change alike.
         let step = number.div_ceil(2);
         let log = std::mem::take(&mut frame.polynomials);
@@ -112,7 +80,6 @@ fn draw(random: &mut Random, scene: &Scene) -> Option<Vec<u8>> {
             frame.polynomials.push(&changed);
         }
         writer.frame(&frame);
-        number += 1;
     }
     Some(writer.finish().expect("memory").0)
 }

@@ -6,13 +6,10 @@ mod forge;
 
 use forge::{Random, Stage};
 use fosssim_oracle::{scene::original, suite::library};
+use rayon::prelude::*;
 use std::{
     path::{Path, PathBuf},
     process::ExitCode,
-    sync::{
-        Mutex,
-        atomic::{AtomicUsize, Ordering},
-    },
 };
 
 /// The greatest number of faults that are shown.
@@ -21,25 +18,15 @@ const SHOWN: usize = 40;
 /// Tries this number of each kind on each scene, those of a corpus's folder, if there is one, among them.
 pub fn run(of_each: u64, seed: u64, corpus: Option<&Path>) -> ExitCode {
     let scenes = scenes(corpus);
-    let (next, faults) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
-    let work = || {
-        loop {
-            let number = next.fetch_add(1, Ordering::Relaxed);
-            let Some((name, bytes)) = scenes.get(number) else { return };
-            let Some(stage) = original::read(bytes).ok().and_then(|read| Stage::of(name, read.scene)) else { continue };
-            let mut random = Random::new(seed.wrapping_mul(1_000_003) + number as u64);
-            for _ in 0..of_each {
-                let tried =
-                    [forge::forge, forge::multiply, forge::misprint].map(|attempt| attempt(&stage, &mut random));
-                faults.lock().expect("no other thread has panicked").extend(tried.into_iter().flatten());
-            }
-        }
+    let faults_of = |(number, (name, bytes)): (usize, &(String, Vec<u8>))| {
+        let Some(stage) = original::read(bytes).ok().and_then(|read| Stage::of(name, read.scene)) else {
+            return Vec::new();
+        };
+        let mut random = Random::new(seed.wrapping_mul(1_000_003) + number as u64);
+        let attempts = (0..of_each).flat_map(|_| [forge::forge, forge::multiply, forge::misprint]);
+        attempts.filter_map(|attempt| attempt(&stage, &mut random)).collect()
     };
-    std::thread::scope(|scope| {
-        let threads = std::thread::available_parallelism().map_or(1, usize::from);
-        (0..threads).for_each(|_| _ = scope.spawn(work));
-    });
-    let faults = faults.into_inner().expect("no thread has panicked");
+    let faults: Vec<_> = scenes.par_iter().enumerate().flat_map_iter(faults_of).collect();
     println!("{} scenes, 3 times {of_each} traces of each, {} faults", scenes.len(), faults.len());
     faults.iter().take(SHOWN).for_each(|fault| println!("{fault}"));
     ExitCode::from(u8::from(!faults.is_empty()))

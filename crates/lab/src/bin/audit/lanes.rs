@@ -1,22 +1,22 @@
 //! Lanes against single pairs: random scenes are stepped both ways, and every bit has to be the same.
-use super::{Random, V};
+use super::Random;
 use fosssim_oracle::{
     num::vector::Vec2,
     scene::{Collision, Display, Edge, HalfPlane, Integrator, Particle, Scene},
     sim::{RootSearch, SearchCounts, Simulation},
     trace::{Layout, StepBytes},
 };
-use std::{
-    process::ExitCode,
-    sync::{
-        Mutex,
-        atomic::{AtomicU64, Ordering},
-    },
-};
+use rayon::prelude::*;
+use std::process::ExitCode;
+
+/// Scenes that are drawn before it is asked whether they are enough.
+const BLOCK: u64 = 256;
 
 /// Counts of the comparison so far.
 #[derive(Default)]
 struct Compared {
+    scenes: u64,
+    pairs: u64,
     steps: u64,
     failed: u64,
     searched: u64,
@@ -25,32 +25,30 @@ struct Compared {
     first: Option<(u64, String)>,
 }
 
+impl Compared {
+    fn and(self, other: Self) -> Self {
+        Self {
+            scenes: self.scenes + other.scenes,
+            pairs: self.pairs + other.pairs,
+            steps: self.steps + other.steps,
+            failed: self.failed + other.failed,
+            searched: self.searched + other.searched,
+            bytes: self.bytes + other.bytes,
+            first: [self.first, other.first].into_iter().flatten().min(),
+        }
+    }
+}
+
 /// Compares steps until this number of pairs has been compared.
 pub fn run(pairs: u64, seed: u64) -> ExitCode {
-    let (next, calls) = (AtomicU64::new(0), AtomicU64::new(0));
-    let total = Mutex::new(Compared::default());
-    let work = || {
-        while calls.load(Ordering::Relaxed) < pairs {
-            let number = next.fetch_add(1, Ordering::Relaxed);
-            let mut random = Random::new(seed, number);
-            let scene = draw(&mut random);
-            let mut compared = Compared::default();
-            calls.fetch_add(compare(number, &scene, &mut compared), Ordering::Relaxed);
-            let mut total = total.lock().expect("no other thread has panicked");
-            total.steps += compared.steps;
-            total.failed += compared.failed;
-            total.searched += compared.searched;
-            total.bytes += compared.bytes;
-            total.first = [total.first.take(), compared.first].into_iter().flatten().min();
-        }
-    };
-    std::thread::scope(|scope| {
-        let threads = std::thread::available_parallelism().map_or(1, usize::from);
-        (0..threads).for_each(|_| _ = scope.spawn(work));
-    });
-    let Compared { steps, failed, searched, bytes, first } = total.into_inner().expect("no thread has panicked");
-    let (scenes, calls) = (next.into_inner(), calls.into_inner());
-    println!("{calls} pairs in {steps} steps of {scenes} scenes, {failed} of them without a result");
+    let mut total = Compared::default();
+    while total.pairs < pairs {
+        let numbers = total.scenes..total.scenes + BLOCK;
+        let compared = numbers.into_par_iter().map(|number| compare(number, &draw(&mut Random::new(seed, number))));
+        total = total.and(compared.reduce(Compared::default, Compared::and));
+    }
+    let Compared { scenes, pairs, steps, failed, searched, bytes, first } = total;
+    println!("{pairs} pairs in {steps} steps of {scenes} scenes, {failed} of them without a result");
     println!("{searched} root searches, {bytes} bytes compared");
     let differs = first.is_some();
     match first {
@@ -60,8 +58,9 @@ pub fn run(pairs: u64, seed: u64) -> ExitCode {
     ExitCode::from(u8::from(differs))
 }
 
-/// Steps a scene both ways. Gives the number of pairs.
-fn compare(number: u64, scene: &Scene, compared: &mut Compared) -> u64 {
+/// Steps a scene both ways.
+fn compare(number: u64, scene: &Scene) -> Compared {
+    let mut compared = Compared { scenes: 1, ..Compared::default() };
     let [mut lanes, mut single] = [(); 2].map(|()| Simulation::new(scene, RootSearch::WhereNeeded));
     single.forgo_lanes();
     let [mut quick, mut slow] = [(); 2].map(|()| StepBytes::new(Layout::of(scene)));
@@ -87,8 +86,7 @@ fn compare(number: u64, scene: &Scene, compared: &mut Compared) -> u64 {
         compared.first = compared.first.take().or(Some((number, format!("unheard: {scene:?}"))));
     }
     let SearchCounts { calls, searched, .. } = lanes.search_counts();
-    compared.searched += searched;
-    calls
+    Compared { pairs: calls, searched, ..compared }
 }
 
 /// A scene: sizes, places and motions from wide and nasty distributions.
@@ -98,24 +96,19 @@ pub(super) fn draw(random: &mut Random) -> Scene {
     let common = random.direction() * (scale * random.log(-6.0, 0.0));
     let particles: Vec<Particle> = (0..1 + random.below(24))
         .map(|_| {
-            let V(x, y) = if grid { random.grid(8, 0.125 * scale) } else { random.point(scale) };
+            let position = if grid { random.grid(8, 0.125 * scale) } else { random.point(scale) };
             let own = random.direction() * (scale * random.log(-14.0, 0.0));
-            let V(vx, vy) = match random.below(4) {
-                0 => V(0.0, 0.0),
+            let mut velocity = match random.below(4) {
+                0 => Vec2::zeros(),
                 1 => common,
                 2 if grid => random.grid(4, 0.125 * scale),
                 _ => own,
             };
             let radius = if grid { 0.125 * scale } else { scale * random.log(-4.0, -0.5) };
-            let velocity = if random.chance(5000) { f64::NAN } else { vx };
-            Particle {
-                position: Vec2::new(x, y),
-                velocity: Vec2::new(velocity, vy),
-                mass: random.log(-1.0, 1.0),
-                fixed: random.chance(3),
-                radius,
-                tag: None,
+            if random.chance(5000) {
+                velocity.x = f64::NAN;
             }
+            Particle { position, velocity, mass: random.log(-1.0, 1.0), fixed: random.chance(3), radius, tag: None }
         })
         .collect();
     let count = particles.len() as u64;
@@ -125,9 +118,9 @@ pub(super) fn draw(random: &mut Random) -> Scene {
         .collect();
     let half_planes = (0..random.below(4))
         .map(|_| {
-            let V(x, y) = if grid { random.grid(8, 0.125 * scale) } else { random.point(scale) };
-            let V(nx, ny) = if grid { random.grid(2, 1.0) } else { random.direction() * random.log(-2.0, 2.0) };
-            HalfPlane { point: Vec2::new(x, y), normal: Vec2::new(nx, ny) }
+            let point = if grid { random.grid(8, 0.125 * scale) } else { random.point(scale) };
+            let normal = if grid { random.grid(2, 1.0) } else { random.direction() * random.log(-2.0, 2.0) };
+            HalfPlane { point, normal }
         })
         .collect();
     let restitution = random.uniform(0.0, 1.0);

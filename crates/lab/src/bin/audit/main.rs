@@ -1,11 +1,11 @@
 //! Compares the certificate with the root finder on random detections, on all processors.
 //!
-//! `cargo run --release --example audit -- [detections] [seed]` draws that many detections (default: a million) of the
-//! three pair types from wide and nasty distributions. Wherever the certificate says that nothing happens within the
-//! step, the search has to say so, too: for the list, and for each polynomial by itself, where no other one hides a
-//! mistake. A fourth kind are products of linear factors whose zeros are as awkward as can be. It prints how many
-//! detections each level decided, how many the search alone could decide, and the first disagreement; there must be
-//! none. The draws depend on the seed only, not on the number of processors.
+//! `audit [detections] [seed]` draws that many detections (default: a million) of the three pair types from wide and
+//! nasty distributions. Wherever the certificate says that nothing happens within the step, the search has to say so,
+//! too: for the list, and for each polynomial by itself, where no other one hides a mistake. A fourth kind are products
+//! of linear factors whose zeros are as awkward as can be. It prints how many detections each level decided, how many
+//! the search alone could decide, and the first disagreement; there must be none. The draws depend on the seed only,
+//! not on the number of processors.
 //!
 //! A second table compares the certified decisions of `num::decision` (64 units of rounding, as the fair rules have it)
 //! with the root finder. Here disagreements are facts about the root finder, not mistakes: a decision says what is
@@ -19,20 +19,18 @@
 //! [seed] [CORPUS]` looks for traces that take long to judge. `audit states [CORPUS]` runs right programs in other
 //! arithmetic where traces hold states.
 #![forbid(unsafe_code)]
-use std::{
-    fmt::Write as _,
-    process::ExitCode,
-    sync::atomic::{AtomicU64, Ordering},
+use fosssim_oracle::{
+    num::{
+        bounded::{Bounded, Bounded2},
+        certificate::{Level, exclusion},
+        first_time::first_time,
+        polynomial::Polynomial,
+        vector::{Vec2, length},
+    },
+    sim::formulas,
 };
-
-use fosssim_oracle::num::{
-    bounded::{Bounded, Bounded2},
-    certificate::{Level, exclusion},
-    first_time::first_time,
-    polynomial::Polynomial,
-    vector::Vec2,
-};
-use fosssim_oracle::sim::formulas;
+use rayon::prelude::*;
+use std::{fmt::Write as _, path::Path, process::ExitCode};
 
 mod cost;
 mod decisions;
@@ -48,62 +46,42 @@ use decisions::Decisions;
 const BLOCK: u64 = 10_000;
 
 fn main() -> ExitCode {
-    let mut words = std::env::args().skip(1).peekable();
-    if words.next_if(|word| word == "judging").is_some() {
-        return judging::run(&words.next().unwrap_or_default()).unwrap_or_else(|error| {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let is_word = |word: &String| word.parse::<u64>().is_err();
+    let (what, rest) = words.split_at(usize::from(words.first().is_some_and(is_word)));
+    let numbers: Vec<u64> = rest.iter().map_while(|word| word.parse().ok()).take(2).collect();
+    let number = |place: usize, otherwise: u64| numbers.get(place).copied().unwrap_or(otherwise);
+    let (of_each, detections, seed) = (number(0, 100), number(0, 1_000_000), number(1, 1));
+    let corpus = rest.get(numbers.len()).map(Path::new);
+    match (what.first().map(String::as_str), corpus) {
+        (Some("judging"), _) => judging::run(rest.first().map_or("", String::as_str)).unwrap_or_else(|error| {
             eprintln!("{error:#}");
             ExitCode::from(2)
-        });
-    }
-    if words.next_if(|word| word == "states").is_some() {
-        return states::run(words.next().as_deref().map(std::path::Path::new));
-    }
-    let is_cost = words.next_if(|word| word == "cost").is_some();
-    if is_cost || words.next_if(|word| word == "forged").is_some() {
-        let mut number = |default| {
-            words.next_if(|word| word.parse::<u64>().is_ok()).map_or(default, |word| word.parse().unwrap_or(default))
-        };
-        let (of_each, seed) = (number(100), number(1));
-        let run = if is_cost { cost::run } else { forged::run };
-        return run(of_each, seed, words.next().as_deref().map(std::path::Path::new));
-    }
-    let of_lanes = words.next_if(|word| word == "lanes").is_some();
-    let of_drawn = words.next_if(|word| word == "drawn").is_some();
-    let mut arguments = words.map(|argument| argument.parse::<u64>());
-    let (Ok(detections), Ok(seed)) = (arguments.next().unwrap_or(Ok(1_000_000)), arguments.next().unwrap_or(Ok(1)))
-    else {
-        eprintln!("usage: audit [judging|states|lanes|drawn|forged|cost] [detections] [seed]");
-        return ExitCode::from(2);
-    };
-    if of_drawn {
-        return drawn::run(detections, seed);
-    }
-    if of_lanes {
-        return lanes::run(detections, seed);
-    }
-    let blocks = detections.div_ceil(BLOCK);
-    let next = AtomicU64::new(0);
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let mut total = AuditTally::default();
-    std::thread::scope(|scope| {
-        let run = || {
-            let mut tally = AuditTally::default();
-            loop {
-                let block = next.fetch_add(1, Ordering::Relaxed);
-                if block >= blocks {
-                    return tally;
-                }
-                let mut random = Random::new(seed, block);
-                for index in 0..BLOCK.min(detections - block * BLOCK) {
-                    tally.audit(block * BLOCK + index, &mut random);
-                }
-            }
-        };
-        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(run)).collect();
-        for worker in workers {
-            total.add(worker.join().expect("a worker does not panic"));
+        }),
+        (Some("states"), _) => states::run(rest.first().map(Path::new)),
+        (Some("forged"), _) => forged::run(of_each, seed, corpus),
+        (Some("cost"), _) => cost::run(of_each, seed, corpus),
+        (Some("lanes"), None) => lanes::run(detections, seed),
+        (Some("drawn"), None) => drawn::run(detections, seed),
+        (None, None) => certificates(detections, seed),
+        _ => {
+            eprintln!("usage: audit [judging|states|lanes|drawn|forged|cost] [detections] [seed]");
+            ExitCode::from(2)
         }
-    });
+    }
+}
+
+/// Compares this number of detections.
+fn certificates(detections: u64, seed: u64) -> ExitCode {
+    let audited = |block: u64| {
+        let (mut tally, mut random) = (AuditTally::default(), Random::new(seed, block));
+        for index in 0..BLOCK.min(detections - block * BLOCK) {
+            tally.audit(block * BLOCK + index, &mut random);
+        }
+        tally
+    };
+    let blocks = (0..detections.div_ceil(BLOCK)).into_par_iter();
+    let total = blocks.map(audited).reduce(AuditTally::default, AuditTally::and);
     print!("{}", total.report());
     ExitCode::from(u8::from(total.disagreements > 0))
 }
@@ -149,7 +127,7 @@ impl AuditTally {
         self.decisions[pair].compare(index, geometry, &lists, &polynomials, time.ok());
     }
 
-    fn add(&mut self, other: Self) {
+    fn and(mut self, other: Self) -> Self {
         for pair in 0..PAIRS.len() {
             for (sum, count) in self.decided[pair].iter_mut().zip(other.decided[pair]) {
                 *sum += count;
@@ -161,7 +139,8 @@ impl AuditTally {
             sum.add(decisions);
         }
         self.disagreements += other.disagreements;
-        self.first = [self.first.take(), other.first].into_iter().flatten().min();
+        self.first = [self.first, other.first].into_iter().flatten().min();
+        self
     }
 
     fn report(&self) -> String {
@@ -225,18 +204,18 @@ impl Random {
         10.0_f64.powf(self.uniform(lo, hi))
     }
 
-    fn direction(&mut self) -> V {
+    fn direction(&mut self) -> Vec2 {
         let angle = self.uniform(0.0, std::f64::consts::TAU);
-        V(angle.cos(), angle.sin())
+        Vec2::new(angle.cos(), angle.sin())
     }
 
-    fn point(&mut self, scale: f64) -> V {
-        V(self.uniform(-scale, scale), self.uniform(-scale, scale))
+    fn point(&mut self, scale: f64) -> Vec2 {
+        Vec2::new(self.uniform(-scale, scale), self.uniform(-scale, scale))
     }
 
-    fn grid(&mut self, reach: u64, unit: f64) -> V {
+    fn grid(&mut self, reach: u64, unit: f64) -> Vec2 {
         let mut coordinate = || (self.below(2 * reach + 1) as f64 - reach as f64) * unit;
-        V(coordinate(), coordinate())
+        Vec2::new(coordinate(), coordinate())
     }
 
     fn chance(&mut self, one_in: u64) -> bool {
@@ -244,51 +223,17 @@ impl Random {
     }
 }
 
-/// A vector.
-#[derive(Clone, Copy)]
-struct V(f64, f64);
-
-impl V {
-    fn turned(self) -> Self {
-        Self(-self.1, self.0)
-    }
-}
-
-impl std::ops::Add for V {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        Self(self.0 + other.0, self.1 + other.1)
-    }
-}
-
-impl std::ops::Sub for V {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        Self(self.0 - other.0, self.1 - other.1)
-    }
-}
-
-impl std::ops::Mul<f64> for V {
-    type Output = Self;
-    fn mul(self, factor: f64) -> Self {
-        Self(self.0 * factor, self.1 * factor)
-    }
-}
-
-fn dot(a: V, b: V) -> f64 {
-    a.0 * b.0 + a.1 * b.1
+fn turned(v: Vec2) -> Vec2 {
+    Vec2::new(-v.y, v.x)
 }
 
 /// Three points with their displacements: a particle, and another one, an edge's ends, or a half-plane's point and
 /// normal (whose displacement is ignored).
 struct RandomMotion {
-    x: [V; 3],
-    d: [V; 3],
+    x: [Vec2; 3],
+    d: [Vec2; 3],
     radius: f64,
 }
-
-/// A distribution of motions.
-type Make = fn(&mut Random) -> RandomMotion;
 
 /// Draws a detection: pair type, name of the distribution, polynomials.
 fn draw(random: &mut Random) -> (usize, &'static str, Vec<Vec<Bounded>>) {
@@ -296,7 +241,7 @@ fn draw(random: &mut Random) -> (usize, &'static str, Vec<Vec<Bounded>>) {
     if pair == 3 {
         return (pair, "zeros on a grid", vec![product(random)]);
     }
-    let kinds: [(&str, Make); 8] = [
+    let kinds: [(&str, fn(&mut Random) -> RandomMotion); 8] = [
         ("wide", wide),
         ("grid", grid),
         ("near-rigid", near_rigid),
@@ -373,8 +318,7 @@ fn grid(random: &mut Random) -> RandomMotion {
 fn near_rigid(random: &mut Random) -> RandomMotion {
     let mut motion = wide(random);
     let relative = random.log(-17.0, -1.0);
-    motion.d[2] =
-        motion.d[1] + random.direction() * (relative * (dot(motion.d[1], motion.d[1]).sqrt() + random.log(-9.0, 0.0)));
+    motion.d[2] = motion.d[1] + random.direction() * (relative * (length(motion.d[1]) + random.log(-9.0, 0.0)));
     motion
 }
 
@@ -382,8 +326,8 @@ fn near_rigid(random: &mut Random) -> RandomMotion {
 fn resting(random: &mut Random) -> RandomMotion {
     let mut motion = bulk(random);
     let along = motion.x[2] - motion.x[1];
-    let length = dot(along, along).sqrt();
-    let normal = along.turned() * (1.0 / length);
+    let length = length(along);
+    let normal = turned(along) * (1.0 / length);
     let gap = motion.radius * (1.0 + random.uniform(-1.0, 3.0) * random.log(-17.0, -1.0));
     motion.x[0] = motion.x[1] + along * random.uniform(-0.2, 1.2) + normal * gap;
     let slide = along * (random.uniform(-1.0, 1.0) * random.log(-9.0, 0.0));
@@ -399,8 +343,8 @@ fn grazing(random: &mut Random) -> RandomMotion {
     let target = motion.x[1] + motion.d[1] * time;
     let other = motion.x[2] + motion.d[2] * time;
     let along = other - target;
-    let length = dot(along, along).sqrt();
-    let normal = along.turned() * (1.0 / length);
+    let length = length(along);
+    let normal = turned(along) * (1.0 / length);
     let gap = motion.radius * (1.0 + random.uniform(-1.0, 1.0) * random.log(-16.0, 0.0));
     let meeting = target + along * random.uniform(-0.1, 1.1) + normal * gap;
     let speed = motion.radius * random.log(-6.0, 2.0);
@@ -417,7 +361,7 @@ fn far(random: &mut Random) -> RandomMotion {
     motion.x[0] = motion.x[1] + random.direction() * distance;
     for i in 0..3 {
         let moves = if random.chance(3) { 0.0 } else { motion.radius * random.log(-13.0, 1.0) };
-        motion.d[i] = if random.chance(3) { V(moves, 0.0) } else { random.direction() * moves };
+        motion.d[i] = if random.chance(3) { Vec2::new(moves, 0.0) } else { random.direction() * moves };
     }
     motion
 }
@@ -428,7 +372,7 @@ fn turning(random: &mut Random) -> RandomMotion {
     let (centre, half) = (random.point(scale), random.direction() * (scale * random.uniform(0.1, 1.0)));
     let angle = random.uniform(-1.0, 1.0) * random.log(-6.0, 0.5);
     let stretch = 1.0 + random.uniform(-0.5, 0.5) * random.log(-6.0, 0.0);
-    let turned = (half * angle.cos() + half.turned() * angle.sin()) * stretch;
+    let turned = (half * angle.cos() + turned(half) * angle.sin()) * stretch;
     let shift = random.direction() * (scale * random.log(-6.0, 0.5));
     let particle = random.direction() * (scale * random.log(-6.0, 0.5));
     RandomMotion {
@@ -448,29 +392,24 @@ fn bulk(random: &mut Random) -> RandomMotion {
     RandomMotion { x, d, radius: scale * random.log(-3.0, -0.3) }
 }
 
-/// A vector that may be off by a rounding.
-fn rounded(v: V) -> Bounded2 {
-    Bounded2::rounded(Vec2::new(v.0, v.1))
-}
-
 /// The polynomials of collisions.md 2.
 fn particle_particle(motion: &RandomMotion) -> Vec<Vec<Bounded>> {
-    let [x1, x2, _] = motion.x.map(rounded);
-    let [d1, d2, _] = motion.d.map(rounded);
+    let [x1, x2, _] = motion.x.map(Bounded2::rounded);
+    let [d1, d2, _] = motion.d.map(Bounded2::rounded);
     let (overlap, approach) = formulas::particle_particle(x1, d1, x2, d2, Bounded::rounded(motion.radius));
     vec![overlap.to_vec(), approach.to_vec()]
 }
 
 fn particle_half_plane(motion: &RandomMotion) -> Vec<Vec<Bounded>> {
-    let [x, point, normal] = motion.x.map(rounded);
-    let (d, radius) = (rounded(motion.d[0]), Bounded::rounded(motion.radius));
+    let [x, point, normal] = motion.x.map(Bounded2::rounded);
+    let (d, radius) = (Bounded2::rounded(motion.d[0]), Bounded::rounded(motion.radius));
     let (overlap, approach) = formulas::particle_half_plane(x, d, radius, point, normal, normal.dot(normal));
     vec![overlap.to_vec(), approach.to_vec()]
 }
 
 fn particle_edge(motion: &RandomMotion) -> Vec<Vec<Bounded>> {
-    let [x1, x2, x3] = motion.x.map(rounded);
-    let [d1, d2, d3] = motion.d.map(rounded);
+    let [x1, x2, x3] = motion.x.map(Bounded2::rounded);
+    let [d1, d2, d3] = motion.d.map(Bounded2::rounded);
     let edge = formulas::EdgeMotions::new(x2, d2, x3, d3);
     let pair = formulas::particle_edge(x1, d1, &edge, Bounded::rounded(motion.radius));
     vec![pair.distance.to_vec(), pair.beyond_first.to_vec(), pair.before_second.to_vec(), pair.approach.to_vec()]

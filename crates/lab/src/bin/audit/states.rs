@@ -1,12 +1,11 @@
 //! Right programs in other arithmetic on scenes whose traces hold states: the share of the fair rules' tolerances that
 //! they use, and the noise that the rules refuse.
-use fosssim_lab::right;
+use fosssim_lab::{
+    right,
+    runs::{is_accepted, judged},
+};
 use fosssim_oracle::{
-    assignments::Assignment,
-    judge::{
-        fair::FairVerdict,
-        replay::{self, Options},
-    },
+    assignments::{Assignment, ImpulseList},
     num::vector::at,
     scene::{Scene, original},
     sim::{RootSearch, Simulation},
@@ -41,9 +40,8 @@ struct MilestoneTally {
 
 /// Tries all programs on the scenes that come with the program, and on those of a corpus.
 pub fn run(corpus: Option<&Path>) -> ExitCode {
-    let scenes: Vec<(String, Scene)> = scenes(corpus);
     let results: Vec<(String, MilestoneTally, Vec<String>)> =
-        scenes.par_iter().map(|(name, scene)| try_scene(name, scene)).collect();
+        scenes(corpus).par_iter().map(|(name, scene)| try_scene(name, scene)).collect();
     let mut rows: BTreeMap<String, MilestoneTally> = BTreeMap::new();
     let mut faults = Vec::new();
     for (milestone, tally, refused) in results {
@@ -98,10 +96,11 @@ fn try_scene(name: &str, scene: &Scene) -> (String, MilestoneTally, Vec<String>)
         let Ok(trace) = arithmetic.trace(scene, |state, contacts| single.hear(state, contacts)) else { continue };
         tally.room = [tally.room, single.room].into_iter().flatten().min();
         let outcome = judged(scene, &trace);
+        let is_accepted = is_accepted(&outcome);
         let Some(fair) = outcome.fair else { continue };
         tally.programs += 1;
         tally.borderline += fair.borderline;
-        if fair.verdict == FairVerdict::Accepted {
+        if is_accepted {
             tally.accepted += 1;
             tally.position = tally.position.max(fair.shares.position);
             tally.velocity = tally.velocity.max(fair.shares.velocity);
@@ -159,7 +158,7 @@ impl<'a> SingleSteps<'a> {
             let mut trace = Vec::new();
             right::record(&self.one, &before, &[], &mut trace);
             right::record(&self.one, &state, contacts, &mut trace);
-            if judged(&self.one, &trace).fair.is_none_or(|fair| fair.verdict != FairVerdict::Accepted) {
+            if !is_accepted(&judged(&self.one, &trace)) {
                 self.room = Some(factor);
             }
             factor *= 2;
@@ -169,7 +168,7 @@ impl<'a> SingleSteps<'a> {
 
 fn add_noise(name: &str, scene: &Scene, trace: &[u8], tally: &mut MilestoneTally) {
     // Integers stand between the numbers of other records.
-    if !matches!(scene.collision.handling().records.impulses, fosssim_oracle::assignments::ImpulseList::Absent) {
+    if !matches!(scene.collision.handling().records.impulses, ImpulseList::Absent) {
         return;
     }
     let mut random = name.bytes().fold(0x9e37_79b9_7f4a_7c15_u64, |seed, byte| seed.rotate_left(7) ^ u64::from(byte));
@@ -189,14 +188,9 @@ fn add_noise(name: &str, scene: &Scene, trace: &[u8], tally: &mut MilestoneTally
                 let value = f64::from_le_bytes(number.try_into().unwrap_or_default());
                 number.copy_from_slice(&(value + noise).to_le_bytes());
             }
-            let verdict = judged(scene, &damaged).fair.map(|fair| fair.verdict);
-            *refused += u64::from(verdict != Some(FairVerdict::Accepted));
+            *refused += u64::from(!is_accepted(&judged(scene, &damaged)));
         }
     }
-}
-
-fn judged(scene: &Scene, trace: &[u8]) -> fosssim_oracle::judge::Outcome {
-    replay::judge(scene, trace, &Options { threads: 1, fair: true, ..Options::default() }, &mut ())
 }
 
 fn scenes(corpus: Option<&Path>) -> Vec<(String, Scene)> {
