@@ -10,7 +10,7 @@ use fosssim_render::{
     film::{Apng, Gif, Rate, png},
     svg,
 };
-use fosssim_report::describe::step_error;
+use fosssim_report::describe::no_result;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::io::{self, Write};
@@ -30,13 +30,6 @@ const RATE: u16 = 25;
 /// How many steps go by between two words about progress.
 const NEWS: u32 = 64;
 
-/// A scene to be simulated.
-#[derive(Debug, Deserialize)]
-pub(crate) struct SimulateRequest {
-    /// The scene's name, for messages.
-    scene: String,
-}
-
 /// A picture of the motion.
 #[derive(Debug, Deserialize)]
 pub(crate) struct PictureRequest {
@@ -47,7 +40,7 @@ pub(crate) struct PictureRequest {
 }
 
 /// How a picture is given.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum PictureForm {
     /// Four bytes a pixel, for a canvas.
@@ -79,8 +72,8 @@ pub(crate) struct Film {
 }
 
 /// Reads a scene and, if it is right, simulates it.
-pub(crate) fn simulate(request: &SimulateRequest, xml: &[u8], host: &dyn PageHost) -> (Value, Option<Film>) {
-    let (scene, problems, more) = match scene::read(&request.scene, xml) {
+pub(crate) fn simulate(name: &str, xml: &[u8], host: &dyn PageHost) -> (Value, Option<Film>) {
+    let (scene, problems, more) = match scene::read(name, xml) {
         Ok(Loaded { scene, warnings, .. }) => (Some(scene), warnings, 0),
         Err(refused) => (None, refused.list, refused.omitted),
     };
@@ -123,8 +116,7 @@ impl Film {
                 break;
             }
             if let Err(error) = simulation.step(&mut ()) {
-                let (step, words) = step_error(&error);
-                stopped = Some(format!("step {step} has no result, because {words}"));
+                stopped = Some(no_result(&error));
                 break;
             }
             extent.add(&scene, &simulation.state().positions);
@@ -161,18 +153,18 @@ impl Film {
             shapes = painter.picture(u32::try_from(step).unwrap_or(u32::MAX), self.at(step), None);
         }
         let background = painter.background();
-        let bytes = if asked.form == PictureForm::Svg {
-            svg::document(size, background, &format!("step {step}"), &shapes).into_bytes()
-        } else {
+        let drawn = || {
             let mut raster = Raster::new(size);
             raster.draw(background, &shapes);
-            let mut packed = Vec::new();
-            match asked.form {
-                PictureForm::Png => {
-                    png(&raster, &mut packed).map_err(|error| format!("the picture can't be encoded: {error}"))?;
-                    packed
-                }
-                _ => raster.rgba().to_vec(),
+            raster
+        };
+        let bytes = match asked.form {
+            PictureForm::Svg => svg::document(size, background, &format!("step {step}"), &shapes).into_bytes(),
+            PictureForm::Pixels => drawn().rgba().to_vec(),
+            PictureForm::Png => {
+                let mut packed = Vec::new();
+                png(&drawn(), &mut packed).map_err(|error| format!("the picture can't be encoded: {error}"))?;
+                packed
             }
         };
         self.painter = Some((painter, step + 1));
@@ -218,8 +210,7 @@ impl Film {
         let mut recorder = Recorder::start(kept, Layout::of(&self.scene), simulation.state());
         for step in 1..=self.scene.steps() {
             if let Err(error) = simulation.step(&mut recorder) {
-                let (step, words) = step_error(&error);
-                return Err(format!("there is no trace: step {step} has no result, because {words}"));
+                return Err(format!("there is no trace: {}", no_result(&error)));
             }
             if recorder.failed() {
                 break;
