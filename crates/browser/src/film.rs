@@ -22,7 +22,7 @@ const MOST_NUMBERS: usize = 1 << 24;
 const LONGEST_TRACE: usize = 1 << 30;
 
 /// Films of more pictures leave some out, as those of the command line do.
-const LONG_FILM: usize = 1500;
+const LONG_FILM: u32 = 1500;
 
 /// Pictures per second of a film.
 const RATE: u16 = 25;
@@ -33,7 +33,7 @@ const NEWS: u32 = 64;
 /// A picture of the motion.
 #[derive(Debug, Deserialize)]
 pub(crate) struct PictureRequest {
-    step: usize,
+    step: u32,
     width: u32,
     height: u32,
     form: PictureForm,
@@ -64,11 +64,11 @@ pub(crate) struct Film {
     scene: Scene,
     /// Positions after each step, the start first.
     positions: Vec<f64>,
-    steps: usize,
+    steps: u32,
     extent: Extent,
     /// The painter of the last picture and the step of its next one: particles leave paths, so pictures follow each
     /// other.
-    painter: Option<(Painter, usize)>,
+    painter: Option<(Painter, u32)>,
 }
 
 /// Reads a scene and, if it is right, simulates it.
@@ -121,7 +121,7 @@ impl Film {
             }
             extent.add(&scene, &simulation.state().positions);
             positions.extend(&simulation.state().positions);
-            steps += 1;
+            steps = step;
             if step % NEWS == 0 {
                 host.progress(step, scene.steps());
             }
@@ -130,9 +130,9 @@ impl Film {
         (Self { scene, positions, steps, extent, painter: None }, stopped)
     }
 
-    fn at(&self, step: usize) -> &[f64] {
+    fn at(&self, step: u32) -> &[f64] {
         let width = 2 * self.scene.particles.len();
-        &self.positions[step * width..(step + 1) * width]
+        &self.positions[step as usize * width..][..width]
     }
 
     fn painter(&self, size: Size) -> Painter {
@@ -143,14 +143,14 @@ impl Film {
     pub(crate) fn picture(&mut self, asked: &PictureRequest) -> PageAnswer {
         let size = Size::new(asked.width, asked.height).map_err(|error| error.to_string())?;
         let step = asked.step.min(self.steps);
-        let follows = |(painter, next): &(Painter, usize)| *next <= step && painter.size() == size;
+        let follows = |(painter, next): &(Painter, u32)| *next <= step && painter.size() == size;
         let (mut painter, mut next) = self.painter.take().filter(follows).unwrap_or_else(|| (self.painter(size), 0));
         if self.scene.display.paths.is_empty() {
             next = step;
         }
         let mut shapes = Vec::new();
         for step in next..=step {
-            shapes = painter.picture(u32::try_from(step).unwrap_or(u32::MAX), self.at(step), None);
+            shapes = painter.picture(step, self.at(step), None);
         }
         let background = painter.background();
         let drawn = || {
@@ -176,15 +176,15 @@ impl Film {
         let size = Size::new(kind.width, kind.height).map_err(|error| error.to_string())?;
         let rate = Rate::new(RATE).ok_or("no such rate")?;
         let every = self.steps.div_ceil(LONG_FILM).max(1);
-        let pictures = u32::try_from(self.steps / every + 1).unwrap_or(u32::MAX);
+        let pictures = self.steps / every + 1;
         let (mut painter, mut raster, mut bytes) = (self.painter(size), Raster::new(size), Vec::new());
         let (background, colours) = (painter.background(), painter.colours());
         let mut draw = |take: &mut dyn FnMut(&Raster) -> io::Result<()>| -> io::Result<()> {
-            for (number, step) in (0..=self.steps).step_by(every).enumerate() {
-                let shapes = painter.picture(u32::try_from(step).unwrap_or(u32::MAX), self.at(step), None);
+            for (number, step) in (0..).zip((0..=self.steps).step_by(every as usize)) {
+                let shapes = painter.picture(step, self.at(step), None);
                 raster.draw(background, &shapes);
                 take(&raster)?;
-                host.progress(u32::try_from(number).unwrap_or(u32::MAX), pictures);
+                host.progress(number, pictures);
             }
             Ok(())
         };
