@@ -74,19 +74,19 @@ pub(super) fn width() -> Option<usize> {
 /// As [`print`].
 pub(super) fn report(text: &str) -> Result<()> {
     match width() {
-        Some(width) => print(wrap::wrapped(text, width).as_bytes()),
-        None => print(text.as_bytes()),
+        Some(width) => print(wrap::wrapped(text, width)),
+        None => print(text),
     }
 }
 
-/// Prints what was written in this format.
+/// Prints a report in this format.
 ///
 /// # Errors
 /// As [`print`].
-pub(super) fn show(text: &str, format: TextOrJson) -> Result<()> {
+pub(super) fn show(format: TextOrJson, text: impl FnOnce() -> String, json: impl FnOnce() -> String) -> Result<()> {
     match format {
-        TextOrJson::Text => report(text),
-        TextOrJson::Json => print(text.as_bytes()),
+        TextOrJson::Text => report(&text()),
+        TextOrJson::Json => print(json()),
     }
 }
 
@@ -100,21 +100,22 @@ pub(super) fn pictures() -> Option<usize> {
 ///
 /// # Errors
 /// Anything else, such as a full disk.
-pub(super) fn print(text: &[u8]) -> Result<()> {
+pub(super) fn print(text: impl AsRef<[u8]>) -> Result<()> {
     if is_quiet() {
         return Ok(());
     }
     let mut stdout = io::stdout().lock();
-    unless_closed(stdout.write_all(text).and_then(|()| stdout.flush())).context("cannot write to standard output")
+    unless_closed(stdout.write_all(text.as_ref()).and_then(|()| stdout.flush()))
+        .context("cannot write to standard output")
 }
 
 /// Prints to standard error, above the bars; there is nowhere left to report a failure.
-pub(super) fn complain(text: &[u8]) {
-    write_above_bars(text);
+pub(super) fn complain(text: impl AsRef<[u8]>) {
+    write_above_bars(text.as_ref());
 }
 
 /// Prints what is worth knowing, but no error, to standard error.
-pub(super) fn remark(text: &[u8]) {
+pub(super) fn remark(text: impl AsRef<[u8]>) {
     if !is_quiet() {
         complain(text);
     }
@@ -140,6 +141,15 @@ pub(super) fn show_bars() -> MultiProgress {
     on_screen().get_or_insert_with(MultiProgress::new).clone()
 }
 
+/// Adds a bar of this length that looks like the template.
+pub(super) fn add_bar(bars: &MultiProgress, length: u64, template: &str) -> ProgressBar {
+    let bar = bars.add(ProgressBar::new(length));
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style);
+    }
+    bar
+}
+
 /// How long a command may take before a bar appears.
 const PATIENCE: Duration = Duration::from_secs(1);
 
@@ -163,10 +173,7 @@ impl Bar {
     /// passed.
     pub(super) fn of_runs(runs: u64) -> Self {
         let bar = |runs| {
-            let bar = show_bars().add(ProgressBar::new(runs));
-            if let Ok(style) = ProgressStyle::with_template("{spinner} {elapsed}: run {pos} of {len}, {wide_msg}") {
-                bar.set_style(style);
-            }
+            let bar = add_bar(&show_bars(), runs, "{spinner} {elapsed}: run {pos} of {len}, {wide_msg}");
             bar.enable_steady_tick(TICK);
             bar
         };
@@ -183,15 +190,11 @@ impl Bar {
 
     /// The number of steps that are done.
     pub(super) fn at(&mut self, step: u32) {
+        if self.shown.is_none() && self.begun.is_some_and(|begun| begun.elapsed() >= PATIENCE) {
+            self.shown = Some(add_bar(&show_bars(), self.steps, "{wide_bar} step {pos} of {len}, {eta} left"));
+        }
         if let Some(bar) = &self.shown {
             bar.set_position(u64::from(step));
-        } else if self.begun.is_some_and(|begun| begun.elapsed() >= PATIENCE) {
-            let bar = show_bars().add(ProgressBar::new(self.steps));
-            if let Ok(style) = ProgressStyle::with_template("{wide_bar} step {pos} of {len}, {eta} left") {
-                bar.set_style(style);
-            }
-            bar.set_position(u64::from(step));
-            self.shown = Some(bar);
         }
     }
 }

@@ -51,7 +51,7 @@ fn run(words: Vec<OsString>) -> ExitCode {
     }
     let code = commands::run(&arguments.command).unwrap_or_else(|error| {
         // Names of files are a stranger's words, too.
-        console::complain(plain(&format!("error: {error:#}\n")).as_bytes());
+        console::complain(plain(&format!("error: {error:#}\n")));
         exit::FAULT
     });
     ExitCode::from(code)

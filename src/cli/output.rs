@@ -154,44 +154,36 @@ impl Output {
 /// Says where something was written; a page is for a browser.
 pub(super) fn say_where(file: &Path, is_page: bool) {
     let what = if is_page { "to look at" } else { "written" };
-    console::remark(format!("{what}: {}\n", one_line(&file.display().to_string())).as_bytes());
+    console::remark(format!("{what}: {}\n", one_line(&file.display().to_string())));
+}
+
+impl Output {
+    /// Writes to where the bytes go for now. Without a reader all of them are `taken`: one that has gone away must not
+    /// keep the command from finishing.
+    fn through<T>(&mut self, taken: T, act: impl FnOnce(&mut dyn Write) -> io::Result<T>) -> io::Result<T> {
+        match self {
+            Self::Nowhere => Ok(taken),
+            Self::Stdout => match act(&mut io::stdout()) {
+                Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(taken),
+                other => other,
+            },
+            Self::Device(device, _) => act(device),
+            Self::File(file) => act(file),
+        }
+    }
 }
 
 impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        match self {
-            Self::Nowhere => Ok(bytes.len()),
-            // A reader that has gone away must not keep the command from finishing.
-            Self::Stdout => match io::stdout().write(bytes) {
-                Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(bytes.len()),
-                other => other,
-            },
-            Self::Device(device, _) => device.write(bytes),
-            Self::File(file) => file.write(bytes),
-        }
+        self.through(bytes.len(), |out| out.write(bytes))
     }
 
     fn write_vectored(&mut self, parts: &[IoSlice<'_>]) -> io::Result<usize> {
-        match self {
-            Self::Nowhere => Ok(parts.iter().map(|part| part.len()).sum()),
-            Self::Stdout => match io::stdout().write_vectored(parts) {
-                Err(error) if error.kind() == io::ErrorKind::BrokenPipe => {
-                    Ok(parts.iter().map(|part| part.len()).sum())
-                }
-                other => other,
-            },
-            Self::Device(device, _) => device.write_vectored(parts),
-            Self::File(file) => file.write_vectored(parts),
-        }
+        self.through(parts.iter().map(|part| part.len()).sum(), |out| out.write_vectored(parts))
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        match self {
-            Self::Nowhere => Ok(()),
-            Self::Stdout => console::unless_closed(io::stdout().flush()),
-            Self::Device(device, _) => device.flush(),
-            Self::File(file) => file.flush(),
-        }
+        self.through((), |out| out.flush())
     }
 }
 
@@ -199,8 +191,8 @@ impl Write for Output {
 ///
 /// # Errors
 /// When it can't be written; the old file, if there is one, is unharmed.
-pub(super) fn write(name: &Path, inputs: &[Identity], bytes: &[u8]) -> Result<()> {
-    Output::create(name, inputs)?.finish_with(bytes)
+pub(super) fn write(name: &Path, bytes: &[u8]) -> Result<()> {
+    Output::create(name, &[])?.finish_with(bytes)
 }
 
 /// Writes a whole file by rename, below a folder for results: folders on the way are made, and no link is followed.
@@ -208,12 +200,8 @@ pub(super) fn write(name: &Path, inputs: &[Identity], bytes: &[u8]) -> Result<()
 /// # Errors
 /// When it can't be written; the old file, if there is one, is unharmed.
 pub(super) fn write_at(place: &Place, bytes: &[u8]) -> Result<()> {
-    let write = || {
-        let mut file = begun(|| place.replacement())?;
-        file.write_all(bytes)?;
-        finished(file)
-    };
-    write().with_context(|| format!("cannot write {}", place.path().display()))
+    replaced(|| place.replacement(), |file| file.write_all(bytes))
+        .with_context(|| format!("cannot write {}", place.path().display()))
 }
 
 /// As [`write_at`], for what a reader yields.
@@ -221,8 +209,16 @@ pub(super) fn write_at(place: &Place, bytes: &[u8]) -> Result<()> {
 /// # Errors
 /// As for [`write_at`], and when it can't be read.
 pub(super) fn copy_at(place: &Place, from: &mut impl io::Read) -> io::Result<()> {
-    let mut file = begun(|| place.replacement())?;
-    io::copy(from, &mut file)?;
+    replaced(|| place.replacement(), |file| io::copy(from, file).map(drop))
+}
+
+/// Makes a whole file in one go.
+fn replaced(
+    begin: impl FnOnce() -> io::Result<Replacement>,
+    fill: impl FnOnce(&mut Replacement) -> io::Result<()>,
+) -> io::Result<()> {
+    let mut file = begun(begin)?;
+    fill(&mut file)?;
     finished(file)
 }
 
@@ -289,12 +285,8 @@ impl Folder {
     /// # Errors
     /// When it can't be written.
     pub(super) fn write(&self, name: &str, bytes: &[u8]) -> Result<()> {
-        let write = || {
-            let mut file = begun(|| self.0.replacement(OsStr::new(name), None))?;
-            file.write_all(bytes)?;
-            finished(file)
-        };
-        write().with_context(|| format!("cannot write {}", self.0.shown().join(name).display()))
+        replaced(|| self.0.replacement(OsStr::new(name), None), |file| file.write_all(bytes))
+            .with_context(|| format!("cannot write {}", self.0.shown().join(name).display()))
     }
 }
 

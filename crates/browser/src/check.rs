@@ -1,17 +1,17 @@
 //! `check`: the same reports as the command's.
 use crate::{
-    dropped::{PageHost, ReadFault, opened},
+    dropped::{PageHost, ReadFault, ToldProgress, opened},
     parts::PageAnswer,
     scenes,
 };
 use fosssim_evidence::{self as evidence, Keep, examine};
 use fosssim_judge::{
-    Outcome, Rules, Stop, Unreadable,
-    replay::{Options, Progress, Remark, WrongStep},
+    Rules,
+    replay::{Both, Options},
 };
 use fosssim_model::scene::{self, Scene};
 use fosssim_report::{
-    check::{Check, LOOKED_AT, StepChoice, WrongSteps, is_wrong, looks_like, no_verdict},
+    check::{Check, LOOKED_AT, StepChoice, WrongSteps, is_wrong, looks_like, no_verdict, not_read},
     page, problems,
 };
 use serde::Deserialize;
@@ -44,8 +44,9 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
     let _ = trace.by_ref().take(LOOKED_AT).read_to_end(&mut start);
     let looks_like = looks_like(&start);
     let options = Options { threads: 1, fair: request.rules.ask_fair(), ..Options::default() };
-    let mut heard = WrongStepsHeard { host, all: scene.steps(), wrong: WrongSteps::new(StepChoice::None) };
-    let examined = examine(&scene, Cursor::new(start).chain(trace), Keep::All, &options, &mut heard);
+    let (mut told, mut wrong) = (ToldProgress { host, all: scene.steps() }, WrongSteps::new(StepChoice::None));
+    let heard = &mut Both(&mut told, &mut wrong);
+    let examined = examine(&scene, Cursor::new(start).chain(trace), Keep::All, &options, heard);
     let outcome = &examined.outcome;
     // A search for the mistake may take as long as judging.
     host.progress(scene.steps(), scene.steps());
@@ -53,7 +54,7 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
         return Err(why);
     }
     if let Some(why) = fault.get() {
-        return Err(unreadable(&request.trace, outcome, why));
+        return Err(not_read(outcome, &request.trace, why));
     }
     let explanations = if is_wrong(outcome) { examined.explain() } else { Vec::new() };
     let check = Check {
@@ -62,7 +63,7 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
         outcome,
         explanations: &explanations,
         rules: request.rules,
-        steps: &heard.wrong,
+        steps: &wrong,
         audit: false,
         tables: false,
         looks_like,
@@ -89,30 +90,5 @@ pub(crate) fn read_scene(name: &str, xml: Option<&[u8]>) -> Result<Scene, String
     match scene::read(name, xml) {
         Ok(loaded) => Ok(loaded.scene),
         Err(refused) => Err(problems::errors(name, xml, &refused)),
-    }
-}
-
-fn unreadable(trace: &str, outcome: &Outcome, why: &str) -> String {
-    let place = match &outcome.stop {
-        Some(Stop::Trace { cause: Unreadable::Io, offset, .. }) => format!(" at byte {offset}"),
-        _ => String::new(),
-    };
-    format!("cannot read the trace {trace}{place}: {why}")
-}
-
-/// Tells how far judging is, and gathers the wrong steps.
-struct WrongStepsHeard<'a> {
-    host: &'a dyn PageHost,
-    all: u32,
-    wrong: WrongSteps,
-}
-
-impl Progress for WrongStepsHeard<'_> {
-    fn step_judged(&mut self, step: u32, _: &[Remark]) {
-        self.host.progress(step, self.all);
-    }
-
-    fn step_wrong(&mut self, wrong: &WrongStep<'_>) {
-        self.wrong.step_wrong(wrong);
     }
 }

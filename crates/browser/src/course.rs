@@ -1,7 +1,7 @@
 //! A course's own suite on the page.
 use fosssim_grading::{
     SceneTask,
-    config::{Credit, Visibility},
+    config::Visibility,
     library,
     plan::{self, Plan, PlannedGroup},
 };
@@ -26,7 +26,7 @@ impl CourseSuite {
         }
         let scenes = || groups.iter().flat_map(|group| &group.scenes);
         let own: Vec<&SceneTask> = scenes().filter(|task| !is_inside(task)).collect();
-        let text = text(plan, &groups)?;
+        let text = text(plan, &groups);
         let read = plan::load_by(&text, &mut |pattern| {
             let found = own.iter().filter(|task| pattern == glob::Pattern::escape(&file(task)));
             Ok(found.map(|task| (task.name.clone(), task.xml.clone())).collect())
@@ -62,13 +62,13 @@ fn file(task: &SceneTask) -> String {
 }
 
 /// The suite without what grading alone needs.
-fn text(plan: &Plan, groups: &[&PlannedGroup]) -> Result<String, String> {
+fn text(plan: &Plan, groups: &[&PlannedGroup]) -> String {
     // A string of JSON is one of TOML.
     let string = |text: &str| Value::from(text).to_string();
-    let rules = serde_json::to_string(&plan.rules).map_err(|error| error.to_string())?;
     let mut out = format!(
-        "schema = 1\nname = {}\nrules = {rules}\n\n[limits]\ntrace_mib = {}\n",
+        "schema = 1\nname = {}\nrules = {}\n\n[limits]\ntrace_mib = {}\n",
         string(&plan.name),
+        json!(plan.rules),
         (plan.limits.trace >> 20).max(1)
     );
     for group in groups {
@@ -80,19 +80,15 @@ fn text(plan: &Plan, groups: &[&PlannedGroup]) -> Result<String, String> {
                 false => string(&glob::Pattern::escape(&file(task))),
             })
             .collect();
-        let credit = match group.marking.credit {
-            Credit::Scenes => "scenes",
-            Credit::Steps => "steps",
-            Credit::All => "all",
-        };
         let _ = write!(
             out,
-            "\n[[group]]\nname = {}\nscenes = [{}]\npoints = {}\ncredit = \"{credit}\"\nhints = \"{}\"\n",
+            "\n[[group]]\nname = {}\nscenes = [{}]\npoints = {}\ncredit = {}\nhints = \"{}\"\n",
             string(&group.name),
             scenes.join(", "),
             group.marking.points,
+            json!(group.marking.credit),
             group.marking.hints.words().0
         );
     }
-    Ok(out)
+    out
 }

@@ -1,4 +1,5 @@
 //! Files that were dropped on the page, read piece by piece; packed traces are unpacked on the way.
+use fosssim_judge::replay::{Progress, Remark};
 use ruzstd::decoding::{FrameDecoder, StreamingDecoder};
 use std::{
     io::{self, BufRead, BufReader, Read},
@@ -23,6 +24,18 @@ pub trait PageHost: Sync {
 
     /// Is told how far a request is: how many steps of all are done.
     fn progress(&self, done: u32, all: u32);
+}
+
+/// Tells how far judging is.
+pub(crate) struct ToldProgress<'a> {
+    pub(crate) host: &'a dyn PageHost,
+    pub(crate) all: u32,
+}
+
+impl Progress for ToldProgress<'_> {
+    fn step_judged(&mut self, step: u32, _: &[Remark]) {
+        self.host.progress(step, self.all);
+    }
 }
 
 /// A dropped trace from its beginning, unpacked where it is a zstd file.

@@ -10,7 +10,7 @@ use fosssim_render::{
     film::{Apng, Gif, Rate, png},
     svg,
 };
-use fosssim_report::describe::step_error;
+use fosssim_report::describe::no_result;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::io::{self, Write};
@@ -22,7 +22,7 @@ const MOST_NUMBERS: usize = 1 << 24;
 const LONGEST_TRACE: usize = 1 << 30;
 
 /// Films of more pictures leave some out, as those of the command line do.
-const LONG_FILM: usize = 1500;
+const LONG_FILM: u32 = 1500;
 
 /// Pictures per second of a film.
 const RATE: u16 = 25;
@@ -30,24 +30,17 @@ const RATE: u16 = 25;
 /// How many steps go by between two words about progress.
 const NEWS: u32 = 64;
 
-/// A scene to be simulated.
-#[derive(Debug, Deserialize)]
-pub(crate) struct SimulateRequest {
-    /// The scene's name, for messages.
-    scene: String,
-}
-
 /// A picture of the motion.
 #[derive(Debug, Deserialize)]
 pub(crate) struct PictureRequest {
-    step: usize,
+    step: u32,
     width: u32,
     height: u32,
     form: PictureForm,
 }
 
 /// How a picture is given.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum PictureForm {
     /// Four bytes a pixel, for a canvas.
@@ -71,16 +64,16 @@ pub(crate) struct Film {
     scene: Scene,
     /// Positions after each step, the start first.
     positions: Vec<f64>,
-    steps: usize,
+    steps: u32,
     extent: Extent,
     /// The painter of the last picture and the step of its next one: particles leave paths, so pictures follow each
     /// other.
-    painter: Option<(Painter, usize)>,
+    painter: Option<(Painter, u32)>,
 }
 
 /// Reads a scene and, if it is right, simulates it.
-pub(crate) fn simulate(request: &SimulateRequest, xml: &[u8], host: &dyn PageHost) -> (Value, Option<Film>) {
-    let (scene, problems, more) = match scene::read(&request.scene, xml) {
+pub(crate) fn simulate(name: &str, xml: &[u8], host: &dyn PageHost) -> (Value, Option<Film>) {
+    let (scene, problems, more) = match scene::read(name, xml) {
         Ok(Loaded { scene, warnings, .. }) => (Some(scene), warnings, 0),
         Err(refused) => (None, refused.list, refused.omitted),
     };
@@ -123,13 +116,12 @@ impl Film {
                 break;
             }
             if let Err(error) = simulation.step(&mut ()) {
-                let (step, words) = step_error(&error);
-                stopped = Some(format!("step {step} has no result, because {words}"));
+                stopped = Some(no_result(&error));
                 break;
             }
             extent.add(&scene, &simulation.state().positions);
             positions.extend(&simulation.state().positions);
-            steps += 1;
+            steps = step;
             if step % NEWS == 0 {
                 host.progress(step, scene.steps());
             }
@@ -138,9 +130,9 @@ impl Film {
         (Self { scene, positions, steps, extent, painter: None }, stopped)
     }
 
-    fn at(&self, step: usize) -> &[f64] {
+    fn at(&self, step: u32) -> &[f64] {
         let width = 2 * self.scene.particles.len();
-        &self.positions[step * width..(step + 1) * width]
+        &self.positions[step as usize * width..][..width]
     }
 
     fn painter(&self, size: Size) -> Painter {
@@ -151,28 +143,28 @@ impl Film {
     pub(crate) fn picture(&mut self, asked: &PictureRequest) -> PageAnswer {
         let size = Size::new(asked.width, asked.height).map_err(|error| error.to_string())?;
         let step = asked.step.min(self.steps);
-        let follows = |(painter, next): &(Painter, usize)| *next <= step && painter.size() == size;
+        let follows = |(painter, next): &(Painter, u32)| *next <= step && painter.size() == size;
         let (mut painter, mut next) = self.painter.take().filter(follows).unwrap_or_else(|| (self.painter(size), 0));
         if self.scene.display.paths.is_empty() {
             next = step;
         }
         let mut shapes = Vec::new();
         for step in next..=step {
-            shapes = painter.picture(u32::try_from(step).unwrap_or(u32::MAX), self.at(step), None);
+            shapes = painter.picture(step, self.at(step), None);
         }
         let background = painter.background();
-        let bytes = if asked.form == PictureForm::Svg {
-            svg::document(size, background, &format!("step {step}"), &shapes).into_bytes()
-        } else {
+        let drawn = || {
             let mut raster = Raster::new(size);
             raster.draw(background, &shapes);
-            let mut packed = Vec::new();
-            match asked.form {
-                PictureForm::Png => {
-                    png(&raster, &mut packed).map_err(|error| format!("the picture can't be encoded: {error}"))?;
-                    packed
-                }
-                _ => raster.rgba().to_vec(),
+            raster
+        };
+        let bytes = match asked.form {
+            PictureForm::Svg => svg::document(size, background, &format!("step {step}"), &shapes).into_bytes(),
+            PictureForm::Pixels => drawn().rgba().to_vec(),
+            PictureForm::Png => {
+                let mut packed = Vec::new();
+                png(&drawn(), &mut packed).map_err(|error| format!("the picture can't be encoded: {error}"))?;
+                packed
             }
         };
         self.painter = Some((painter, step + 1));
@@ -184,15 +176,15 @@ impl Film {
         let size = Size::new(kind.width, kind.height).map_err(|error| error.to_string())?;
         let rate = Rate::new(RATE).ok_or("no such rate")?;
         let every = self.steps.div_ceil(LONG_FILM).max(1);
-        let pictures = u32::try_from(self.steps / every + 1).unwrap_or(u32::MAX);
+        let pictures = self.steps / every + 1;
         let (mut painter, mut raster, mut bytes) = (self.painter(size), Raster::new(size), Vec::new());
         let (background, colours) = (painter.background(), painter.colours());
         let mut draw = |take: &mut dyn FnMut(&Raster) -> io::Result<()>| -> io::Result<()> {
-            for (number, step) in (0..=self.steps).step_by(every).enumerate() {
-                let shapes = painter.picture(u32::try_from(step).unwrap_or(u32::MAX), self.at(step), None);
+            for (number, step) in (0..).zip((0..=self.steps).step_by(every as usize)) {
+                let shapes = painter.picture(step, self.at(step), None);
                 raster.draw(background, &shapes);
                 take(&raster)?;
-                host.progress(u32::try_from(number).unwrap_or(u32::MAX), pictures);
+                host.progress(number, pictures);
             }
             Ok(())
         };
@@ -218,8 +210,7 @@ impl Film {
         let mut recorder = Recorder::start(kept, Layout::of(&self.scene), simulation.state());
         for step in 1..=self.scene.steps() {
             if let Err(error) = simulation.step(&mut recorder) {
-                let (step, words) = step_error(&error);
-                return Err(format!("there is no trace: step {step} has no result, because {words}"));
+                return Err(format!("there is no trace: {}", no_result(&error)));
             }
             if recorder.failed() {
                 break;

@@ -29,7 +29,7 @@ enum PageRequest {
     /// Judges a dropped trace. The second part is the scene's XML, unless it is one of those inside.
     Check(check::CheckRequest),
     /// Reads the scene of the second part, and simulates it if it is right.
-    Simulate(film::SimulateRequest),
+    Simulate { scene: String },
     /// The trace of the scene that was simulated last.
     Trace,
     /// A picture of its motion.
@@ -78,8 +78,8 @@ impl PageSession {
             PageRequest::Read { name } => check::read_scene(&name, xml).map(|_| (json!({}), Vec::new())),
             PageRequest::Recognise { file } => scenes::beginning(file, host),
             PageRequest::Check(request) => check::answer(&request, xml, host),
-            PageRequest::Simulate(request) => {
-                let (value, film) = film::simulate(&request, xml.ok_or("the scene is missing")?, host);
+            PageRequest::Simulate { scene } => {
+                let (value, film) = film::simulate(&scene, xml.ok_or("the scene is missing")?, host);
                 self.film = film;
                 Ok((value, Vec::new()))
             }

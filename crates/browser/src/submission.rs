@@ -1,6 +1,6 @@
 //! A submission's traces: points by a suite, as `grade --traces` gives them.
 use crate::{
-    dropped::{PageHost, ReadFault, opened},
+    dropped::{PageHost, ReadFault, ToldProgress, opened},
     parts::PageAnswer,
 };
 use fosssim_grading::{
@@ -9,7 +9,6 @@ use fosssim_grading::{
     result::Reason,
     traces,
 };
-use fosssim_judge::replay::{Progress, Remark};
 use fosssim_mistakes::together::told::cut_result;
 use fosssim_report::{
     grade,
@@ -137,16 +136,4 @@ fn matching(pattern: &str, names: &[String], files: &[&[u8]]) -> Result<Found, S
         return Err(format!("no scene file matches {pattern}: drop the folder of the suite with its scenes"));
     }
     Ok(found)
-}
-
-/// Tells how far judging is.
-struct ToldProgress<'a> {
-    host: &'a dyn PageHost,
-    all: u32,
-}
-
-impl Progress for ToldProgress<'_> {
-    fn step_judged(&mut self, step: u32, _: &[Remark]) {
-        self.host.progress(step, self.all);
-    }
 }

@@ -6,7 +6,7 @@ use crate::{
 use fosssim_judge::{
     Outcome,
     kept::{Keeper, KeptTrace, LONGEST},
-    replay::{Options, Progress},
+    replay::{Both, Options, Progress},
 };
 use fosssim_mistakes::diagnose::{Explanation, explain_kept};
 use fosssim_model::scene::Scene;
@@ -45,8 +45,8 @@ pub fn examine<'a, R: Read + Send>(
     progress: &mut dyn Progress,
 ) -> Examined<'a> {
     let keeper = Keeper::new(scene, if keep == Keep::Nothing { 0 } else { LONGEST as usize });
-    let mut rulings = StepRulings::new(progress);
-    let outcome = keeper.judge(&mut trace, options, &mut rulings);
+    let mut rulings = StepRulings::default();
+    let outcome = keeper.judge(&mut trace, options, &mut Both(&mut rulings, progress));
     if keep == Keep::All && outcome.stop.is_some() {
         keeper.read_on(trace);
     }

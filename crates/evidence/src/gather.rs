@@ -1,6 +1,6 @@
 //! Goes through a trace once more, beside the reference.
 use crate::{
-    inspected_step::{InspectedStep, Inspector, WantedCalls},
+    inspected_step::{InspectedStep, Inspector, WantedCalls, go_on_from},
     rulings::StepRuling,
     track::{Track, Window},
 };
@@ -232,7 +232,7 @@ impl<'a> Gathering<'a> {
         self.own.set_steps_done(step - 1);
         // The mid record of `continuous-time` equals the end record, so it is compared with the end of the step.
         let mid_state = matches!(self.scene.collision, Collision::Hybrid { .. }).then_some(&mid.state);
-        let mut count = PassCount::new(mid_state);
+        let mut count = PassCount { mid: mid_state, ..PassCount::default() };
         let Some(wanted) = wanted else {
             return self.work.step(&mut self.own, &mut count).is_ok().then_some(count);
         };
@@ -307,6 +307,7 @@ impl Observer for MidState {
 }
 
 /// Counts passes and calls, and has the step go on with the trace's mid record.
+#[derive(Default)]
 struct PassCount<'a> {
     mid: Option<&'a State>,
     passes: u32,
@@ -315,11 +316,7 @@ struct PassCount<'a> {
     apart: [f64; 2],
 }
 
-impl<'a> PassCount<'a> {
-    const fn new(mid: Option<&'a State>) -> Self {
-        Self { mid, passes: 0, polynomials: 0, apart: [0.0; 2] }
-    }
-
+impl PassCount<'_> {
     /// As many passes as a number of polynomials makes: every pass of a step logs as many.
     fn passes_of(&self, logged: usize) -> Option<u32> {
         let passes = self.passes as usize;
@@ -347,13 +344,9 @@ impl Observer for PassCount<'_> {
 
 impl Steer for PassCount<'_> {
     fn synchronise(&mut self, state: &mut State) -> Resume {
-        match self.mid {
-            Some(mid) if mid.positions.len() == state.positions.len() => {
-                self.apart = apart(state, mid);
-                state.clone_from(mid);
-                Resume::Synchronised
-            }
-            _ => Resume::Own,
+        if let Some(mid) = self.mid {
+            self.apart = apart(state, mid);
         }
+        go_on_from(self.mid, state)
     }
 }

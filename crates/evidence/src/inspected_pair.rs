@@ -6,15 +6,6 @@ use fosssim_model::{
     trace::PolynomialLog,
 };
 
-/// The records of a step in the trace, without the state that it starts from.
-#[derive(Debug, Clone, Copy)]
-pub struct StepRecords<'a> {
-    /// Its mid record's state, from which a `hybrid` step goes on.
-    pub mid: Option<&'a State>,
-    /// The polynomials of its end record.
-    pub polynomials: &'a PolynomialLog,
-}
-
 /// A pair in a step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InspectedPair {
@@ -26,19 +17,20 @@ pub struct InspectedPair {
     pub failed: Option<StepError>,
 }
 
-/// Looks at all detection calls of a pair in a step that starts from `before`; without `records` as the reference goes
-/// on.
+/// Looks at all detection calls of a pair in a step that starts from `before`. The step goes on with the trace's
+/// `records`, or without these as the reference goes on: the state of its mid record, which counts for `hybrid`, and
+/// the polynomials of its end record.
 #[must_use]
 pub fn inspect(
     scene: &Scene,
     step: u32,
     before: &State,
-    records: Option<StepRecords<'_>>,
+    records: Option<(&State, &PolynomialLog)>,
     pair: Pair,
 ) -> InspectedPair {
     let none = PolynomialLog::default();
-    let mid = records.and_then(|records| records.mid).filter(|_| matches!(scene.collision, Collision::Hybrid { .. }));
-    let log = records.map_or(&none, |records| records.polynomials);
+    let mid = records.map(|(mid, _)| mid).filter(|_| matches!(scene.collision, Collision::Hybrid { .. }));
+    let log = records.map_or(&none, |(_, polynomials)| polynomials);
     let wanted = [(WantedCalls::Every, pair)];
     let mut watch = Inspector::new(scene, step, mid, (log, log.len()), &wanted);
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);

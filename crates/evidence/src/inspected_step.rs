@@ -74,7 +74,7 @@ pub struct InspectedCall {
 }
 
 /// One step looked at closely.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct InspectedStep {
     /// The step, from 1.
     pub step: u32,
@@ -151,20 +151,7 @@ impl<'a> Inspector<'a> {
         (log, logged): (&'a PolynomialLog, usize),
         wanted: &'a [(WantedCalls, Pair)],
     ) -> Self {
-        let step = InspectedStep {
-            step,
-            expected_mid: None,
-            expected_end: None,
-            passes: Vec::new(),
-            expected_passes: 0,
-            expected_polynomials: 0,
-            actual_polynomials: logged,
-            surplus: None,
-            expected_contacts: Vec::new(),
-            actual_contacts: Vec::new(),
-            zones: Vec::new(),
-            calls: Vec::new(),
-        };
+        let step = InspectedStep { step, actual_polynomials: logged, ..InspectedStep::default() };
         // An entry that was not kept looks like one that is missing.
         let log = (log.len() == logged && logged > 0).then_some(log);
         let (asked, right) = (Vec::new(), PolynomialLog::default());
@@ -311,13 +298,18 @@ fn keep(pairs: &mut Vec<Pair>, pair: Pair) {
 
 impl Steer for Inspector<'_> {
     fn synchronise(&mut self, state: &mut State) -> Resume {
-        match self.mid {
-            Some(mid) if mid.positions.len() == state.positions.len() => {
-                state.clone_from(mid);
-                Resume::Synchronised
-            }
-            _ => Resume::Own,
+        go_on_from(self.mid, state)
+    }
+}
+
+/// Has a step go on from the trace's mid record, where it has one of the scene's size.
+pub(crate) fn go_on_from(mid: Option<&State>, state: &mut State) -> Resume {
+    match mid {
+        Some(mid) if mid.positions.len() == state.positions.len() => {
+            state.clone_from(mid);
+            Resume::Synchronised
         }
+        _ => Resume::Own,
     }
 }
 
@@ -326,18 +318,15 @@ impl Observer for Inspector<'_> {
         self.pass = Some(pass);
         self.step.expected_passes += 1;
         if self.step.passes.len() < self.most_passes() {
-            let is_logged = self.log.is_some();
-            let q_end = Vec::new();
-            let (hits, differing, missing, repeated) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
             self.step.passes.push(InspectedPass {
                 pass,
-                q_end,
+                q_end: Vec::new(),
                 calls: 0,
-                hits,
-                differing,
-                missing,
-                repeated,
-                is_logged,
+                hits: Vec::new(),
+                differing: Vec::new(),
+                missing: Vec::new(),
+                repeated: Vec::new(),
+                is_logged: self.log.is_some(),
             });
         }
     }

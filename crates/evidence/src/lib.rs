@@ -44,7 +44,7 @@ mod track;
 
 pub use examined::{Examined, Keep, examine};
 pub use gather::{Evidence, Focus, Step, StepClass, gather};
-pub use inspected_pair::{InspectedPair, StepRecords, inspect};
+pub use inspected_pair::{InspectedPair, inspect};
 pub use inspected_step::{InspectedCall, InspectedPass, InspectedStep, Logged, MergedZones};
 pub use rulings::{StepRuling, StepRulings};
 pub use track::{BUDGET, Track, Window};

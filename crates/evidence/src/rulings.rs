@@ -15,18 +15,13 @@ pub struct StepRuling {
     pub damaged: bool,
 }
 
-/// Keeps the rulings on all steps, and passes all events on.
-pub struct StepRulings<'a> {
-    inner: &'a mut dyn Progress,
+/// Keeps the rulings on all steps.
+#[derive(Debug, Default)]
+pub struct StepRulings {
     steps: Vec<StepRuling>,
 }
 
-impl<'a> StepRulings<'a> {
-    /// Nothing heard yet.
-    pub fn new(inner: &'a mut dyn Progress) -> Self {
-        Self { inner, steps: Vec::new() }
-    }
-
+impl StepRulings {
     /// The rulings in the order of the steps, once the trace has been judged.
     #[must_use]
     pub fn into_steps(mut self, outcome: &Outcome) -> Vec<StepRuling> {
@@ -37,18 +32,9 @@ impl<'a> StepRulings<'a> {
     }
 }
 
-impl Progress for StepRulings<'_> {
-    fn begins(&mut self) {
-        self.inner.begins();
-    }
-
-    fn step_begins(&mut self, step: u32) {
-        self.inner.step_begins(step);
-    }
-
-    fn step_judged(&mut self, step: u32, remarks: &[Remark]) {
+impl Progress for StepRulings {
+    fn step_judged(&mut self, _step: u32, _remarks: &[Remark]) {
         self.steps.push(StepRuling::default());
-        self.inner.step_judged(step, remarks);
     }
 
     fn step_wrong(&mut self, wrong: &WrongStep<'_>) {
@@ -56,6 +42,5 @@ impl Progress for StepRulings<'_> {
             last.wrong_by_parity = !wrong.parity.firsts.is_empty();
             last.wrong_by_fair = !wrong.fair.firsts.is_empty();
         }
-        self.inner.step_wrong(wrong);
     }
 }

@@ -15,8 +15,7 @@ fn asset(name: &str) -> Scene {
 
 fn judged(scene: &Scene, trace: &[u8]) -> (Outcome, Evidence) {
     let options = replay::Options { fair: true, ..Default::default() };
-    let mut nobody = ();
-    let mut rulings = StepRulings::new(&mut nobody);
+    let mut rulings = StepRulings::default();
     let outcome = replay::judge(scene, trace, &options, &mut rulings);
     let focus: Vec<Focus> = outcome.findings_by(Book::Fair).examples.iter().map(Focus::from).collect();
     let evidence = gather(scene, &mut &trace[..], &rulings.into_steps(&outcome), true, &focus, BUDGET);
@@ -154,8 +153,7 @@ fn a_pair_is_looked_at_in_every_pass_from_the_trace_s_own_records() {
     };
     let (before, mid) = (state(evidence.layout.end_record(step - 1)), state(evidence.layout.end_record(step) - 1));
     let pair = close.passes[0].hits[0].pair;
-    let records = StepRecords { mid: Some(&mid), polynomials: &PolynomialLog::default() };
-    let seen = inspect(&scene, step, &before, Some(records), pair);
+    let seen = inspect(&scene, step, &before, Some((&mid, &PolynomialLog::default())), pair);
     assert_eq!(seen.step.calls.len(), close.expected_passes);
     assert!(seen.step.calls.iter().all(|call| call.pair == pair && call.logged == Logged::Nothing));
     assert_eq!((Some(&seen.end), seen.failed), (close.expected_end.as_ref(), None));

@@ -56,11 +56,7 @@ pub struct Track {
 impl Track {
     /// The records of a trace in a window, as far as it can be read.
     #[must_use]
-    pub fn read<R: Read>(mut trace: R, layout: Layout, window: Window) -> Self {
-        Self::read_from(&mut trace, layout, window)
-    }
-
-    fn read_from(trace: &mut dyn Read, layout: Layout, window: Window) -> Self {
+    pub fn read(trace: &mut dyn Read, layout: Layout, window: Window) -> Self {
         let mut reader = Lenient::new(trace, layout);
         let (mut frame, mut track) = (LenientFrame::default(), Self::default());
         for record in 0..layout.records() {

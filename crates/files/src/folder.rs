@@ -58,12 +58,8 @@ impl Folder {
     /// # Errors
     /// When there is none or it is closed to us.
     pub fn open(path: &Path) -> io::Result<Self> {
-        let options = || {
-            let mut options = OpenOptions::new();
-            options.read(true).custom_flags(libc::O_DIRECTORY | libc::O_NONBLOCK);
-            options
-        };
-        Ok(Self { fd: Arc::new(options().open(path)?.into()), shown: path.to_owned() })
+        let folder = OpenOptions::new().read(true).custom_flags(libc::O_DIRECTORY | libc::O_NONBLOCK).open(path)?;
+        Ok(Self { fd: Arc::new(folder.into()), shown: path.to_owned() })
     }
 
     /// Opens a folder to write files into, which nobody need be able to list.
@@ -130,14 +126,11 @@ impl Folder {
     /// # Errors
     /// When there is none, or it is a link.
     pub fn folder(&self, name: &OsStr) -> io::Result<Self> {
-        let flags = OFlags::PATH | OFlags::DIRECTORY | CLOSED;
-        match openat(&*self.fd, single(name)?, flags, Mode::empty()) {
-            Ok(fd) => Ok(self.inner(fd, name)),
-            Err(Errno::NOTDIR | Errno::LOOP) if self.is_link(name) => {
-                Err(io::Error::other("it is a link, which is not followed: remove it"))
-            }
-            Err(error) => Err(error.into()),
-        }
+        let inner = step(self.as_fd(), single(name)?).map_err(|error| match error.raw_os_error() {
+            Some(libc::ELOOP) => io::Error::other("it is a link, which is not followed: remove it"),
+            _ => error,
+        });
+        Ok(self.inner(inner?, name))
     }
 
     /// As [`Folder::folder`], made where there is none.
@@ -247,9 +240,8 @@ impl Folder {
     #[must_use]
     pub fn identity(&self, name: &OsStr) -> Option<(Identity, u32)> {
         let (folder, last) = self.above(Path::new(name)).ok()?;
-        let stat =
-            statat(folder.as_ref().map_or_else(|| self.fd.as_fd(), AsFd::as_fd), last, AtFlags::SYMLINK_NOFOLLOW);
-        let stat = stat.ok().filter(|stat| FileType::from_raw_mode(stat.st_mode) == FileType::RegularFile)?;
+        let stat = statat(&*folder, last, AtFlags::SYMLINK_NOFOLLOW).ok();
+        let stat = stat.filter(|stat| FileType::from_raw_mode(stat.st_mode) == FileType::RegularFile)?;
         Some((Identity::new(stat.st_dev, stat.st_ino), stat.st_uid))
     }
 
@@ -263,8 +255,7 @@ impl Folder {
     pub(crate) fn beneath(&self, path: &Path) -> Result<Self, FileError> {
         let open = || -> io::Result<Self> {
             let (above, Some(last)) = self.names_of(path)? else { return Ok(self.clone()) };
-            let above = above.as_ref().map_or_else(|| self.fd.as_fd(), AsFd::as_fd);
-            Ok(Self { fd: Arc::new(step(above, last)?), shown: self.shown.join(path) })
+            Ok(self.inner(step(above.as_fd(), last)?, path.as_os_str()))
         };
         open().map_err(|error| FileError::not_opened(escaped(path.as_os_str()), error))
     }
@@ -273,26 +264,20 @@ impl Folder {
         Self { fd: Arc::new(fd), shown: self.shown.join(name) }
     }
 
-    fn is_link(&self, name: &OsStr) -> bool {
-        statat(&*self.fd, name, AtFlags::SYMLINK_NOFOLLOW)
-            .is_ok_and(|stat| FileType::from_raw_mode(stat.st_mode) == FileType::Symlink)
-    }
-
     /// Opens the entry at a path of names, each of which is looked up in the folder before it.
     fn open_beneath(&self, name: &OsStr) -> io::Result<File> {
         let (above, last) = self.above(Path::new(name))?;
-        let above = above.as_ref().map_or_else(|| self.fd.as_fd(), AsFd::as_fd);
-        Ok(openat(above, last, OFlags::RDONLY | CLOSED, Mode::empty())?.into())
+        Ok(openat(&*above, last, OFlags::RDONLY | CLOSED, Mode::empty())?.into())
     }
 
-    /// The folder that the last name of a path lies in, if it is not this one, and that name.
-    fn above<'a>(&self, path: &'a Path) -> io::Result<(Option<OwnedFd>, &'a OsStr)> {
+    /// The folder that the last name of a path lies in, and that name.
+    fn above<'a>(&self, path: &'a Path) -> io::Result<(Arc<OwnedFd>, &'a OsStr)> {
         let (folder, last) = self.names_of(path)?;
         Ok((folder, last.ok_or_else(|| io::Error::from_raw_os_error(libc::EISDIR))?))
     }
 
     /// As [`Folder::above`], without a last name where the path has none.
-    fn names_of<'a>(&self, path: &'a Path) -> io::Result<(Option<OwnedFd>, Option<&'a OsStr>)> {
+    fn names_of<'a>(&self, path: &'a Path) -> io::Result<(Arc<OwnedFd>, Option<&'a OsStr>)> {
         let mut names = Vec::new();
         for component in path.components() {
             match component {
@@ -302,10 +287,9 @@ impl Folder {
             }
         }
         let last = names.pop();
-        let mut folder: Option<OwnedFd> = None;
+        let mut folder = self.fd.clone();
         for name in names {
-            let above = folder.as_ref().map_or_else(|| self.fd.as_fd(), AsFd::as_fd);
-            folder = Some(step(above, name)?);
+            folder = Arc::new(step(folder.as_fd(), name)?);
         }
         Ok((folder, last))
     }

@@ -1,10 +1,11 @@
 //! Cards: what a report shows of a wrong trace beyond its result. They are drawn while the trace is at hand and kept
 //! under the digest of what they say, so that the journal's result names them and the trace itself need not be kept.
-use super::{config::Hints, result::SceneResult, task::SceneTask};
+use super::{config::Hints, result::SceneResult};
 use fosssim_evidence::StepRuling;
 use fosssim_files::Place;
 use fosssim_judge::{Outcome, Rules};
-use fosssim_mistakes::together::told::cut_result;
+use fosssim_mistakes::{diagnose::Explanation, together::told::cut};
+use fosssim_model::scene::Scene;
 use std::io;
 
 /// Deflating harder gains little: most of a card is packed already.
@@ -17,9 +18,11 @@ const LARGEST: u64 = 64 << 20;
 #[derive(Debug, Clone, Copy)]
 pub struct Judged<'a> {
     /// The scene.
-    pub task: &'a SceneTask,
-    /// The result, with no more than the reader may know.
-    pub result: &'a SceneResult,
+    pub scene: &'a Scene,
+    /// The scene's name.
+    pub name: &'a str,
+    /// Likely mistakes, with no more than the reader may know.
+    pub explanations: &'a [Explanation],
     /// The outcome of judging; it tells more than the reader may know.
     pub outcome: &'a Outcome,
     /// The ruling of the rule books on each step.
@@ -64,9 +67,8 @@ impl Cards<'_> {
         if !self.for_students {
             return Ok((card, None));
         }
-        let mut told = judged.result.clone();
-        cut_result(students, &mut told);
-        Ok((card, self.keep_one(&Judged { result: &told, hints: students, ..*judged })?))
+        let explanations = cut(students, judged.explanations.to_vec());
+        Ok((card, self.keep_one(&Judged { explanations: &explanations, hints: students, ..*judged })?))
     }
 
     fn keep_one(&self, judged: &Judged<'_>) -> io::Result<Option<String>> {
@@ -110,31 +112,27 @@ mod tests {
     use super::*;
     use crate::{Verdict, result::Reason};
     use fosssim_judge::replay;
+    use fosssim_mistakes::together::told::cut_result;
     use fosssim_model::scene::original;
 
     /// A scene, the outcome of judging a trace of it, and the result.
-    fn wrong() -> (SceneTask, Outcome, SceneResult) {
+    fn wrong() -> (Scene, Outcome, SceneResult) {
         let xml = b"<scene><duration time=\"0\"/><integrator type=\"explicit-euler\" dt=\"1\"/></scene>";
         let scene = original::read(xml).expect("a scene").scene;
-        let task = SceneTask { name: "a/b".to_owned(), xml: xml.to_vec(), scene, recording: None };
-        let outcome = replay::judge(&task.scene, &[][..], &replay::Options::default(), &mut ());
+        let outcome = replay::judge(&scene, &[][..], &replay::Options::default(), &mut ());
         let result = SceneResult::without_run("a/b", 0, Verdict::WrongAnswer, Reason::Right);
-        (task, outcome, result)
+        (scene, outcome, result)
+    }
+
+    fn judged<'a>(scene: &'a Scene, outcome: &'a Outcome) -> Judged<'a> {
+        let (rules, hints) = (Rules::Fair, Hints::Full);
+        Judged { scene, name: "a/b", explanations: &[], outcome, rulings: &[], trace: &[], is_cut: false, rules, hints }
     }
 
     #[test]
     fn a_card_is_kept_once_and_only_what_was_kept_is_read() {
-        let (task, outcome, result) = wrong();
-        let judged = Judged {
-            task: &task,
-            result: &result,
-            outcome: &outcome,
-            rulings: &[],
-            trace: &[],
-            is_cut: false,
-            rules: Rules::Fair,
-            hints: Hints::Full,
-        };
+        let (scene, outcome, result) = wrong();
+        let judged = judged(&scene, &outcome);
         let folder = tempfile::tempdir().expect("a folder");
         let cards = Place::new(folder.path(), "cards");
         let keep = |text: &'static str| {
@@ -162,18 +160,8 @@ mod tests {
     /// Staff's card never takes the place of the one for students.
     #[test]
     fn students_have_a_card_of_their_own_where_they_are_told_less() {
-        let (task, outcome, result) = wrong();
-        let (rules, hints) = (Rules::Fair, Hints::Full);
-        let judged = Judged {
-            task: &task,
-            result: &result,
-            outcome: &outcome,
-            rulings: &[],
-            trace: &[],
-            is_cut: false,
-            rules,
-            hints,
-        };
+        let (scene, outcome, result) = wrong();
+        let judged = judged(&scene, &outcome);
         let folder = tempfile::tempdir().expect("a folder");
         let place = Place::new(folder.path(), "cards");
         let draw = |judged: &Judged<'_>| (judged.hints > Hints::None).then(|| format!("{:?}", judged.hints));

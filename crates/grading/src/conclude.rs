@@ -6,14 +6,23 @@ use super::{
     config::{Hints, RunLimits},
     disclosure::Disclosure,
     result::{BadTrace, Ended, Limit, Measurements, Reached, Reason, SceneResult, Stream, Wrong},
+    task::SceneTask,
     verdict::Verdict,
 };
 use fosssim_judge::{
     Outcome, Rules, Ruling, Stop,
     fair::{self, FairRefusal},
+    kept::KeptTrace,
 };
-use fosssim_mistakes::{diagnose::Explanation, together::told::cut_result};
+use fosssim_mistakes::{
+    diagnose::{self, Explanation},
+    together::told::cut_result,
+};
 use fosssim_model::{scene::Scene, trace::Layout};
+use std::{
+    io::{self, Read},
+    sync::atomic::{AtomicU64, Ordering},
+};
 
 /// The bytes that a report keeps of each of the program's streams.
 #[cfg(target_os = "linux")]
@@ -46,6 +55,7 @@ impl From<&fosssim_sandbox::RunOutcome> for Ran {
             memory: Some(program.peak_memory),
             ..Measurements::default()
         };
+        let kept = |stream: &fosssim_sandbox::Captured| beginning(&stream.bytes, KEPT_OUTPUT, stream.truncated);
         let (stdout, stderr) = (kept(&program.stdout), kept(&program.stderr));
         Self { ended: program.ended.clone(), measured, stdout, stderr }
     }
@@ -54,22 +64,34 @@ impl From<&fosssim_sandbox::RunOutcome> for Ran {
 /// The facts about one run.
 #[derive(Debug, Clone, Copy)]
 pub struct Run<'a> {
-    /// The scene's name.
-    pub scene: &'a str,
+    /// The scene.
+    pub task: &'a SceneTask,
     /// How the program ended.
     pub program: &'a Ran,
     /// The judged trace.
     pub judged: &'a Outcome,
     /// Bytes of the trace that arrived.
     pub trace_bytes: u64,
-    /// Bytes of a trace that logs nothing ([`bytes_of_nothing`]).
-    pub nothing: Option<u64>,
     /// The rule books; the official one gives verdict, findings and right steps.
     pub rules: Rules,
     /// How much any reader may be told.
     pub hints: Hints,
     /// The limits that it had.
     pub limits: &'a RunLimits,
+}
+
+/// Counts the bytes of a trace that arrive: from a program, or out of a packed file.
+pub(super) struct CountedReader<'a, R> {
+    pub(super) inner: R,
+    pub(super) bytes: &'a AtomicU64,
+}
+
+impl<R: Read> Read for CountedReader<'_, R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.inner.read(buffer)?;
+        self.bytes.fetch_add(count as u64, Ordering::Relaxed);
+        Ok(count)
+    }
 }
 
 /// The depth of the search for explanations of a wrong trace.
@@ -79,6 +101,17 @@ pub enum Look {
     NotFinite,
     /// Likely mistakes, too.
     Mistakes,
+}
+
+impl Look {
+    /// The explanations of a trace.
+    #[must_use]
+    pub fn explain(self, trace: &KeptTrace<'_>) -> Vec<Explanation> {
+        match self {
+            Self::NotFinite => diagnose::not_finite(trace),
+            Self::Mistakes => diagnose::explain_kept(trace),
+        }
+    }
 }
 
 /// The result of one scene, with all that any reader may be told. `explain` says what is likely wrong; it is not asked
@@ -101,7 +134,7 @@ pub fn conclude(run: &Run<'_>, explain: impl FnOnce(Look) -> Vec<Explanation>) -
     let look = if hints.explains() { Look::Mistakes } else { Look::NotFinite };
     let is_explained = hints > Hints::None && has_fault && verdict.is_wrong_trace();
     let mut result = SceneResult {
-        scene: run.scene.to_owned(),
+        scene: run.task.name.clone(),
         verdict,
         reason,
         ended: Some(program.ended.clone()),
@@ -123,8 +156,7 @@ pub fn conclude(run: &Run<'_>, explain: impl FnOnce(Look) -> Vec<Explanation>) -
 
 /// The bytes of a complete trace of this scene in which every list is empty; nothing where the reference's are empty,
 /// too.
-#[must_use]
-pub fn bytes_of_nothing(scene: &Scene) -> Option<u64> {
+fn bytes_of_nothing(scene: &Scene) -> Option<u64> {
     let layout = Layout::of(scene);
     let has_pairs = scene.particles.len() > 1 || !(scene.particles.is_empty() || scene.half_planes.is_empty());
     // A record ends with the numbers of its impulses and of its polynomials (trace-format.md 2).
@@ -164,7 +196,8 @@ fn reached(ended: &Ended, judged: &Outcome, limits: &RunLimits) -> Reached {
 fn verdict_of_trace(run: &Run<'_>) -> (Verdict, Reason) {
     let Run { judged, rules, trace_bytes, .. } = *run;
     // States that nothing keeps apart may lead nowhere: the trace is complete all the same.
-    let is_empty = !matches!(judged.stop, Some(Stop::Trace { .. })) && run.nothing == Some(trace_bytes);
+    let is_complete = !matches!(judged.stop, Some(Stop::Trace { .. }));
+    let is_empty = is_complete && bytes_of_nothing(&run.task.scene) == Some(trace_bytes);
     if is_empty && judged.ruling(rules.official()) != Ruling::Accepted {
         return (Verdict::Unwritten, Reason::Wrong(Wrong::Nothing));
     }
@@ -203,12 +236,12 @@ fn refusal(judged: &Outcome) -> BadTrace {
     }
 }
 
-/// The first bytes of a stream as text; what is not UTF-8 is replaced.
+/// The first bytes of what was printed, as text; what is not UTF-8 is replaced. `is_cut` says that some are gone
+/// already.
 #[cfg(target_os = "linux")]
-fn kept(captured: &fosssim_sandbox::Captured) -> String {
-    let bytes = &captured.bytes[..captured.bytes.len().min(KEPT_OUTPUT)];
-    let mut text = String::from_utf8_lossy(bytes).into_owned();
-    if captured.truncated || captured.bytes.len() > KEPT_OUTPUT {
+pub(super) fn beginning(printed: &[u8], most: usize, is_cut: bool) -> String {
+    let mut text = String::from_utf8_lossy(&printed[..printed.len().min(most)]).into_owned();
+    if is_cut || printed.len() > most {
         text.push_str("\n[cut short]");
     }
     text
@@ -229,6 +262,7 @@ mod tests {
         let trace = student::trace(&scene, Student::new(Some(Mistake::ParticleEdgeEmpty))).expect("a trace");
         let options = replay::Options { fair: true, ..replay::Options::default() };
         let judged = replay::judge(&scene, &trace[..], &options, &mut ());
+        let task = &SceneTask { name: "a/b".to_owned(), xml: Vec::new(), scene, recording: None };
         let program = Ran::well();
         let limits = &RunLimits::default();
         for (hints, expected) in [
@@ -238,7 +272,7 @@ mod tests {
             (Hints::Full, Some(Look::Mistakes)),
         ] {
             let (program, judged, trace_bytes, rules) = (&program, &judged, trace.len() as u64, Rules::Fair);
-            let run = Run { scene: "a/b", program, judged, trace_bytes, nothing: None, rules, hints, limits };
+            let run = Run { task, program, judged, trace_bytes, rules, hints, limits };
             let mut asked = None;
             let result = conclude(&run, |look| {
                 asked = Some(look);

@@ -2,15 +2,14 @@
 //!
 //! Reading yields every problem at once, each with line and column. The file's grammar is documented by the template
 //! that `suite init` writes ([`TEMPLATE`]).
-pub use super::patience::Patience;
-use super::shape;
+use super::shape::{self, Problem};
 pub use fosssim_findings::{Hints, Visibility, speed::SpeedMarking};
 use fosssim_judge::Rules;
-use serde::Deserialize;
-use std::{ops::Range, time::Duration};
+use serde::{Deserialize, Serialize};
+use std::time::Duration;
 use toml::Spanned;
 
-pub use super::assignments::TEMPLATE;
+pub use super::{assignments::TEMPLATE, shape::MOST_POINTS};
 
 /// A validated suite: its scenes are patterns until they are looked up (see [`Plan`](super::plan::Plan)).
 #[derive(Debug, Clone, PartialEq)]
@@ -119,8 +118,23 @@ impl Default for RunLimits {
     }
 }
 
+/// How long a submission is borne with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Patience {
+    /// The number of scenes in a row that may run into a limit of time, memory or output; 0 for any number.
+    pub time_outs: u32,
+    /// Wall time of all runs of a submission together, and of judging them.
+    pub total: Duration,
+}
+
+impl Default for Patience {
+    fn default() -> Self {
+        Self { time_outs: 3, total: Duration::from_secs(600) }
+    }
+}
+
 /// How partial success counts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Credit {
     /// The group's points times the share of accepted scenes.
@@ -163,12 +177,12 @@ pub struct SuiteError {
     pub problems: Vec<(Position, String)>,
 }
 
-/// A suite whose shape has been checked: what is missing has been told.
+/// A suite whose shape has been checked: what is missing or out of range has been told.
 #[derive(Deserialize, Default)]
 struct RawSuite {
     schema: Option<Spanned<u32>>,
     name: Option<Spanned<String>>,
-    rules: Option<String>,
+    rules: Option<Rules>,
     hints: Option<Hints>,
     show_output: Option<bool>,
     run: Option<Spanned<Vec<String>>>,
@@ -181,29 +195,29 @@ struct RawSuite {
 struct RawBuild {
     command: Option<Vec<String>>,
     program: Option<String>,
-    wall_seconds: Option<Spanned<f64>>,
-    memory_mib: Option<Spanned<f64>>,
+    wall_seconds: Option<f64>,
+    memory_mib: Option<f64>,
 }
 
 #[derive(Deserialize, Default)]
 struct RawLimits {
-    cpu_seconds: Option<Spanned<f64>>,
-    wall_seconds: Option<Spanned<f64>>,
-    memory_mib: Option<Spanned<f64>>,
-    output_mib: Option<Spanned<f64>>,
-    trace_mib: Option<Spanned<f64>>,
-    folder_mib: Option<Spanned<f64>>,
-    files: Option<Spanned<f64>>,
+    cpu_seconds: Option<f64>,
+    wall_seconds: Option<f64>,
+    memory_mib: Option<f64>,
+    output_mib: Option<f64>,
+    trace_mib: Option<f64>,
+    folder_mib: Option<f64>,
+    files: Option<f64>,
     sanitizers: Option<bool>,
-    time_outs: Option<Spanned<f64>>,
-    total_seconds: Option<Spanned<f64>>,
+    time_outs: Option<f64>,
+    total_seconds: Option<f64>,
 }
 
 #[derive(Deserialize)]
 struct RawGroup {
     name: Option<Spanned<String>>,
     scenes: Option<Spanned<Vec<Spanned<String>>>>,
-    points: Option<Spanned<f64>>,
+    points: Option<f64>,
     credit: Option<Credit>,
     visibility: Option<Visibility>,
     hints: Option<Hints>,
@@ -212,42 +226,11 @@ struct RawGroup {
 
 #[derive(Deserialize)]
 struct RawSpeed {
-    points: Option<Spanned<f64>>,
-    full_at: Option<Spanned<f64>>,
-    none_at: Option<Spanned<f64>>,
-    runs: Option<Spanned<f64>>,
+    points: Option<f64>,
+    full_at: Option<f64>,
+    none_at: Option<f64>,
+    runs: Option<f64>,
 }
-
-/// Collects problems with their positions while values are checked.
-struct Checker<'a> {
-    text: &'a str,
-    problems: Vec<(Position, String)>,
-}
-
-impl Checker<'_> {
-    fn problem(&mut self, span: Range<usize>, text: String) {
-        self.problems.push((Position::of(self.text, span.start), text));
-    }
-
-    /// A number in a range; the default when it is absent or wrong.
-    fn number(&mut self, name: &str, value: Option<&Spanned<f64>>, default: f64, range: Range<f64>) -> f64 {
-        match value {
-            None => default,
-            Some(value) if range.contains(value.get_ref()) => *value.get_ref(),
-            Some(value) => {
-                let text =
-                    format!("{name} is {}: it has to lie between {} and {}", value.get_ref(), range.start, range.end);
-                self.problem(value.span(), text);
-                default
-            }
-        }
-    }
-}
-
-/// The greatest number of points of a group.
-pub const MOST_POINTS: Range<f64> = 0.0..1e6;
-
-const MIB: f64 = 1024.0 * 1024.0;
 
 /// Reads and validates a suite.
 ///
@@ -260,35 +243,34 @@ pub fn read(text: &str) -> Result<Suite, SuiteError> {
 
 /// A suite and everything that is wrong with it, in order: what is wrong is left out or has its default.
 pub(super) fn read_all(text: &str) -> (Suite, Vec<(Position, String)>) {
-    let (table, problems, is_readable) = shape::checked(text);
-    let place = |(span, text_of): (Range<usize>, String)| (Position::of(text, span.start), text_of);
-    let mut checker = Checker { text, problems: problems.into_iter().map(place).collect() };
+    let (table, mut problems, is_readable) = shape::checked(text);
     let raw = RawSuite::deserialize(toml::Deserializer::from(table)).unwrap_or_else(|error| {
-        checker.problem(error.span().unwrap_or(0..0), error.message().trim().replace('\n', " "));
+        problems.push((error.span().unwrap_or(0..0), error.message().trim().replace('\n', " ")));
         RawSuite::default()
     });
     if let Some(schema) = raw.schema.filter(|schema| *schema.get_ref() != 1) {
         let text = format!("schema {} is not known: this version reads schema 1", schema.get_ref());
-        checker.problem(schema.span(), text);
+        problems.push((schema.span(), text));
     }
     if let Some(name) = raw.name.as_ref().filter(|name| name.get_ref().trim().is_empty()) {
-        checker.problem(name.span(), "the suite's name is empty".to_owned());
+        problems.push((name.span(), "the suite's name is empty".to_owned()));
     }
-    let run = read_run(&mut checker, raw.run);
+    let run = read_run(&mut problems, raw.run);
     let raw_limits = raw.limits.unwrap_or_default();
-    let limits = read_limits(&mut checker, &raw_limits);
-    let patience = read_patience(&mut checker, &raw_limits);
-    let build = raw.build.map(|build| read_build(&mut checker, build));
+    let (limits, patience) = (read_limits(&raw_limits), read_patience(&raw_limits));
+    let build = raw.build.map(|build| read_build(&mut problems, build));
     let is_without_groups = raw.group.as_ref().is_none_or(Vec::is_empty);
     if is_without_groups && is_readable {
-        checker.problem(0..0, "the suite has no [[group]], so there is nothing to grade".to_owned());
+        problems.push((0..0, "the suite has no [[group]], so there is nothing to grade".to_owned()));
     }
     let groups = raw.group.unwrap_or_default().into_iter();
     let hints = raw.hints.unwrap_or(Hints::What);
-    let groups: Vec<Group> = groups.map(|group| read_group(&mut checker, group.into_inner(), hints)).collect();
+    let groups: Vec<Group> = groups.map(|group| read_group(text, &mut problems, group.into_inner(), hints)).collect();
+    let place = |(span, words): Problem| (Position::of(text, span.start), words);
+    let mut problems: Vec<(Position, String)> = problems.into_iter().map(place).collect();
     for (number, group) in groups.iter().enumerate() {
         if !group.name.is_empty() && groups[..number].iter().any(|other| other.name == group.name) {
-            checker.problems.push((
+            problems.push((
                 group.scenes.first().map(|pattern| pattern.at).unwrap_or_default(),
                 format!("two groups have the name \"{}\"", group.name),
             ));
@@ -297,7 +279,7 @@ pub(super) fn read_all(text: &str) -> (Suite, Vec<(Position, String)>) {
     let suite = Suite {
         name: raw.name.map(Spanned::into_inner).unwrap_or_default(),
         run,
-        rules: raw.rules.as_deref().and_then(Rules::from_name).unwrap_or(Rules::Fair),
+        rules: raw.rules.unwrap_or(Rules::Fair),
         staff_hints: Hints::Full,
         show_output: raw.show_output.unwrap_or(false),
         build,
@@ -305,8 +287,8 @@ pub(super) fn read_all(text: &str) -> (Suite, Vec<(Position, String)>) {
         patience,
         groups,
     };
-    checker.problems.sort_by_key(|(at, _)| (at.line, at.column));
-    (suite, checker.problems)
+    problems.sort_by_key(|(at, _)| (at.line, at.column));
+    (suite, problems)
 }
 
 /// The course's protocol.
@@ -314,124 +296,103 @@ pub(super) fn default_run() -> Vec<String> {
     ["{program}", "-s", "{scene}", "-d", "0", "-o", "{trace}"].map(str::to_owned).into()
 }
 
-fn read_run(checker: &mut Checker<'_>, run: Option<Spanned<Vec<String>>>) -> Vec<String> {
+fn read_run(problems: &mut Vec<Problem>, run: Option<Spanned<Vec<String>>>) -> Vec<String> {
     let Some(run) = run else { return default_run() };
     for part in ["{program}", "{scene}", "{trace}"] {
         if !run.get_ref().iter().any(|word| word.contains(part)) {
-            checker.problem(run.span(), format!("run has no {part}: the program would not get it"));
+            problems.push((run.span(), format!("run has no {part}: the program would not get it")));
         }
     }
     if run.get_ref().first().is_some_and(|word| word != "{program}") {
-        checker.problem(run.span(), "run has to begin with {program}".to_owned());
+        problems.push((run.span(), "run has to begin with {program}".to_owned()));
     }
     run.into_inner()
 }
 
-fn read_limits(checker: &mut Checker<'_>, raw: &RawLimits) -> RunLimits {
+fn read_limits(raw: &RawLimits) -> RunLimits {
     let default = RunLimits::default();
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the range has been checked")]
-    let mut mib = |name: &str, value: Option<&Spanned<f64>>, default: u64| {
-        #[expect(clippy::cast_precision_loss, reason = "defaults are small powers of two")]
-        let default = default as f64 / MIB;
-        (checker.number(name, value, default, 0.001..1e6) * MIB) as u64
-    };
-    let memory = mib("memory_mib", raw.memory_mib.as_ref(), default.memory);
-    let output = mib("output_mib", raw.output_mib.as_ref(), default.output);
-    let trace = mib("trace_mib", raw.trace_mib.as_ref(), default.trace);
-    let folder = mib("folder_mib", raw.folder_mib.as_ref(), default.folder);
-    let cpu = checker.number("cpu_seconds", raw.cpu_seconds.as_ref(), default.cpu.as_secs_f64(), 0.01..86_400.0);
-    let wall = checker.number(
-        "wall_seconds",
-        raw.wall_seconds.as_ref(),
-        default.wall.as_secs_f64().max(2.0 * cpu),
-        0.01..86_400.0,
-    );
-    #[expect(clippy::cast_precision_loss, reason = "the default is small")]
-    let files = checker.number("files", raw.files.as_ref(), default.files as f64, 1.0..1e6);
+    let cpu = raw.cpu_seconds.unwrap_or(default.cpu.as_secs_f64());
+    let wall = raw.wall_seconds.unwrap_or(default.wall.as_secs_f64().max(2.0 * cpu));
     RunLimits {
         cpu: Duration::from_secs_f64(cpu),
         wall: Duration::from_secs_f64(wall),
-        memory,
-        output,
-        trace,
-        folder,
+        memory: raw.memory_mib.map_or(default.memory, bytes),
+        output: raw.output_mib.map_or(default.output, bytes),
+        trace: raw.trace_mib.map_or(default.trace, bytes),
+        folder: raw.folder_mib.map_or(default.folder, bytes),
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the range has been checked")]
-        files: files as u64,
+        files: raw.files.map_or(default.files, |files| files as u64),
         sanitizers: raw.sanitizers.unwrap_or(default.sanitizers),
     }
 }
 
-fn read_patience(checker: &mut Checker<'_>, raw: &RawLimits) -> Patience {
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the range has been checked")]
+const fn bytes(mib: f64) -> u64 {
+    (mib * (1 << 20) as f64) as u64
+}
+
+fn read_patience(raw: &RawLimits) -> Patience {
     let default = Patience::default();
-    let time_outs = checker.number("time_outs", raw.time_outs.as_ref(), f64::from(default.time_outs), 0.0..1e6);
-    let total =
-        checker.number("total_seconds", raw.total_seconds.as_ref(), default.total.as_secs_f64(), 0.01..86_400_000.0);
     Patience {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the range has been checked")]
-        time_outs: time_outs as u32,
-        total: Duration::from_secs_f64(total),
+        time_outs: raw.time_outs.map_or(default.time_outs, |number| number as u32),
+        total: raw.total_seconds.map_or(default.total, Duration::from_secs_f64),
     }
 }
 
-fn read_build(checker: &mut Checker<'_>, build: Spanned<RawBuild>) -> BuildStep {
+fn read_build(problems: &mut Vec<Problem>, build: Spanned<RawBuild>) -> BuildStep {
     let span = build.span();
     let raw = build.into_inner();
     if raw.command.as_ref().is_some_and(Vec::is_empty) {
-        checker.problem(span.clone(), "build.command is empty: say what builds the program".to_owned());
+        problems.push((span.clone(), "build.command is empty: say what builds the program".to_owned()));
     }
     let leads_out = |program: &&String| {
         program.is_empty() || program.starts_with('/') || program.split('/').any(|part| part == "..")
     };
     if let Some(program) = raw.program.as_ref().filter(leads_out) {
         let text = format!("build.program \"{program}\" has to be a path inside the submission's folder");
-        checker.problem(span, text);
+        problems.push((span, text));
     }
-    let wall = checker.number("build.wall_seconds", raw.wall_seconds.as_ref(), 120.0, 0.01..86_400.0);
-    let memory = checker.number("build.memory_mib", raw.memory_mib.as_ref(), 2048.0, 1.0..1e6);
     BuildStep {
         command: raw.command.unwrap_or_default(),
         program: raw.program.unwrap_or_default(),
-        wall: Duration::from_secs_f64(wall),
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the range has been checked")]
-        memory: (memory * MIB) as u64,
+        wall: Duration::from_secs_f64(raw.wall_seconds.unwrap_or(120.0)),
+        memory: bytes(raw.memory_mib.unwrap_or(2048.0)),
     }
 }
 
 /// A group; `hints` are those of a group that says nothing of them.
-fn read_group(checker: &mut Checker<'_>, raw: RawGroup, hints: Hints) -> Group {
+fn read_group(text: &str, problems: &mut Vec<Problem>, raw: RawGroup, hints: Hints) -> Group {
     let name = raw.name.as_ref().map(|name| name.get_ref().clone()).unwrap_or_default();
     if let Some(empty) = raw.name.filter(|name| name.get_ref().trim().is_empty()) {
-        checker.problem(empty.span(), "the group's name is empty".to_owned());
+        problems.push((empty.span(), "the group's name is empty".to_owned()));
     }
     if let Some(none) = raw.scenes.as_ref().filter(|scenes| scenes.get_ref().is_empty()) {
-        checker.problem(none.span(), format!("group \"{name}\" has no scenes"));
+        problems.push((none.span(), format!("group \"{name}\" has no scenes")));
     }
-    let points = checker.number("points", raw.points.as_ref(), 1.0, MOST_POINTS);
+    let points = raw.points.unwrap_or(1.0);
     let scenes = raw.scenes.map(Spanned::into_inner).unwrap_or_default().into_iter();
     let pattern = |pattern: Spanned<String>| {
-        let at = Position::of(checker.text, pattern.span().start);
+        let at = Position::of(text, pattern.span().start);
         Pattern { text: pattern.into_inner(), at }
     };
     let (credit, visibility) = (raw.credit.unwrap_or(Credit::Scenes), raw.visibility.unwrap_or(Visibility::Visible));
-    let speed = raw.speed.map(|speed| read_speed(checker, speed));
+    let speed = raw.speed.map(|speed| read_speed(problems, speed));
     let marking = Marking { points, credit, visibility, hints: raw.hints.unwrap_or(hints), speed };
     Group { name, scenes: scenes.map(pattern).collect(), marking }
 }
 
-fn read_speed(checker: &mut Checker<'_>, raw: Spanned<RawSpeed>) -> SpeedMarking {
+fn read_speed(problems: &mut Vec<Problem>, raw: Spanned<RawSpeed>) -> SpeedMarking {
     let span = raw.span();
     let raw = raw.into_inner();
-    let points = checker.number("speed.points", raw.points.as_ref(), 1.0, MOST_POINTS);
-    let full_at = checker.number("speed.full_at", raw.full_at.as_ref(), 1.0, 0.001..1e6);
-    let none_at = checker.number("speed.none_at", raw.none_at.as_ref(), 10.0, 0.001..1e6);
-    let runs = checker.number("speed.runs", raw.runs.as_ref(), 5.0, 1.0..101.0);
+    let (full_at, none_at) = (raw.full_at.unwrap_or(1.0), raw.none_at.unwrap_or(10.0));
     if none_at <= full_at {
         let text = format!("speed.none_at ({none_at}) has to be greater than speed.full_at ({full_at})");
-        checker.problem(span, text);
+        problems.push((span, text));
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the range has been checked")]
-    let runs = runs as u32;
-    SpeedMarking { points, full_at, none_at, runs }
+    let runs = raw.runs.unwrap_or(5.0) as u32;
+    SpeedMarking { points: raw.points.unwrap_or(1.0), full_at, none_at, runs }
 }
 
 #[cfg(test)]

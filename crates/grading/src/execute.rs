@@ -2,7 +2,7 @@
 use super::{
     cancellation::Cancellation,
     cards::{Cards, Judged},
-    conclude::{Look, Ran, Run, bytes_of_nothing, conclude},
+    conclude::{CountedReader, Look, Ran, Run, conclude},
     config::{Hints, RunLimits},
     fault,
     guard::{Fault, guarded},
@@ -17,11 +17,10 @@ use fosssim_files::Place;
 use fosssim_judge::{
     Outcome, Rules,
     kept::{Keeper, KeptTrace},
-    recorded::{self, RecordingError},
-    replay::{Options, Progress, Remark},
+    recorded,
+    replay::{Both, Options, Progress, Remark},
 };
-use fosssim_mistakes::diagnose;
-use fosssim_sandbox::{self as sandbox, Backend, Job, Limits, Policy, ProgramIdentity, Running, SandboxError};
+use fosssim_sandbox::{self as sandbox, Backend, Job, Limits, Policy, ProgramIdentity, Running};
 use std::{
     io::{self, Read},
     path::Path,
@@ -39,9 +38,6 @@ const ATTEMPTS: u32 = 2;
 /// The greatest number of bytes kept in memory of a trace that differs from the reference's. A wrong trace is explained
 /// from them; if the grader fails, they are put aside. The course's largest trace has 18 MB.
 const KEPT_TRACE: usize = 24 << 20;
-
-/// Where the trace of a scene goes.
-pub type TraceOf<'a> = dyn Fn(&SceneTask) -> Place + Sync + 'a;
 
 /// How scenes are run.
 #[derive(Clone, Copy)]
@@ -66,8 +62,8 @@ pub struct Runner<'a> {
     pub cancellation: &'a Cancellation,
     /// The folder for traces on which the grader itself failed; made when it is needed.
     pub faults: &'a Place,
-    /// Where the trace of a scene that is not accepted is put, when somebody wants to have it.
-    pub traces: Option<&'a TraceOf<'a>>,
+    /// Where the trace is put if it is not accepted, when somebody wants to have it.
+    pub trace: Option<&'a Place>,
     /// Draws and keeps cards of traces that are not simply right, when somebody wants to look at them.
     pub cards: Option<Cards<'a>>,
     /// Shows a result in the forms in which it will be reported, for nobody to see: what panics there is a fault of
@@ -80,29 +76,20 @@ impl Runner<'_> {
     /// ours is tried once more, then it is the verdict. `on_step` hears the number of every judged step.
     #[must_use]
     pub fn grade(&self, program: &Staged, task: &SceneTask, on_step: &mut dyn FnMut(u32)) -> SceneResult {
-        let without_run = |verdict, why| SceneResult::without_run(&task.name, task.scene.steps(), verdict, why);
         let mut attempt = 1;
         loop {
             if self.cancellation.is_cancelled() {
-                return without_run(Verdict::NotRun, Reason::Stopped);
+                return task.without_run(Verdict::NotRun, Reason::Stopped);
             }
             match self.attempt(program, task, on_step) {
                 Ok(result) => return result,
                 Err(_) if attempt < ATTEMPTS => attempt += 1,
-                Err(error) => {
-                    let failure = Failure::Machine(error.to_string());
-                    return without_run(Verdict::JudgeError, Reason::Failed(failure));
-                }
+                Err(words) => return task.failed(Failure::Machine(words)),
             }
         }
     }
 
-    fn attempt(
-        &self,
-        program: &Staged,
-        task: &SceneTask,
-        on_step: &mut dyn FnMut(u32),
-    ) -> Result<SceneResult, ExecuteError> {
+    fn attempt(&self, program: &Staged, task: &SceneTask, on_step: &mut dyn FnMut(u32)) -> Result<SceneResult, String> {
         let begin = Instant::now();
         let (mut running, folder) = self.start(&program.program, program.identity, task)?;
         let is_untouched = running.is_in_memory();
@@ -110,15 +97,14 @@ impl Runner<'_> {
         let bytes = AtomicU64::new(0);
         // Not within the judging, which may panic: its trace is put aside then.
         let keeper = Keeper::new(&task.scene, KEPT_TRACE);
-        let mut watch = Watch { on_step };
-        let mut rulings = StepRulings::new(&mut watch);
+        let mut rulings = StepRulings::default();
+        let mut told = ToldSteps(on_step);
+        let heard = &mut Both(&mut rulings, &mut told);
         let judged = match running.trace() {
-            Some(inner) => {
-                self.judge_pipe(program, task, &keeper, CountedReader { inner, bytes: &bytes }, &mut rulings)
-            }
-            None => guarded(|| self.judge(task, &keeper, io::empty(), &mut rulings)),
+            Some(inner) => self.judge_pipe(program, task, &keeper, CountedReader { inner, bytes: &bytes }, heard),
+            None => guarded(|| self.judge(task, &keeper, io::empty(), heard)),
         };
-        let outcome = running.wait()?;
+        let outcome = running.wait().map_err(|error| error.to_string())?;
         match is_untouched {
             true => self.folders.keep(folder),
             false => drop(folder),
@@ -131,11 +117,10 @@ impl Runner<'_> {
             Err(fault) => return Ok(failed(Activity::Judging, &fault)),
         };
         let run = Run {
-            scene: &task.name,
+            task,
             program: &Ran::from(&outcome),
             judged: &judged,
             trace_bytes: bytes.load(Ordering::Relaxed),
-            nothing: bytes_of_nothing(&task.scene),
             rules: self.rules,
             hints: self.hints,
             limits: self.limits,
@@ -150,8 +135,9 @@ impl Runner<'_> {
         {
             let trace = beginning();
             let judged = Judged {
-                task,
-                result: &result,
+                scene: &task.scene,
+                name: &task.name,
+                explanations: &result.explanations,
                 outcome: &judged,
                 rulings: &rulings.into_steps(&judged),
                 trace: &trace,
@@ -161,12 +147,12 @@ impl Runner<'_> {
             };
             let kept = guarded(|| cards.keep(&judged, self.student_hints));
             (result.card, result.card_for_students) = match kept {
-                Ok(names) => names.map_err(ExecuteError::Folder)?,
+                Ok(names) => names.map_err(no_folder)?,
                 Err(fault) => return Ok(failed(Activity::Reporting, &fault)),
             };
         }
-        if let Some(path) = self.traces.filter(|_| !result.verdict.is_accepted()) {
-            path(task).write(&beginning()).map_err(ExecuteError::Folder)?;
+        if let Some(place) = self.trace.filter(|_| !result.verdict.is_accepted()) {
+            place.write(&beginning()).map_err(no_folder)?;
         }
         match guarded(|| (self.rehearse)(&result)) {
             Ok(()) => Ok(result),
@@ -184,7 +170,7 @@ impl Runner<'_> {
         task: &SceneTask,
         keep: usize,
     ) -> Result<(Vec<u8>, sandbox::RunOutcome), String> {
-        let (mut running, _folder) = self.start(program, None, task).map_err(|error| error.to_string())?;
+        let (mut running, _folder) = self.start(program, None, task)?;
         let _registered = self.cancellation.register(running.canceller());
         let mut kept = Vec::new();
         if let Some(mut trace) = running.trace() {
@@ -202,8 +188,8 @@ impl Runner<'_> {
         program: &Path,
         identity: Option<ProgramIdentity>,
         task: &SceneTask,
-    ) -> Result<(Running, Temporary), ExecuteError> {
-        let folder = self.folders.take().map_err(ExecuteError::Folder)?;
+    ) -> Result<(Running, Temporary), String> {
+        let folder = self.folders.take().map_err(no_folder)?;
         let job = Job::new(program, folder.path())
             .arguments(self.arguments(program))
             .file(SCENE_FILE, task.xml.as_slice())
@@ -213,7 +199,7 @@ impl Runner<'_> {
             .sanitisers(self.limits.sanitizers)
             .staged(identity)
             .limits(self.sandbox_limits());
-        Ok((self.backend.start(&job)?, folder))
+        Ok((self.backend.start(&job).map_err(|error| error.to_string())?, folder))
     }
 
     /// Judges the trace that a program writes. What the judge did not want is read all the same, within the limit: a
@@ -225,7 +211,7 @@ impl Runner<'_> {
         keeper: &Keeper<'_>,
         mut trace: impl Read + Send,
         watch: &mut dyn Progress,
-    ) -> Result<Result<Outcome, ExecuteError>, Fault> {
+    ) -> Result<Result<Outcome, String>, Fault> {
         let judged = guarded(|| {
             fault::injected(Activity::Judging, &program.program);
             self.judge(task, keeper, &mut trace, watch)
@@ -241,15 +227,16 @@ impl Runner<'_> {
         keeper: &Keeper<'_>,
         trace: impl Read + Send,
         watch: &mut dyn Progress,
-    ) -> Result<Outcome, ExecuteError> {
+    ) -> Result<Outcome, String> {
         let options =
             Options { stop_by: self.rules.official(), threads: 1, fair: self.rules.ask_fair(), ..Options::default() };
         if !self.recorded {
             return Ok(keeper.judge(trace, &options, watch));
         }
-        let packed = task.recording.ok_or_else(|| ExecuteError::NoRecording(task.name.clone()))?;
-        let recording = zstd::Decoder::with_buffer(packed).map_err(ExecuteError::Recording)?;
-        Ok(recorded::judge(&task.scene, keeper.reader(trace), recording, watch)?)
+        let no_recording = || format!("there is no recording of {}: judge it without --recorded", task.name);
+        let recording = zstd::Decoder::with_buffer(task.recording.ok_or_else(no_recording)?)
+            .map_err(|error| format!("a recording can't be unpacked: {error}"))?;
+        recorded::judge(&task.scene, keeper.reader(trace), recording, watch).map_err(|error| error.to_string())
     }
 
     fn arguments(&self, program: &Path) -> Vec<std::ffi::OsString> {
@@ -284,11 +271,7 @@ impl Runner<'_> {
 fn explained(run: &Run<'_>, kept: &KeptTrace<'_>, program: &Path) -> Result<SceneResult, (Activity, Fault)> {
     let mut explaining = guarded(|| fault::injected(Activity::Explaining, program)).err();
     let explain = |look: Look| {
-        let found = || match look {
-            Look::NotFinite => diagnose::not_finite(kept),
-            Look::Mistakes => diagnose::explain_kept(kept),
-        };
-        guarded(found).unwrap_or_else(|fault| {
+        guarded(|| look.explain(kept)).unwrap_or_else(|fault| {
             explaining = Some(fault);
             Vec::new()
         })
@@ -297,42 +280,16 @@ fn explained(run: &Run<'_>, kept: &KeptTrace<'_>, program: &Path) -> Result<Scen
     explaining.map_or(Ok(result), |fault| Err((Activity::Explaining, fault)))
 }
 
-/// Why a scene could not be run: always our fault or the machine's.
-#[derive(Debug, thiserror::Error)]
-enum ExecuteError {
-    #[error("no working folder for a run: {0}")]
-    Folder(io::Error),
-    #[error("there is no recording of {0}: judge it without --recorded")]
-    NoRecording(String),
-    #[error("a recording can't be unpacked: {0}")]
-    Recording(io::Error),
-    #[error(transparent)]
-    Damaged(#[from] RecordingError),
-    #[error(transparent)]
-    Sandbox(#[from] SandboxError),
-}
-
-/// Counts the bytes that arrive.
-struct CountedReader<'a, R> {
-    inner: R,
-    bytes: &'a AtomicU64,
-}
-
-impl<R: Read> Read for CountedReader<'_, R> {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let count = self.inner.read(buffer)?;
-        self.bytes.fetch_add(count as u64, Ordering::Relaxed);
-        Ok(count)
-    }
+/// The words for a folder of the grader's that can't be made or written into.
+fn no_folder(error: io::Error) -> String {
+    format!("no working folder for a run: {error}")
 }
 
 /// Tells how judging goes.
-struct Watch<'a> {
-    on_step: &'a mut dyn FnMut(u32),
-}
+struct ToldSteps<'a>(&'a mut dyn FnMut(u32));
 
-impl Progress for Watch<'_> {
+impl Progress for ToldSteps<'_> {
     fn step_judged(&mut self, step: u32, _remarks: &[Remark]) {
-        (self.on_step)(step);
+        (self.0)(step);
     }
 }

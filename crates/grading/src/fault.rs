@@ -2,9 +2,8 @@
 //! who mends it.
 use super::{
     guard::Fault,
-    result::{Activity, Failure, Reason, SavedTrace, SceneResult},
+    result::{Activity, Failure, SavedTrace, SceneResult},
     task::SceneTask,
-    verdict::Verdict,
 };
 use fosssim_files::Place;
 use std::{
@@ -18,8 +17,7 @@ pub(super) fn result(task: &SceneTask, folder: &Place, stage: Activity, fault: &
         Ok(path) => SavedTrace::In(path),
         Err(error) => SavedTrace::Lost { folder: folder.path(), error: error.to_string() },
     };
-    let failure = Failure::Panic { stage: Some(stage), fault: fault.to_string(), trace: Some(kept) };
-    SceneResult::without_run(&task.name, task.scene.steps(), Verdict::JudgeError, Reason::Failed(failure))
+    task.failed(Failure::Panic { stage: Some(stage), fault: fault.to_string(), trace: Some(kept) })
 }
 
 /// Writes a trace into the folder under the name of its scene and its own digest.

@@ -20,18 +20,19 @@ pub struct Entry {
     pub result: SceneResult,
 }
 
-/// A result in its form, on one line without an end, with the key under which it is found; the submission is for
-/// people.
+/// The line that keeps a result, with its end and the key under which it is found; the submission is for people.
 #[must_use]
-pub fn write(key: &Key, submission: &str, result: &SceneResult) -> Vec<u8> {
+pub fn line(key: &Key, submission: &str, result: &SceneResult) -> Vec<u8> {
     let (key, submission, result) = (key.clone(), submission.to_owned(), result.clone());
-    serde_json::to_vec(&Entry { form: VERSION, key, submission, result }).unwrap_or_default()
+    let mut line = serde_json::to_vec(&Entry { form: VERSION, key, submission, result }).unwrap_or_default();
+    line.push(b'\n');
+    line
 }
 
-/// The entry that [`write`] wrote; `None` where it is damaged or of another version.
+/// The entry that a line keeps; `None` where the line is damaged, or of another version.
 #[must_use]
-pub fn read(bytes: &[u8]) -> Option<Entry> {
-    serde_json::from_slice(bytes).ok().filter(|entry: &Entry| entry.form == VERSION)
+pub fn read_line(line: &[u8]) -> Option<Entry> {
+    serde_json::from_slice(line).ok().filter(|entry: &Entry| entry.form == VERSION)
 }
 
 #[cfg(test)]

@@ -7,8 +7,7 @@ use super::{
     cancellation::Cancellation,
     cards::Cards,
     config::Hints,
-    coverage::Coverage,
-    execute::{Runner, TraceOf},
+    execute::Runner,
     guard::guarded,
     key::Key,
     located::{ContentIndex, Contents},
@@ -17,7 +16,7 @@ use super::{
     plan::Plan,
     result::{Failure, NotRunReason, Reason, SceneResult},
     results::{KeepError, Results},
-    staging::{self, Staged, StagingError},
+    staging::{self, Staged},
     task::SceneTask,
     temporary::Folders,
     verdict::Verdict,
@@ -119,7 +118,7 @@ pub(super) struct SharedGrading<'a> {
     /// Kept by this very grading: equal programs of two submissions are both run, whatever the number of jobs.
     kept: Mutex<BTreeSet<Key>>,
     /// Why results can't be kept any more.
-    full: OnceLock<KeepError>,
+    pub(super) full: OnceLock<KeepError>,
     /// The contents of the plan's scenes, once somebody has asked.
     contents: OnceLock<Vec<Contents>>,
     /// The copy of the reference program, once something is timed.
@@ -134,19 +133,12 @@ impl<'a> SharedGrading<'a> {
 
     /// The contents of the reference's run of each scene. A scene without an end has none.
     pub(super) fn contents(&self, plan: &Plan) -> &[Contents] {
-        let of = |task: &SceneTask| Coverage::of(&task.scene).map(|seen| ContentIndex::of(&seen)).unwrap_or_default();
-        self.contents.get_or_init(|| plan.scenes().map(of).collect())
+        self.contents.get_or_init(|| plan.scenes().map(|task| ContentIndex::of(&task.scene)).collect())
     }
 
     /// The copy of the reference program.
     pub(super) fn reference(&self, program: &Path) -> Arc<Result<Staged, String>> {
-        let stage = || Arc::new(staging::reference(program).map_err(|error| error.to_string()));
-        self.reference.get_or_init(stage).clone()
-    }
-
-    /// Why results could no longer be kept.
-    pub(super) fn into_fault(self) -> Option<KeepError> {
-        self.full.into_inner()
+        self.reference.get_or_init(|| Arc::new(staging::reference(program))).clone()
     }
 
     pub(super) fn key(&self, digest: &blake3::Hash, scene: &SceneTask, called: &str, students: Hints) -> Key {
@@ -177,7 +169,7 @@ impl<'a> SharedGrading<'a> {
         }
         lock(&self.kept).insert(key.clone());
         let kept = guarded(|| results.keep(&key, &submission.name, result));
-        if let Err(error) = kept.unwrap_or_else(|fault| Err(KeepError::from(Box::from(fault.to_string())))) {
+        if let Err(error) = kept.unwrap_or_else(|fault| Err(KeepError(fault.to_string()))) {
             let _ = self.full.set(error);
             self.cancellation.cancel();
         }
@@ -199,12 +191,14 @@ impl Done {
     }
 }
 
-/// The progress of a scene.
-pub(super) enum SceneProgress {
+/// The news of a scene.
+pub(super) enum SceneNews {
     /// It begins.
     Begins,
     /// Steps have been judged up to this one; not every step is told.
     Step(u32),
+    /// It has its result, and whether that was taken from an earlier run.
+    Done(Box<SceneResult>, bool),
 }
 
 /// One submission at work. Any number of jobs may take its scenes: it is staged once, by the first job that has to run
@@ -241,34 +235,25 @@ impl<'a> SubmissionGrading<'a> {
         }
     }
 
-    /// Finds or makes the result of a scene, by its number in the plan, and keeps it; with the word whether it was
-    /// found.
-    pub(super) fn scene(
-        &self,
-        number: usize,
-        scene: &SceneTask,
-        tell: &mut dyn FnMut(SceneProgress),
-    ) -> (SceneResult, bool) {
+    /// Finds or makes the result of a scene, by its number in the plan, keeps it, and tells it.
+    pub(super) fn scene(&self, number: usize, scene: &SceneTask, tell: &mut dyn FnMut(SceneNews)) {
         let done = guarded(|| self.find_or_run(number, scene, tell)).unwrap_or_else(|fault| {
-            let failure = Failure::Panic { stage: None, fault: fault.to_string(), trace: None };
-            let (steps, why) = (scene.scene.steps(), Reason::Failed(failure));
-            Done::unkept(SceneResult::without_run(&scene.name, steps, Verdict::JudgeError, why))
+            Done::unkept(scene.failed(Failure::Panic { stage: None, fault: fault.to_string(), trace: None }))
         });
         let Done { result, cached, key } = done;
         self.note(number, &result);
         if let Some(key) = key {
             self.shared.keep(key, self.submission, &result);
         }
-        (result, cached)
+        tell(SceneNews::Done(Box::new(result), cached));
     }
 
-    fn find_or_run(&self, number: usize, scene: &SceneTask, tell: &mut dyn FnMut(SceneProgress)) -> Done {
-        let without_run =
-            |verdict, why| Done::unkept(SceneResult::without_run(&scene.name, scene.scene.steps(), verdict, why));
+    fn find_or_run(&self, number: usize, scene: &SceneTask, tell: &mut dyn FnMut(SceneNews)) -> Done {
+        let without_run = |verdict, why| Done::unkept(scene.without_run(verdict, why));
         if let Some(why) = self.left_out(number) {
             return Done::unkept(patience::left_out(scene, why));
         }
-        tell(SceneProgress::Begins);
+        tell(SceneNews::Begins);
         let (grader, shared, submission) = (self.grader, self.shared, self.submission);
         let trace = grader.traces.map(|path| path(submission, scene));
         let students = grader.plan.student_hints(&scene.name);
@@ -279,10 +264,7 @@ impl<'a> SubmissionGrading<'a> {
             return done;
         }
         match &*self.staged() {
-            Err(message) => {
-                let failure = Failure::Machine(message.clone());
-                without_run(Verdict::JudgeError, Reason::Failed(failure))
-            }
+            Err(message) => Done::unkept(scene.failed(Failure::Machine(message.clone()))),
             Ok(Staged { refused: Some(why), .. }) => without_run(Verdict::Unusable, Reason::Unusable(why.clone())),
             Ok(staged) if staged.build.as_ref().is_some_and(|build| !build.end.is_success()) => {
                 match shared.cancellation.is_cancelled() {
@@ -305,23 +287,21 @@ impl<'a> SubmissionGrading<'a> {
         staged: &Staged,
         scene: &SceneTask,
         trace: Option<&Place>,
-        tell: &mut dyn FnMut(SceneProgress),
+        tell: &mut dyn FnMut(SceneNews),
     ) -> SceneResult {
         let mut told = Instant::now();
         let mut on_step = |step| {
             // A display can't show more, and a channel should not hold more.
             if told.elapsed() > Duration::from_millis(100) {
                 told = Instant::now();
-                tell(SceneProgress::Step(step));
+                tell(SceneNews::Step(step));
             }
         };
-        let to = trace.map(|trace| move |_: &SceneTask| trace.clone());
-        let traces = to.as_ref().map(|to| to as &TraceOf<'_>);
-        self.runner(scene, traces).grade(staged, scene, &mut on_step)
+        self.runner(scene, trace).grade(staged, scene, &mut on_step)
     }
 
-    /// Runs programs on a scene, and puts traces that are not accepted where `traces` says.
-    pub(super) fn runner<'b>(&'b self, scene: &SceneTask, traces: Option<&'b TraceOf<'b>>) -> Runner<'b> {
+    /// Runs programs on a scene, and puts a trace that is not accepted where `trace` says.
+    pub(super) fn runner<'b>(&'b self, scene: &SceneTask, trace: Option<&'b Place>) -> Runner<'b> {
         let grader = self.grader;
         Runner {
             backend: grader.backend,
@@ -334,7 +314,7 @@ impl<'a> SubmissionGrading<'a> {
             folders: &self.shared.folders,
             cancellation: self.shared.cancellation,
             faults: grader.faults,
-            traces,
+            trace,
             cards: grader.cards,
             rehearse: grader.rehearse,
         }
@@ -372,10 +352,10 @@ impl<'a> SubmissionGrading<'a> {
 
     /// The staged submission; the first job stages it, the others wait.
     pub(super) fn staged(&self) -> Arc<Result<Staged, String>> {
-        lock(&self.staged).get_or_insert_with(|| Arc::new(self.stage().map_err(|error| error.to_string()))).clone()
+        lock(&self.staged).get_or_insert_with(|| Arc::new(self.stage())).clone()
     }
 
-    fn stage(&self) -> Result<Staged, StagingError> {
+    fn stage(&self) -> Result<Staged, String> {
         let Submission { path, program, file, .. } = self.submission;
         match (&self.grader.plan.build, program) {
             (Some(step), None) if self.builds() => {

@@ -5,20 +5,14 @@
 use std::{
     any::Any,
     cell::{Cell, RefCell},
-    fmt,
     panic::{self, AssertUnwindSafe},
     sync::Once,
 };
 
 /// A panic in words: the message and where in the source it was.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
 pub struct Fault(String);
-
-impl fmt::Display for Fault {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(&self.0)
-    }
-}
 
 thread_local! {
     static GUARDED: Cell<bool> = const { Cell::new(false) };

@@ -47,7 +47,8 @@ pub mod names;
 pub mod near;
 #[cfg(target_os = "linux")]
 mod one_file;
-pub mod patience;
+#[cfg(target_os = "linux")]
+mod patience;
 pub mod plan;
 #[cfg(target_os = "linux")]
 pub mod recording;
@@ -66,24 +67,20 @@ mod task;
 mod temporary;
 pub mod traces;
 #[cfg(target_os = "linux")]
-pub mod upload;
+mod upload;
 
 #[cfg(target_os = "linux")]
-pub use cancellation::Cancellation;
-pub use conclude::{Look, Ran, Run, bytes_of_nothing, conclude};
-#[cfg(target_os = "linux")]
-pub use execute::Runner;
+pub use self::{
+    cancellation::Cancellation,
+    execute::Runner,
+    grader::{Grader, Submission},
+    key::{Key, this_build},
+    one_file::OneFile,
+    temporary::Folders,
+};
 pub use fosssim_findings::{
     Build, Grade, GroupGrade, PassedOver, Reason, SceneGrade, SceneResult, Unfit, Verdict, disclosure, result,
 };
 use fosssim_findings::{grade, verdict};
-#[cfg(target_os = "linux")]
-pub use grader::{Grader, Submission};
 pub use guard::{Fault, guarded};
-#[cfg(target_os = "linux")]
-pub use key::{Key, this_build};
-#[cfg(target_os = "linux")]
-pub use one_file::OneFile;
 pub use task::SceneTask;
-#[cfg(target_os = "linux")]
-pub use temporary::Folders;

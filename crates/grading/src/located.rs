@@ -6,6 +6,7 @@
 //! are looked at. Values that the scenes can't tell apart are told together.
 use super::coverage::{Coverage, FAMILIES};
 pub use fosssim_findings::located::{Content, Failing, Located};
+use fosssim_model::scene::Scene;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A kind of event, or one value of one of its properties, by their numbers in [`FAMILIES`].
@@ -37,9 +38,10 @@ pub struct Tried<'a> {
 const SIGNIFICANT: f64 = 0.01;
 
 impl ContentIndex {
-    /// All that a scene contains.
+    /// All that a scene contains; nothing where it can't be simulated to its end.
     #[must_use]
-    pub fn of(coverage: &Coverage) -> Contents {
+    pub fn of(scene: &Scene) -> Contents {
+        let coverage = Coverage::of(scene).unwrap_or_default();
         let values = coverage.values().map(|(family, axis, value)| Self { family, value: Some((axis, value)) });
         let kinds = coverage.values().map(|(family, ..)| Self { family, value: None });
         values.chain(kinds).collect()

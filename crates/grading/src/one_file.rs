@@ -21,21 +21,12 @@ pub(super) const SHARED: &str =
 /// The message for a program that is another submission's.
 pub(super) const ANOTHERS: &str = "it is another submission's file under a second name (a hard link)";
 
-/// The owner of an open file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Whose {
-    Own,
-    Anothers,
-}
-
-/// The owner of an open file, by the notes from the search for submissions.
-pub(super) fn whose(file: &File, noted: Option<&OneFile>) -> io::Result<Whose> {
+/// Whether an open file is another submission's, by the notes from the search for submissions.
+pub(super) fn is_anothers(file: &File, noted: Option<&OneFile>) -> io::Result<bool> {
     let metadata = file.metadata()?;
     match noted {
-        _ if metadata.nlink() == 1 => Ok(Whose::Own),
-        Some(noted) if noted.identity == Identity::of(&metadata) => {
-            Ok(if noted.is_anothers { Whose::Anothers } else { Whose::Own })
-        }
+        _ if metadata.nlink() == 1 => Ok(false),
+        Some(noted) if noted.identity == Identity::of(&metadata) => Ok(noted.is_anothers),
         // Nobody has looked whose it is: the machine's fault or a trick, and no reason for a zero.
         _ => Err(io::Error::other("the file was exchanged while submissions were graded; grade again")),
     }
@@ -57,12 +48,12 @@ mod tests {
             let identity = Identity::of(&std::fs::metadata(at(name)).expect("data"));
             OneFile { identity, is_shared: is_anothers, is_anothers }
         };
-        assert_eq!(whose(&file, None).expect("known"), Whose::Own, "one name is enough");
+        assert!(!is_anothers(&file, None).expect("known"), "one name is enough");
         std::fs::hard_link(at("one"), at("backup")).expect("a backup");
-        assert_eq!(whose(&file, Some(&noted("one", false))).expect("known"), Whose::Own);
-        assert_eq!(whose(&file, Some(&noted("one", true))).expect("known"), Whose::Anothers);
+        assert!(!is_anothers(&file, Some(&noted("one", false))).expect("known"));
+        assert!(is_anothers(&file, Some(&noted("one", true))).expect("known"));
         for noted in [None, Some(noted("other", false))] {
-            assert!(whose(&file, noted.as_ref()).expect_err("exchanged").to_string().contains("exchanged"));
+            assert!(is_anothers(&file, noted.as_ref()).expect_err("exchanged").to_string().contains("exchanged"));
         }
     }
 }

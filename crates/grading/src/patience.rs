@@ -2,32 +2,16 @@
 //!
 //! Pure functions of what is known so far, in the suite's order. More knowledge can only move the end forward, so what
 //! is decided while scenes still run holds, and at the end the same scenes are left out whatever the number of jobs.
-#[cfg(target_os = "linux")]
 use super::{
+    config::Patience,
     result::{NotRunReason, Reason, SceneResult},
     task::SceneTask,
     verdict::Verdict,
 };
 use std::time::Duration;
 
-/// How long a submission is borne with.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Patience {
-    /// The number of scenes in a row that may run into a limit of time, memory or output; 0 for any number.
-    pub time_outs: u32,
-    /// Wall time of all runs of a submission together, and of judging them.
-    pub total: Duration,
-}
-
-impl Default for Patience {
-    fn default() -> Self {
-        Self { time_outs: 3, total: Duration::from_secs(600) }
-    }
-}
-
 /// The result of a scene that is left out. All but the last reason are the submission's own doing, so that such a scene
 /// counts as those that were the end.
-#[cfg(target_os = "linux")]
 pub(super) fn left_out(task: &SceneTask, why: NotRunReason) -> SceneResult {
     let verdict = match why {
         NotRunReason::Limits { verdict, .. } => verdict,
@@ -38,7 +22,6 @@ pub(super) fn left_out(task: &SceneTask, why: NotRunReason) -> SceneResult {
 }
 
 /// The first scene that is not run, and why. `known` has the verdict of every scene that is done, and how long it took.
-#[cfg(target_os = "linux")]
 pub(super) fn end(
     patience: &Patience,
     fail_fast: bool,
@@ -71,7 +54,6 @@ pub(super) fn end(
 
 /// Whether a program with this verdict was stopped at a limit. An endless loop runs into whichever comes first: of
 /// time, of memory, of what it may write.
-#[cfg(target_os = "linux")]
 const fn is_limit(verdict: Verdict) -> bool {
     matches!(verdict, Verdict::TimeLimit | Verdict::MemoryLimit | Verdict::OutputLimit)
 }

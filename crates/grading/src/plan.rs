@@ -1,7 +1,8 @@
 //! A suite with its scenes looked up: what a grading really runs.
+pub use super::assignments::{default_name, names as built_in_names};
 use super::{
     assignments,
-    config::{self, Group, Hints, Marking, Pattern, Suite, SuiteError},
+    config::{self, Group, Hints, Marking, Pattern, Position, Suite, SuiteError},
     library,
     task::SceneTask,
 };
@@ -80,27 +81,17 @@ pub fn built_in(name: &str) -> Option<&'static str> {
     assignments::version(name).map(|(_, version)| version.suite)
 }
 
-/// The names of the built-in suites, each with its version, the newest one of the default assignment first.
-pub fn built_in_names() -> impl Iterator<Item = String> {
-    assignments::names()
-}
-
-/// The name of the suite that is meant where none is named.
-#[must_use]
-pub fn default_name() -> String {
-    assignments::default_name()
-}
-
 /// The scenes that a pattern takes: names and XML.
 pub type Found = Vec<(String, Vec<u8>)>;
 
-/// Looks up the scenes of a suite; `files` those whose patterns are not of scenes that come with the program.
-///
-/// # Errors
-/// Patterns that match nothing, scenes that can't be read or are not sound, each at the pattern's position.
-pub fn resolve_by(suite: Suite, files: &mut dyn FnMut(&str) -> Result<Found, String>) -> Result<Plan, SuiteError> {
+/// Looks up the scenes of a suite; `files` those whose patterns are not of scenes that come with the program. Patterns
+/// that match nothing, scenes that can't be read or are not sound, are told at the pattern's position.
+fn resolved(
+    suite: Suite,
+    files: &mut dyn FnMut(&str) -> Result<Found, String>,
+    problems: &mut Vec<(Position, String)>,
+) -> Plan {
     let Suite { name, run, rules, staff_hints, show_output, build, limits, patience, groups: patterns } = suite;
-    let mut problems = Vec::new();
     let mut seen = BTreeMap::new();
     let mut groups = Vec::new();
     for group in patterns {
@@ -110,49 +101,42 @@ pub fn resolve_by(suite: Suite, files: &mut dyn FnMut(&str) -> Result<Found, Str
                 Some(pattern) => embedded(pattern),
                 None => files(&text),
             };
-            match found {
-                Ok(found) => {
-                    for (name, xml) in found {
-                        match seen.insert(name.clone(), group.name.clone()) {
-                            Some(other) => {
-                                problems.push((at, format!("scene {name} is in group \"{other}\" already")));
-                            }
-                            None => match scene::read(&name, &xml) {
-                                Ok(loaded) => {
-                                    // A file of an embedded scene's name has a recording only if it is that scene.
-                                    let known = library::scene(&name).is_some_and(|embedded| embedded == xml);
-                                    let recording = known.then(|| library::recording(&name)).flatten();
-                                    scenes.push(SceneTask { name, xml, scene: loaded.scene, recording });
-                                }
-                                Err(error) => problems.push((at, format!("scene {name} is not sound:\n{error}"))),
-                            },
-                        }
-                    }
+            let found = found.unwrap_or_else(|message| {
+                problems.push((at, message));
+                Vec::new()
+            });
+            for (name, xml) in found {
+                if let Some(other) = seen.insert(name.clone(), group.name.clone()) {
+                    problems.push((at, format!("scene {name} is in group \"{other}\" already")));
+                    continue;
                 }
-                Err(message) => problems.push((at, message)),
+                match scene::read(&name, &xml) {
+                    Ok(loaded) => {
+                        // A file of an embedded scene's name has a recording only if it is that scene.
+                        let known = library::scene(&name).is_some_and(|embedded| embedded == xml);
+                        let recording = known.then(|| library::recording(&name)).flatten();
+                        scenes.push(SceneTask { name, xml, scene: loaded.scene, recording });
+                    }
+                    Err(error) => problems.push((at, format!("scene {name} is not sound:\n{error}"))),
+                }
             }
         }
         groups.push(Group { name: group.name, marking: group.marking, scenes });
     }
-    if problems.is_empty() {
-        Ok(Suite { name, run, rules, staff_hints, show_output, build, limits, patience, groups })
-    } else {
-        Err(SuiteError { problems })
-    }
+    Suite { name, run, rules, staff_hints, show_output, build, limits, patience, groups }
 }
 
 /// Reads, validates and looks up a suite in one go.
 ///
 /// # Errors
-/// As [`config::read`] and [`resolve_by`].
+/// As [`config::read`]; also patterns that match nothing, and scenes that can't be read or are not sound.
 pub fn load_by(text: &str, files: &mut dyn FnMut(&str) -> Result<Found, String>) -> Result<Plan, SuiteError> {
     let (suite, mut problems) = config::read_all(text);
     // Patterns are looked up although something else is wrong: everything is told at once.
-    let resolved = resolve_by(suite, files);
+    let plan = resolved(suite, files, &mut problems);
     if problems.is_empty() {
-        return resolved;
+        return Ok(plan);
     }
-    problems.extend(resolved.err().into_iter().flat_map(|error| error.problems));
     problems.sort_by_key(|(at, _)| (at.line, at.column));
     Err(SuiteError { problems })
 }

@@ -33,20 +33,16 @@ pub fn list(folder: &Path, extension: &str) -> io::Result<Vec<SceneFile>> {
     Ok(files)
 }
 
+fn entries(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect()
+}
+
 fn folders(folder: &Path) -> io::Result<Vec<PathBuf>> {
-    let mut folders = Vec::new();
-    for entry in fs::read_dir(folder)? {
-        let path = entry?.path();
-        if path.is_dir() {
-            folders.push(path);
-        }
-    }
-    Ok(folders)
+    Ok(entries(folder)?.into_iter().filter(|path| path.is_dir()).collect())
 }
 
 fn gather(root: &Path, group: &Path, extension: &str, files: &mut Vec<SceneFile>) -> io::Result<()> {
-    for entry in fs::read_dir(group)? {
-        let path = entry?.path();
+    for path in entries(group)? {
         let stem = |above: Option<&Path>| path.strip_prefix(above?).ok()?.to_str()?.strip_suffix(extension);
         if let (Some(name), Some(stem), true) = (stem(group.parent()), stem(Some(root)), path.is_file()) {
             files.push(SceneFile { name: name.to_owned(), stem: stem.to_owned(), path: path.clone() });

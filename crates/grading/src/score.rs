@@ -2,13 +2,14 @@
 use super::{
     config::{Credit, MOST_POINTS, Marking},
     grade::{Grade, GroupGrade, SceneGrade},
-    plan::Plan,
+    plan::{Plan, PlannedGroup},
     result::SceneResult,
     verdict::Verdict,
 };
 use fosssim_findings::speed::SpeedGrade;
 use fosssim_mistakes::diagnose::{self, Explanation};
 use fosssim_model::scene::Scene;
+use std::time::Duration;
 
 /// Shares a group's points evenly among its scenes and adds up what was reached. The results come with the word whether
 /// they were taken from an earlier run.
@@ -39,6 +40,34 @@ pub fn group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) ->
         speed,
         verdict: scenes.iter().map(|scene| scene.verdict).max().unwrap_or(Verdict::NotRun),
         scenes,
+    }
+}
+
+/// The grade of the results of all scenes, in the plan's order, as if nothing had been run: no build, no sandbox, no
+/// time. `is_timed` says whether speed counts.
+pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Vec<(SceneResult, bool)>) -> Grade {
+    let mut results = results.into_iter();
+    let of_group = |planned: &PlannedGroup| {
+        let marking = Marking { speed: planned.marking.speed.filter(|_| is_timed), ..planned.marking };
+        group(&planned.name, marking, results.by_ref().take(planned.scenes.len()).collect())
+    };
+    let groups: Vec<GroupGrade> = plan.groups.iter().map(of_group).collect();
+    Grade {
+        submission,
+        suite: plan.name.clone(),
+        rules: plan.rules,
+        verdict: groups.iter().map(|group| group.verdict).max().unwrap_or(Verdict::NotRun),
+        points: groups.iter().map(|group| group.points).sum(),
+        max_points: groups.iter().map(|group| group.max_points).sum(),
+        // No program was run that could tell of a hidden scene.
+        shows_output: true,
+        refuted: refuted(plan, &groups),
+        groups,
+        build: None,
+        warnings: Vec::new(),
+        layers: Vec::new(),
+        wall: Duration::ZERO,
+        located: None,
     }
 }
 
@@ -113,7 +142,7 @@ fn follows(group: &GroupGrade) -> bool {
 const WITNESSES: usize = 12;
 
 /// Likely mistakes that accepted scenes speak against; the smallest of these are asked.
-pub(super) fn refuted(plan: &Plan, groups: &[GroupGrade]) -> Vec<String> {
+fn refuted(plan: &Plan, groups: &[GroupGrade]) -> Vec<String> {
     let graded = || groups.iter().flat_map(|group| &group.scenes).zip(plan.scenes());
     let wrong: Vec<&[Explanation]> = graded()
         .map(|(graded, _)| graded.explanations.as_slice())

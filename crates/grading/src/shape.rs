@@ -11,11 +11,15 @@ use toml::{
 /// A problem and where it is, in bytes.
 pub(super) type Problem = (Range<usize>, String);
 
+/// The points that a group may have.
+pub const MOST_POINTS: Range<f64> = 0.0..1e6;
+
 /// The type of a key's value.
 enum Kind {
     Text,
     Texts,
-    Number,
+    /// A number in this range; where it is not, its name is told with the table's before it.
+    Number(&'static str, Range<f64>),
     /// A whole number that is not negative.
     Whole,
     Flag,
@@ -31,21 +35,21 @@ struct Key(&'static str, Kind, bool);
 const BUILD: &[Key] = &[
     Key("command", Kind::Texts, true),
     Key("program", Kind::Text, true),
-    Key("wall_seconds", Kind::Number, false),
-    Key("memory_mib", Kind::Number, false),
+    Key("wall_seconds", Kind::Number("build.", 0.01..86_400.0), false),
+    Key("memory_mib", Kind::Number("build.", 1.0..1e6), false),
 ];
 
 const LIMITS: &[Key] = &[
-    Key("cpu_seconds", Kind::Number, false),
-    Key("wall_seconds", Kind::Number, false),
-    Key("memory_mib", Kind::Number, false),
-    Key("output_mib", Kind::Number, false),
-    Key("trace_mib", Kind::Number, false),
-    Key("folder_mib", Kind::Number, false),
-    Key("files", Kind::Number, false),
+    Key("cpu_seconds", Kind::Number("", 0.01..86_400.0), false),
+    Key("wall_seconds", Kind::Number("", 0.01..86_400.0), false),
+    Key("memory_mib", Kind::Number("", 0.001..1e6), false),
+    Key("output_mib", Kind::Number("", 0.001..1e6), false),
+    Key("trace_mib", Kind::Number("", 0.001..1e6), false),
+    Key("folder_mib", Kind::Number("", 0.001..1e6), false),
+    Key("files", Kind::Number("", 1.0..1e6), false),
     Key("sanitizers", Kind::Flag, false),
-    Key("time_outs", Kind::Number, false),
-    Key("total_seconds", Kind::Number, false),
+    Key("time_outs", Kind::Number("", 0.0..1e6), false),
+    Key("total_seconds", Kind::Number("", 0.01..86_400_000.0), false),
 ];
 
 const HINTS: &[&str] = &["none", "where", "what", "full"];
@@ -53,7 +57,7 @@ const HINTS: &[&str] = &["none", "where", "what", "full"];
 const GROUP: &[Key] = &[
     Key("name", Kind::Text, true),
     Key("scenes", Kind::Texts, true),
-    Key("points", Kind::Number, false),
+    Key("points", Kind::Number("", MOST_POINTS), false),
     Key("credit", Kind::Choice(&["scenes", "steps", "all"]), false),
     Key("visibility", Kind::Choice(&["visible", "hidden", "after_due_date", "after_published"]), false),
     Key("hints", Kind::Choice(HINTS), false),
@@ -61,10 +65,10 @@ const GROUP: &[Key] = &[
 ];
 
 const SPEED: &[Key] = &[
-    Key("points", Kind::Number, true),
-    Key("full_at", Kind::Number, true),
-    Key("none_at", Kind::Number, true),
-    Key("runs", Kind::Number, false),
+    Key("points", Kind::Number("speed.", MOST_POINTS), true),
+    Key("full_at", Kind::Number("speed.", 0.001..1e6), true),
+    Key("none_at", Kind::Number("speed.", 0.001..1e6), true),
+    Key("runs", Kind::Number("speed.", 1.0..101.0), false),
 ];
 
 const SUITE: &[Key] = &[
@@ -137,7 +141,14 @@ fn fits(name: &str, kind: &Kind, value: &mut Spanned<DeValue<'_>>, problems: &mu
     };
     match (kind, value.get_mut()) {
         (Kind::Text, DeValue::String(_)) | (Kind::Flag, DeValue::Boolean(_)) => true,
-        (Kind::Number, DeValue::Float(_) | DeValue::Integer(_)) => true,
+        (Kind::Number(table, range), given @ (DeValue::Float(_) | DeValue::Integer(_))) => {
+            let number = number(given).filter(|number| !range.contains(number));
+            if let Some(number) = number {
+                let Range { start, end } = range;
+                problems.push((at, format!("{table}{name} is {number}: it has to lie between {start} and {end}")));
+            }
+            number.is_none()
+        }
         (Kind::Whole, DeValue::Integer(number)) if number.as_str().parse::<u32>().is_ok() => true,
         (Kind::Choice(words), DeValue::String(word)) => {
             let known = words.contains(&word.as_ref());
@@ -169,12 +180,22 @@ fn fits(name: &str, kind: &Kind, value: &mut Spanned<DeValue<'_>>, problems: &mu
         }
         (Kind::Text, _) => wrong("a text in quotes"),
         (Kind::Texts, _) => wrong("a list of texts, [\"...\"]"),
-        (Kind::Number, _) => wrong("a number"),
+        (Kind::Number(..), _) => wrong("a number"),
         (Kind::Whole, _) => wrong("a whole number that is not negative"),
         (Kind::Flag, _) => wrong("true or false"),
         (Kind::Choice(words), _) => wrong(&format!("one of {}", listed(words, "or"))),
         (Kind::Table(_), _) => wrong(&format!("a table, [{name}]")),
         (Kind::Tables(_), _) => wrong(&format!("a list of tables, [[{name}]]")),
+    }
+}
+
+/// A number's value; none of one that no reader takes, such as an integer of a hundred digits.
+fn number(value: &DeValue<'_>) -> Option<f64> {
+    match value {
+        DeValue::Float(number) => number.as_str().parse().ok(),
+        #[expect(clippy::cast_precision_loss, reason = "what is large is out of every range")]
+        DeValue::Integer(number) => Some(i64::from_str_radix(number.as_str(), number.radix()).ok()? as f64),
+        _ => None,
     }
 }
 

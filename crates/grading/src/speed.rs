@@ -67,7 +67,7 @@ impl SubmissionGrading<'_> {
                 run: words,
                 hints: Hints::Where,
                 student_hints: Hints::Where,
-                traces: None,
+                trace: None,
                 cards: None,
                 ..self.runner(scene, None)
             };

@@ -6,15 +6,16 @@
 //! copy of their folder, in the sandbox, so that a build changes nothing of the submission.
 use super::{
     cancellation::Cancellation,
+    conclude::beginning,
     config::BuildStep,
     grade::Build,
-    one_file::{ANOTHERS, OneFile, Whose, whose},
+    one_file::{ANOTHERS, OneFile, is_anothers},
     result::{BuildEnd, Unusable},
     temporary::Temporary,
     upload,
 };
 use fosssim_sandbox::{
-    Backend, Ended, Job, Limits, Policy, ProgramIdentity, SandboxError, StartProblem,
+    Backend, Ended, Job, Limits, Policy, ProgramIdentity, StartProblem,
     collect::{self, CollectError, FolderEntry, OpenFolder},
     is_own,
 };
@@ -53,31 +54,9 @@ pub struct Staged {
     _folder: Option<Temporary>,
 }
 
-/// Why a submission can't be staged: our fault or the machine's.
-#[derive(Debug, thiserror::Error)]
-pub enum StagingError {
-    /// The operating system refuses.
-    #[error("{path}: {source}")]
-    Io {
-        /// The file or folder.
-        path: PathBuf,
-        /// The reason.
-        source: io::Error,
-    },
-    /// The build command can't be found.
-    #[error("build command {command} is not on this machine; install it, or change [build] in the suite")]
-    NoCommand {
-        /// Its name.
-        command: String,
-    },
-    /// The sandbox failed.
-    #[error(transparent)]
-    Sandbox(#[from] SandboxError),
-}
-
-fn at(path: &Path) -> impl FnOnce(io::Error) -> StagingError {
-    let path = path.to_owned();
-    move |source| StagingError::Io { path, source }
+/// Says which file or folder the operating system refuses, and why: our fault or the machine's.
+fn at(path: &Path) -> impl FnOnce(io::Error) -> String {
+    move |error| format!("{}: {error}", path.display())
 }
 
 /// Why a submission's files are not copied.
@@ -85,13 +64,13 @@ fn at(path: &Path) -> impl FnOnce(io::Error) -> StagingError {
 enum CopyError {
     /// Its own doing, in words.
     Submission(String),
-    /// Ours or the machine's.
-    Ours(StagingError),
+    /// Ours or the machine's, in words.
+    Ours(String),
 }
 
-impl From<StagingError> for CopyError {
-    fn from(error: StagingError) -> Self {
-        Self::Ours(error)
+impl From<String> for CopyError {
+    fn from(words_of_at: String) -> Self {
+        Self::Ours(words_of_at)
     }
 }
 
@@ -109,21 +88,19 @@ fn unreadable(name: &Path, error: io::Error) -> CopyError {
 ///
 /// # Errors
 /// When the file can't be read for a fault of the machine, or the copy can't be written.
-pub fn program(path: &Path) -> Result<Staged, StagingError> {
-    let refused = |why: Unusable| Ok(Staged::refused(path, why));
-    match collect::open_file(path, true) {
-        Ok((file, _)) => copied(file, path),
-        Err(CollectError::NotRegular { what: "a folder", .. }) => {
-            refused(Unusable::CouldNotStart(StartProblem::IsFolder))
-        }
-        Err(CollectError::NotRegular { .. }) => refused(Unusable::CouldNotStart(StartProblem::NotAFile)),
-        Err(CollectError::Missing { .. }) => refused(Unusable::CouldNotStart(StartProblem::NotFound)),
+pub fn program(path: &Path) -> Result<Staged, String> {
+    let why = match collect::open_file(path, true) {
+        Ok((file, _)) => return copied(file, path),
+        Err(CollectError::NotRegular { what: "a folder", .. }) => Unusable::CouldNotStart(StartProblem::IsFolder),
+        Err(CollectError::NotRegular { .. }) => Unusable::CouldNotStart(StartProblem::NotAFile),
+        Err(CollectError::Missing { .. }) => Unusable::CouldNotStart(StartProblem::NotFound),
         Err(CollectError::System { source, .. }) => match unreadable(path, source) {
-            CopyError::Submission(why) => refused(Unusable::Unreadable(why)),
-            CopyError::Ours(error) => Err(error),
+            CopyError::Submission(why) => Unusable::Unreadable(why),
+            CopyError::Ours(why) => return Err(why),
         },
-        Err(error) => refused(Unusable::Unreadable(error.to_string())),
-    }
+        Err(error) => Unusable::Unreadable(error.to_string()),
+    };
+    Ok(Staged::refused(path, why))
 }
 
 /// Copies the program that is the measure of speed. Its copy is called as the course's original, whose role it takes by
@@ -131,16 +108,12 @@ pub fn program(path: &Path) -> Result<Staged, StagingError> {
 ///
 /// # Errors
 /// When it can't be read or copied.
-pub fn reference(path: &Path) -> Result<Staged, StagingError> {
-    let folder = Temporary::make("reference").map_err(at(&std::env::temp_dir()))?;
-    let copy = folder.path().join("FOSSSimOracle");
+pub fn reference(path: &Path) -> Result<Staged, String> {
     let (file, _) = collect::open_file(path, true).map_err(|error| at(path)(io::Error::other(error)))?;
-    let copied = copy_file(file, path, &copy, &mut { LARGEST_FOLDER });
-    copied.map_err(|error| match error {
+    copied_as(OsStr::new("FOSSSimOracle"), file, path, &mut { LARGEST_FOLDER }).map_err(|error| match error {
         CopyError::Submission(why) => at(path)(io::Error::other(why)),
-        CopyError::Ours(error) => error,
-    })?;
-    Ok(Staged { _folder: Some(folder), identity: ProgramIdentity::of(&copy), ..Staged::nothing(&copy) })
+        CopyError::Ours(why) => why,
+    })
 }
 
 /// As [`program`], for a program at `name` in a folder that somebody else filled: a link that leads elsewhere, to
@@ -148,22 +121,20 @@ pub fn reference(path: &Path) -> Result<Staged, StagingError> {
 ///
 /// # Errors
 /// As for [`program`].
-pub fn program_in(folder: &Path, name: &str, noted: Option<&OneFile>) -> Result<Staged, StagingError> {
+pub fn program_in(folder: &Path, name: &str, noted: Option<&OneFile>) -> Result<Staged, String> {
     let path = folder.join(name);
-    match open_in(folder, name) {
-        Ok(file) => match whose(&file, noted) {
-            Ok(Whose::Own) => copied(file, &path),
-            Ok(Whose::Anothers) => Ok(Staged::refused(&path, Unusable::Unreadable(ANOTHERS.to_owned()))),
-            Err(error) => Err(at(&path)(error)),
-        },
-        Err(CollectError::Missing { .. }) => Ok(Staged::refused(&path, upload::without(name, folder))),
+    let why = match open_in(folder, name) {
+        Ok(file) if is_anothers(&file, noted).map_err(at(&path))? => Unusable::Unreadable(ANOTHERS.to_owned()),
+        Ok(file) => return copied(file, &path),
+        Err(CollectError::Missing { .. }) => upload::without(name, folder),
         Err(CollectError::System { source, .. })
             if matches!(unreadable(&path, io::Error::from(source.kind())), CopyError::Ours(_)) =>
         {
-            Err(at(&path)(source))
+            return Err(at(&path)(source));
         }
-        Err(error) => Ok(Staged::refused(&path, Unusable::Unreadable(error.to_string()))),
-    }
+        Err(error) => Unusable::Unreadable(error.to_string()),
+    };
+    Ok(Staged::refused(&path, why))
 }
 
 fn open_in(folder: &Path, name: &str) -> Result<File, CollectError> {
@@ -175,15 +146,17 @@ fn open_in(folder: &Path, name: &str) -> Result<File, CollectError> {
 #[must_use]
 pub fn digest(path: &Path) -> Option<blake3::Hash> {
     let (file, length) = collect::open_file(path, false).ok()?;
-    let mut hasher = blake3::Hasher::new();
-    (length <= LARGEST_FOLDER && hasher.update_reader(file.take(LARGEST_FOLDER)).is_ok()).then(|| hasher.finalize())
+    if length <= LARGEST_FOLDER { digest_of(file) } else { None }
 }
 
 /// As [`digest`], for what [`program_in`] takes.
 #[must_use]
 pub fn digest_in(folder: &Path, name: &str, noted: Option<&OneFile>) -> Option<blake3::Hash> {
     let file = open_in(folder, name).ok()?;
-    whose(&file, noted).ok().filter(|whose| *whose == Whose::Own)?;
+    if is_anothers(&file, noted).ok()? { None } else { digest_of(file) }
+}
+
+fn digest_of(file: File) -> Option<blake3::Hash> {
     let mut hasher = blake3::Hasher::new();
     hasher.update_reader(file.take(LARGEST_FOLDER)).is_ok().then(|| hasher.finalize())
 }
@@ -200,22 +173,26 @@ impl Staged {
     }
 }
 
-/// Copies an open program.
-fn copied(file: File, path: &Path) -> Result<Staged, StagingError> {
-    let folder = Temporary::make("program").map_err(at(&std::env::temp_dir()))?;
-    let copy = folder.path().join(path.file_name().unwrap_or_else(|| "program".as_ref()));
+/// Copies an open program, unless it is the grader itself.
+fn copied(file: File, path: &Path) -> Result<Staged, String> {
     let metadata = file.metadata().map_err(at(path))?;
     let mut room = LARGEST_FOLDER;
-    let digest = match copy_file(file, path, &copy, &mut room) {
-        Ok(digest) => digest,
-        Err(CopyError::Submission(why)) => {
-            return Ok(Staged::refused(path, Unusable::Unreadable(why)));
+    let why = match copied_as(path.file_name().unwrap_or_else(|| "program".as_ref()), file, path, &mut room) {
+        Ok(staged) if !is_own(LARGEST_FOLDER - room, &staged.digest, (metadata.dev(), metadata.ino())) => {
+            return Ok(staged);
         }
-        Err(CopyError::Ours(error)) => return Err(error),
+        Ok(_) => Unusable::CouldNotStart(StartProblem::GradersOwn),
+        Err(CopyError::Submission(why)) => Unusable::Unreadable(why),
+        Err(CopyError::Ours(why)) => return Err(why),
     };
-    if is_own(LARGEST_FOLDER - room, &digest, (metadata.dev(), metadata.ino())) {
-        return Ok(Staged::refused(path, Unusable::CouldNotStart(StartProblem::GradersOwn)));
-    }
+    Ok(Staged::refused(path, why))
+}
+
+/// Copies an open program under this name into a folder of its own.
+fn copied_as(name: &OsStr, file: File, path: &Path, room: &mut u64) -> Result<Staged, CopyError> {
+    let folder = Temporary::make("program").map_err(at(&std::env::temp_dir()))?;
+    let copy = folder.path().join(name);
+    let digest = copy_file(file, path, &copy, room)?;
     let identity = ProgramIdentity::of(&copy);
     Ok(Staged { program: copy, digest, build: None, refused: None, identity, _folder: Some(folder) })
 }
@@ -230,7 +207,7 @@ pub fn build(
     step: &BuildStep,
     backend: &Backend,
     cancellation: &Cancellation,
-) -> Result<Staged, StagingError> {
+) -> Result<Staged, String> {
     let folder = Temporary::make("build").map_err(at(&std::env::temp_dir()))?;
     let copy = folder.path().join("submission");
     let failed = |end: BuildEnd, output: String| {
@@ -238,22 +215,20 @@ pub fn build(
         Staged { build, ..Staged::nothing(&sources.join(&step.program)) }
     };
     match copy_sources(sources, &copy) {
-        Err(CopyError::Submission(why)) => {
-            return Ok(failed(BuildEnd::Sources(why), String::new()));
-        }
-        Err(CopyError::Ours(error)) => return Err(error),
+        Err(CopyError::Submission(why)) => return Ok(failed(BuildEnd::Sources(why), String::new())),
+        Err(CopyError::Ours(why)) => return Err(why),
         Ok(()) => {}
     }
-    let Some((command, arguments)) = step.command.split_first() else {
-        return Err(StagingError::NoCommand { command: String::new() });
-    };
+    let command = step.command.first().map_or("", String::as_str);
     let tool = match find_tool(command, &copy) {
         Some(tool) => tool,
         // A script of the submission's own that is missing is the submission's fault.
-        None if command.contains('/') => {
-            return Ok(failed(BuildEnd::NoScript(command.clone()), String::new()));
+        None if command.contains('/') => return Ok(failed(BuildEnd::NoScript(command.to_owned()), String::new())),
+        None => {
+            return Err(format!(
+                "build command {command} is not on this machine; install it, or change [build] in the suite"
+            ));
         }
-        None => return Err(StagingError::NoCommand { command: command.clone() }),
     };
     let limits = Limits {
         cpu: step.wall,
@@ -267,21 +242,16 @@ pub fn build(
         ..Limits::default()
     };
     let job = Job::new(tool, &copy)
-        .arguments(arguments.iter().cloned())
+        .arguments(step.command.iter().skip(1).cloned())
         .policy(Policy::Tools)
         .limits(limits)
         .folder_in_memory();
-    let running = backend.start(&job)?;
+    let running = backend.start(&job).map_err(|error| error.to_string())?;
     let _registered = cancellation.register(running.canceller());
-    let (outcome, made) = running.wait_with_folder()?;
-    let mut output = outcome.stdout.bytes.clone();
-    output.extend_from_slice(&outcome.stderr.bytes);
-    let cut = output.len() > KEPT_OUTPUT || outcome.stdout.truncated || outcome.stderr.truncated;
-    output.truncate(KEPT_OUTPUT);
-    let mut output = String::from_utf8_lossy(&output).into_owned();
-    if cut {
-        output.push_str("\n[cut short]");
-    }
+    let (outcome, made) = running.wait_with_folder().map_err(|error| error.to_string())?;
+    let (stdout, stderr) = (&outcome.stdout, &outcome.stderr);
+    let printed = [&stdout.bytes[..], &stderr.bytes].concat();
+    let output = beginning(&printed, KEPT_OUTPUT, stdout.truncated || stderr.truncated);
     if outcome.ended != Ended::Exited(0) {
         return Ok(failed(BuildEnd::Ended(outcome.ended), output));
     }

@@ -1,4 +1,8 @@
 //! A scene of a suite, ready to be run.
+use super::{
+    result::{Failure, Reason, SceneResult},
+    verdict::Verdict,
+};
 use fosssim_model::scene::Scene;
 
 /// A scene to run.
@@ -12,4 +16,18 @@ pub struct SceneTask {
     pub scene: Scene,
     /// Its recorded trace, compressed with zstd, when there is one.
     pub recording: Option<&'static [u8]>,
+}
+
+impl SceneTask {
+    /// Its result where no run was judged.
+    #[must_use]
+    pub fn without_run(&self, verdict: Verdict, why: Reason) -> SceneResult {
+        SceneResult::without_run(&self.name, self.scene.steps(), verdict, why)
+    }
+
+    /// Its result where the grader or the machine failed.
+    #[must_use]
+    pub fn failed(&self, failure: Failure) -> SceneResult {
+        self.without_run(Verdict::JudgeError, Reason::Failed(failure))
+    }
 }

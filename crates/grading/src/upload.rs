@@ -32,17 +32,14 @@ fn found(program: &str, folder: &OpenFolder) -> FolderContents {
     FolderContents::Others {
         names: names.iter().take(NAMED).map(|name| entry(folder, name)).collect(),
         more: names.len().saturating_sub(NAMED),
-        elsewhere: deeper(folder, wanted, Path::new(""), DEEPEST, &mut LOOKED_AT.clone()).map(|path| shown_path(&path)),
+        elsewhere: deeper(folder, wanted, Path::new(""), DEEPEST, &mut LOOKED_AT.clone())
+            .map(|path| names::shown(path.as_os_str())),
     }
 }
 
 fn entry(folder: &OpenFolder, name: &OsStr) -> String {
     let slash = if matches!(folder.entry(name), Ok(FolderEntry::Folder(_))) { "/" } else { "" };
-    shown_path(Path::new(name)) + slash
-}
-
-fn shown_path(path: &Path) -> String {
-    names::shown(path.as_os_str())
+    names::shown(name) + slash
 }
 
 /// The path of a file of this name beneath a folder, the shallowest of each folder first.

@@ -7,7 +7,7 @@
 use super::{
     options::Options,
     outcome::Outcome,
-    progress::{Progress, Remark, StepPlace, WrongStep},
+    progress::{Both, Progress, StepPlace, WrongStep},
     replay,
 };
 use fosssim_model::{
@@ -49,7 +49,7 @@ impl<'a> Keeper<'a> {
             self.scene,
             KeepingReader { is_judged: true, ..self.reader(trace) },
             options,
-            &mut KeepingProgress { keeper: self, inner: progress },
+            &mut Both(&mut KeepingProgress(self), progress),
         )
     }
 
@@ -107,33 +107,16 @@ impl<R: Read> Read for KeepingReader<'_, R> {
     }
 }
 
-/// Hears which steps are the reference's and which are wrong, and passes on everything.
-struct KeepingProgress<'k, 'a> {
-    keeper: &'k Keeper<'a>,
-    inner: &'k mut dyn Progress,
-}
+/// Hears which steps are the reference's and which are wrong.
+struct KeepingProgress<'k, 'a>(&'k Keeper<'a>);
 
 impl Progress for KeepingProgress<'_, '_> {
-    fn begins(&mut self) {
-        self.inner.begins();
-    }
-
-    fn step_begins(&mut self, step: u32) {
-        self.inner.step_begins(step);
-    }
-
-    fn step_judged(&mut self, step: u32, remarks: &[Remark]) {
-        self.inner.step_judged(step, remarks);
-    }
-
     fn step_wrong(&mut self, wrong: &WrongStep<'_>) {
-        self.keeper.store().wrong = wrong.step;
-        self.inner.step_wrong(wrong);
+        self.0.store().wrong = wrong.step;
     }
 
     fn step_passed(&mut self, place: &StepPlace) {
-        self.keeper.store().pass(place);
-        self.inner.step_passed(place);
+        self.0.store().pass(place);
     }
 }
 

@@ -59,6 +59,36 @@ pub struct StepFindings<'a> {
 
 impl Progress for () {}
 
+/// Two that hear the same, one after the other.
+pub struct Both<'a>(pub &'a mut dyn Progress, pub &'a mut dyn Progress);
+
+impl Progress for Both<'_> {
+    fn begins(&mut self) {
+        self.0.begins();
+        self.1.begins();
+    }
+
+    fn step_begins(&mut self, step: u32) {
+        self.0.step_begins(step);
+        self.1.step_begins(step);
+    }
+
+    fn step_judged(&mut self, step: u32, remarks: &[Remark]) {
+        self.0.step_judged(step, remarks);
+        self.1.step_judged(step, remarks);
+    }
+
+    fn step_wrong(&mut self, wrong: &WrongStep<'_>) {
+        self.0.step_wrong(wrong);
+        self.1.step_wrong(wrong);
+    }
+
+    fn step_passed(&mut self, place: &StepPlace) {
+        self.0.step_passed(place);
+        self.1.step_passed(place);
+    }
+}
+
 /// A line that the original prints about a step; in its order.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Remark {

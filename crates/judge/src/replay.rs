@@ -8,7 +8,7 @@ mod workers;
 
 pub use super::{
     options::Options,
-    progress::{Progress, Remark, StepFindings, StepPlace, WrongStep},
+    progress::{Both, Progress, Remark, StepFindings, StepPlace, WrongStep},
 };
 
 use super::{

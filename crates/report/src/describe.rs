@@ -20,3 +20,10 @@ pub fn step_error(error: &StepError) -> (u32, String) {
         StepError::Work { step } => (*step, BEYOND_BUDGET.to_owned()),
     }
 }
+
+/// A computation without result, in words.
+#[must_use]
+pub fn no_result(error: &StepError) -> String {
+    let (step, words) = step_error(error);
+    format!("step {step} has no result, because {words}")
+}

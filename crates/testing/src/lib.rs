@@ -58,54 +58,34 @@ pub enum Need {
     Mounts,
 }
 
-impl Need {
-    /// All of them.
-    pub const ALL: [Self; 19] = [
-        Self::Corpus,
-        Self::Sandbox,
-        Self::Walls,
-        Self::Cc,
-        Self::Cxx,
-        Self::Make,
-        Self::Python,
-        Self::Xmllint,
-        Self::Setpriv,
-        Self::Bash,
-        Self::Zsh,
-        Self::Fish,
-        Self::Postgres,
-        Self::Pgbouncer,
-        Self::Systemd,
-        Self::Yaml,
-        Self::Chevron,
-        Self::Moto,
-        Self::Mounts,
-    ];
+/// All of them, each with its name in `FOSSSIM_REQUIRE`.
+const NAMES: [(Need, &str); 19] = [
+    (Need::Corpus, "corpus"),
+    (Need::Sandbox, "sandbox"),
+    (Need::Walls, "walls"),
+    (Need::Cc, "cc"),
+    (Need::Cxx, "c++"),
+    (Need::Make, "make"),
+    (Need::Python, "python3"),
+    (Need::Xmllint, "xmllint"),
+    (Need::Setpriv, "setpriv"),
+    (Need::Bash, "bash"),
+    (Need::Zsh, "zsh"),
+    (Need::Fish, "fish"),
+    (Need::Postgres, "postgres"),
+    (Need::Pgbouncer, "pgbouncer"),
+    (Need::Systemd, "systemd"),
+    (Need::Yaml, "yaml"),
+    (Need::Chevron, "chevron"),
+    (Need::Moto, "moto"),
+    (Need::Mounts, "mounts"),
+];
 
+impl Need {
     /// Its name in `FOSSSIM_REQUIRE`.
     #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Corpus => "corpus",
-            Self::Sandbox => "sandbox",
-            Self::Walls => "walls",
-            Self::Cc => "cc",
-            Self::Cxx => "c++",
-            Self::Make => "make",
-            Self::Python => "python3",
-            Self::Xmllint => "xmllint",
-            Self::Setpriv => "setpriv",
-            Self::Bash => "bash",
-            Self::Zsh => "zsh",
-            Self::Fish => "fish",
-            Self::Postgres => "postgres",
-            Self::Pgbouncer => "pgbouncer",
-            Self::Systemd => "systemd",
-            Self::Yaml => "yaml",
-            Self::Chevron => "chevron",
-            Self::Moto => "moto",
-            Self::Mounts => "mounts",
-        }
+    pub fn name(self) -> &'static str {
+        NAMES.iter().find(|(need, _)| *need == self).map_or("", |(_, name)| name)
     }
 }
 
@@ -140,9 +120,9 @@ fn allowed(need: Need, required: &str) -> Result<(), String> {
         if word == "all" || word == need.name() {
             return Err(format!("{REQUIRE} asks for {need}, and it is not here"));
         }
-        if !Need::ALL.iter().any(|known| known.name() == word) {
-            let known: Vec<_> = Need::ALL.iter().map(|known| known.name()).collect();
-            return Err(format!("{REQUIRE} asks for `{word}`; known are all, {}", known.join(", ")));
+        if !NAMES.iter().any(|(_, known)| *known == word) {
+            let known = NAMES.map(|(_, known)| known).join(", ");
+            return Err(format!("{REQUIRE} asks for `{word}`; known are all, {known}"));
         }
     }
     Ok(())
@@ -164,11 +144,9 @@ pub fn list() -> Option<PathBuf> {
 pub fn summary(list: &str) -> String {
     let mut lines = String::new();
     let mut total = 0;
-    for need in Need::ALL {
-        let of_need: Vec<(&str, &str)> = list
-            .lines()
-            .filter_map(|line| line.strip_prefix(need.name())?.strip_prefix('\t')?.split_once('\t'))
-            .collect();
+    for (_, need) in NAMES {
+        let of_need: Vec<(&str, &str)> =
+            list.lines().filter_map(|line| line.strip_prefix(need)?.strip_prefix('\t')?.split_once('\t')).collect();
         let mut tests: Vec<&str> = of_need.iter().map(|(test, _)| *test).collect();
         tests.sort_unstable();
         tests.dedup();

@@ -29,13 +29,13 @@ const MOST: usize = Student::MOST;
                   the variable. `fosssim-oracle demo --program FILE` writes a copy that makes its mistake in any case.\n\nExit status: 0 done, 1 it could not be done, 2 usage, 3 the course's program would \
                   never have ended here."
 )]
-struct Typed {
+pub struct Options {
     /// The scene, an XML file.
     #[arg(short, long, required_unless_present = "list", value_name = "FILE")]
-    scene: Option<PathBuf>,
+    pub scene: Option<PathBuf>,
     /// Where to write the trace, a file or a pipe. Without it nothing is saved.
     #[arg(short, long = "outputfile", value_name = "FILE")]
-    output: Option<PathBuf>,
+    pub output: Option<PathBuf>,
     /// Only 0 is accepted: there is no window.
     #[arg(short, long, default_value = "0", value_parser = ["0"], value_name = "0")]
     display: String,
@@ -47,50 +47,23 @@ struct Typed {
     mistake: Option<String>,
     /// Computes this number of million useless rounds first, as a slow program does.
     #[arg(long, value_name = "N", default_value = "0")]
-    busy: u32,
+    pub busy: u32,
     /// Lists the mistakes, with one sentence for each.
     #[arg(long)]
-    list: bool,
+    pub list: bool,
     /// Lists them as JSON.
     #[arg(long, requires = "list")]
-    json: bool,
+    pub json: bool,
 }
 
-/// A task of the sample program.
-pub enum Task {
-    /// Print the catalogue.
-    List {
-        /// As JSON.
-        json: bool,
-    },
-    /// Simulate.
-    Run(Options),
-}
-
-/// A run, validated.
-pub struct Options {
-    /// The scene file.
-    pub scene: PathBuf,
-    /// The trace file.
-    pub output: Option<PathBuf>,
+impl Options {
     /// The program's author.
-    pub student: Student,
-    /// Millions of useless rounds.
-    pub busy: u32,
-}
-
-/// Reads the command line; on a fault of syntax the program ends with status 2.
-///
-/// # Errors
-/// A sentence about a mistake that does not exist.
-pub fn parse() -> Result<Task, String> {
-    let typed = Typed::parse();
-    if typed.list {
-        return Ok(Task::List { json: typed.json });
+    ///
+    /// # Errors
+    /// A sentence about a mistake that does not exist.
+    pub fn student(&self) -> Result<Student, String> {
+        student(self.mistake.clone())
     }
-    let student = student(typed.mistake)?;
-    let Some(scene) = typed.scene else { return Err("-s is missing: name a scene file".to_owned()) };
-    Ok(Task::Run(Options { scene, output: typed.output, student, busy: typed.busy }))
 }
 
 /// The student with the mistakes that the command line, the program's name or the environment asks for.
@@ -140,7 +113,7 @@ mod tests {
 
     #[test]
     fn the_command_line_is_consistent() {
-        <Typed as clap::CommandFactory>::command().debug_assert();
+        <Options as clap::CommandFactory>::command().debug_assert();
     }
 
     #[test]

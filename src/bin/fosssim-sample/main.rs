@@ -15,19 +15,20 @@ mod listing;
 mod run;
 mod trace;
 
+use arguments::Options;
+use clap::Parser;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let arguments = match arguments::parse() {
-        Ok(arguments) => arguments,
+    // A fault of syntax ends the program with status 2.
+    let options = Options::parse();
+    let outcome = match options.student() {
+        _ if options.list => listing::print(options.json),
+        Ok(student) => run::run(&options, student),
         Err(message) => {
             eprintln!("error: {message}");
             return ExitCode::from(2);
         }
-    };
-    let outcome = match arguments {
-        arguments::Task::List { json } => listing::print(json),
-        arguments::Task::Run(options) => run::run(&options),
     };
     match outcome {
         Ok(code) => ExitCode::from(code),

@@ -6,7 +6,7 @@ use std::{
 };
 
 use anyhow::Context;
-use fosssim_oracle::student::{self, StepLog, World};
+use fosssim_oracle::student::{self, StepLog, Student, World};
 
 use crate::{
     arguments::Options,
@@ -20,17 +20,17 @@ const NEVER_ENDS: u8 = 3;
 type Output = Trace<Box<dyn Write>>;
 
 /// Simulates a scene and returns the program's exit status.
-pub fn run(options: &Options) -> anyhow::Result<u8> {
-    let student = options.student;
+pub fn run(options: &Options, student: Student) -> anyhow::Result<u8> {
     if let Some(code) = hostile::at_start(student, options.output.as_deref())? {
         return Ok(code);
     }
     for round in 0..u64::from(options.busy) * 1_000_000 {
         black_box(round);
     }
-    let text = std::fs::read(&options.scene).with_context(|| format!("{}: can't be read", options.scene.display()))?;
+    let scene = options.scene.as_deref().context("-s is missing: name a scene file")?;
+    let text = std::fs::read(scene).with_context(|| format!("{}: can't be read", scene.display()))?;
     let scene = fosssim_oracle::scene::original::read(&text)
-        .with_context(|| format!("{}: not a scene", options.scene.display()))?
+        .with_context(|| format!("{}: not a scene", scene.display()))?
         .scene;
     let world = World::new(scene, student);
     let output: Box<dyn Write> = match &options.output {

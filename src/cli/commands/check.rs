@@ -9,12 +9,12 @@ use crate::{
     },
     evidence::{self, Evidence, Examined, Keep, examine},
     judge::{
-        Outcome, Stop, Unreadable,
-        replay::{self, Progress, Remark, WrongStep},
+        Outcome, Stop,
+        replay::{self, Both},
     },
     report::{
         self,
-        check::{StepChoice, WrongSteps, is_wrong, no_verdict},
+        check::{StepChoice, WrongSteps, is_wrong, no_verdict, not_read},
         number::counted,
         page,
         style::Style,
@@ -36,11 +36,10 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<u8> {
     // An output that can't be written is said before the work is done, not after.
     let target = arguments.output.as_deref().map(|name| Output::create(name, &inputs)).transpose()?;
     let (shown, lasts) = (ShownParts::of(arguments, target.is_some()), is_lasting(name));
-    let mut heard =
-        CheckProgress { bar: console::Bar::new(scene.scene.steps()), wrong: wrong_steps(arguments, &scene)? };
-    let options = options(arguments);
-    let examined = examine(&scene.scene, &mut trace.reader, shown.keep(lasts), &options, &mut heard);
-    let CheckProgress { bar, wrong } = heard;
+    let mut wrong = wrong_steps(arguments, &scene)?;
+    let mut bar = console::Bar::new(scene.scene.steps());
+    let (options, heard) = (options(arguments), &mut Both(&mut bar, &mut wrong));
+    let examined = examine(&scene.scene, &mut trace.reader, shown.keep(lasts), &options, heard);
     drop(bar);
     let outcome = &examined.outcome;
     refuse_unreadable(outcome, &scene, &trace)?;
@@ -88,7 +87,7 @@ fn write(
     match (target, format) {
         (Some(target), format) => target.finish_and_tell(text.as_bytes(), format == CheckFormat::Html),
         (None, CheckFormat::Text) => console::report(&text),
-        (None, _) => console::print(text.as_bytes()),
+        (None, _) => console::print(&text),
     }
 }
 
@@ -157,21 +156,12 @@ fn refuse_unreadable(outcome: &Outcome, scene: &SceneInput, trace: &TraceInput) 
     if let Some(why) = no_verdict(outcome, &scene.name) {
         bail!(why);
     }
-    match &outcome.stop {
+    match (&outcome.stop, trace.failure()) {
         // Further steps may or may not have been read by then: what failed there is not asked for.
-        Some(Stop::Step(_)) => {}
-        stop => {
-            // Bytes that are missing inside polynomials do not stop the original, but may be missing only here.
-            if let Some(message) = trace.failure() {
-                let place = match stop {
-                    Some(Stop::Trace { cause: Unreadable::Io, offset, .. }) => format!(" at byte {offset}"),
-                    _ => String::new(),
-                };
-                bail!("cannot read the trace {}{place}: {message}", trace.name);
-            }
-        }
+        (Some(Stop::Step(_)), _) | (_, None) => Ok(()),
+        // Bytes that are missing inside polynomials do not stop the original, but may be missing only here.
+        (_, Some(message)) => bail!(not_read(outcome, &trace.name, &message)),
     }
-    Ok(())
 }
 
 /// The evidence: of the whole trace, where what was kept is not all of it and the file can be read again.
@@ -183,22 +173,6 @@ fn evidence_of(examined: &Examined<'_>, name: &Path, lasts: bool) -> Evidence {
 fn with_plots(text: String, evidence: &Evidence, columns: usize) -> String {
     let plots = report::check::plots(evidence, columns);
     text + if plots.is_empty() { "" } else { "\n" } + &plots
-}
-
-/// Shows how far judging is, and gathers the wrong steps.
-struct CheckProgress {
-    bar: console::Bar,
-    wrong: WrongSteps,
-}
-
-impl Progress for CheckProgress {
-    fn step_judged(&mut self, step: u32, remarks: &[Remark]) {
-        self.bar.step_judged(step, remarks);
-    }
-
-    fn step_wrong(&mut self, wrong: &WrongStep<'_>) {
-        self.wrong.step_wrong(wrong);
-    }
 }
 
 /// Whether a trace can be read a second time: then it need not be kept while it is judged.

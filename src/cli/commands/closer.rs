@@ -62,27 +62,18 @@ impl Closer<'_> {
             Some(entry) if !*single && submission.name.ends_with(entry.as_str()) => submission.path.join(entry),
             _ => submission.path.clone(),
         };
-        let mut words = format!("fosssim-oracle grade {}", quoted(&path.to_string_lossy()));
-        if suite != Assignment::DEFAULT.key() {
-            words += &format!(" --suite {}", quoted(suite));
-        }
-        if rules.is_some() {
-            words += &format!(" --rules {}", self.plan.rules.name());
-        }
-        if program != "FOSSSim" {
-            words += &format!(" --program {}", quoted(program));
-        }
-        if let Some(output) = output.as_ref().filter(|_| self.submissions.len() == 1) {
-            words += &format!(" --output {}", quoted(&output.to_string_lossy()));
-        }
-        for (set, word) in
-            [(*single, " --single"), (*recorded, " --recorded"), (*unsafe_no_sandbox, " --unsafe-no-sandbox")]
-        {
-            if set {
-                words += word;
-            }
-        }
-        words
+        let output = output.as_ref().filter(|_| self.submissions.len() == 1);
+        let options = [
+            (suite != Assignment::DEFAULT.key()).then(|| format!(" --suite {}", quoted(suite))),
+            rules.map(|_| format!(" --rules {}", self.plan.rules.name())),
+            (program != "FOSSSim").then(|| format!(" --program {}", quoted(program))),
+            output.map(|output| format!(" --output {}", quoted(&output.to_string_lossy()))),
+            single.then(|| " --single".to_owned()),
+            recorded.then(|| " --recorded".to_owned()),
+            unsafe_no_sandbox.then(|| " --unsafe-no-sandbox".to_owned()),
+        ];
+        let options: String = options.into_iter().flatten().collect();
+        format!("fosssim-oracle grade {}{options}", quoted(&path.to_string_lossy()))
     }
 }
 

@@ -2,37 +2,33 @@
 use crate::files::Identity;
 use crate::{
     cli::{
-        console, exit,
+        console,
         input::{self, SceneInput, pair},
         output::Output,
         pictures::{DetectArguments, DetectFormat, Points},
     },
-    evidence::{self, InspectedPair, Logged, StepRecords},
+    evidence::{self, InspectedPair, Logged},
     judge::study::Study,
     render::{detection, plot::Embedding},
     report::{
-        describe::step_error,
+        describe::no_result,
         detect::{Detect as Report, Place},
         number::counted,
         style::Style,
     },
     sim::{PairMotion, RootSearch, Simulation, State},
-    trace::{Frame, Layout, Reader},
+    trace::{Frame, Layout},
 };
 use anyhow::{Context, Result, bail};
 use std::path::Path;
 
 const NO_ANSWER: &str = "there is no answer: the numbers are too large or too small, and the original hangs here";
 
-pub(super) fn run(arguments: &DetectArguments) -> Result<u8> {
+pub(super) fn run(arguments: &DetectArguments) -> Result<()> {
     match &arguments.scene {
-        Some(scene) => of_scene(arguments, scene)?,
-        None => {
-            let motion = typed(arguments)?;
-            show(arguments, &study(&motion)?, None, &[])?;
-        }
+        Some(scene) => of_scene(arguments, scene),
+        None => show(arguments, &study(&typed(arguments)?)?, None, &[]),
     }
-    Ok(exit::ACCEPTED)
 }
 
 fn study(motion: &PairMotion) -> Result<Study> {
@@ -51,7 +47,7 @@ fn show(arguments: &DetectArguments, study: &Study, place: Option<Place<'_>>, in
     match target {
         Some(target) => target.finish_with(text.as_bytes()),
         None if arguments.format == DetectFormat::Text => console::report(&text),
-        None => console::print(text.as_bytes()),
+        None => console::print(&text),
     }
 }
 
@@ -100,23 +96,17 @@ fn of_scene(arguments: &DetectArguments, name: &Path) -> Result<()> {
         }
         None => (simulated(&scene, step)?, None),
     };
-    let records =
-        traced.as_ref().map(|traced| StepRecords { mid: Some(&traced.mid), polynomials: &traced.end.polynomials });
+    let records = traced.as_ref().map(|traced| (&traced.mid, &traced.end.polynomials));
     let InspectedPair { step: inspected, end, failed } = evidence::inspect(&scene.scene, step, &before, records, pair);
     let passes = inspected.calls.len();
     let call = inspected.calls.get(arguments.pass as usize - 1);
-    if call.is_none() {
-        match failed {
-            Some(error) => {
-                let (step, words) = step_error(&error);
-                bail!("step {step} has no result, because {words}");
-            }
-            None if passes == 0 => {}
-            None => {
-                let plural = if passes == 1 { "pass" } else { "passes" };
-                bail!("step {step} has {passes} detection {plural}; there is no pass {}", arguments.pass)
-            }
+    match (call, failed) {
+        (None, Some(error)) => bail!(no_result(&error)),
+        (None, None) if passes > 0 => {
+            let plural = if passes == 1 { "pass" } else { "passes" };
+            bail!("step {step} has {passes} detection {plural}; there is no pass {}", arguments.pass)
         }
+        _ => {}
     }
     let study = match call.map(|call| &call.study) {
         Some(Ok(seen)) => seen.clone(),
@@ -135,8 +125,7 @@ fn simulated(scene: &SceneInput, step: u32) -> Result<State> {
     let mut simulation = Simulation::new(&scene.scene, RootSearch::WhereNeeded);
     for _ in 1..step {
         if let Err(error) = simulation.step(&mut ()) {
-            let (step, words) = step_error(&error);
-            bail!("the scene {} can't be simulated: step {step} has no result, because {words}", scene.name);
+            bail!("the scene {} can't be simulated: {}", scene.name, no_result(&error));
         }
     }
     Ok(simulation.state().clone())
@@ -155,10 +144,7 @@ struct Traced {
 fn traced(scene: &SceneInput, name: &Path, step: u32) -> Result<Traced> {
     let mut trace = input::trace(name)?;
     let layout = Layout::of(&scene.scene);
-    let mut reader = Reader::new(&mut trace.reader, layout).with_scene(&scene.scene);
-    if let Some(length) = trace.length {
-        reader = reader.with_length(length);
-    }
+    let mut reader = trace.records(&scene.scene);
     let (mut frame, mut before, mut mid) = (Frame::default(), State::default(), State::default());
     loop {
         let read = reader.next(&mut frame);
@@ -175,9 +161,7 @@ fn traced(scene: &SceneInput, name: &Path, step: u32) -> Result<Traced> {
             }
             Ok(false) => bail!("the trace {} has no step {step}", trace.name),
             Err(error) => {
-                if let Some(message) = trace.failure() {
-                    bail!("cannot read the trace {}: {message}", trace.name);
-                }
+                trace.not_failed()?;
                 bail!("cannot read step {step} of the trace {}: {error}", trace.name);
             }
         }

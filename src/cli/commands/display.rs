@@ -5,7 +5,7 @@ use crate::{
     report::grade::{no_points, one_line, score, shortened},
     suite::{Submission, batch::Event, plan::Plan},
 };
-use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
+use indicatif::{MultiProgress, ProgressBar};
 use std::{collections::BTreeMap, io, path::Path};
 
 /// The display of one grading; it goes away when dropped.
@@ -28,10 +28,7 @@ impl<'a> LiveDisplay<'a> {
         let bars = console::wants_bars().then(|| {
             let all = console::show_bars();
             let runs = submissions.len() * plan.scenes().count();
-            let overall = all.add(ProgressBar::new(runs as u64));
-            if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos} of {len} runs, {eta} left") {
-                overall.set_style(style);
-            }
+            let overall = console::add_bar(&all, runs as u64, "{wide_bar} {pos} of {len} runs, {eta} left");
             Bars { all, overall, running: BTreeMap::new() }
         });
         Self { plan, submissions, bars, graded: 0 }
@@ -74,7 +71,7 @@ impl<'a> LiveDisplay<'a> {
                 );
                 match &self.bars {
                     Some(bars) => drop(bars.all.println(line)),
-                    None => console::remark(format!("{line}\n").as_bytes()),
+                    None => console::remark(format!("{line}\n")),
                 }
             }
         }
@@ -83,10 +80,7 @@ impl<'a> LiveDisplay<'a> {
     fn begin(&mut self, submission: usize, scene: usize) {
         let Some(bars) = &mut self.bars else { return };
         let Some(task) = self.plan.scenes().nth(scene) else { return };
-        let bar = bars.all.add(ProgressBar::new(u64::from(task.scene.steps())));
-        if let Ok(style) = ProgressStyle::with_template("  {msg:<60!} step {pos} of {len}") {
-            bar.set_style(style);
-        }
+        let bar = console::add_bar(&bars.all, task.scene.steps().into(), "  {msg:<60!} step {pos} of {len}");
         bar.set_message(format!("{} {}", shortened(&one_line(&self.submissions[submission].name)), task.name));
         bars.running.insert((submission, scene), bar);
     }

@@ -1,15 +1,12 @@
 //! The common end of the commands that grade: exit code, file names, and how much is shown.
 use crate::{
-    cli::{exit, grading::Grade as Arguments},
-    report::{
-        grade::{self, TextDetail},
-        style::Style,
-    },
-    suite::Grade,
+    cli::{console, exit, grading::Grade as Arguments},
+    report::grade::{self, Advice, Text, TextDetail},
+    suite::{Grade, PassedOver},
 };
 
 /// The greatest number of scenes and mistakes shown of a class; class.txt has all.
-const HARDEST: usize = 5;
+pub(super) const HARDEST: usize = 5;
 
 /// How a grading ends that nobody stopped.
 pub(super) fn exit_code(grades: &[Grade]) -> u8 {
@@ -58,12 +55,22 @@ pub(super) const fn shown(arguments: &Arguments, is_class: bool) -> TextDetail {
     }
 }
 
-/// The report on several submissions ends with what the class comes to.
-pub(super) fn with_class(text: String, grades: &[Grade], shown: TextDetail, style: Style) -> String {
-    match grades.len() > 1 && shown > TextDetail::Line {
-        true => text + "\n" + &grade::class(grades, HARDEST, style),
-        false => text,
+/// The report for people who look at it now. On several submissions it ends with what the class comes to, its `hardest`
+/// scenes and mistakes, and who is not graded.
+pub(super) fn text(
+    grades: &[Grade],
+    passed_over: &[PassedOver],
+    shown: TextDetail,
+    hardest: usize,
+    closer: Option<Advice<'_>>,
+) -> String {
+    let (style, width) = (console::style(), console::width());
+    let mut text = Text { style, shown, width, closer, ..Text::default() }.render(grades);
+    if grades.len() > 1 && shown > TextDetail::Line {
+        text += "\n";
+        text += &grade::class(grades, hardest, style);
     }
+    text + &grade::not_graded(grades, passed_over, style)
 }
 
 #[cfg(test)]

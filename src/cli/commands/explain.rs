@@ -1,8 +1,5 @@
 //! `explain`: what is likely wrong with the program that left a trace, or with a program at hand.
-use super::{
-    grade::backend,
-    pages::{self, Source},
-};
+use super::{grade::backend, pages};
 use crate::{
     assignments::Assignment,
     cli::{
@@ -26,8 +23,8 @@ use crate::{
     scene::{self, Scene},
     suite::{
         Folders, Runner, SceneTask,
+        cards::Judged,
         config::{Hints, RunLimits},
-        coverage::Coverage,
         located::{ContentIndex, Contents, Failing, Located, Tried, locate},
         plan::{self, Plan},
     },
@@ -69,7 +66,7 @@ pub(super) fn run(arguments: &Explain) -> Result<u8> {
     match target {
         Some(target) => target.finish_and_tell(text.as_bytes(), arguments.format == ExplainFormat::Html)?,
         None if arguments.format == ExplainFormat::Text => console::report(&text)?,
-        None => console::print(text.as_bytes())?,
+        None => console::print(&text)?,
     }
     Ok(if diagnosis.accepted() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }
@@ -84,9 +81,7 @@ fn trace_on_scene(scene: &Path, trace: &Path, arguments: &Explain) -> Result<(Ca
         case((scene.name, trace.name.clone()), true, &scene.scene, &mut trace.reader, None, arguments);
     // Bytes behind the last step are of interest only where they can't be read.
     let _ = io::copy(&mut (&mut trace.reader).take(LONGEST), &mut io::sink());
-    if let Some(message) = trace.failure() {
-        bail!("cannot read the trace {}: {message}", trace.name);
-    }
+    trace.not_failed()?;
     Ok((case, card))
 }
 
@@ -116,18 +111,18 @@ fn case(
     let draws = arguments.format == ExplainFormat::Html && !accepted;
     let card = draws.then(|| {
         let kept = examined.bytes();
-        pages::card(&Source {
+        let judged = Judged {
             scene,
-            is_cut: !examined.trace.is_whole() || kept.len() as u64 >= LONGEST,
-            trace: &kept,
+            name: &name,
+            explanations: &explanations,
             outcome,
             rulings: &examined.rulings,
-            explanations: &explanations,
+            trace: &kept,
+            is_cut: !examined.trace.is_whole() || kept.len() as u64 >= LONGEST,
             rules: Rules::Fair,
             hints,
-            names: (&name, has_trace.then_some(trace.as_str())),
-            depth: 2,
-        })
+        };
+        pages::card(&judged, has_trace.then_some(trace.as_str()), 2)
     });
     (Case { scene: name, trace, accepted, note, first, explanations }, card.flatten(), outcome.steps_judged)
 }
@@ -168,7 +163,7 @@ fn program_on_probes(
         recorded: false,
         cancellation: &cancellation,
         faults: &nowhere,
-        traces: None,
+        trace: None,
         cards: None,
         rehearse: &|_| {},
     };
@@ -203,8 +198,7 @@ fn program_on_probes(
     if traceless == tasks.len() {
         let others = Assignment::ALL.into_iter().filter(|other| *other != arguments.assignment);
         let others: Vec<&str> = others.map(Assignment::key).collect();
-        let hint = format!("if this program is of another milestone: --assignment {}\n", others.join(", "));
-        console::remark(hint.as_bytes());
+        console::remark(format!("if this program is of another milestone: --assignment {}\n", others.join(", ")));
     }
     let located = located(&tasks, &ends);
     let common = likely(&cases, &tasks);
@@ -227,10 +221,7 @@ fn located(tasks: &[SceneTask], ends: &[(Option<Failing>, u32)]) -> Option<Locat
     if ends.iter().all(|(failing, _)| failing.is_none()) {
         return None;
     }
-    let contents: Vec<Contents> = tasks
-        .iter()
-        .map(|task| Coverage::of(&task.scene).map(|seen| ContentIndex::of(&seen)).unwrap_or_default())
-        .collect();
+    let contents: Vec<Contents> = tasks.iter().map(|task| ContentIndex::of(&task.scene)).collect();
     let tried = tasks.iter().zip(&contents).zip(ends);
     let tried =
         tried.map(|((task, contents), &(failing, steps))| Tried { scene: &task.name, failing, steps, contents });

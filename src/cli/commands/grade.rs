@@ -2,10 +2,10 @@
 use super::{
     closer::Closer,
     display::{Counter, LiveDisplay},
-    ending::{exit_code, file_name, file_of_scene, shown, with_class},
+    ending::{HARDEST, exit_code, file_name, file_of_scene, shown, text},
     last_run::LastRun,
     pages::{self, Pages},
-    results::{Report, Results, reports},
+    results::{Report, Results, refuse_several, reports, wanted_pages},
     shard::Sharding,
     submissions::{Found, Search},
     traces,
@@ -22,7 +22,7 @@ use crate::{
     judge::Rules,
     report::{
         explain,
-        grade::{self, Format, Text},
+        grade::{self, Format},
         number::counted,
         page::Audience,
         style::Style,
@@ -30,7 +30,8 @@ use crate::{
     },
     sandbox::{Backend, Supervisor},
     suite::{
-        Cancellation, Grade, Grader, PassedOver, SceneTask, Submission, Verdict, batch,
+        Cancellation, Grade, Grader, PassedOver, SceneTask, Submission, Verdict,
+        batch::{self, Graded},
         cards::Judged,
         config::Visibility,
         grader::Options,
@@ -85,12 +86,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     }
     let names: Vec<&str> = plan.scenes().map(|task| task.name.as_str()).collect();
     let selection = Selection::new(&arguments.scene, &names)?;
-    if submissions.len() > 1
-        && let Some(report) = reports.iter().find(|report| !report.format.takes_several())
-    {
-        let class = if report.format == Format::Html { "; a class's pages go to its --output folder" } else { "" };
-        bail!("--format {} holds one submission, and there are {}{class}", report.name, submissions.len());
-    }
+    refuse_several(&reports, submissions.len(), "; a class's pages go to its --output folder")?;
     // Before any output is touched, whose own handler would end the program at once.
     let cancellation = cancelled_by_signals();
     for file in reports.iter().filter_map(|report| report.file.as_deref()) {
@@ -112,18 +108,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
         submissions.retain(|submission| last_run.has_failed(&submission.name));
     }
     if plan.scenes().next().is_none() {
-        console::complain(b"nothing to run: everything was accepted in the last run\n");
+        console::complain("nothing to run: everything was accepted in the last run\n");
         return Ok(exit::ACCEPTED);
     }
     let is_part = plan.scenes().count() < whole || arguments.failed;
     let pictures = submissions.len() == 1 && console::pictures().is_some();
-    let draws = pictures
-        || folder.is_some()
-        || arguments.staff_page.is_some()
-        || reports.iter().any(|report| report.format == Format::Html);
-    // A class's pages may be asked for later, and nobody wants to run it again for them.
-    let for_students = arguments.reader == Audience::Student || submissions.len() > 1;
-    let pages = if draws { Some(Pages::new(folder.as_deref(), for_students)?) } else { None };
+    let pages = wanted_pages(arguments, folder.as_deref(), submissions.len() > 1, &reports, pictures)?;
     let (plan, backend, cancellation) = (&plan, &backend, &cancellation);
     let session =
         GradingSession { arguments, plan, backend, cancellation, folder, pages, is_part, sharding, passed_over };
@@ -178,7 +168,7 @@ impl GradingSession<'_> {
                 if let Some(sharding) = self.sharding.as_ref().filter(|_| !self.cancellation.is_cancelled()) {
                     sharding.end(&grades, &self.passed_over)?;
                 }
-                let code = self.exit_code(&grades);
+                let code = if self.cancellation.is_cancelled() { exit::INTERRUPTED } else { exit_code(&grades) };
                 Ok((grades, code))
             }
         }
@@ -191,13 +181,12 @@ impl GradingSession<'_> {
         if let Some(folder) = &self.folder {
             if taken > 0 {
                 let (folder, all) = (folder.display(), counted(all as u64, "result"));
-                let line = format!("{taken} of {all} taken over from {folder} (--fresh grades all anew)\n");
-                console::complain(line.as_bytes());
+                console::complain(format!("{taken} of {all} taken over from {folder} (--fresh grades all anew)\n"));
             }
             if self.cancellation.is_cancelled() {
                 let folder = folder.display();
                 let line = format!("stopped; results are kept in {folder}: the same command goes on from there\n");
-                console::complain(line.as_bytes());
+                console::complain(&line);
             }
         }
     }
@@ -206,11 +195,6 @@ impl GradingSession<'_> {
     fn trace(&self, submission: &str, scene: &str) -> Option<Place> {
         let folder = self.folder.as_ref().filter(|_| self.arguments.keep_traces)?;
         Some(Place::new(folder, format!("traces/{}/{}.bin", file_name(submission), file_of_scene(scene))))
-    }
-
-    /// Draws what a page shows of a trace.
-    fn draw(&self, judged: &Judged<'_>) -> Option<String> {
-        pages::draw(judged, (&judged.task.name, None), self.arguments.recorded)
     }
 
     /// The grades, and what kept the rest from being graded or kept.
@@ -236,7 +220,7 @@ impl GradingSession<'_> {
         if let (Some(pages), true) = (&self.pages, fresh) {
             pages.forget();
         }
-        let draw = |judged: &Judged<'_>| self.draw(judged);
+        let draw = |judged: &Judged<'_>| pages::draw(judged, self.arguments.recorded);
         // Called as the original, this program does what that does.
         let reference = std::env::current_exe().ok();
         let grader = Grader {
@@ -266,16 +250,7 @@ impl GradingSession<'_> {
             }
         };
         let results = kept.as_ref().map(|kept| kept as &dyn crate::suite::results::Results);
-        let (mut grades, fault) = match submissions {
-            [submission] => {
-                let (grade, fault) = grader.grade_submission(submission, results, self.cancellation, &mut on_event);
-                (Vec::from_iter(grade), fault)
-            }
-            class => {
-                let graded = batch::run(&grader, class, results, self.cancellation, &mut on_event);
-                (graded.grades, graded.fault)
-            }
-        };
+        let Graded { mut grades, fault } = batch::run(&grader, submissions, results, self.cancellation, &mut on_event);
         drop(display);
         grade::warn_of(&mut grades, self.passed_over());
         Ok((grades, fault.map(anyhow::Error::from).or(log_error)))
@@ -310,8 +285,7 @@ impl GradingSession<'_> {
 
     /// The report for people who look at it now: of a class a table, and what it comes to.
     fn text(&self, grades: &[Grade], submissions: &[Submission]) -> String {
-        let is_class = grades.len() > 1;
-        let shown = shown(self.arguments, is_class);
+        let shown = shown(self.arguments, grades.len() > 1);
         let trace = |submission: &str, scene: &str| self.trace(submission, scene).map(|place| place.path());
         let closer = Closer { arguments: self.arguments, plan: self.plan, submissions, trace: &trace };
         let closer = |grade: &Grade, scene: &_| {
@@ -320,13 +294,7 @@ impl GradingSession<'_> {
             let plot = plot.as_ref().map(|card| card.plot().lines().map(str::to_owned).collect()).unwrap_or_default();
             [plot, closer.advice(grade, scene)].concat()
         };
-        let (style, width) = (console::style(), console::width());
-        let text = Text { style, shown, width, again: None, closer: Some(&closer) }.render(grades);
-        with_class(text, grades, shown, style) + &grade::not_graded(grades, self.passed_over(), style)
-    }
-
-    fn exit_code(&self, grades: &[Grade]) -> u8 {
-        if self.cancellation.is_cancelled() { exit::INTERRUPTED } else { exit_code(grades) }
+        text(grades, self.passed_over(), shown, HARDEST, Some(&closer))
     }
 
     /// Grades, waits for a change of any program, grades again; until interrupted.
@@ -339,14 +307,14 @@ impl GradingSession<'_> {
                 let printed = reports.iter().any(|report| report.file.is_none() && report.format == Format::Text);
                 match printed {
                     true => console::report(&grade::changes(before, &grades, console::style()))?,
-                    false => console::complain(grade::changes(before, &grades, Style::Plain).as_bytes()),
+                    false => console::complain(grade::changes(before, &grades, Style::Plain)),
                 }
             }
             if self.cancellation.is_cancelled() {
                 return Ok(code);
             }
             before = Some(grades);
-            console::complain(b"waiting for a change; Ctrl-C ends\n");
+            console::complain("waiting for a change; Ctrl-C ends\n");
             // A file is graded when it has stopped changing: a linker writes in several goes.
             let mut last = seen.clone();
             loop {

@@ -32,7 +32,7 @@ pub(super) fn run(scenes: &[PathBuf], arguments: &CheckArguments) -> Result<u8> 
     match (target, arguments.format) {
         (Some(target), _) => target.finish_with(text.as_bytes())?,
         (None, CheckFormat::Text) => console::report(&text)?,
-        (None, _) => console::print(text.as_bytes())?,
+        (None, _) => console::print(&text)?,
     }
     let is_fair = measured.iter().all(|(_, headroom)| headroom.is_fair());
     Ok(if is_fair { exit::ACCEPTED } else { exit::NOT_ACCEPTED })

@@ -19,7 +19,7 @@ use crate::{
     },
     sandbox::{self, selftest},
     student,
-    suite::{Grader, Submission, Verdict, cards::Judged, grader::Options, plan},
+    suite::{Grader, Submission, Verdict, batch, cards::Judged, grader::Options, plan},
 };
 use anyhow::{Context, Result, bail};
 use std::{
@@ -84,7 +84,7 @@ pub(super) fn demo(arguments: &Demo) -> Result<u8> {
     let cancellation = cancelled_by_signals();
     let jobs = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
     let pages = Pages::new(None, false)?;
-    let draw = |judged: &Judged<'_>| pages::draw(judged, (&format!("asset:{}", judged.task.name), None), false);
+    let draw = |judged: &Judged<'_>| pages::draw(&Judged { name: &format!("asset:{}", judged.name), ..*judged }, false);
     let (mut verdicts, mut last) = (Vec::new(), None);
     for (name, run) in [
         ("right sample".to_owned(), plan.run.clone()),
@@ -105,9 +105,8 @@ pub(super) fn demo(arguments: &Demo) -> Result<u8> {
             reference: None,
             rehearse: &rehearse,
         };
-        let (grade, _) = grader.grade_submission(&submission, None, &cancellation, &mut |_| {});
-        let grades = Vec::from_iter(grade);
-        console::print(Format::Text.render(&grades).as_bytes())?;
+        let grades = batch::run(&grader, &[submission], None, &cancellation, &mut |_| {}).grades;
+        console::print(Format::Text.render(&grades))?;
         if cancellation.is_cancelled() {
             return Ok(exit::INTERRUPTED);
         }
@@ -116,11 +115,11 @@ pub(super) fn demo(arguments: &Demo) -> Result<u8> {
         last = grades.into_iter().next();
     }
     if verdicts == [Some(Verdict::Accepted), Some(Verdict::WrongAnswer)] {
-        console::print(b"The right sample is accepted, the wrong one is not: everything works on this machine.\n")?;
+        console::print("The right sample is accepted, the wrong one is not: everything works on this machine.\n")?;
         if let Some(grade) = &last {
-            output::write(&arguments.output, &[], pages.of_one(grade, None, Audience::Staff).as_bytes())?;
+            output::write(&arguments.output, pages.of_one(grade, None, Audience::Staff).as_bytes())?;
             let words = format!("What is wrong with it, to look at in a browser: {}\n", arguments.output.display());
-            console::print(words.as_bytes())?;
+            console::print(&words)?;
         }
         Ok(exit::ACCEPTED)
     } else {
@@ -137,11 +136,11 @@ fn write_flawed(sample: &Path, mistake: &str, program: &Path) -> Result<u8> {
     let flawed = pin::write(&bytes, mistake).with_context(|| {
         format!("{} is another version of the sample than this program's, or none", sample.display())
     })?;
-    output::write(program, &[], &flawed)?;
+    output::write(program, &flawed)?;
     fs::set_permissions(program, Permissions::from_mode(0o755))
         .with_context(|| format!("cannot make {} executable", program.display()))?;
     let words = format!("A program that makes the mistake {}: {}\n", mistake.replace(',', " and "), program.display());
-    console::print(words.as_bytes())?;
+    console::print(&words)?;
     Ok(exit::ACCEPTED)
 }
 
@@ -159,9 +158,9 @@ pub(super) fn selftest(arguments: &Selftest) -> Result<u8> {
     let table = selftest::run_some(&backend, Path::new(&arguments.compiler), folder.path(), chosen, |promise| {
         done += 1;
         if let selftest::PromiseState::Broken(how) = &promise.state {
-            console::complain(format!("not held: {}: {how}\n", promise.attack).as_bytes());
+            console::complain(format!("not held: {}: {how}\n", promise.attack));
         } else if done % 20 == 0 {
-            console::complain(format!("{done} attacks so far\n").as_bytes());
+            console::complain(format!("{done} attacks so far\n"));
         }
     })?;
     let mut text = String::new();

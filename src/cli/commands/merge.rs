@@ -1,16 +1,16 @@
 //! `merge`: puts the shards of a grading together.
 use super::{
-    ending::exit_code,
+    ending::{exit_code, text},
     last_run::LastRun,
     pages::Pages,
-    results::{Results, reports},
+    results::{Results, refuse_several, reports},
     shard::Part,
 };
 use crate::{
     cli::{console, grading::Merge, input, interrupt::clean_up_when_interrupted, output},
     files::{FileError, Folder, FolderEntry, Place},
     report::{
-        grade::{self, Text, TextDetail},
+        grade::{self, TextDetail},
         number::counted,
     },
     suite::{
@@ -40,11 +40,7 @@ pub(super) fn run(arguments: &Merge) -> Result<u8> {
     let parts = find(&arguments.folders)?;
     let (first, output) = complete(&parts, arguments)?;
     let names = &first.common.submissions;
-    if names.len() > 1
-        && let Some(report) = reports.iter().find(|report| !report.format.takes_several())
-    {
-        bail!("--format {} holds one submission, and there are {}", report.name, names.len());
-    }
+    refuse_several(&reports, names.len(), "")?;
     Folder::make(&output).with_context(|| format!("cannot make {}", output.display()))?;
     // Held to the end: nobody else works in this folder.
     let kept = FolderResults::open(&output, true)?;
@@ -80,9 +76,8 @@ pub(super) fn run(arguments: &Merge) -> Result<u8> {
         grades: &grades,
         passed_over: &passed_over,
     };
-    results.write(&reports, |grades| {
-        text(grades, arguments.quiet) + &grade::not_graded(grades, &passed_over, console::style())
-    })?;
+    let shown = if arguments.quiet { TextDetail::Line } else { TextDetail::Table };
+    results.write(&reports, |grades| text(grades, &passed_over, shown, usize::MAX, None))?;
     Ok(exit_code(&grades))
 }
 
@@ -189,7 +184,7 @@ fn copy(from: &Folder, to: &Place, depth: usize) -> Result<()> {
                 copy().with_context(|| format!("cannot copy {} to {}", source.display(), target.path().display()))?;
             }
             Ok(FolderEntry::Folder(_) | FolderEntry::Other) => {
-                console::complain(format!("passed over {}: it is no file\n", input::shown(&source)).as_bytes());
+                console::complain(format!("passed over {}: it is no file\n", input::shown(&source)));
             }
             Err(error) => return Err(error).with_context(|| format!("cannot read {}", source.display())),
         }
@@ -204,12 +199,4 @@ fn copy_file(file: File, target: &Place) -> io::Result<()> {
     }
     // A file that grows meanwhile does not keep us.
     output::copy_at(target, &mut file.take(length))
-}
-
-/// The report for people who look at it now.
-fn text(grades: &[Grade], quiet: bool) -> String {
-    let shown = if quiet { TextDetail::Line } else { TextDetail::Table };
-    let (style, width) = (console::style(), console::width());
-    let text = Text { style, shown, width, again: None, closer: None }.render(grades);
-    if quiet || grades.len() < 2 { text } else { text + "\n" + &grade::class(grades, usize::MAX, style) }
 }

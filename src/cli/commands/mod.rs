@@ -30,7 +30,7 @@ mod traces;
 
 use super::{
     arguments::{Command, Trace},
-    console,
+    console, exit,
 };
 use anyhow::Result;
 
@@ -40,32 +40,32 @@ use anyhow::Result;
 /// The reason why it can't run: wrong usage, bad input, or our own fault.
 pub(super) fn run(command: &Command) -> Result<u8> {
     console::be_quiet(is_quiet(command));
-    match command {
+    let done = match command {
+        // The exit code of these tells a verdict.
+        Command::Check(arguments) => return check::run(arguments),
+        Command::Explain(arguments) => return explain::run(arguments),
+        Command::Render(arguments) => return render::run(arguments),
+        Command::Trace(Trace::Info(arguments)) => return trace::info(arguments),
+        Command::Trace(Trace::Diff(arguments)) => return trace::diff(arguments),
+        Command::Record(arguments) => return record::run(arguments),
+        Command::Grade(arguments) => return grade::run(arguments),
+        Command::Merge(arguments) => return merge::run(arguments),
+        Command::Demo(arguments) => return host::demo(arguments),
+        Command::Doctor(_) => return host::doctor(),
+        Command::Selftest(arguments) => return host::selftest(arguments),
+        // Never gets here: it has its own way of ending.
+        Command::Original(_) => return Ok(exit::FAULT),
         Command::Simulate(arguments) => simulate::run(arguments),
-        Command::Check(arguments) => check::run(arguments),
-        Command::Explain(arguments) => explain::run(arguments),
         Command::Detect(arguments) => detect::run(arguments),
-        Command::Render(arguments) => render::run(arguments),
-        Command::Trace(arguments) => match arguments {
-            Trace::Info(arguments) => trace::info(arguments),
-            Trace::Show(arguments) => trace::show(arguments),
-            Trace::Diff(arguments) => trace::diff(arguments),
-        },
-        Command::Record(arguments) => record::run(arguments),
-        Command::Grade(arguments) => grade::run(arguments),
-        Command::Merge(arguments) => merge::run(arguments),
+        Command::Trace(Trace::Show(arguments)) => trace::show(arguments),
         Command::Suite(arguments) => suite::run(arguments),
         Command::Scene(arguments) => scene::run(arguments),
-        Command::Demo(arguments) => host::demo(arguments),
-        Command::Doctor(_) => host::doctor(),
-        Command::Selftest(arguments) => host::selftest(arguments),
         Command::Serve(arguments) => serve::run(arguments),
         Command::Page(arguments) => page::run(arguments),
         Command::Completions(arguments) => shell::completions(arguments),
         Command::Man(arguments) => shell::manual(arguments),
-        // Never gets here: it has its own way of ending.
-        Command::Original(_) => Ok(super::exit::FAULT),
-    }
+    };
+    done.map(|()| exit::ACCEPTED)
 }
 
 fn is_quiet(command: &Command) -> bool {

@@ -1,6 +1,6 @@
 //! `page`: the page that checks traces in a browser.
 use crate::{
-    cli::{arguments::PageArguments, exit, output::Output},
+    cli::{arguments::PageArguments, output::Output},
     files::{Identity, open_for_reading, read_limited},
     report::page::Audience,
     suite::plan,
@@ -21,7 +21,7 @@ const LARGEST: u64 = 64 << 20;
 /// The first bytes of every module.
 const MAGIC: &[u8] = b"\0asm";
 
-pub(super) fn run(arguments: &PageArguments) -> Result<u8> {
+pub(super) fn run(arguments: &PageArguments) -> Result<()> {
     let (module, inputs) = match (&arguments.module, MODULE) {
         (Some(name), _) => {
             let context = || format!("cannot read the module {}", name.display());
@@ -40,8 +40,7 @@ pub(super) fn run(arguments: &PageArguments) -> Result<u8> {
     }
     let course = arguments.suite.as_deref().map(|name| course(name, arguments.reader)).transpose()?;
     let target = Output::create(&arguments.output, &inputs)?;
-    target.finish_and_tell(fosssim_browser::page(&module, course.as_ref()).as_bytes(), true)?;
-    Ok(exit::ACCEPTED)
+    target.finish_and_tell(fosssim_browser::page(&module, course.as_ref()).as_bytes(), true)
 }
 
 /// The part of a suite that the page's readers may see.

@@ -2,15 +2,13 @@
 use super::ending::file_name;
 use crate::{
     cli::output,
-    diagnose::Explanation,
     evidence::{self, Examined, Focus, Keep, examine},
     files::Place,
-    judge::{Outcome, Rules, replay},
+    judge::{Rules, replay},
     report::{
         check::{Check, StepChoice, WrongSteps},
         page::{Audience, Card, Case, ClassPage, GradePage, WhatIf},
     },
-    scene::Scene,
     suite::{
         Grade, PassedOver, SceneGrade,
         cards::{self, Cards, Draw, Judged},
@@ -41,14 +39,13 @@ pub(super) struct Pages {
 impl Pages {
     /// Pages in the folder for results; without one, cards that live as long as the grading.
     pub(super) fn new(folder: Option<&Path>, for_students: bool) -> Result<Self> {
-        let temporary = match folder {
-            Some(_) => None,
-            None => Some(tempfile::Builder::new().prefix("fosssim-cards-").tempdir().context("no temporary folder")?),
-        };
-        let cards = match (folder, &temporary) {
-            (Some(folder), _) => Place::new(folder, "cards"),
-            (None, Some(temporary)) => Place::new(temporary.path(), ""),
-            (None, None) => Place::new("", ""),
+        let (cards, temporary) = match folder {
+            Some(folder) => (Place::new(folder, "cards"), None),
+            None => {
+                let made =
+                    tempfile::Builder::new().prefix("fosssim-cards-").tempdir().context("no temporary folder")?;
+                (Place::new(made.path(), ""), Some(made))
+            }
         };
         Ok(Self { cards, folder: folder.map(Path::to_owned), for_students, _temporary: temporary })
     }
@@ -86,26 +83,26 @@ impl Pages {
         reader: Audience,
     ) -> Result<Option<PathBuf>> {
         let Some(folder) = &self.folder else { return Ok(None) };
+        let write = |name: &str, page: &str| {
+            let place = Place::new(folder, name);
+            output::write_at(&place, page.as_bytes()).map(|()| Some(place.path()))
+        };
         if reader == Audience::Student || grades.len() > 1 {
             for grade in grades {
-                let place = Place::new(folder, format!("students/{}.html", file_name(&grade.submission)));
-                output::write_at(&place, self.of_one(grade, None, Audience::Student).as_bytes())?;
+                let name = format!("students/{}.html", file_name(&grade.submission));
+                write(&name, &self.of_one(grade, None, Audience::Student))?;
             }
         }
         if let [grade] = grades {
-            let place = Place::new(folder, "report.html");
-            output::write_at(&place, self.of_one(grade, None, Audience::Staff).as_bytes())?;
-            return Ok(Some(place.path()));
+            return write("report.html", &self.of_one(grade, None, Audience::Staff));
         }
         for grade in grades {
-            let place = Place::new(folder, format!("reports/{}.html", file_name(&grade.submission)));
-            output::write_at(&place, self.of_one(grade, Some("../index.html"), Audience::Staff).as_bytes())?;
+            let name = format!("reports/{}.html", file_name(&grade.submission));
+            write(&name, &self.of_one(grade, Some("../index.html"), Audience::Staff))?;
         }
         // Names of files hold nothing that an address would have to write otherwise, but blanks.
         let page = |grade: &Grade| format!("reports/{}.html", file_name(&grade.submission).replace(' ', "%20"));
-        let index = Place::new(folder, "index.html");
-        output::write_at(&index, ClassPage { grades, passed_over, page: &page }.html().as_bytes())?;
-        Ok(Some(index.path()))
+        write("index.html", &ClassPage { grades, passed_over, page: &page }.html())
     }
 }
 
@@ -114,64 +111,33 @@ const RECORDED: &str = "The verdict compares with the recording, where nearly ev
                         follows judges each step from the trace's own state before it: what is wrong by itself, and what only \
                         follows from that.";
 
-/// Draws the card of a graded scene. `names` are those under which the reader of the page finds scene and trace. Of a
-/// trace that was judged against a recording each step is judged once more, from the trace's own state.
-pub(super) fn draw(judged: &Judged<'_>, names: (&str, Option<&str>), recorded: bool) -> Option<String> {
+/// Draws the card of a graded scene. Of a trace that was judged against a recording each step is judged once more, from
+/// the trace's own state.
+pub(super) fn draw(judged: &Judged<'_>, recorded: bool) -> Option<String> {
     if judged.hints == Hints::None {
         return None;
     }
     if recorded {
         let again = guarded(|| {
             let options = replay::Options { threads: 1, fair: true, ..replay::Options::default() };
-            examine(&judged.task.scene, judged.trace, Keep::Nothing, &options, &mut ())
+            examine(judged.scene, judged.trace, Keep::Nothing, &options, &mut ())
         });
         // A failure while drawing costs nobody's points.
         let Ok(Examined { outcome, rulings, .. }) = again else { return None };
         let own = Judged { outcome: &outcome, rulings: &rulings, rules: Rules::Fair, ..*judged };
-        return draw(&own, names, false)
-            .map(|kept| Card::from_kept(&kept).map_or(kept, |card| card.noting(RECORDED).kept()));
+        return draw(&own, false).map(|kept| Card::from_kept(&kept).map_or(kept, |card| card.noting(RECORDED).kept()));
     }
     // A picture that can't be made costs nobody's points.
-    let card = guarded(|| {
-        card(&Source {
-            scene: &judged.task.scene,
-            trace: judged.trace,
-            is_cut: judged.is_cut,
-            outcome: judged.outcome,
-            rulings: judged.rulings,
-            explanations: &judged.result.explanations,
-            rules: judged.rules,
-            hints: judged.hints,
-            names,
-            depth: 3,
-        })
-    });
-    let card = card.unwrap_or_else(|fault| {
+    let card = guarded(|| card(judged, None, 3)).unwrap_or_else(|fault| {
         Some(Card::saying(&format!("The pictures of this scene could not be made: {fault}; please report this.")))
     });
     let cut = "The trace is longer than what the grader keeps of it: the pictures end where that ends.";
     card.map(|card| if judged.is_cut { card.noting(cut) } else { card }.kept())
 }
 
-/// A judged trace.
-pub(super) struct Source<'a> {
-    pub(super) scene: &'a Scene,
-    pub(super) trace: &'a [u8],
-    /// Whether it is the beginning of a longer one.
-    pub(super) is_cut: bool,
-    pub(super) outcome: &'a Outcome,
-    pub(super) rulings: &'a [evidence::StepRuling],
-    pub(super) explanations: &'a [Explanation],
-    pub(super) rules: Rules,
-    pub(super) hints: Hints,
-    pub(super) names: (&'a str, Option<&'a str>),
-    /// The depth of the heading above.
-    pub(super) depth: usize,
-}
-
-/// The card of a judged trace.
-pub(super) fn card(source: &Source<'_>) -> Option<Card> {
-    let Source { scene, trace, is_cut, outcome, rulings, explanations, rules, hints, names, depth } = *source;
+/// The card of a judged trace. `trace_name` is where its reader finds the trace, `depth` that of the heading above.
+pub(super) fn card(judged: &Judged<'_>, trace_name: Option<&str>, depth: usize) -> Option<Card> {
+    let Judged { scene, name, trace, is_cut, outcome, rulings, explanations, rules, hints } = *judged;
     let (fair, focus) = (outcome.fair.is_some(), Focus::of(outcome));
     let evidence = evidence::gather(scene, &mut &trace[..], rulings, fair, &focus, BUDGET);
     let what_if = match (hints, explanations.first()) {
@@ -179,10 +145,9 @@ pub(super) fn card(source: &Source<'_>) -> Option<Card> {
         _ => None,
     };
     let steps = WrongSteps::new(StepChoice::None);
-    let (name, trace) = (names.0, names.1.unwrap_or_default());
     let check = Check {
         scene: name,
-        trace,
+        trace: trace_name.unwrap_or_default(),
         outcome,
         explanations,
         rules,
@@ -191,7 +156,7 @@ pub(super) fn card(source: &Source<'_>) -> Option<Card> {
         tables: false,
         looks_like: None,
     };
-    let has_trace = names.1.is_some();
+    let has_trace = trace_name.is_some();
     let case = Case { check, scene, evidence: Some(&evidence), what_if: what_if.as_ref(), hints, has_trace };
     Card::of(&case, depth)
 }

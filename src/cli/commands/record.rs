@@ -11,10 +11,7 @@ use crate::{
     },
 };
 use anyhow::{Context, Result, bail};
-use std::{
-    io,
-    path::{Path, PathBuf},
-};
+use std::{io, path::Path};
 
 /// A recording of more bytes is none.
 const LARGEST_RECORDING: u64 = 1 << 30;
@@ -28,8 +25,10 @@ pub(super) fn run(arguments: &Record) -> Result<u8> {
     for Input { name, stem, xml } in scenes {
         recordings.push((stem, Recording::of(&name, &xml).with_context(|| format!("cannot record {name}"))?));
     }
-    let old: Box<dyn Old> = if embedded { Box::new(Embedded) } else { Box::new(Folder(arguments.references.clone())) };
-    if arguments.check { check(&recordings, old.as_ref()) } else { write(&recordings, &arguments.references) }
+    if !arguments.check {
+        return write(&recordings, &arguments.references);
+    }
+    check(&recordings, &Recorded((!embedded).then_some(&arguments.references)))
 }
 
 /// A scene to record.
@@ -70,45 +69,30 @@ fn scenes(folder: &Path) -> Result<Vec<Input>> {
     files.into_iter().map(read).collect()
 }
 
-/// The recordings before this run.
-trait Old {
-    fn file(&self, path: &str) -> io::Result<Option<Vec<u8>>>;
-    /// The paths of recordings, without their extension.
-    fn stems(&self) -> Vec<String>;
-}
+/// The recordings before this run: those in a folder, or those that come with the program.
+struct Recorded<'a>(Option<&'a Path>);
 
-struct Embedded;
-
-impl Old for Embedded {
+impl Recorded<'_> {
     fn file(&self, path: &str) -> io::Result<Option<Vec<u8>>> {
-        Ok(library::reference(path).map(<[u8]>::to_vec))
-    }
-
-    fn stems(&self) -> Vec<String> {
-        library::recordings().map(str::to_owned).collect()
-    }
-}
-
-struct Folder(PathBuf);
-
-impl Old for Folder {
-    fn file(&self, path: &str) -> io::Result<Option<Vec<u8>>> {
-        match Place::new(&self.0, path).read(LARGEST_RECORDING) {
+        let Some(folder) = self.0 else { return Ok(library::reference(path).map(<[u8]>::to_vec)) };
+        match Place::new(folder, path).read(LARGEST_RECORDING) {
             Ok(bytes) => Ok(Some(bytes)),
             Err(FileError::Missing { .. }) => Ok(None),
             Err(error) => Err(io::Error::other(error)),
         }
     }
 
+    /// The paths of recordings, without their extension.
     fn stems(&self) -> Vec<String> {
+        let Some(folder) = self.0 else { return library::recordings().map(str::to_owned).collect() };
         // Nothing was recorded where there is no folder.
-        let files = scene_files::list(&self.0, ".bin.zst").unwrap_or_default();
+        let files = scene_files::list(folder, ".bin.zst").unwrap_or_default();
         files.into_iter().map(|file| file.stem).collect()
     }
 }
 
 /// Compares with what was recorded before, byte for byte.
-fn check(recordings: &[(String, Recording)], old: &dyn Old) -> Result<u8> {
+fn check(recordings: &[(String, Recording)], old: &Recorded<'_>) -> Result<u8> {
     let mut text = String::new();
     for (stem, recording) in recordings {
         let (packed, steps) = (old.file(&format!("{stem}.bin.zst"))?, old.file(&format!("{stem}.steps"))?);
@@ -124,11 +108,11 @@ fn check(recordings: &[(String, Recording)], old: &dyn Old) -> Result<u8> {
     if text.is_empty() {
         let steps = recordings.iter().map(|(_, recording)| u64::from(recording.steps)).sum();
         let (recordings, steps) = (counted(recordings.len() as u64, "recording"), counted(steps, "step"));
-        console::print(format!("{recordings}, {steps}: all the same\n").as_bytes())?;
+        console::print(format!("{recordings}, {steps}: all the same\n"))?;
         return Ok(exit::ACCEPTED);
     }
-    console::print(text.as_bytes())?;
-    console::remark(b"the recordings differ; if that is meant, run `fosssim-oracle record` and look at the change\n");
+    console::print(&text)?;
+    console::remark("the recordings differ; if that is meant, run `fosssim-oracle record` and look at the change\n");
     Ok(exit::NOT_ACCEPTED)
 }
 
@@ -144,7 +128,7 @@ fn write(recordings: &[(String, Recording)], folder: &Path) -> Result<u8> {
         replace(&place("steps"), recording.digests.as_bytes())?;
     }
     // The folder holds what the scenes give and nothing else.
-    for stem in Folder(folder.to_owned()).stems() {
+    for stem in Recorded(Some(folder)).stems() {
         if !recordings.iter().any(|(known, _)| *known == stem) {
             for extension in ["bin.zst", "steps"] {
                 drop(Place::new(folder, format!("{stem}.{extension}")).remove());
@@ -153,8 +137,7 @@ fn write(recordings: &[(String, Recording)], folder: &Path) -> Result<u8> {
     }
     replace(&Place::new(folder, "manifest.txt"), manifest(recordings).as_bytes())?;
     let (recordings, bytes) = (counted(recordings.len() as u64, "recording"), counted(bytes, "byte"));
-    let line = format!("{recordings}, {bytes}, in {}\n", folder.display());
-    console::print(line.as_bytes())?;
+    console::print(format!("{recordings}, {bytes}, in {}\n", folder.display()))?;
     Ok(exit::ACCEPTED)
 }
 

@@ -1,7 +1,7 @@
 //! Where results of a grading go: reports that were asked for, and the tables and pages of a folder.
 use super::pages::Pages;
 use crate::{
-    cli::{console, output},
+    cli::{console, grading::Grade as Arguments, output},
     files::{Place, open_for_writing},
     report::{
         grade::{self, Format},
@@ -61,6 +61,37 @@ pub(super) fn reports(words: &[String]) -> Result<Vec<Report>> {
     Ok(reports)
 }
 
+/// Refuses a format that holds one submission where there are several.
+///
+/// # Errors
+/// When one was asked for; `of_html` is what is said of HTML besides.
+pub(super) fn refuse_several(reports: &[Report], submissions: usize, of_html: &str) -> Result<()> {
+    match reports.iter().find(|report| submissions > 1 && !report.format.takes_several()) {
+        Some(Report { format, name, .. }) => {
+            let hint = if *format == Format::Html { of_html } else { "" };
+            bail!("--format {name} holds one submission, and there are {submissions}{hint}")
+        }
+        None => Ok(()),
+    }
+}
+
+/// The pages of a grading, if somebody may look at them: in the folder for results, in a report, or as `pictures`.
+///
+/// # Errors
+/// When there is no room for them.
+pub(super) fn wanted_pages(
+    arguments: &Arguments,
+    folder: Option<&Path>,
+    is_class: bool,
+    reports: &[Report],
+    pictures: bool,
+) -> Result<Option<Pages>> {
+    let is_asked = arguments.staff_page.is_some() || reports.iter().any(|report| report.format == Format::Html);
+    // A class's pages may be asked for later, and nobody wants to run it again for them.
+    let for_students = arguments.reader == Audience::Student || is_class;
+    (folder.is_some() || is_asked || pictures).then(|| Pages::new(folder, for_students)).transpose()
+}
+
 /// The results of a grading, and where they go.
 pub(super) struct Results<'a> {
     /// The folder for results, when there is one.
@@ -92,7 +123,7 @@ impl Results<'_> {
         let mut keep = |result: Result<()>| drop(result.map_err(|error| wrong.get_or_insert(error).to_string()));
         if self.is_part && self.folder.is_some() {
             console::complain(
-                b"a part of the suite is no grade: grades.csv and the other tables are left as they are\n",
+                "a part of the suite is no grade: grades.csv and the other tables are left as they are\n",
             );
         } else if let Some(folder) = self.folder {
             let lines = || grade::json_lines(grades, passed_over);
@@ -113,7 +144,7 @@ impl Results<'_> {
                         .and_then(|written| written)
                         .map(|first| {
                             if let Some(first) = first {
-                                console::remark(format!("to look at: {}\n", first.display()).as_bytes());
+                                console::remark(format!("to look at: {}\n", first.display()));
                             }
                         }),
                 );
@@ -174,7 +205,7 @@ fn append(file: &Path, text: impl FnOnce() -> String) -> Result<()> {
 /// Makes a text and writes it.
 fn write(file: &Path, text: impl FnOnce() -> String) -> Result<()> {
     let text = made(&file.display().to_string(), text)?;
-    output::write(file, &[], text.as_bytes())
+    output::write(file, text.as_bytes())
 }
 
 /// Makes a text and writes it into the folder for results.

@@ -1,7 +1,7 @@
 //! `scene`: lists, prints and exports the scenes that come with the program.
 use crate::{
     cli::{
-        console, exit, output,
+        console, output,
         scenes::{Scene, SceneExport, SceneList, SceneShow},
         selection::Selection,
     },
@@ -12,7 +12,7 @@ use crate::{
 };
 use anyhow::{Context, Result, bail};
 
-pub(super) fn run(command: &Scene) -> Result<u8> {
+pub(super) fn run(command: &Scene) -> Result<()> {
     match command {
         Scene::List(SceneList { patterns, quiet }) => list(patterns, *quiet),
         Scene::Show(SceneShow { name }) => show(name),
@@ -21,12 +21,11 @@ pub(super) fn run(command: &Scene) -> Result<u8> {
 }
 
 /// Lists the scenes that these patterns name; without patterns, all.
-fn list(patterns: &[String], quiet: bool) -> Result<u8> {
+fn list(patterns: &[String], quiet: bool) -> Result<()> {
     let names = matching(patterns)?;
     if quiet {
         let text: String = names.iter().map(|name| format!("asset:{name}\n")).collect();
-        console::print(text.as_bytes())?;
-        return Ok(exit::ACCEPTED);
+        return console::print(&text);
     }
     let mut scenes = Vec::new();
     for name in names {
@@ -34,29 +33,24 @@ fn list(patterns: &[String], quiet: bool) -> Result<u8> {
         let loaded = scene::read(name, xml).map_err(|_| anyhow::anyhow!("the embedded scene {name} is not sound"))?;
         scenes.push((name, loaded.scene));
     }
-    console::report(&report::list(&scenes, console::style()))?;
-    Ok(exit::ACCEPTED)
+    console::report(&report::list(&scenes, console::style()))
 }
 
-fn show(name: &str) -> Result<u8> {
+fn show(name: &str) -> Result<()> {
     let name = name.strip_prefix("asset:").unwrap_or(name);
     let name = name.strip_suffix(".xml").unwrap_or(name);
     if let Some(xml) = library::scene(name) {
-        console::print(xml)?;
-        return Ok(exit::ACCEPTED);
+        return console::print(xml);
     }
     // A name without its group is as good when there is only one of it.
     let same: Vec<_> = library::names().filter(|known| known.rsplit('/').next() == Some(name)).collect();
     match (same[..].first().and_then(|only| library::scene(only)), same.len()) {
-        (Some(xml), 1) => {
-            console::print(xml)?;
-            Ok(exit::ACCEPTED)
-        }
+        (Some(xml), 1) => console::print(xml),
         _ => bail!("no scene {name} comes with the program; `fosssim-oracle scene list` lists those that do"),
     }
 }
 
-fn export(arguments: &SceneExport) -> Result<u8> {
+fn export(arguments: &SceneExport) -> Result<()> {
     let names = matching(&arguments.patterns)?;
     let (mut written, mut kept, mut other) = (0_u64, 0_u64, Vec::new());
     for name in names {
@@ -80,7 +74,7 @@ fn export(arguments: &SceneExport) -> Result<u8> {
         let more = if other.len() > 1 { format!(" and {} more", other.len() - 1) } else { String::new() };
         bail!("{}{more}: left alone, because something else is in it; --force replaces it", first.display());
     }
-    Ok(exit::ACCEPTED)
+    Ok(())
 }
 
 /// Whether a file holds these bytes; nothing when there is none.

@@ -3,7 +3,7 @@ use crate::cli::arguments::ServeArguments;
 use anyhow::{Context, Result, bail};
 use std::{os::unix::process::CommandExt, process::Command};
 
-pub(super) fn run(arguments: &ServeArguments) -> Result<u8> {
+pub(super) fn run(arguments: &ServeArguments) -> Result<()> {
     let server = std::env::current_exe().context("where this program is")?.with_file_name("fosssim-server");
     if !server.is_file() {
         bail!(

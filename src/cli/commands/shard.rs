@@ -172,8 +172,7 @@ impl Sharding {
         let part = Part { common, number, grades: grades.to_vec(), passed_over };
         output::write_at(&Place::new(&self.folder, FILE), &serde_json::to_vec(&part)?)?;
         let (own, all) = (grades.len(), self.common.submissions.len());
-        let line = format!("shard {} of {}: {own} of {all} submissions\n", self.shard.number, self.shard.of);
-        console::remark(line.as_bytes());
+        console::remark(format!("shard {} of {}: {own} of {all} submissions\n", self.shard.number, self.shard.of));
         Ok(())
     }
 }

@@ -1,7 +1,7 @@
 //! Completion scripts and the manual page.
 use crate::cli::{
     arguments::{Arguments, Completions, Man},
-    console, exit,
+    console,
 };
 use anyhow::{Result, bail};
 use clap::CommandFactory;
@@ -10,14 +10,13 @@ use clap_complete::Shell;
 /// The name under which the program is installed.
 const NAME: &str = "fosssim-oracle";
 
-pub(super) fn completions(arguments: &Completions) -> Result<u8> {
+pub(super) fn completions(arguments: &Completions) -> Result<()> {
     let mut script = Vec::new();
     clap_complete::generate(arguments.shell, &mut Arguments::command(), NAME, &mut script);
     if arguments.shell == Shell::Bash {
         script = mended(&script);
     }
-    console::print(&script)?;
-    Ok(exit::ACCEPTED)
+    console::print(&script)
 }
 
 /// A bash script whose labels are those that it asks for. clap writes a hyphen in the program's name once as `__` and
@@ -28,7 +27,7 @@ fn mended(script: &[u8]) -> Vec<u8> {
     String::from_utf8_lossy(script).replace(&written, &asked).into_bytes()
 }
 
-pub(super) fn manual(arguments: &Man) -> Result<u8> {
+pub(super) fn manual(arguments: &Man) -> Result<()> {
     let mut command = Arguments::command().disable_help_subcommand(true);
     // Gives the commands their full names.
     command.build();
@@ -48,6 +47,5 @@ pub(super) fn manual(arguments: &Man) -> Result<u8> {
     let source = format!("{NAME} {}", env!("CARGO_PKG_VERSION"));
     clap_mangen::Man::new(command).source(source).manual("Manual of fosssim-oracle").render(&mut page)?;
     let page = String::from_utf8_lossy(&page).replace("\n.SH EXTRA\n", "\n.SH EXAMPLES AND NOTES\n");
-    console::print(page.as_bytes())?;
-    Ok(exit::ACCEPTED)
+    console::print(&page)
 }

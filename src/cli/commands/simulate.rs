@@ -1,13 +1,13 @@
 //! `simulate`: simulates a scene and records its trace.
 use crate::{
-    cli::{arguments::Simulate, console, exit, input, output::Output, values::TextOrJson},
-    report::{describe::step_error, simulate::SimulationSummary, style::Style},
+    cli::{arguments::Simulate, console, input, output::Output, values::TextOrJson},
+    report::{describe::no_result, simulate::SimulationSummary, style::Style},
     sim::{RootSearch, Simulation},
     trace::{EventCounts, Layout, Recorder},
 };
 use anyhow::{Context, Result, bail};
 
-pub(super) fn run(arguments: &Simulate) -> Result<u8> {
+pub(super) fn run(arguments: &Simulate) -> Result<()> {
     let scene = input::scene(&arguments.scene)?;
     let inputs: Vec<_> = scene.identity.into_iter().collect();
     let output = match &arguments.output {
@@ -23,8 +23,7 @@ pub(super) fn run(arguments: &Simulate) -> Result<u8> {
     let mut bar = console::Bar::new(steps);
     for step in 1..=steps {
         if let Err(error) = simulation.step(&mut (&mut recorder, &mut counts)) {
-            let (step, words) = step_error(&error);
-            bail!("the scene {} can't be simulated: step {step} has no result, because {words}", scene.name);
+            bail!("the scene {} can't be simulated: {}", scene.name, no_result(&error));
         }
         if recorder.failed() {
             break;
@@ -38,18 +37,13 @@ pub(super) fn run(arguments: &Simulate) -> Result<u8> {
     let searches = simulation.search_counts();
     let audited = arguments.audit.then_some(searches);
     let summary = SimulationSummary { scene: &scene.name, output: name.as_deref(), steps, counts, written, audited };
-    let style = if to_stdout { Style::Plain } else { console::style() };
-    let text = match arguments.format {
-        TextOrJson::Text => summary.text(style),
-        TextOrJson::Json => summary.json(),
-    };
-    if to_stdout {
-        console::remark(text.as_bytes());
-    } else {
-        console::show(&text, arguments.format)?;
+    match (to_stdout, arguments.format) {
+        (true, TextOrJson::Text) => console::remark(&summary.text(Style::Plain)),
+        (true, TextOrJson::Json) => console::remark(&summary.json()),
+        (false, format) => console::show(format, || summary.text(console::style()), || summary.json())?,
     }
     if searches.disagreements > 0 {
         bail!("{} disagreements between certificates and the root finder; please report this", searches.disagreements);
     }
-    Ok(exit::ACCEPTED)
+    Ok(())
 }

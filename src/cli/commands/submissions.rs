@@ -179,13 +179,9 @@ fn listed(folder: &Path, most: usize) -> Result<Vec<PathBuf>> {
 
 /// A program among others. It is opened beneath the folder, where no link is followed.
 fn entry(folder: &Path, path: &Path) -> Entry {
-    match path.file_name().and_then(|name| name.to_str()) {
-        Some(name) => {
-            let program = Some(name.to_owned());
-            Entry { path: path.to_owned(), folder: folder.to_owned(), program, is_folder: false }
-        }
-        None => Entry { path: path.to_owned(), folder: path.to_owned(), program: None, is_folder: false },
-    }
+    let program = path.file_name().and_then(OsStr::to_str).map(str::to_owned);
+    let folder = if program.is_some() { folder } else { path };
+    Entry { path: path.to_owned(), folder: folder.to_owned(), program, is_folder: false }
 }
 
 /// A scene in the place of the program is a slip of the user.
@@ -202,18 +198,17 @@ fn refuse_scene(path: &Path) -> Result<()> {
 
 fn pass_over(passed_over: &mut Vec<PassedOver>, path: &Path, why: &str) {
     let name = names::shown(path.file_name().unwrap_or(path.as_os_str()));
-    console::complain(format!("passed over {name}: {why}\n").as_bytes());
+    console::complain(format!("passed over {name}: {why}\n"));
     passed_over.push(PassedOver { name, why: why.to_owned() });
 }
 
 /// The last name of a path.
 fn last_name(path: &Path) -> OsString {
-    let absolute = || path.canonicalize().or_else(|_| std::path::absolute(path)).unwrap_or_else(|_| path.to_owned());
-    let name = path.file_name().map(OsStr::to_owned);
-    name.unwrap_or_else(|| {
-        let absolute = absolute();
-        absolute.file_name().unwrap_or(absolute.as_os_str()).to_owned()
-    })
+    if let Some(name) = path.file_name() {
+        return name.to_owned();
+    }
+    let absolute = path.canonicalize().or_else(|_| std::path::absolute(path)).unwrap_or_else(|_| path.to_owned());
+    absolute.file_name().unwrap_or(absolute.as_os_str()).to_owned()
 }
 
 /// The names of what lies at these paths, none twice: the last names; where several of these look the same, those that
@@ -267,7 +262,7 @@ fn one_files(entries: &[Entry], names: &[String]) -> Vec<Option<OneFile>> {
     }
     for same in owners.values().filter(|same| same.len() > 1) {
         let names: Vec<&str> = same.iter().map(|&number| names[number].as_str()).collect();
-        console::complain(format!("one file under several names (hard links): {}\n", names.join(", ")).as_bytes());
+        console::complain(format!("one file under several names (hard links): {}\n", names.join(", ")));
     }
     let of = |(identity, is_owner): (Identity, Option<bool>)| {
         let same = &owners[&identity];

@@ -5,10 +5,9 @@ use super::{
 };
 use crate::{
     cli::{
-        console, exit,
+        console,
         grading::{Suite, SuiteCheck, SuiteInit, SuiteList},
         output::Output,
-        values::TextOrJson,
     },
     judge::fair::borderline,
     suite::{config, coverage::Coverage, plan},
@@ -16,7 +15,7 @@ use crate::{
 use anyhow::{Context, Result};
 use rayon::prelude::*;
 
-pub(super) fn run(suite: &Suite) -> Result<u8> {
+pub(super) fn run(suite: &Suite) -> Result<()> {
     match suite {
         Suite::Init(SuiteInit { name, output }) => {
             let text = match name {
@@ -24,26 +23,21 @@ pub(super) fn run(suite: &Suite) -> Result<u8> {
                 Some(name) => named(name)?,
             };
             match output {
-                Some(file) => Output::create(file, &[])?.finish_and_tell(text.as_bytes(), false)?,
-                None => console::print(text.as_bytes())?,
+                Some(file) => Output::create(file, &[])?.finish_and_tell(text.as_bytes(), false),
+                None => console::print(&text),
             }
         }
         Suite::Check(SuiteCheck { suite, missing, mistakes }) => {
             let plan = plan::find(suite)?;
             let parts = if *mistakes { seen_parts(&plan) } else { Vec::new() };
             let contents = SuiteContents { coverage: coverage(&plan), lists_missing: *missing, parts };
-            console::report(&text(&plan, &contents, &undecided(&plan), console::style()))?;
+            console::report(&text(&plan, &contents, &undecided(&plan), console::style()))
         }
         Suite::List(SuiteList { format }) => {
             let suites = built_in()?;
-            let text = match format {
-                TextOrJson::Text => list(&suites, console::style()),
-                TextOrJson::Json => list_json(&suites),
-            };
-            console::show(&text, *format)?;
+            console::show(*format, || list(&suites, console::style()), || list_json(&suites))
         }
     }
-    Ok(exit::ACCEPTED)
 }
 
 /// The text of a suite that comes with the program.
@@ -69,9 +63,9 @@ fn undecided(plan: &plan::Plan) -> Vec<Undecided> {
 /// The coverage of the scenes, measured on all cores. `undecided` names a scene that can't be simulated to its end.
 fn coverage(plan: &plan::Plan) -> Coverage {
     let tasks: Vec<_> = plan.scenes().collect();
-    let all: Vec<Coverage> = tasks.par_iter().filter_map(|task| Coverage::of(&task.scene).ok()).collect();
-    all.iter().fold(Coverage::default(), |mut coverage, one| {
-        coverage.add(one);
-        coverage
+    let all = tasks.par_iter().filter_map(|task| Coverage::of(&task.scene).ok());
+    all.reduce(Coverage::default, |mut one, other| {
+        one.add(&other);
+        one
     })
 }

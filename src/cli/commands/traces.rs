@@ -1,22 +1,19 @@
 //! `grade --traces`: judges traces that are there already, a folder of them for each submission. Nothing is run, so
 //! that no sandbox is needed; how long a program took, and that it ended well, nobody knows.
 use super::{
-    ending::{exit_code, shown, with_class},
+    ending::{HARDEST, exit_code, shown, text},
     pages::{self, Pages},
-    results::{Report, Results},
+    results::{Report, Results, refuse_several, wanted_pages},
     submissions::distinct_names,
 };
 use crate::{
     cli::{console, grading::Grade as Arguments, input::unpacked, selection::Selection},
     files::{FileError, Folder},
     report::{
-        grade::{Format, Text, one_line, rehearse},
+        grade::{one_line, rehearse},
         number::counted,
-        page::Audience,
     },
-    suite::{
-        Grade, Reason, SceneResult, SceneTask, Verdict, cards::Judged, guarded, plan::Plan, result::Failure, traces,
-    },
+    suite::{Grade, SceneResult, SceneTask, cards::Judged, guarded, plan::Plan, result::Failure, traces},
 };
 use anyhow::{Context, Result, bail};
 use rayon::prelude::*;
@@ -40,44 +37,26 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report]) -> Resu
             );
         }
     }
-    if arguments.programs.len() > 1
-        && let Some(report) = reports.iter().find(|report| !report.format.takes_several())
-    {
-        bail!("--format {} holds one submission, and there are {}", report.name, arguments.programs.len());
-    }
-    if let Some(output) = &arguments.output {
+    refuse_several(reports, arguments.programs.len(), "")?;
+    let folder = arguments.output.as_deref();
+    if let Some(output) = folder {
         Folder::make(output).with_context(|| format!("cannot make {}", output.display()))?;
     }
-    let draws = arguments.output.is_some()
-        || arguments.staff_page.is_some()
-        || reports.iter().any(|report| report.format == Format::Html);
-    let pages = if draws {
-        Some(Pages::new(
-            arguments.output.as_deref(),
-            arguments.reader == Audience::Student || arguments.programs.len() > 1,
-        )?)
-    } else {
-        None
-    };
+    let pages = wanted_pages(arguments, folder, arguments.programs.len() > 1, reports, false)?;
     let paths: Vec<&Path> = arguments.programs.iter().map(PathBuf::as_path).collect();
     let named = paths.iter().zip(distinct_names(&paths));
     let grades: Vec<Grade> = named.map(|(folder, name)| grade(&plan, folder, name, pages.as_ref())).collect();
     for folder in &paths {
         if let Some(strays) = Folder::open(folder).ok().and_then(|folder| strays(&folder, &names)) {
-            console::remark(format!("warning: {}\n", one_line(&format!("{}: {strays}", folder.display()))).as_bytes());
+            console::remark(format!("warning: {}\n", one_line(&format!("{}: {strays}", folder.display()))));
         }
     }
-    let (folder, reader) = (arguments.output.as_deref(), arguments.reader);
+    let (reader, platform_hides) = (arguments.reader, arguments.platform_hides);
     let staff_page = arguments.staff_page.as_deref();
-    let (pages, platform_hides) = (pages.as_ref(), arguments.platform_hides);
+    let pages = pages.as_ref();
     let results =
         Results { folder, pages, reader, platform_hides, staff_page, is_part, grades: &grades, passed_over: &[] };
-    results.write(reports, |grades| {
-        let shown = shown(arguments, grades.len() > 1);
-        let (style, width) = (console::style(), console::width());
-        let text = Text { style, shown, width, again: None, closer: None }.render(grades);
-        with_class(text, grades, shown, style)
-    })?;
+    results.write(reports, |grades| text(grades, &[], shown(arguments, grades.len() > 1), HARDEST, None))?;
     Ok(exit_code(&grades))
 }
 
@@ -124,18 +103,13 @@ type JudgedScene = (SceneResult, Option<String>);
 
 /// The result of one scene. A panic is its judge error.
 fn scene(plan: &Plan, task: &SceneTask, folder: &io::Result<Folder>, pages: Option<&Pages>) -> JudgedScene {
-    let failed = |failure| {
-        SceneResult::without_run(&task.name, task.scene.steps(), Verdict::JudgeError, Reason::Failed(failure))
+    let failure = match folder.as_ref().map(|folder| guarded(|| judge(plan, task, folder, pages))) {
+        Ok(Ok(Ok(judged))) => return judged,
+        Ok(Ok(Err(error))) => Failure::Machine(error.to_string()),
+        Ok(Err(fault)) => Failure::Panic { stage: None, fault: fault.to_string(), trace: None },
+        Err(error) => Failure::Machine(error.to_string()),
     };
-    let folder = match folder {
-        Ok(folder) => folder,
-        Err(error) => return (failed(Failure::Machine(error.to_string())), None),
-    };
-    match guarded(|| judge(plan, task, folder, pages)) {
-        Ok(Ok(judged)) => judged,
-        Ok(Err(error)) => (failed(Failure::Machine(error.to_string())), None),
-        Err(fault) => (failed(Failure::Panic { stage: None, fault: fault.to_string(), trace: None }), None),
-    }
+    (task.failed(failure), None)
 }
 
 fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) -> io::Result<JudgedScene> {
@@ -145,8 +119,9 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) 
         && !(result.verdict.is_accepted() && result.differs.is_none())
     {
         let judged = Judged {
-            task,
-            result: &result,
+            scene: &task.scene,
+            name: &task.name,
+            explanations: &result.explanations,
             outcome: &examined.outcome,
             rulings: &examined.rulings,
             trace: &trace,
@@ -154,7 +129,7 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) 
             rules: plan.rules,
             hints: plan.staff_hints,
         };
-        let draw = |judged: &Judged<'_>| pages::draw(judged, (&judged.task.name, None), false);
+        let draw = |judged: &Judged<'_>| pages::draw(judged, false);
         (result.card, result.card_for_students) = pages.drawing(&draw).keep(&judged, plan.student_hints(&task.name))?;
     }
     rehearse(&result);

@@ -99,9 +99,11 @@ fn kind_of(word: &str) -> Result<PairKind> {
 ///
 /// # Errors
 /// When it is none of them.
-pub(in crate::cli) fn moving(word: &str) -> Result<PointMotion> {
+fn moving(word: &str) -> Result<PointMotion> {
     if let Some((start, end)) = word.split_once("..") {
-        return from_to(start, end);
+        // The displacement is the difference of the ends, as the course's code takes it.
+        let (start, end) = (vector(start)?, vector(end)?);
+        return Ok(PointMotion { start, shift: end - start });
     }
     // A plus sign may also belong to a number or to its exponent: 1e+3,+2+4,1.
     let separates = |&(place, _): &(usize, char)| {
@@ -114,20 +116,11 @@ pub(in crate::cli) fn moving(word: &str) -> Result<PointMotion> {
     }
 }
 
-/// A motion from its two ends; the displacement is their difference, as the course's code takes it.
-///
-/// # Errors
-/// When one is no point.
-pub(in crate::cli) fn from_to(start: &str, end: &str) -> Result<PointMotion> {
-    let (start, end) = (vector(start)?, vector(end)?);
-    Ok(PointMotion { start, shift: end - start })
-}
-
 /// `X,Y`
 ///
 /// # Errors
 /// When it is no point with finite coordinates.
-pub(in crate::cli) fn vector(word: &str) -> Result<Vec2> {
+fn vector(word: &str) -> Result<Vec2> {
     let advice = || format!("`{word}` is no point; write X,Y as in 3,-1.5");
     let (x, y) = word.split_once(',').with_context(advice)?;
     Ok(Vec2::new(number(x).with_context(advice)?, number(y).with_context(advice)?))

@@ -46,7 +46,7 @@ pub(in crate::cli) fn scene(name: &Path) -> Result<SceneInput> {
         Ok(Loaded { scene, warnings, .. }) => {
             // Embedded scenes are as they are meant to be.
             if identity.is_some() {
-                console::remark(problems::warnings(&shown, &bytes, &warnings).as_bytes());
+                console::remark(problems::warnings(&shown, &bytes, &warnings));
             }
             Ok(SceneInput { name: shown, scene, identity })
         }

@@ -4,7 +4,9 @@ use crate::files::{Identity, patient};
 use crate::{
     cli::output::has_extension,
     report::check::{LOOKED_AT, looks_like},
+    scene::Scene,
     suite::library,
+    trace::{Layout, Reader},
 };
 use anyhow::{Context, Result, bail};
 use std::{
@@ -32,6 +34,26 @@ impl TraceInput {
     /// The message of the operating system or the decoder when reading failed: not the fault of the trace's author.
     pub(in crate::cli) fn failure(&self) -> Option<String> {
         self.failure.get()
+    }
+
+    /// Ends with an error where reading failed.
+    ///
+    /// # Errors
+    /// As [`TraceInput::failure`] says.
+    pub(in crate::cli) fn not_failed(&self) -> Result<()> {
+        match self.failure() {
+            Some(message) => bail!("cannot read the trace {}: {message}", self.name),
+            None => Ok(()),
+        }
+    }
+
+    /// Reads its records, as those of a trace of this scene.
+    pub(in crate::cli) fn records(&mut self, scene: &Scene) -> Reader<&mut Box<dyn Read + Send>> {
+        let reader = Reader::new(&mut self.reader, Layout::of(scene)).with_scene(scene);
+        match self.length {
+            Some(length) => reader.with_length(length),
+            None => reader,
+        }
     }
 }
 
@@ -64,7 +86,10 @@ pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
         let reader = maybe_packed(Box::new(watched(Box::new(io::stdin()))), false, &failure);
         (reader.context("cannot read the trace from standard input")?.0, None, None)
     } else {
-        refuse_scene(name, &shown)?;
+        // A slip of the user, and no wrong trace: refused where name and content agree.
+        if is_scene(name) {
+            bail!("{shown} is a scene and no trace: SCENE comes first, then TRACE");
+        }
         let context = || format!("cannot read the trace {shown}");
         let (file, metadata) = open(name).with_context(context)?;
         let plain = metadata.is_file().then_some(metadata.len());
@@ -79,15 +104,6 @@ pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
     let looks_like = if failure.get().is_none() { looks_like(&start) } else { None };
     let reader = Box::new(Cursor::new(start).chain(reader));
     Ok(TraceInput { name: shown, reader, length, identity, looks_like, failure })
-}
-
-/// A scene in the place of the trace is a slip of the user, and no wrong trace: refused where name and content
-/// agree.
-fn refuse_scene(name: &Path, shown: &str) -> Result<()> {
-    if is_scene(name) {
-        bail!("{shown} is a scene and no trace: SCENE comes first, then TRACE");
-    }
-    Ok(())
 }
 
 /// Whether a file is a scene by its name and by how it begins.

@@ -58,14 +58,15 @@ pub fn version(name: &str) -> Option<(Assignment, Version)> {
     Some((assignment, all[number]))
 }
 
-/// The names of all versions of all suites, `t2m2@2` for example: the newest one of the default assignment first.
+/// The names of the built-in suites, each with its version, such as `t2m2@2`: the newest one of the default assignment
+/// first.
 pub fn names() -> impl Iterator<Item = String> {
     Assignment::ALL.into_iter().flat_map(|assignment| {
         (1..=versions(assignment).len()).rev().map(move |number| format!("{}@{number}", assignment.key()))
     })
 }
 
-/// The name of the version that is meant where no suite is named.
+/// The name of the suite that is meant where none is named.
 #[must_use]
 pub fn default_name() -> String {
     format!("{}@{}", Assignment::DEFAULT.key(), versions(Assignment::DEFAULT).len())

@@ -5,7 +5,7 @@
 use super::{
     cancellation::Cancellation,
     grade::Grade,
-    grader::{Grader, SceneProgress, SharedGrading, Submission, SubmissionGrading},
+    grader::{Grader, SceneNews, SharedGrading, Submission, SubmissionGrading},
     guard::{Fault, guarded},
     result::SceneResult,
     results::{KeepError, Results},
@@ -76,29 +76,6 @@ pub enum GradeFault {
     Telling(Fault),
 }
 
-/// A message of a job about a submission's scene.
-enum BatchMessage {
-    Progress(SceneProgress),
-    /// The result, and whether it was taken from an earlier run.
-    Done(Box<SceneResult>, bool),
-}
-
-impl Grader<'_> {
-    /// Grades one submission. Its number in events is 0. After a cancellation the scenes that were not run say so.
-    ///
-    /// Without `results` nothing is looked up or kept. The fault is what went wrong besides, beside a whole grade.
-    pub fn grade_submission(
-        &self,
-        submission: &Submission,
-        results: Option<&dyn Results>,
-        cancellation: &Cancellation,
-        events: &mut dyn FnMut(Event<'_>),
-    ) -> (Option<Grade>, Option<GradeFault>) {
-        let graded = run(self, std::slice::from_ref(submission), results, cancellation, events);
-        (graded.grades.into_iter().next(), graded.fault)
-    }
-}
-
 /// Grades all submissions; the grades come back in the same order. After a cancellation the scenes that were not run
 /// say so. Without `results` nothing is looked up or kept.
 pub fn run(
@@ -122,7 +99,7 @@ pub fn run(
     drop(gradings);
     // Once more: what killed graders had begun may have needed a moment to end.
     temporary::sweep();
-    let fault = shared.into_fault().map(GradeFault::Keeping).or(telling.map(GradeFault::Telling));
+    let fault = shared.full.into_inner().map(GradeFault::Keeping).or(telling.map(GradeFault::Telling));
     Graded { grades, fault }
 }
 
@@ -145,19 +122,17 @@ fn share_out(grader: &Grader<'_>, gradings: &[SubmissionGrading<'_>], tell: &mut
                         return;
                     }
                     let (submission, scene) = (task / scenes.len(), task % scenes.len());
-                    let send = |message| drop(sender.send((submission, scene, message)));
-                    let mut progress = |progress| send(BatchMessage::Progress(progress));
-                    let (result, cached) = gradings[submission].scene(scene, scenes[scene], &mut progress);
-                    send(BatchMessage::Done(Box::new(result), cached));
+                    let mut send = |news| drop(sender.send((submission, scene, news)));
+                    gradings[submission].scene(scene, scenes[scene], &mut send);
                 }
             });
         }
         drop(sender);
-        for (submission, scene, message) in receiver {
-            match message {
-                BatchMessage::Progress(SceneProgress::Begins) => tell(Event::SceneBegins { submission, scene }),
-                BatchMessage::Progress(SceneProgress::Step(step)) => tell(Event::Step { submission, scene, step }),
-                BatchMessage::Done(result, cached) => {
+        for (submission, scene, news) in receiver {
+            match news {
+                SceneNews::Begins => tell(Event::SceneBegins { submission, scene }),
+                SceneNews::Step(step) => tell(Event::Step { submission, scene, step }),
+                SceneNews::Done(result, cached) => {
                     tell(Event::SceneDone { submission, scene, result: &result, cached });
                     let results = &mut results[submission];
                     results[scene] = Some((*result, cached));

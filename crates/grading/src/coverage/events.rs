@@ -1,7 +1,7 @@
 //! The properties of what an observer hears: of a detection call, and of a zone that is about to be moved.
 use super::axes::{
-    Company, EdgeMotion, Ends, FixedOfThree, FixedOfTwo, FixedOne, Found, Integrator, Kind, Likeness, Limit, Motion,
-    Normal, Place, Radii, Restitution, Side, SomeFixed, When, Why,
+    EdgeMotion, Ends, FixedOfThree, FixedOfTwo, FixedOne, Found, Integrator, Kind, Likeness, Limit, Motion, Normal,
+    Place, Radii, Restitution, Side, SomeFixed, When, Why,
 };
 use fosssim_model::{
     scene::{self, Collision, Edge, Scene},
@@ -121,10 +121,6 @@ pub(super) fn radii(scene: &Scene, bodies: &[usize], edge: Option<&Edge>) -> Rad
         None => bodies.iter().all(|&body| scene.particles[body].radius == first),
     };
     if equal { Radii::Equal } else { Radii::Unequal }
-}
-
-pub(super) const fn company(alone: bool) -> Company {
-    if alone { Company::Alone } else { Company::Several }
 }
 
 pub(super) const fn kind(kind: PairKind) -> Kind {

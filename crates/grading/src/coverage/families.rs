@@ -17,9 +17,12 @@ pub struct Family {
     pub(super) never: &'static [(Value, Value)],
 }
 
-/// Declares the events of a kind: their properties, and what excludes each other.
+/// An event: the number of its kind in [`FAMILIES`], and that of each property's value.
+pub(super) type Happening = (usize, Vec<usize>);
+
+/// Declares the events of a kind: its number, their properties, and what excludes each other.
 macro_rules! family {
-    ($type:ident, $name:literal { $($field:ident: $axis:ident),+ $(,)? } never $never:expr) => {
+    ($type:ident, $number:literal, $name:literal { $($field:ident: $axis:ident),+ $(,)? } never $never:expr) => {
         #[derive(Debug, Clone, Copy)]
         pub(super) struct $type {
             $(pub(super) $field: $axis),+
@@ -28,8 +31,8 @@ macro_rules! family {
         impl $type {
             pub(super) const FAMILY: Family = Family { name: $name, axes: &[$($axis::AXIS),+], never: $never };
 
-            pub(super) const fn values(&self) -> [usize; Self::FAMILY.axes.len()] {
-                [$(self.$field as usize),+]
+            pub(super) fn happening(self) -> Happening {
+                ($number, vec![$(self.$field as usize),+])
             }
         }
     };
@@ -42,7 +45,7 @@ macro_rules! never {
     };
 }
 
-family!(ParticleContact, "two particles collide" {
+family!(ParticleContact, 0, "two particles collide" {
     found: Found,
     when: When,
     fixed: FixedOfTwo,
@@ -53,7 +56,7 @@ family!(ParticleContact, "two particles collide" {
     integrator: Integrator,
 } never never![]);
 
-family!(EdgeContact, "a particle and an edge collide" {
+family!(EdgeContact, 1, "a particle and an edge collide" {
     found: Found,
     when: When,
     fixed: FixedOfThree,
@@ -67,7 +70,7 @@ family!(EdgeContact, "a particle and an edge collide" {
     integrator: Integrator,
 } never never![]);
 
-family!(HalfPlaneContact, "a particle and a half-plane collide" {
+family!(HalfPlaneContact, 2, "a particle and a half-plane collide" {
     found: Found,
     when: When,
     fixed: FixedOne,
@@ -78,7 +81,7 @@ family!(HalfPlaneContact, "a particle and a half-plane collide" {
     integrator: Integrator,
 } never never![]);
 
-family!(NoContact, "a pair does not collide" {
+family!(NoContact, 3, "a pair does not collide" {
     kind: Kind,
     why: Why,
     found: Found,
@@ -90,7 +93,7 @@ family!(NoContact, "a pair does not collide" {
     Kind::HalfPlane with SomeFixed::{Some},
 ]);
 
-family!(MovedZone, "the failsafe moves a zone" {
+family!(MovedZone, 4, "the failsafe moves a zone" {
     size: Size,
     held: Held,
     motion: Motion,
@@ -115,14 +118,14 @@ family!(MovedZone, "the failsafe moves a zone" {
     Size::More with Links::{One},
 ]);
 
-family!(ContinuousStep, "a step of continuous-time" {
+family!(ContinuousStep, 5, "a step of continuous-time" {
     hits: Hits,
     restitution: Restitution,
     forces: Forces,
     integrator: Integrator,
 } never never![]);
 
-family!(HybridStep, "a step of hybrid" {
+family!(HybridStep, 6, "a step of hybrid" {
     end: LoopEnd,
     zones: ZoneCount,
     rounds: Rounds,
@@ -152,7 +155,7 @@ family!(HybridStep, "a step of hybrid" {
     Limit::More with LoopEnd::{NotAllowed},
 ]);
 
-/// All kinds of events.
+/// All kinds of events, by their numbers.
 pub const FAMILIES: [Family; 7] = [
     ParticleContact::FAMILY,
     EdgeContact::FAMILY,

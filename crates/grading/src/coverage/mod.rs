@@ -128,10 +128,10 @@ impl Coverage {
     }
 
     /// Notes an event.
-    fn note(&mut self, family: usize, values: &[usize]) {
+    fn note(&mut self, (family, values): &families::Happening) {
         for (first, &one) in values.iter().enumerate() {
             for (second, &other) in values.iter().enumerate().skip(first + 1) {
-                self.seen.insert(Pairing { family, one: (first, one), other: (second, other) });
+                self.seen.insert(Pairing { family: *family, one: (first, one), other: (second, other) });
             }
         }
     }

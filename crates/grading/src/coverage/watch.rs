@@ -1,9 +1,13 @@
 //! Hears the reference's run and notes every event.
 use super::{
     Coverage,
-    axes::{Age, Forces, Held, Hits, Links, LoopEnd, Penalty, Position, Rounds, ZoneCount, ZoneEdge},
+    axes::{
+        Age, Company, Ends, Forces, Held, Hits, Links, LoopEnd, Penalty, Position, Rounds, Size, ZoneCount, ZoneEdge,
+    },
     events,
-    families::{ContinuousStep, EdgeContact, HalfPlaneContact, HybridStep, MovedZone, NoContact, ParticleContact},
+    families::{
+        ContinuousStep, EdgeContact, HalfPlaneContact, Happening, HybridStep, MovedZone, NoContact, ParticleContact,
+    },
 };
 use fosssim_model::{
     scene::{Collision, Force, Scene},
@@ -11,12 +15,9 @@ use fosssim_model::{
 };
 use std::collections::BTreeSet;
 
-/// A contact of the pass that runs, with what is known before the pass is over.
-enum Contact {
-    Particles(ParticleContact),
-    Edge(EdgeContact),
-    HalfPlane(HalfPlaneContact),
-}
+/// The bodies of a contact of the pass that runs, and its event: if it is their only one, and if they have several. The
+/// end of the pass tells which it is.
+type Contact = (Vec<usize>, [Happening; 2]);
 
 /// A zone as the last round had it.
 type Known = (Vec<usize>, bool);
@@ -25,9 +26,16 @@ pub(super) struct Watch<'a> {
     scene: &'a Scene,
     coverage: &'a mut Coverage,
     stage: Stage,
+    step: StepHeard,
+}
+
+/// The events of the step that runs.
+#[derive(Default)]
+struct StepHeard {
+    /// Where bodies are at the start and at the end of the step, as the pass that runs sees them.
     q_start: Vec<f64>,
     q_end: Vec<f64>,
-    contacts: Vec<(Vec<usize>, Contact)>,
+    contacts: Vec<Contact>,
     /// The number of hits in each pass: of the impulse rounds, or of the step's only pass.
     hits: Vec<usize>,
     /// All contacts of the step's passes for zones.
@@ -38,56 +46,24 @@ pub(super) struct Watch<'a> {
     rounds: u32,
 }
 
-/// The numbers of the families in the list of all.
-mod family {
-    pub(super) const PARTICLES: usize = 0;
-    pub(super) const EDGE: usize = 1;
-    pub(super) const HALF_PLANE: usize = 2;
-    pub(super) const NO_CONTACT: usize = 3;
-    pub(super) const ZONE: usize = 4;
-    pub(super) const CONTINUOUS: usize = 5;
-    pub(super) const HYBRID: usize = 6;
-}
-
 impl<'a> Watch<'a> {
     pub(super) fn new(scene: &'a Scene, coverage: &'a mut Coverage) -> Self {
-        Self {
-            scene,
-            coverage,
-            stage: Stage::Simple,
-            q_start: Vec::new(),
-            q_end: Vec::new(),
-            contacts: Vec::new(),
-            hits: Vec::new(),
-            zone_contacts: BTreeSet::new(),
-            zones: Vec::new(),
-            before: Vec::new(),
-            rounds: 0,
-        }
+        Self { scene, coverage, stage: Stage::Simple, step: StepHeard::default() }
     }
 
-    fn contact(&self, detection: &Detection<'_>, bodies: &[usize], time: f64) -> Contact {
+    fn contact(&self, detection: &Detection<'_>, bodies: &[usize], time: f64, company: Company) -> Happening {
         let scene = self.scene;
         let (found, when) = (events::found(self.stage), events::when(time));
         let (restitution, integrator) = (events::restitution(scene), events::integrator(scene));
-        let (masses, company) = (events::masses(scene, bodies), events::company(true));
+        let masses = events::masses(scene, bodies);
         match detection.pair.kind {
             PairKind::ParticleParticle => {
                 let (fixed, radii) = (events::fixed_of_two(scene, bodies), events::radii(scene, bodies, None));
-                Contact::Particles(ParticleContact {
-                    found,
-                    when,
-                    fixed,
-                    masses,
-                    radii,
-                    company,
-                    restitution,
-                    integrator,
-                })
+                ParticleContact { found, when, fixed, masses, radii, company, restitution, integrator }.happening()
             }
             PairKind::ParticleEdge => {
                 let edge = &scene.edges[detection.pair.second as usize];
-                Contact::Edge(EdgeContact {
+                let contact = EdgeContact {
                     found,
                     when,
                     fixed: events::fixed_of_three(scene, bodies),
@@ -99,67 +75,48 @@ impl<'a> Watch<'a> {
                     company,
                     restitution,
                     integrator,
-                })
+                };
+                contact.happening()
             }
             PairKind::ParticleHalfPlane => {
                 let fixed = events::fixed_one(scene, bodies);
                 let (side, normal) = (events::side(scene, detection), events::normal(scene, detection.pair));
-                Contact::HalfPlane(HalfPlaneContact {
-                    found,
-                    when,
-                    fixed,
-                    side,
-                    normal,
-                    company,
-                    restitution,
-                    integrator,
-                })
+                HalfPlaneContact { found, when, fixed, side, normal, company, restitution, integrator }.happening()
             }
         }
     }
 
     /// Notes the contacts of a pass, now that it is known which have bodies in common.
     fn note_contacts(&mut self) {
-        let contacts = std::mem::take(&mut self.contacts);
-        for (index, (bodies, contact)) in contacts.iter().enumerate() {
-            let shares = |other: &(Vec<usize>, Contact)| other.0.iter().any(|body| bodies.contains(body));
-            let alone = contacts.iter().enumerate().all(|(other, contact)| other == index || !shares(contact));
-            let company = events::company(alone);
-            match *contact {
-                Contact::Particles(contact) => {
-                    self.coverage.note(family::PARTICLES, &ParticleContact { company, ..contact }.values());
-                }
-                Contact::Edge(contact) => {
-                    self.coverage.note(family::EDGE, &EdgeContact { company, ..contact }.values());
-                }
-                Contact::HalfPlane(contact) => {
-                    self.coverage.note(family::HALF_PLANE, &HalfPlaneContact { company, ..contact }.values());
-                }
-            }
+        let contacts = std::mem::take(&mut self.step.contacts);
+        for (index, (bodies, [alone, several])) in contacts.iter().enumerate() {
+            let shares = |other: &Contact| other.0.iter().any(|body| bodies.contains(body));
+            let is_alone = contacts.iter().enumerate().all(|(other, contact)| other == index || !shares(contact));
+            self.coverage.note(if is_alone { alone } else { several });
         }
     }
 
     fn zone(&self, particles: &[usize], half_plane: bool) -> Vec<MovedZone> {
         let scene = self.scene;
         let is_known = |zone: &&Known| zone.0.iter().any(|one| particles.contains(one));
-        let age = match self.before.iter().find(is_known) {
-            _ if self.rounds == 1 => Age::First,
+        let age = match self.step.before.iter().find(is_known) {
+            _ if self.step.rounds == 1 => Age::First,
             None => Age::New,
             Some((same, flag)) if same == particles && *flag == half_plane => Age::Same,
             Some(_) => Age::Grown,
         };
-        let index = self.zones.iter().position(|zone| zone.0 == particles).unwrap_or(0);
-        let position = match (index, self.zones.len()) {
+        let index = self.step.zones.iter().position(|zone| zone.0 == particles).unwrap_or(0);
+        let position = match (index, self.step.zones.len()) {
             (_, 0 | 1) => Position::Only,
             (0, _) => Position::First,
             (last, all) if last + 1 == all => Position::Last,
             _ => Position::Between,
         };
         let size = match particles.len() {
-            1 => super::axes::Size::One,
-            2 => super::axes::Size::Two,
-            3 => super::axes::Size::Three,
-            _ => super::axes::Size::More,
+            1 => Size::One,
+            2 => Size::Two,
+            3 => Size::Three,
+            _ => Size::More,
         };
         let held = match (particles.iter().any(|&one| scene.particles[one].fixed), half_plane) {
             (false, false) => Held::Nothing,
@@ -167,12 +124,12 @@ impl<'a> Watch<'a> {
             (false, true) => Held::HalfPlane,
             (true, true) => Held::Both,
         };
-        let contacts = || self.zone_contacts.iter().filter(|pair| particles.contains(&(pair.first as usize)));
+        let contacts = || self.step.zone_contacts.iter().filter(|pair| particles.contains(&(pair.first as usize)));
         let links = if contacts().count() > 1 { Links::Several } else { Links::One };
         let zone = MovedZone {
             size,
             held,
-            motion: events::motion(scene, particles, &self.q_start, &self.q_end),
+            motion: events::motion(scene, particles, &self.step.q_start, &self.step.q_end),
             age,
             position,
             edge: ZoneEdge::None,
@@ -183,9 +140,9 @@ impl<'a> Watch<'a> {
             integrator: events::integrator(scene),
         };
         let edge = |pair: &Pair| match events::ends(&scene.edges[pair.second as usize]) {
-            super::axes::Ends::Next => ZoneEdge::Next,
-            super::axes::Ends::Previous => ZoneEdge::Previous,
-            super::axes::Ends::Up | super::axes::Ends::Down => ZoneEdge::Apart,
+            Ends::Next => ZoneEdge::Next,
+            Ends::Previous => ZoneEdge::Previous,
+            Ends::Up | Ends::Down => ZoneEdge::Apart,
         };
         let edges = contacts().filter(|pair| pair.kind == PairKind::ParticleEdge).map(edge);
         let with_edges: Vec<MovedZone> = edges.map(|edge| MovedZone { edge, ..zone }).collect();
@@ -194,8 +151,8 @@ impl<'a> Watch<'a> {
 
     fn hybrid_step(&self, max_iterations: i32, stiffness: f64) -> HybridStep {
         let limit = usize::try_from(max_iterations).unwrap_or(0);
-        let ends_empty = self.hits.last() == Some(&0);
-        let end = match self.hits.len() {
+        let ends_empty = self.step.hits.last() == Some(&0);
+        let end = match self.step.hits.len() {
             0 => LoopEnd::NotAllowed,
             1 if ends_empty => LoopEnd::Nothing,
             rounds if ends_empty && rounds == limit => LoopEnd::JustEnough,
@@ -204,12 +161,12 @@ impl<'a> Watch<'a> {
         };
         HybridStep {
             end,
-            zones: match self.zones.len() {
+            zones: match self.step.zones.len() {
                 0 => ZoneCount::None,
                 1 => ZoneCount::One,
                 _ => ZoneCount::Several,
             },
-            rounds: match self.rounds {
+            rounds: match self.step.rounds {
                 0 => Rounds::None,
                 1 => Rounds::One,
                 2 => Rounds::Two,
@@ -230,25 +187,18 @@ const fn forces(forces: &[Force]) -> Forces {
 
 impl Observer for Watch<'_> {
     fn begin_step(&mut self, _step: u32) {
-        self.hits.clear();
-        self.zone_contacts.clear();
-        self.zones.clear();
-        self.before.clear();
-        self.rounds = 0;
+        self.step = StepHeard::default();
     }
 
     fn begin_pass(&mut self, pass: Pass) {
         self.stage = pass.stage;
         if let Stage::Geometric { round } = pass.stage {
-            self.rounds = round;
+            self.step.rounds = round;
         }
     }
 
     fn pass_positions(&mut self, q_start: &[f64], q_end: &[f64]) {
-        self.q_start.clear();
-        self.q_start.extend_from_slice(q_start);
-        self.q_end.clear();
-        self.q_end.extend_from_slice(q_end);
+        (self.step.q_start, self.step.q_end) = (q_start.to_vec(), q_end.to_vec());
     }
 
     fn detection(&mut self, detection: &Detection<'_>) {
@@ -256,10 +206,11 @@ impl Observer for Watch<'_> {
         match detection.decision {
             Decision::Hit { time, .. } => {
                 if matches!(self.stage, Stage::Geometric { .. }) {
-                    self.zone_contacts.insert(detection.pair);
+                    self.step.zone_contacts.insert(detection.pair);
                 }
-                let contact = self.contact(detection, &bodies, time);
-                self.contacts.push((bodies, contact));
+                let of = |company| self.contact(detection, &bodies, time, company);
+                let both = [Company::Alone, Company::Several].map(of);
+                self.step.contacts.push((bodies, both));
             }
             Decision::Miss { .. } => {
                 let no_contact = NoContact {
@@ -268,7 +219,7 @@ impl Observer for Watch<'_> {
                     found: events::found(self.stage),
                     fixed: events::some_fixed(self.scene, &bodies),
                 };
-                self.coverage.note(family::NO_CONTACT, &no_contact.values());
+                self.coverage.note(&no_contact.happening());
             }
         }
     }
@@ -276,20 +227,20 @@ impl Observer for Watch<'_> {
     fn end_pass(&mut self, pass: Pass, hits: usize) {
         self.note_contacts();
         if !matches!(pass.stage, Stage::Geometric { .. }) {
-            self.hits.push(hits);
+            self.step.hits.push(hits);
         }
     }
 
     fn zones(&mut self, _round: u32, zones: &[Zone<'_>]) {
         let known = |zone: &Zone<'_>| (zone.particles.iter().map(|&one| one as usize).collect(), zone.half_plane);
-        self.before = std::mem::replace(&mut self.zones, zones.iter().map(known).collect());
+        self.step.before = std::mem::replace(&mut self.step.zones, zones.iter().map(known).collect());
     }
 
     fn failsafe(&mut self, round: u32, zone: &Zone<'_>) {
-        self.rounds = round;
+        self.step.rounds = round;
         let particles: Vec<usize> = zone.particles.iter().map(|&one| one as usize).collect();
-        for event in self.zone(&particles, zone.half_plane) {
-            self.coverage.note(family::ZONE, &event.values());
+        for zone in self.zone(&particles, zone.half_plane) {
+            self.coverage.note(&zone.happening());
         }
     }
 
@@ -297,17 +248,17 @@ impl Observer for Watch<'_> {
         match self.scene.collision {
             Collision::Hybrid { max_iterations, stiffness, .. } => {
                 let step = self.hybrid_step(max_iterations, stiffness);
-                self.coverage.note(family::HYBRID, &step.values());
+                self.coverage.note(&step.happening());
             }
             Collision::ContinuousTime { .. } => {
-                let hits = match self.hits.first().copied().unwrap_or(0) {
+                let hits = match self.step.hits.first().copied().unwrap_or(0) {
                     0 => Hits::None,
                     1 => Hits::One,
                     _ => Hits::Several,
                 };
                 let (restitution, integrator) = (events::restitution(self.scene), events::integrator(self.scene));
                 let step = ContinuousStep { hits, restitution, forces: forces(&self.scene.forces), integrator };
-                self.coverage.note(family::CONTINUOUS, &step.values());
+                self.coverage.note(&step.happening());
             }
             Collision::None | Collision::Simple { .. } | Collision::Penalty { .. } => {}
         }

@@ -28,7 +28,7 @@ fn key() -> Key {
 
 /// A result that was written and read again.
 fn again(result: &SceneResult) -> SceneResult {
-    let entry = read(&write(&key(), "submission", result)).expect("our own form is sound");
+    let entry = read_line(&line(&key(), "submission", result)).expect("our own form is sound");
     assert_eq!((&entry.key, entry.submission.as_str()), (&key(), "submission"));
     entry.result
 }
@@ -247,16 +247,16 @@ fn every_reason_and_every_end_reads_back() {
 
 #[test]
 fn another_version_and_damage_are_not_read() {
-    let written = String::from_utf8(write(&key(), "submission", &wrong())).expect("text");
-    assert!(read(written.as_bytes()).is_some());
-    assert!(!written.contains('\n'), "one line");
+    let written = String::from_utf8(line(&key(), "submission", &wrong())).expect("text");
+    assert!(read_line(written.as_bytes()).is_some());
+    assert_eq!(written.find('\n'), Some(written.len() - 1), "one line");
     assert!(
-        read(written.replacen(&format!("\"form\":{VERSION}"), &format!("\"form\":{}", VERSION + 1), 1).as_bytes())
+        read_line(written.replacen(&format!("\"form\":{VERSION}"), &format!("\"form\":{}", VERSION + 1), 1).as_bytes())
             .is_none()
     );
-    assert!(read(written.replacen("\"coefficient\"", "\"coeficient\"", 1).as_bytes()).is_none());
+    assert!(read_line(written.replacen("\"coefficient\"", "\"coeficient\"", 1).as_bytes()).is_none());
     let seven = "[1,2,3,4,5,6,7]";
     let many = written.replacen("[1e-300,\"-inf\",0.3]", seven, 1);
-    assert!(many.contains(seven) && read(many.as_bytes()).is_none(), "no polynomial is that long");
-    assert!(read(&written.as_bytes()[..written.len() - 3]).is_none());
+    assert!(many.contains(seven) && read_line(many.as_bytes()).is_none(), "no polynomial is that long");
+    assert!(read_line(&written.as_bytes()[..written.len() - 3]).is_none());
 }

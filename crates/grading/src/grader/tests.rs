@@ -1,11 +1,41 @@
 use super::*;
 use crate::{
-    batch::{Event, GradeFault},
+    batch::{Event, GradeFault, Graded, run},
     cast::{Stage, small_plan},
     grade::Grade,
     result::Measurements,
-    results::{FolderResults, MemoryResults},
+    results::FolderResults,
 };
+use std::collections::BTreeMap;
+
+/// Results that are gone when the grader is.
+#[derive(Default)]
+struct MemoryResults {
+    kept: Mutex<BTreeMap<Key, SceneResult>>,
+    /// The greatest number of keys: later ones can't be kept, as on a disk that is full. Without it there is no limit.
+    room: Option<usize>,
+}
+
+impl MemoryResults {
+    fn len(&self) -> usize {
+        lock(&self.kept).len()
+    }
+}
+
+impl Results for MemoryResults {
+    fn find(&self, key: &Key) -> Option<SceneResult> {
+        lock(&self.kept).get(key).cloned()
+    }
+
+    fn keep(&self, key: &Key, _: &str, result: &SceneResult) -> Result<(), KeepError> {
+        let mut kept = lock(&self.kept);
+        if !kept.contains_key(key) && self.room.is_some_and(|room| kept.len() >= room) {
+            return Err(KeepError(format!("there is room for {} results only", kept.len())));
+        }
+        kept.insert(key.clone(), result.clone());
+        Ok(())
+    }
+}
 
 fn grade(
     grader: &Grader<'_>,
@@ -13,12 +43,13 @@ fn grade(
     results: &dyn Results,
 ) -> (Grade, Option<GradeFault>, Vec<String>) {
     let mut told = Vec::new();
-    let (grade, fault) = grader.grade_submission(submission, Some(results), &Cancellation::default(), &mut |event| {
+    let submission = std::slice::from_ref(submission);
+    let Graded { grades, fault } = run(grader, submission, Some(results), &Cancellation::default(), &mut |event| {
         if let Event::SceneDone { submission: 0, result, cached, .. } = event {
             told.push(format!("{} {cached}", result.scene));
         }
     });
-    (grade.expect("a grade"), fault, told)
+    (grades.into_iter().next().expect("a grade"), fault, told)
 }
 
 /// The content of a grade, but for whether its results were found and how long judging took.
@@ -64,7 +95,7 @@ fn where_results_have_no_room_grading_stops_and_says_so_and_keeps_what_it_has() 
     let mut grader = stage.grader(&plan);
     grader.options.jobs = 1;
     let submission = stage.submissions(&["right"]).remove(0);
-    let small = MemoryResults::with_room(3);
+    let small = MemoryResults { room: Some(3), ..MemoryResults::default() };
     let (stopped, fault, told) = grade(&grader, &submission, &small);
     assert!(matches!(&fault, Some(GradeFault::Keeping(error)) if error.to_string().contains("room")), "{fault:?}");
     assert_eq!((stopped.points, stopped.is_incomplete(), stopped.verdict), (None, true, Verdict::NotRun));

@@ -13,49 +13,27 @@ pub const MOST_SCENES: usize = 10_000;
 /// See [`MOST_SCENES`].
 pub const MOST_SCENE_BYTES: u64 = 256 << 20;
 
-/// Why there is no plan.
+/// Why there is no plan: no such suite, a file that can't be read, or everything that is wrong with it.
 #[derive(Debug, thiserror::Error)]
-pub enum FindError {
-    /// No such suite.
-    #[error("no suite {name}: it is neither a file nor one of {}", built_in_names().collect::<Vec<_>>().join(", "))]
-    Unknown {
-        /// The name that was asked for.
-        name: String,
-        /// Why it is no file.
-        #[source]
-        why: io::Error,
-    },
-    /// There is one, but it can't be read.
-    #[error("cannot read the suite {name}")]
-    Unreadable {
-        /// The file.
-        name: String,
-        /// Why.
-        #[source]
-        why: io::Error,
-    },
-    /// The file is a scene.
-    #[error("{name} is a scene and no suite: a group of a suite lists it in its `scenes`")]
-    Scene {
-        /// The file.
-        name: String,
-    },
-    /// There is one, but it is not sound; each problem is a line.
-    #[error("the suite has {}{}", counted(.error.problems.len()), lines(name, .error))]
-    Unsound {
-        /// The file.
-        name: String,
-        /// The fault of it.
-        error: SuiteError,
-    },
+#[error("{words}")]
+pub struct FindError {
+    words: String,
+    /// Why a file can't be read.
+    #[source]
+    why: Option<io::Error>,
 }
 
-fn counted(problems: usize) -> String {
-    if problems == 1 { "1 problem:".to_owned() } else { format!("{problems} problems:") }
+impl From<String> for FindError {
+    fn from(words: String) -> Self {
+        Self { words, why: None }
+    }
 }
 
-fn lines(name: &str, error: &SuiteError) -> String {
-    error.problems.iter().map(|(at, text)| format!("\n{name}:{at}: {text}")).collect()
+/// The message for a suite that is not sound; each problem is a line.
+fn unsound(name: &str, SuiteError { problems }: &SuiteError) -> String {
+    let lines: String = problems.iter().map(|(at, text)| format!("\n{name}:{at}: {text}")).collect();
+    let plural = if problems.len() == 1 { "" } else { "s" };
+    format!("the suite has {} problem{plural}:{lines}", problems.len())
 }
 
 /// Finds a suite: one that comes with the program, by its name, or a file. Its own files are looked up beside it.
@@ -68,24 +46,28 @@ pub fn find(name: &str) -> Result<Plan, FindError> {
     let loaded = match built_in(name) {
         Some(text) => load(text, Path::new(".")),
         None => {
-            let owned = || name.to_owned();
-            let text = read_text(path, LARGEST_SUITE).map_err(|why| match why.kind() {
-                io::ErrorKind::NotFound => FindError::Unknown { name: owned(), why },
-                _ => FindError::Unreadable { name: owned(), why },
+            let text = read_text(path, LARGEST_SUITE).map_err(|why| {
+                let known = || built_in_names().collect::<Vec<_>>().join(", ");
+                let words = match why.kind() {
+                    io::ErrorKind::NotFound => format!("no suite {name}: it is neither a file nor one of {}", known()),
+                    _ => format!("cannot read the suite {name}"),
+                };
+                FindError { words, why: Some(why) }
             })?;
             if ["<?xml", "<scene"].iter().any(|start| text.starts_with(start)) {
-                return Err(FindError::Scene { name: owned() });
+                let advice = "a group of a suite lists it in its `scenes`";
+                return Err(format!("{name} is a scene and no suite: {advice}").into());
             }
             load(&text, beside)
         }
     };
-    loaded.map_err(|error| FindError::Unsound { name: name.to_owned(), error })
+    loaded.map_err(|error| unsound(name, &error).into())
 }
 
 /// Reads, validates and looks up a suite in one go; files are relative to `folder`.
 ///
 /// # Errors
-/// As [`config::read`](crate::config::read) and [`resolve_by`](super::resolve_by).
+/// As for [`load_by`].
 pub fn load(text: &str, folder: &Path) -> Result<Plan, SuiteError> {
     let mut room = FileBudget { scenes: MOST_SCENES, bytes: MOST_SCENE_BYTES };
     load_by(text, &mut |pattern| files(pattern, folder, &mut room))

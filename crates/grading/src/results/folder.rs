@@ -1,17 +1,12 @@
 //! Results in a folder: a journal with one JSON line per judged scene.
 //!
 //! A line is written and flushed before its result is told. A line cut short by a crash is dropped on the next opening.
-//! Lines are what [`form`] writes; those of other versions are passed over. A lock keeps two graders out of one folder.
-use super::{KeepError, Results};
-use crate::{
-    form::{self, Entry},
-    key::Key,
-    result::SceneResult,
-};
+//! Lines are what [`line`] writes; those of other versions are passed over. A lock keeps two graders out of one folder.
+use super::{KeepError, Results, line, read_line};
+use crate::{key::Key, result::SceneResult};
 use fosssim_files::{FileError, Folder};
 use std::{
     collections::BTreeMap,
-    error::Error,
     ffi::OsStr,
     fs::File,
     io::{self, BufRead, BufReader, Read, Seek, Write},
@@ -33,25 +28,6 @@ pub const LARGEST_JOURNAL: u64 = 16 << 30;
 /// A journal with a line of more bytes is damaged; results have some thousand.
 pub const LONGEST_LINE: usize = 16 << 20;
 
-/// Why a folder can't be used for results.
-#[derive(Debug, thiserror::Error)]
-pub enum OpenError {
-    /// Another grader has it.
-    #[error("another grader works in {folder}: wait for it, or give another --output folder")]
-    Locked {
-        /// The folder.
-        folder: PathBuf,
-    },
-    /// The operating system refuses.
-    #[error("{path}: {reason}")]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// The reason.
-        reason: io::Error,
-    },
-}
-
 /// Results in one output folder, locked while it lives.
 #[derive(Debug)]
 pub struct FolderResults {
@@ -71,15 +47,18 @@ impl FolderResults {
     ///
     /// # Errors
     /// When another grader holds the folder, or files can't be read or written.
-    pub fn open(folder: &Path, fresh: bool) -> Result<Self, OpenError> {
+    pub fn open(folder: &Path, fresh: bool) -> io::Result<Self> {
         let at = |name: &str| {
             let path = folder.join(name);
-            move |reason| OpenError::Io { path, reason }
+            move |reason: io::Error| io::Error::new(reason.kind(), format!("{}: {reason}", path.display()))
         };
         let opened = Folder::to_write(folder).map_err(at(""))?;
         let lock = own_file(&opened, LOCK).map_err(at(LOCK))?;
         lock.try_lock().map_err(|error| match error {
-            std::fs::TryLockError::WouldBlock => OpenError::Locked { folder: folder.to_owned() },
+            std::fs::TryLockError::WouldBlock => io::Error::other(format!(
+                "another grader works in {}: wait for it, or give another --output folder",
+                folder.display()
+            )),
             std::fs::TryLockError::Error(reason) => at(LOCK)(reason),
         })?;
         let mut file = own_file(&opened, JOURNAL).map_err(at(JOURNAL))?;
@@ -172,10 +151,7 @@ impl Results for FolderResults {
     fn keep(&self, key: &Key, submission: &str, result: &SceneResult) -> Result<(), KeepError> {
         let line = line(key, submission, result);
         let Journal { path, file, found } = &mut *self.journal();
-        append(file, &line).map_err(|reason| {
-            let error: Box<dyn Error + Send + Sync> = Box::new(OpenError::Io { path: path.clone(), reason });
-            KeepError::from(error)
-        })?;
+        append(file, &line).map_err(|reason| KeepError(format!("{}: {reason}", path.display())))?;
         found.insert(key.clone(), result.clone());
         Ok(())
     }
@@ -189,20 +165,6 @@ fn append(file: &mut File, line: &[u8]) -> io::Result<()> {
         let _ = file.set_len(before);
         let _ = file.seek(io::SeekFrom::Start(before));
     })
-}
-
-/// The line that keeps a result, with its end.
-#[must_use]
-pub fn line(key: &Key, submission: &str, result: &SceneResult) -> Vec<u8> {
-    let mut line = form::write(key, submission, result);
-    line.push(b'\n');
-    line
-}
-
-/// The result that a line keeps; `None` where the line is damaged, or of another version.
-#[must_use]
-pub fn read_line(line: &[u8]) -> Option<Entry> {
-    form::read(line)
 }
 
 #[cfg(test)]
@@ -241,7 +203,8 @@ mod tests {
     fn two_graders_can_not_share_a_folder() {
         let folder = tempfile::tempdir().expect("folder");
         let _first = FolderResults::open(folder.path(), false).expect("journal");
-        assert!(matches!(FolderResults::open(folder.path(), false), Err(OpenError::Locked { .. })));
+        let refused = FolderResults::open(folder.path(), false).expect_err("it is locked").to_string();
+        assert!(refused.starts_with("another grader works in "), "{refused}");
     }
 
     #[test]

@@ -3,15 +3,11 @@
 //! Results are found by a key that digests everything they depend on ([`Key`]), so a changed program, scene, rule or
 //! grader is simply not found. What becomes of a grading does not depend on where its results are kept.
 mod folder;
-mod memory;
 
-pub use folder::{FolderResults, JOURNAL, LARGEST_JOURNAL, LOCK, LONGEST_LINE, OpenError, each_line, line, read_line};
-pub use memory::MemoryResults;
-
-pub use super::form::Entry;
+pub use super::form::{Entry, line, read_line};
+pub use folder::{FolderResults, JOURNAL, LARGEST_JOURNAL, LOCK, LONGEST_LINE, each_line};
 
 use super::{key::Key, result::SceneResult};
-use std::error::Error;
 
 /// A place for results, which several jobs use at one time.
 pub trait Results: Sync {
@@ -28,5 +24,5 @@ pub trait Results: Sync {
 
 /// Why a result can't be kept: always ours or the machine's fault.
 #[derive(Debug, thiserror::Error)]
-#[error(transparent)]
-pub struct KeepError(#[from] Box<dyn Error + Send + Sync>);
+#[error("{0}")]
+pub struct KeepError(pub String);

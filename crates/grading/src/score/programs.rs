@@ -1,13 +1,13 @@
 //! The grade of a program that was run.
-use super::group;
 use crate::{
     config::Visibility,
     grade::Grade,
     grader::{SubmissionGrading, lock},
     located::{Contents, Failing, Located, Tried, locate},
     one_file, patience,
+    plan::PlannedGroup,
     result::{Ended, Reason, SceneResult},
-    score::refuted,
+    score,
     verdict::Verdict,
 };
 use fosssim_mistakes::together::settle;
@@ -34,33 +34,20 @@ impl SubmissionGrading<'_> {
             Some(Ok(staged)) => staged.build.clone(),
             _ => None,
         };
-        let mut results = results.into_iter();
-        let groups: Vec<_> = plan
-            .groups
-            .iter()
-            .map(|planned| group(&planned.name, planned.marking, results.by_ref().take(planned.scenes.len()).collect()))
-            .collect();
-        let refuted = refuted(plan, &groups);
         let mut warnings = self.grader.backend.weaknesses();
         if self.submission.file.as_ref().is_some_and(|file| file.is_shared && !file.is_anothers) {
             warnings.push(one_file::SHARED.to_owned());
         }
+        let is_visible = |group: &PlannedGroup| group.marking.visibility == Visibility::Visible;
         let active = self.grader.backend.layers().iter().filter(|report| report.active);
         let mut grade = Grade {
-            submission: self.submission.name.clone(),
-            suite: plan.name.clone(),
             rules: self.grader.effective_rules(),
-            verdict: groups.iter().map(|group| group.verdict).max().unwrap_or(Verdict::NotRun),
-            points: groups.iter().map(|group| group.points).sum(),
-            max_points: plan.max_points(),
-            shows_output: plan.show_output || groups.iter().all(|group| group.visibility == Visibility::Visible),
-            groups,
+            shows_output: plan.show_output || plan.groups.iter().all(is_visible),
             build,
             warnings,
             layers: active.map(|report| report.layer.name().to_owned()).collect(),
             wall,
-            refuted,
-            located: None,
+            ..score::grade(plan, self.submission.name.clone(), true, results)
         };
         if plan.staff_hints.explains() {
             grade.located = common(&grade, || self.shared.contents(plan));

@@ -1,6 +1,6 @@
 //! Questions of commands about an outcome before they report it.
 use fosssim_findings::{Outcome, Overall, Stop};
-use fosssim_judge::fair::FairVerdict;
+use fosssim_judge::{Unreadable, fair::FairVerdict};
 use fosssim_model::sim::StepError;
 
 /// Whether there is something to explain: the fair rules know better what is a mistake.
@@ -21,4 +21,14 @@ pub fn no_verdict(outcome: &Outcome, scene: &str) -> Option<String> {
         )),
         _ => None,
     }
+}
+
+/// The message where a trace could not be read to its end, and so has no verdict.
+#[must_use]
+pub fn not_read(outcome: &Outcome, trace: &str, why: &str) -> String {
+    let place = match &outcome.stop {
+        Some(Stop::Trace { cause: Unreadable::Io, offset, .. }) => format!(" at byte {offset}"),
+        _ => String::new(),
+    };
+    format!("cannot read the trace {trace}{place}: {why}")
 }

@@ -17,7 +17,7 @@ mod plots;
 mod steps;
 mod text;
 
-pub use asked::{is_wrong, no_verdict};
+pub use asked::{is_wrong, no_verdict, not_read};
 pub use looks_like::{LOOKED_AT, looks_like};
 pub use plots::plots;
 pub use steps::{LISTED, StepChoice, WrongSteps};

@@ -60,8 +60,7 @@ mod tests {
         let scene = original::read(&bytes).expect("a scene").scene;
         let mistake = id.map(|id| student::find(id).expect("a mistake").mistake);
         let trace = student::trace(&scene, Student::new(mistake)).unwrap_or_else(|(trace, _)| trace);
-        let mut nobody = ();
-        let mut rulings = StepRulings::new(&mut nobody);
+        let mut rulings = StepRulings::default();
         let options = replay::Options { fair: true, ..Default::default() };
         let outcome = replay::judge(&scene, &trace[..], &options, &mut rulings);
         let focus: Vec<Focus> = outcome.parity.findings.examples.iter().map(Focus::from).collect();

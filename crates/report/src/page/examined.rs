@@ -18,7 +18,7 @@ impl WhatIf {
         }
         let row = student::find(&named.key)?;
         let run = student::trace(scene, student::Student::new(Some(row.mistake))).unwrap_or_else(|(part, _)| part);
-        let track = Track::read(&run[..], evidence.layout, evidence.window);
+        let track = Track::read(&mut &run[..], evidence.layout, evidence.window);
         Some(Self { id: named.key.clone(), sentence: explanation::what(named), track, equal: run == trace })
     }
 }

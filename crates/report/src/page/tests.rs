@@ -27,8 +27,7 @@ fn page(scene: &Scene, scene_name: &str, trace_name: &str, trace: &[u8]) -> Stri
 
 fn told(scene: &Scene, scene_name: &str, trace_name: &str, trace: &[u8], hints: Hints) -> String {
     let options = replay::Options { fair: true, ..Default::default() };
-    let mut nobody = ();
-    let mut rulings = StepRulings::new(&mut nobody);
+    let mut rulings = StepRulings::default();
     let outcome: Outcome = replay::judge(scene, trace, &options, &mut rulings);
     let explanations = cut(hints, diagnose::explain(scene, trace));
     let focus: Vec<Focus> = outcome.parity.findings.examples.iter().map(Focus::from).collect();
@@ -138,8 +137,7 @@ fn a_page_about_no_trace_has_no_verdicts_of_books() {
 fn a_proof_is_told_of_whole_traces_only() {
     let scene = asset("ContinuousTimeTests/head-on-equal-masses.xml");
     let trace = of_mistake(&scene, "pp-contact-reversed");
-    let mut nobody = ();
-    let mut rulings = StepRulings::new(&mut nobody);
+    let mut rulings = StepRulings::default();
     let options = replay::Options { fair: true, ..Default::default() };
     let outcome = replay::judge(&scene, &trace[..], &options, &mut rulings);
     let focus = Focus::of(&outcome);
@@ -203,8 +201,7 @@ fn the_motion_is_exact() {
 /// The card that is drawn of a wrong trace for readers of this level, and the whole result.
 fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
     let trace = of_mistake(scene, id);
-    let mut nobody = ();
-    let mut rulings = StepRulings::new(&mut nobody);
+    let mut rulings = StepRulings::default();
     let options = replay::Options { fair: true, ..Default::default() };
     let outcome = replay::judge(scene, &trace[..], &options, &mut rulings);
     let focus: Vec<Focus> = outcome.parity.findings.examples.iter().map(Focus::from).collect();

@@ -34,7 +34,7 @@ const LONG_FILM: u32 = 1500;
 const MOST_PICTURES: u32 = 100_000;
 
 pub(super) fn run(arguments: &Render) -> Result<u8> {
-    let form = Form::of(arguments)?;
+    let form = form(arguments)?;
     let scene = input::scene(&arguments.scene)?;
     let picks = picks(arguments, form, &scene.scene)?;
     let Some(rate) = Rate::new(arguments.fps) else { bail!("--fps may be 1 to {}", crate::render::film::FASTEST) };
@@ -63,87 +63,56 @@ pub(super) fn run(arguments: &Render) -> Result<u8> {
         true => error.context(format!("cannot write {place}")),
         false => error,
     })?;
-    for line in &stopped {
-        console::complain(line.as_bytes());
-    }
+    stopped.iter().for_each(console::complain);
     let summary = format!("{words} into {place}\n");
     if to_stdout {
-        console::complain(summary.as_bytes());
+        console::complain(&summary);
     } else {
         console::report(&summary)?;
     }
     Ok(if stopped.is_empty() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }
 
-/// The kind of output.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Form {
-    /// One picture.
-    One(Kind),
-    /// A folder with a picture per step.
-    Folder(Kind),
-    Apng,
-    Gif,
-    Mp4,
+/// The form of the output, by `--format` or by its name. SVG and PNG are one picture with `--step`, else a folder with a
+/// picture per step.
+fn form(arguments: &Render) -> Result<RenderFormat> {
+    let (output, is_single) = (&arguments.output, arguments.step.is_some());
+    let by_name = |extension: &str| has_extension(output, extension);
+    let format = match arguments.format {
+        Some(format) => format,
+        None if by_name("apng") => RenderFormat::Apng,
+        None if by_name("gif") => RenderFormat::Gif,
+        None if by_name("mp4") => RenderFormat::Mp4,
+        None if by_name("svg") && is_single => RenderFormat::Svg,
+        None if by_name("png") && is_single => RenderFormat::Png,
+        None if by_name("svg") || by_name("png") => bail!(
+            "{} can hold one picture: add --step N, or name a folder and add --format svg or --format png; a name that \
+             ends in .apng or .gif becomes a film",
+            output.display()
+        ),
+        None => bail!(
+            "say what to make of {}: --format svg or --format png for a folder with a picture per step, or a name that \
+             ends in .apng, .gif or .mp4",
+            output.display()
+        ),
+    };
+    let size = arguments.size;
+    if is_film(format) && is_single {
+        bail!("--step is for one picture: add --format svg or --format png");
+    }
+    if format == RenderFormat::Mp4 && size.width() % 2 + size.height() % 2 > 0 {
+        bail!("an MP4 needs even width and height, not {size}; choose another --size");
+    }
+    Ok(format)
 }
 
-/// How a picture is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
-    Svg,
-    Png,
-}
-
-impl Form {
-    /// The kind of output, by `--format` or by the name of the output.
-    fn of(arguments: &Render) -> Result<Self> {
-        let output = &arguments.output;
-        let by_name = |extension: &str| has_extension(output, extension);
-        let format = match arguments.format {
-            Some(format) => format,
-            None if by_name("apng") => RenderFormat::Apng,
-            None if by_name("gif") => RenderFormat::Gif,
-            None if by_name("mp4") => RenderFormat::Mp4,
-            None if by_name("svg") && arguments.step.is_some() => RenderFormat::Svg,
-            None if by_name("png") && arguments.step.is_some() => RenderFormat::Png,
-            None if by_name("svg") || by_name("png") => bail!(
-                "{} can hold one picture: add --step N, or name a folder and add --format svg or --format png; a name that \
-                 ends in .apng or .gif becomes a film",
-                output.display()
-            ),
-            None => bail!(
-                "say what to make of {}: --format svg or --format png for a folder with a picture per step, or a name that \
-                 ends in .apng, .gif or .mp4",
-                output.display()
-            ),
-        };
-        let single = arguments.step.is_some();
-        Ok(match format {
-            RenderFormat::Svg if single => Self::One(Kind::Svg),
-            RenderFormat::Png if single => Self::One(Kind::Png),
-            RenderFormat::Svg => Self::Folder(Kind::Svg),
-            RenderFormat::Png => Self::Folder(Kind::Png),
-            _ if single => bail!("--step is for one picture: add --format svg or --format png"),
-            RenderFormat::Apng => Self::Apng,
-            RenderFormat::Gif => Self::Gif,
-            RenderFormat::Mp4 => {
-                let size = arguments.size;
-                if size.width() % 2 + size.height() % 2 > 0 {
-                    bail!("an MP4 needs even width and height, not {size}; choose another --size");
-                }
-                Self::Mp4
-            }
-        })
-    }
-
-    /// Whether pictures follow each other in time, beginning with the start of the scene.
-    const fn is_film(self) -> bool {
-        matches!(self, Self::Apng | Self::Gif | Self::Mp4)
-    }
+/// Whether pictures follow each other in time, beginning with the start of the scene.
+const fn is_film(form: RenderFormat) -> bool {
+    matches!(form, RenderFormat::Apng | RenderFormat::Gif | RenderFormat::Mp4)
 }
 
 /// Which steps are drawn.
-fn picks(arguments: &Render, form: Form, scene: &Scene) -> Result<Picks> {
+fn picks(arguments: &Render, form: RenderFormat, scene: &Scene) -> Result<Picks> {
     let last = scene.steps();
     if let Some(step) = arguments.step {
         if step > last {
@@ -155,11 +124,11 @@ fn picks(arguments: &Render, form: Form, scene: &Scene) -> Result<Picks> {
     }
     let every = match arguments.every {
         Some(every) => every.get(),
-        None if form.is_film() => last.div_ceil(LONG_FILM).max(1),
+        None if is_film(form) => last.div_ceil(LONG_FILM).max(1),
         None => 1,
     };
     // The original's first picture is that after the first step.
-    let first = if form.is_film() { 0 } else { every };
+    let first = if is_film(form) { 0 } else { every };
     let picks = Picks { first, every, last };
     let pictures = picks.count();
     if pictures > MOST_PICTURES {
@@ -239,23 +208,23 @@ enum RenderTarget {
 }
 
 impl RenderTarget {
-    fn open(form: Form, arguments: &Render) -> Result<Self> {
+    fn open(form: RenderFormat, arguments: &Render) -> Result<Self> {
         let inputs: Vec<Identity> = [Some(&arguments.scene), arguments.trace.as_ref(), arguments.overlay.as_ref()]
             .into_iter()
             .flatten()
             .filter_map(|name| Some(Identity::of(&std::fs::metadata(name).ok()?)))
             .collect();
-        if form == Form::Mp4 {
+        if form == RenderFormat::Mp4 {
             Ffmpeg::find()?;
         }
-        Ok(match form {
-            Form::Folder(_) => Self::Folder(Folder::open(&arguments.output)?),
-            _ => Self::Stream(Output::create(&arguments.output, &inputs)?),
+        Ok(match is_film(form) || arguments.step.is_some() {
+            true => Self::Stream(Output::create(&arguments.output, &inputs)?),
+            false => Self::Folder(Folder::open(&arguments.output)?),
         })
     }
 
     /// Draws everything, and says in words what it was.
-    fn draw(self, form: Form, reel: &mut Reel, rate: Rate) -> Result<String> {
+    fn draw(self, form: RenderFormat, reel: &mut Reel, rate: Rate) -> Result<String> {
         let (pictures, size) = (reel.main.pictures, reel.size());
         let steps = match (reel.picks.step(1), reel.picks.step(pictures)) {
             (first, last) if first == last => format!("step {first}"),
@@ -273,22 +242,22 @@ impl RenderTarget {
             format!("{counted_pictures} of {size}: {steps}{every}, {per_second} per second, {seconds} s{bytes},")
         };
         match (self, form) {
-            (Self::Folder(folder), Form::Folder(kind)) => {
-                let names = |number: u32| match kind {
+            (Self::Folder(folder), form) => {
+                let names = |number: u32| match form {
                     // The names that the original gives to its pictures.
-                    Kind::Svg => format!("frame{number:020}.svg"),
-                    Kind::Png => format!("frame{number:05}.png"),
+                    RenderFormat::Svg => format!("frame{number:020}.svg"),
+                    _ => format!("frame{number:05}.png"),
                 };
                 let background = reel.painter.background();
                 let mut raster = Raster::new(size);
                 reel.each(|number, step, shapes| {
-                    let bytes = picture(kind, &mut raster, background, step, shapes)?;
+                    let bytes = picture(form, &mut raster, background, step, shapes)?;
                     folder.write(&names(number), &bytes)
                 })?;
                 if folder.holds(&names(pictures + 1)) {
                     let line =
                         format!("{} also holds older pictures, from {} on\n", folder.name(), names(pictures + 1));
-                    console::complain(line.as_bytes());
+                    console::complain(&line);
                 }
                 let files = match pictures {
                     1 => names(1),
@@ -296,18 +265,18 @@ impl RenderTarget {
                 };
                 Ok(format!("{counted_pictures} of {size}: {steps}{every}, {files},"))
             }
-            (Self::Stream(mut output), Form::One(kind)) => {
+            (Self::Stream(mut output), RenderFormat::Svg | RenderFormat::Png) => {
                 reel.single = true;
                 let background = reel.painter.background();
                 let mut raster = Raster::new(size);
                 reel.each(|_, step, shapes| {
-                    let bytes = picture(kind, &mut raster, background, step, shapes)?;
+                    let bytes = picture(form, &mut raster, background, step, shapes)?;
                     Ok(output.write_all(&bytes)?)
                 })?;
                 output.finish()?;
                 Ok(format!("A picture of {size}: step {},", reel.picks.last.min(reel.picks.step(pictures))))
             }
-            (Self::Stream(output), Form::Mp4) => {
+            (Self::Stream(output), RenderFormat::Mp4) => {
                 let mut encoder = Ffmpeg::start(size, rate, output)?;
                 // The words of ffmpeg when it ends early explain more than that its pipe is closed.
                 let drawn = reel.each_raster(|_, raster| encoder.picture(raster.rgba()));
@@ -316,7 +285,7 @@ impl RenderTarget {
             }
             (Self::Stream(output), form) => {
                 let mut out = CountedWriter { out: BufWriter::new(output), bytes: 0 };
-                if form == Form::Gif {
+                if form == RenderFormat::Gif {
                     let mut film = Gif::new(&mut out, size, rate, &reel.painter.colours())?;
                     reel.each_raster(|_, raster| Ok(film.picture(raster)?))?;
                     film.finish()?;
@@ -329,28 +298,25 @@ impl RenderTarget {
                 out.out.into_inner().map_err(std::io::IntoInnerError::into_error)?.finish()?;
                 Ok(film(bytes))
             }
-            (Self::Folder(_), _) => bail!("a folder takes pictures only"),
         }
     }
 }
 
 /// One picture as the bytes of its file.
 fn picture(
-    kind: Kind,
+    form: RenderFormat,
     raster: &mut Raster,
     background: crate::render::colour::Colour,
     step: u32,
     shapes: &[Shape],
 ) -> Result<Vec<u8>> {
-    match kind {
-        Kind::Svg => Ok(svg::document(raster.size(), background, &format!("step {step}"), shapes).into_bytes()),
-        Kind::Png => {
-            raster.draw(background, shapes);
-            let mut bytes = Vec::new();
-            png(raster, &mut bytes).context("the picture can't be encoded")?;
-            Ok(bytes)
-        }
+    if form == RenderFormat::Svg {
+        return Ok(svg::document(raster.size(), background, &format!("step {step}"), shapes).into_bytes());
     }
+    raster.draw(background, shapes);
+    let mut bytes = Vec::new();
+    png(raster, &mut bytes).context("the picture can't be encoded")?;
+    Ok(bytes)
 }
 
 /// A writer that counts.

@@ -5,14 +5,14 @@
 use crate::{
     cli::{console, input},
     render::Extent,
-    report::describe::step_error,
+    report::describe::no_result,
     scene::Scene,
     sim::{RootSearch, Simulation},
-    trace::{Frame, Layout, Reader},
+    trace::{Frame, Layout},
 };
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use std::{
-    io::{BufReader, BufWriter, Read, Seek, Write},
+    io::{BufRead, BufReader, BufWriter, Read, Seek, Write},
     path::Path,
 };
 use tempfile::SpooledTempFile;
@@ -67,26 +67,14 @@ impl Motion {
     pub(super) fn next(&mut self, row: &mut Vec<f64>) -> Result<bool> {
         row.clear();
         for place in 0..self.width {
-            let mut bytes = [0; 8];
-            if place == 0 && !self.rows.fill_buf_is_there()? {
+            let (mut bytes, context) = ([0; 8], "cannot read the temporary file again");
+            if place == 0 && self.rows.fill_buf().context(context)?.is_empty() {
                 return Ok(false);
             }
-            self.rows.read_exact(&mut bytes).context("cannot read the temporary file again")?;
+            self.rows.read_exact(&mut bytes).context(context)?;
             row.push(f64::from_le_bytes(bytes));
         }
         Ok(true)
-    }
-}
-
-/// Whether there is more to read.
-trait More {
-    fn fill_buf_is_there(&mut self) -> Result<bool>;
-}
-
-impl<R: Read> More for BufReader<R> {
-    fn fill_buf_is_there(&mut self) -> Result<bool> {
-        use std::io::BufRead;
-        Ok(!self.fill_buf().context("cannot read the temporary file again")?.is_empty())
     }
 }
 
@@ -137,8 +125,7 @@ pub(super) fn reference(scene: &Scene, picks: Picks) -> Result<Motion> {
     let mut stopped = None;
     for step in 1..=picks.last {
         if let Err(error) = simulation.step(&mut ()) {
-            let (step, words) = step_error(&error);
-            stopped = Some(format!("step {step} has no result, because {words}"));
+            stopped = Some(no_result(&error));
             break;
         }
         keeper.step(step, &simulation.state().positions)?;
@@ -155,10 +142,7 @@ pub(super) fn reference(scene: &Scene, picks: Picks) -> Result<Motion> {
 pub(super) fn traced(scene: &Scene, name: &Path, picks: Picks) -> Result<Motion> {
     let mut trace = input::trace(name)?;
     let layout = Layout::of(scene);
-    let mut reader = Reader::new(&mut trace.reader, layout);
-    if let Some(length) = trace.length {
-        reader = reader.with_length(length);
-    }
+    let mut reader = trace.records(scene);
     let mut keeper = Keeper::new(scene, picks);
     let mut frame = Frame::default();
     let mut stopped = None;
@@ -180,9 +164,7 @@ pub(super) fn traced(scene: &Scene, name: &Path, picks: Picks) -> Result<Motion>
             }
         }
     }
-    if let Some(message) = trace.failure() {
-        bail!("cannot read the trace {}: {message}", trace.name);
-    }
+    trace.not_failed()?;
     keeper.finish(format!("the trace {}", trace.name), stopped)
 }
 
