@@ -354,7 +354,10 @@ fn the_folder_is_the_graders_again_when_the_run_is_over() {
     let program = bench.script("#!/bin/sh\necho result > out.txt\n");
     let owner = bench.folder.path().metadata().unwrap().uid();
     assert_eq!(bench.run(&program, &[]).ended, Ended::Exited(0));
-    assert_eq!(collect::regular_file(bench.folder.path(), "out.txt", 100).unwrap(), b"result\n");
+    let (mut file, _) = collect::OpenFolder::open(bench.folder.path()).unwrap().regular_file("out.txt", 100).unwrap();
+    let mut bytes = Vec::new();
+    file.read_to_end(&mut bytes).unwrap();
+    assert_eq!(bytes, b"result\n");
     assert_eq!(bench.folder.path().join("out.txt").metadata().unwrap().uid(), owner);
     assert_eq!(bench.folder.path().metadata().unwrap().uid(), owner);
 }

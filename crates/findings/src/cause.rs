@@ -3,7 +3,7 @@
 //! The original's rules are written in oracle-behaviour.md 4 to 6, and why they can't be trusted in numerics.md 1.
 use serde::{Deserialize, Serialize};
 
-/// The rule of the original that makes the verdicts differ.
+/// The rule of the original that makes the verdicts differ; the original's failures come first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cause {
@@ -46,28 +46,6 @@ pub enum Cause {
 }
 
 impl Cause {
-    /// All causes, the original's failures first.
-    pub const ALL: [Self; 18] = [
-        Self::AbsoluteCoefficients,
-        Self::DroppedCoefficients,
-        Self::VanishingPolynomial,
-        Self::ApproachForm,
-        Self::AbsoluteStates,
-        Self::AbsoluteNormals,
-        Self::AccumulatedResiduals,
-        Self::BorderlineDecision,
-        Self::FirstRecord,
-        Self::MidRecord,
-        Self::ContactTime,
-        Self::RepeatedCollision,
-        Self::OwnPolynomials,
-        Self::ImpossibleLog,
-        Self::NotANumber,
-        Self::SmallErrors,
-        Self::TrailingBytes,
-        Self::Damage,
-    ];
-
     /// Whether the original fails what the fair rules accept; else it passes what they reject.
     #[must_use]
     pub const fn original_fails(self) -> bool {

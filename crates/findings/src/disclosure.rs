@@ -89,15 +89,6 @@ pub enum DisclosedFinding {
 }
 
 impl DisclosedFinding {
-    /// The step, from 1; 0 for the first record.
-    #[must_use]
-    pub const fn step(&self) -> u32 {
-        match self {
-            Self::Place { step, .. } => *step,
-            Self::Full(finding) => finding.step,
-        }
-    }
-
     /// Its kind.
     #[must_use]
     pub const fn kind(&self) -> FindingKind {

@@ -80,16 +80,7 @@ impl FindingKind {
             Self::PolynomialDegree => Some("Wrong polynomial degree!"),
             Self::VanishingPolynomial => Some("Polynomial coefficients are close to all zero!"),
             Self::Coefficient => Some("Wrong polynomial coefficients!"),
-            Self::Position
-            | Self::Velocity
-            | Self::ContactTime
-            | Self::RepeatedCollision
-            | Self::PassPositions
-            | Self::RecordsDiffer
-            | Self::ImpossibleLog
-            | Self::TrimmedDecision
-            | Self::MixedForms
-            | Self::PairForce => None,
+            _ => None,
         }
     }
 }

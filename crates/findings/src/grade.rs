@@ -24,19 +24,6 @@ pub enum Visibility {
     AfterPublished,
 }
 
-impl Visibility {
-    /// Gradescope's key.
-    #[must_use]
-    pub const fn key(self) -> &'static str {
-        match self {
-            Self::Visible => "visible",
-            Self::Hidden => "hidden",
-            Self::AfterDueDate => "after_due_date",
-            Self::AfterPublished => "after_published",
-        }
-    }
-}
-
 /// The grade of one submission on one suite.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Grade {
@@ -104,9 +91,14 @@ impl Grade {
         let is_unfit = matches!(first.verdict, Verdict::Unusable | Verdict::CompileError | Verdict::Unwritten);
         let why = |scene: &SceneGrade| (scene.verdict, scene.reason.clone(), scene.ended.clone());
         let same = |scene: &SceneGrade| why(scene) == why(first);
-        let build = self.build.as_ref().filter(|build| !build.end.is_success());
         (is_unfit && self.scenes().all(same))
-            .then(|| build.map_or(Unfit::Scene(&first.result), |build| Unfit::Build(&build.end)))
+            .then(|| self.failed_build().map_or(Unfit::Scene(&first.result), |build| Unfit::Build(&build.end)))
+    }
+
+    /// The build, where it made no program.
+    #[must_use]
+    pub fn failed_build(&self) -> Option<&Build> {
+        self.build.as_ref().filter(|build| !build.end.is_success())
     }
 
     /// Whether two grades are of one suite: of the same scenes, in the same groups, for the same points.

@@ -15,17 +15,6 @@ pub enum Book {
     Fair,
 }
 
-impl Book {
-    /// Its name in reports.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Parity => "parity",
-            Self::Fair => "fair",
-        }
-    }
-}
-
 /// Which rule books are asked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]

@@ -28,27 +28,6 @@ impl Finding {
     }
 }
 
-impl Display for WithoutStep<'_> {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let Finding { step, detail, .. } = self.0;
-        match *detail {
-            FindingDetail::Position { particle, expected, actual, .. } if *step == 0 => {
-                write!(f, "particle {particle} starts at {}", Apart { expected, actual })
-            }
-            FindingDetail::Velocity { particle, expected, actual, .. } if *step == 0 => {
-                write!(f, "particle {particle} starts with velocity {}", Apart { expected, actual })
-            }
-            FindingDetail::RecordsDiffer { part: RecordPart::Impulses } if *step == 0 => {
-                f.write_str("the first record holds impulses, before anything has moved")
-            }
-            FindingDetail::RecordsDiffer { part: RecordPart::Polynomials } if *step == 0 => {
-                f.write_str("the first record holds polynomials, before anything has moved")
-            }
-            _ => write!(f, "{detail}"),
-        }
-    }
-}
-
 /// The reason why a decision is another one, and where coefficients may have gone. Whether a factor explains it, the
 /// trace's other polynomials tell.
 const LACKING: &str = "the trace's polynomials lack coefficients for that";
@@ -57,84 +36,88 @@ const LEFT_OUT: &str = "are within reach of the penalty force, no force was appl
 const DOUBLED: &str = "are within reach of the penalty force, the force between them was applied twice";
 const DROPPING: &str = "the course's library drops leading ones below 1e-12";
 
-impl Display for FindingDetail {
+impl Display for WithoutStep<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        match *self {
-            Self::MissedCollision { expected } => {
+        let is_first = self.0.step == 0;
+        let verb = if is_first { "starts" } else { "ends" };
+        match self.0.detail {
+            FindingDetail::MissedCollision { expected } => {
                 let Impulse { pair, normal, time } = expected;
                 let (pair, [x, y]) = (PairWords(pair), <[f64; 2]>::from(normal));
                 write!(f, "{pair} collide at time {time} with normal ({x}, {y}), the trace misses it")
             }
-            Self::SuperfluousCollision { actual } => {
+            FindingDetail::SuperfluousCollision { actual } => {
                 let LoggedImpulse { normal, time, .. } = actual;
                 let (pair, [x, y]) = (LoggedPair(&actual), <[f64; 2]>::from(normal));
                 write!(f, "the trace has {pair} collide at time {time} with normal ({x}, {y}), they do not")
             }
-            Self::WrongNormal { expected, actual, .. } => {
+            FindingDetail::WrongNormal { expected, actual, .. } => {
                 let pair = PairWords(expected.pair);
                 let (expected, actual) = (expected.normal, actual.normal);
                 let apart = Apart { expected: [expected.x, expected.y], actual: [actual.x, actual.y] };
                 write!(f, "{pair}: contact normal {apart}")
             }
-            Self::PolynomialCount { expected, actual, per_pass } => {
+            FindingDetail::PolynomialCount { expected, actual, per_pass } => {
                 write!(f, "{actual} polynomials logged, expected {expected}")?;
                 write_passes(f, passes(expected, actual, per_pass))
             }
-            Self::PassCount { part, expected, actual } => {
+            FindingDetail::PassCount { part, expected, actual } => {
                 let part = if part == Part::Impulses { "before the mid record" } else { "in the geometric part" };
                 write!(f, "{actual} detection passes {part}, expected {expected}")
             }
-            Self::PolynomialDegree { place, expected, actual_size, .. } => write!(
+            FindingDetail::PolynomialDegree { place, expected, actual_size, .. } => write!(
                 f,
                 "{place}: {actual_size} coefficients, expected {} (leading ones below 1e-12 dropped)",
                 expected.coefficients().len()
             ),
-            Self::VanishingPolynomial { place, .. } => {
+            FindingDetail::VanishingPolynomial { place, .. } => {
                 write!(f, "{place}: the reference's coefficients all vanish, the trace's do not")
             }
-            Self::Coefficient { place, power, expected, actual, .. } => {
+            FindingDetail::Coefficient { place, power, expected, actual, .. } => {
                 write!(f, "{place}, {}: {actual}, expected {expected}", Power(power))
             }
-            Self::Position { particle, expected, actual, .. } => {
-                write!(f, "particle {particle} ends at {}", Apart { expected, actual })
+            FindingDetail::Position { particle, expected, actual, .. } => {
+                write!(f, "particle {particle} {verb} at {}", Apart { expected, actual })
             }
-            Self::Velocity { particle, expected, actual, .. } => {
-                write!(f, "particle {particle} ends with velocity {}", Apart { expected, actual })
+            FindingDetail::Velocity { particle, expected, actual, .. } => {
+                write!(f, "particle {particle} {verb} with velocity {}", Apart { expected, actual })
             }
-            Self::ContactTime { expected: Impulse { pair, time, .. }, actual } => {
+            FindingDetail::ContactTime { expected: Impulse { pair, time, .. }, actual } => {
                 write!(f, "{} collide at time {time}, the trace says {}", PairWords(pair), actual.time)
             }
-            Self::RepeatedCollision { actual } => {
+            FindingDetail::RepeatedCollision { actual } => {
                 write!(f, "the collision of {} is logged more than once", LoggedPair(&actual))
             }
-            Self::PassPositions { place } => write!(
+            FindingDetail::PassPositions { place } => write!(
                 f,
                 "{place}: belongs to other positions than those that the response or the failsafe before it \
                  should lead to"
             ),
-            Self::RecordsDiffer { part } => f.write_str(match part {
+            FindingDetail::RecordsDiffer { part } => f.write_str(match part {
+                RecordPart::Impulses if is_first => "the first record holds impulses, before anything has moved",
+                RecordPart::Polynomials if is_first => "the first record holds polynomials, before anything has moved",
                 RecordPart::State => "the state changes between the step's two records",
                 RecordPart::Impulses => "the step's two records hold different impulses",
                 RecordPart::Polynomials => "the mid record's polynomials are not the first ones of the end record",
             }),
-            Self::ImpossibleLog => f.write_str("a polynomial has more coefficients than any detection has"),
-            Self::TrimmedDecision { place, collides } => {
+            FindingDetail::ImpossibleLog => f.write_str("a polynomial has more coefficients than any detection has"),
+            FindingDetail::TrimmedDecision { place, collides } => {
                 let outcome = if collides { "collide" } else { "do not collide" };
                 let (pair, pass) = (PairWords(place.pair), PassWords(place.pass));
                 write!(f, "{pair} ({pass}) {outcome}; {LACKING}, and decide otherwise ({DROPPING})")
             }
-            Self::TrimmedTime { place, expected, actual } => {
+            FindingDetail::TrimmedTime { place, expected, actual } => {
                 let (pair, pass) = (PairWords(place.pair), PassWords(place.pass));
                 write!(f, "{pair} ({pass}) collide at time {expected}; {LACKING}, and have time {actual} ({DROPPING})")
             }
-            Self::BeyondReach { particle, position: [x, y], velocity: [vx, vy] } => write!(
+            FindingDetail::BeyondReach { particle, position: [x, y], velocity: [vx, vy] } => write!(
                 f,
                 "the step starts or ends with particle {particle} at ({x}, {y}) with velocity ({vx}, {vy}): no \
                  run of the scene leads to such states"
             ),
-            Self::MixedForms { place } => write!(f, "{place}: {OTHER_FORM}"),
-            Self::PairForce { pair, is_doubled: false } => write!(f, "{} {LEFT_OUT}", PairWords(pair)),
-            Self::PairForce { pair, is_doubled: true } => write!(f, "{} {DOUBLED}", PairWords(pair)),
+            FindingDetail::MixedForms { place } => write!(f, "{place}: {OTHER_FORM}"),
+            FindingDetail::PairForce { pair, is_doubled: false } => write!(f, "{} {LEFT_OUT}", PairWords(pair)),
+            FindingDetail::PairForce { pair, is_doubled: true } => write!(f, "{} {DOUBLED}", PairWords(pair)),
         }
     }
 }
@@ -343,8 +326,10 @@ mod tests {
 
     #[test]
     fn whole_passes_are_counted() {
-        let words =
-            |expected, actual, per_pass| FindingDetail::PolynomialCount { expected, actual, per_pass }.to_string();
+        let words = |expected, actual, per_pass| {
+            let detail = FindingDetail::PolynomialCount { expected, actual, per_pass };
+            Finding { step: 1, frame: 2, detail }.what().to_string()
+        };
         assert_eq!(words(40, 60, 20), "60 polynomials logged, expected 40: 1 detection pass too many");
         assert_eq!(words(60, 20, 20), "20 polynomials logged, expected 60: 2 detection passes too few");
         assert_eq!(words(60, 61, 20), "61 polynomials logged, expected 60");

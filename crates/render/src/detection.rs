@@ -6,19 +6,13 @@ use fosssim_judge::study::Study;
 /// mathematically right approach polynomial, where it is another one, has no part in the decision and is not shown.
 #[must_use]
 pub fn picture(study: &Study, title: &str, embedding: Embedding) -> String {
-    let names: Vec<String> = study.curves.iter().map(|curve| curve.role.to_string()).collect();
-    let zeros: Vec<Vec<f64>> = study.curves.iter().map(|curve| curve.real_zeros()).collect();
-    let curves: Vec<PlottedPolynomial<'_>> = study
-        .curves
-        .iter()
-        .zip(names.iter().zip(&zeros))
-        .map(|(curve, (name, zeros))| PlottedPolynomial {
-            name,
-            coefficients: curve.logged.coefficients(),
-            zeros,
-            positive: &curve.positive,
-        })
-        .collect();
+    let curves = study.curves.iter().map(|curve| PlottedPolynomial {
+        name: curve.role.to_string(),
+        coefficients: curve.logged.coefficients(),
+        zeros: curve.real_zeros(),
+        positive: &curve.positive,
+    });
+    let curves: Vec<PlottedPolynomial<'_>> = curves.collect();
     let impact = study.answer.decision.collides().then(|| study.answer.decision.time());
     PolynomialPlot { title, curves: &curves, common: Some(&study.answer.positive), impact }.svg(embedding)
 }

@@ -142,27 +142,26 @@ impl Painter {
             trail.goes_on(time, at(positions, trail.particle));
             trail.draw(&view, &frame, &mut shapes);
         }
-        for &(ends, radius, colour) in &self.edges {
-            let [first, second] = ends.map(|end| at(positions, end));
-            self.edge(first, second, radius, Paint::Solid(colour), &mut shapes);
-        }
-        for (index, (&radius, &colour)) in self.radii.iter().zip(&self.particles).enumerate() {
-            self.disc(at(positions, index), radius, Paint::Solid(colour), &mut shapes);
-        }
+        self.bodies(positions, None, &mut shapes);
         if let Some(other) = overlay {
-            let paint = Paint::Dashed(self.overlay_colour());
-            for &(ends, _, _) in &self.edges {
-                let [first, second] = ends.map(|end| at(other, end));
-                self.edge(first, second, 0.0, paint, &mut shapes);
-            }
-            for (index, &radius) in self.radii.iter().enumerate() {
-                self.disc(at(other, index), radius, paint, &mut shapes);
-            }
+            self.bodies(other, Some(Paint::Dashed(self.overlay_colour())), &mut shapes);
         }
         if self.label {
             self.write(step, time, &mut shapes);
         }
         shapes
+    }
+
+    /// Edges and particles: in their own colours, or all of them as an overlay's thin outlines.
+    fn bodies(&self, positions: &[f64], overlay: Option<Paint>, shapes: &mut Vec<Shape>) {
+        for &(ends, radius, colour) in &self.edges {
+            let [first, second] = ends.map(|end| at(positions, end));
+            let radius = if overlay.is_some() { 0.0 } else { radius };
+            self.edge(first, second, radius, overlay.unwrap_or(Paint::Solid(colour)), shapes);
+        }
+        for (index, (&radius, &colour)) in self.radii.iter().zip(&self.particles).enumerate() {
+            self.disc(at(positions, index), radius, overlay.unwrap_or(Paint::Solid(colour)), shapes);
+        }
     }
 
     /// The picture's rectangle, widened by this number of pixels.

@@ -1,10 +1,15 @@
 //! Words that several reports share.
 use fosssim_judge::PairWords;
-use fosssim_model::sim::StepError;
+use fosssim_model::sim::{Pair, StepError};
 
 /// The message when judging a trace would take too long.
 const BEYOND_BUDGET: &str = "up to here, judging took many times the work of the scene's own run, which is as much as a \
                              trace may ask for";
+
+/// A pair as `detect --pair` takes it.
+pub(crate) fn pair_key(pair: Pair) -> String {
+    format!("{}:{},{}", pair.kind.short(), pair.first, pair.second)
+}
 
 /// The step of a computation without result, and what happened there.
 #[must_use]

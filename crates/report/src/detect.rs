@@ -12,7 +12,7 @@ use fosssim_judge::{
     study::{Answer, Curve, Study},
 };
 use fosssim_model::sim::{Decision, Pair, PairMotion, Pass, PointMotion};
-use fosssim_num::interval::Interval;
+use fosssim_num::{interval::Interval, written::Written};
 use serde_json::{Value, json};
 
 /// The version of the report's shape.
@@ -67,22 +67,17 @@ impl Detect<'_> {
     #[must_use]
     pub fn decision(&self, number: impl Fn(f64) -> String) -> String {
         let answer = &self.study.answer;
+        let time = number(answer.decision.time());
         match answer.decision {
-            Decision::Hit { time, normal } => {
+            Decision::Hit { normal, .. } => {
                 let (x, y) = (number(normal.x), number(normal.y));
-                format!("they collide at time {} with normal ({x}, {y})", number(time))
+                format!("they collide at time {time} with normal ({x}, {y})")
             }
             Decision::Miss { .. } if answer.decision.time() <= 1.0 => {
-                format!(
-                    "no collision: all are positive from time {}, but the normal is zero there",
-                    number(answer.decision.time())
-                )
+                format!("no collision: all are positive from time {time}, but the normal is zero there")
             }
             Decision::Miss { .. } if answer.decision.time().is_finite() => {
-                format!(
-                    "no collision in this step: all are positive from time {} on, which is after it",
-                    number(answer.decision.time())
-                )
+                format!("no collision in this step: all are positive from time {time} on, which is after it")
             }
             Decision::Miss { .. } => "no collision: there is no time from 0 on at which all are positive".to_owned(),
         }
@@ -321,8 +316,7 @@ pub(crate) fn polynomial(coefficients: &[f64]) -> String {
 }
 
 fn motion_view(motion: &PairMotion) -> Value {
-    let vector = |x: f64, y: f64| [Number(x), Number(y)];
-    let point = |point: PointMotion| json!({ "start": vector(point.start.x, point.start.y), "displacement": vector(point.shift.x, point.shift.y) });
+    let point = |point: PointMotion| json!({ "start": point.start.write(), "displacement": point.shift.write() });
     match *motion {
         PairMotion::Particles { centres, radii } => {
             json!({ "points": centres.map(point), "radii": numbers(&radii) })
@@ -334,7 +328,7 @@ fn motion_view(motion: &PairMotion) -> Value {
         PairMotion::HalfPlane { centre, radius, point: at, normal } => json!({
             "points": [point(centre)],
             "radii": numbers(&[radius]),
-            "half_plane": { "point": vector(at.x, at.y), "normal": vector(normal.x, normal.y) },
+            "half_plane": { "point": at.write(), "normal": normal.write() },
         }),
     }
 }
@@ -350,12 +344,12 @@ fn curve_view(curve: &Curve) -> Value {
 }
 
 fn sets(list: &[Interval]) -> Vec<[Number; 2]> {
-    list.iter().map(|interval| [Number(interval.lo), Number(interval.hi)]).collect()
+    list.iter().map(|interval| [interval.lo, interval.hi].write()).collect()
 }
 
 fn answer_view(answer: &Answer) -> Value {
     let normal = match answer.decision {
-        Decision::Hit { normal, .. } => Some([Number(normal.x), Number(normal.y)]),
+        Decision::Hit { normal, .. } => Some(normal.write()),
         Decision::Miss { .. } => None,
     };
     json!({

@@ -4,9 +4,10 @@ use super::{
     grade::one_line,
     number::counted,
     style::{Look, Style},
+    view::{FindingView, document},
     words::{first_divergence, located},
 };
-use fosssim_findings::{disclosure::DisclosedFinding, located::Located};
+use fosssim_findings::{Book, disclosure::DisclosedFinding, located::Located};
 use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 use serde::Serialize;
 use std::fmt::Write;
@@ -52,11 +53,10 @@ impl Diagnosis {
     /// For people.
     #[must_use]
     pub fn text(&self, style: Style) -> String {
-        let mut text = String::new();
         if let [case] = &self.cases[..] {
-            text += &alone(case, style);
-            return text;
+            return alone(case, style);
         }
+        let mut text = String::new();
         let wrong = self.cases.iter().filter(|case| !case.accepted).count();
         let is = if wrong == 1 { "is" } else { "are" };
         let traces = counted(self.cases.len() as u64, "trace");
@@ -85,8 +85,7 @@ impl Diagnosis {
         }
         for case in &self.cases {
             let _ = writeln!(text, "{}", head(case, style));
-            let others: Vec<&Explanation> = case.explanations.iter().filter(|other| !self.is_common(other)).collect();
-            for other in others {
+            for other in case.explanations.iter().filter(|other| !self.is_common(other)) {
                 text += &indented(std::slice::from_ref(other));
             }
         }
@@ -106,25 +105,20 @@ impl Diagnosis {
             trace: &case.trace,
             accepted: case.accepted,
             note: case.note.as_deref(),
-            first_divergence: case
-                .first
-                .as_ref()
-                .and_then(|first| match first {
-                    DisclosedFinding::Full(finding) => Some(finding),
-                    DisclosedFinding::Place { .. } => None,
-                })
-                .map(super::view::FindingView::fair),
+            first_divergence: match &case.first {
+                Some(DisclosedFinding::Full(finding)) => Some(FindingView::by(Book::Fair, finding)),
+                Some(DisclosedFinding::Place { .. }) | None => None,
+            },
             explanations: case.explanations.iter().map(ExplanationView::from).collect(),
         });
-        let view = DiagnosisView {
+        document(&DiagnosisView {
             schema: SCHEMA,
             accepted: self.accepted(),
             located: self.located.as_ref().map(located),
             common: self.common.first().map(ExplanationView::from),
             likely: self.common.iter().map(ExplanationView::from).collect(),
             traces: cases.collect(),
-        };
-        serde_json::to_string_pretty(&view).unwrap_or_default() + "\n"
+        })
     }
 }
 
@@ -185,6 +179,6 @@ struct CaseView<'a> {
     trace: &'a str,
     accepted: bool,
     note: Option<&'a str>,
-    first_divergence: Option<super::view::FindingView>,
+    first_divergence: Option<FindingView>,
     explanations: Vec<ExplanationView>,
 }

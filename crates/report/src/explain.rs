@@ -4,6 +4,7 @@
 //! as numbers only.
 use super::{
     number::{counted, exact},
+    view::key,
     words::explanation::{details, known, place, what},
 };
 use fosssim_mistakes::diagnose::{About, Example, ExampleValue, Explanation};
@@ -114,7 +115,7 @@ fn listed(sentences: &[String]) -> String {
 
 fn of_example(example: &Example) -> Vec<String> {
     let given: Vec<String> =
-        example.given.iter().map(|input| format!("{} = {}", input.input.letter(), vector(&input.value))).collect();
+        example.given.iter().map(|given| format!("{} = {}", key(&given.input), vector(&given.value))).collect();
     let mut lines = vec![format!("example: step {}, {}", example.step, place(&example.place))];
     if !given.is_empty() {
         lines.push(format!("  given     {}", given.join(", ")));

@@ -4,9 +4,12 @@ use super::{
     number::{count, general},
     style::{Look, Style},
     table::{Align, Cell, Table},
-    view::{FindingView, Number},
+    view::{FindingView, Number, document},
 };
-use fosssim_findings::headroom::{FAIR_DOUBLINGS, FAIR_ROOM, FirstFailure, Headroom, MOST_DOUBLINGS};
+use fosssim_findings::{
+    Book,
+    headroom::{FAIR_DOUBLINGS, FAIR_ROOM, FirstFailure, Headroom, MOST_DOUBLINGS},
+};
 use serde::Serialize;
 
 /// The version of the JSON's shape.
@@ -71,15 +74,13 @@ fn rounded(room: f64) -> String {
 /// One JSON object, indented, with a line feed at its end.
 #[must_use]
 pub fn json(measured: &[Measured]) -> String {
-    let view = HeadroomView {
+    document(&HeadroomView {
         schema: SCHEMA,
         largest_factor: 1 << MOST_DOUBLINGS,
         fair_factor: 1 << FAIR_DOUBLINGS,
         fair_room: FAIR_ROOM,
         scenes: measured.iter().map(SceneView::from).collect(),
-    };
-    // A struct of plain values always serialises.
-    serde_json::to_string_pretty(&view).unwrap_or_default() + "\n"
+    })
 }
 
 #[derive(Serialize)]
@@ -113,7 +114,9 @@ impl From<&Measured> for SceneView {
             fair: headroom.is_fair(),
             fails_at_factor: failure.map(|failure| 1 << failure.doublings),
             findings: failure.map_or(0, |failure| failure.findings),
-            first: failure.and_then(|FirstFailure { first, .. }| first.as_ref()).map(FindingView::from),
+            first: failure
+                .and_then(|FirstFailure { first, .. }| first.as_ref())
+                .map(|first| FindingView::by(Book::Parity, first)),
         }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! `schemas/check.schema.json` documents the shape of a check. A field's meaning never changes within one schema
 //! version; fields may be added.
-use fosssim_findings::{Finding, FindingDetail, FindingKind, FindingPlace, PolynomialPlace, Rescaled, Role};
+use fosssim_findings::{Book, Finding, FindingDetail, FindingKind, FindingPlace, PolynomialPlace, Rescaled, Role};
 use fosssim_model::{
     sim::Pass,
     trace::{ImpulsePair, LoggedImpulse},
@@ -23,6 +23,12 @@ pub const CHECK_SCHEMA: u32 = 2;
 pub fn key(value: &impl Serialize) -> String {
     let written = serde_json::to_value(value).unwrap_or_default();
     written.as_str().unwrap_or_default().to_owned()
+}
+
+/// A value as one JSON document, indented, with a line feed at its end.
+pub(crate) fn document(value: &impl Serialize) -> String {
+    // A struct of plain values always serialises.
+    serde_json::to_string_pretty(value).unwrap_or_default() + "\n"
 }
 
 /// Several numbers in JSON.
@@ -107,106 +113,90 @@ pub const fn tolerance(kind: FindingKind) -> Option<f64> {
 }
 
 impl FindingView {
-    /// A finding of the fair rules, whose tolerances depend on the values.
+    /// A finding by the rules of a book. The tolerances of the fair ones depend on the values.
     #[must_use]
-    pub fn fair(finding: &Finding) -> Self {
-        Self { tolerance: None, ..finding.into() }
-    }
-}
-
-impl From<&Finding> for FindingView {
-    fn from(finding: &Finding) -> Self {
-        let mut view = Self {
+    pub fn by(book: Book, finding: &Finding) -> Self {
+        let (kind, detail) = (finding.kind(), &finding.detail);
+        let (expected, actual, residual) = compared(detail);
+        let (coefficient, rescaled) = match *detail {
+            FindingDetail::Coefficient { power, rescaled, .. } => (Some(power), rescaled),
+            _ => (None, None),
+        };
+        Self {
             step: finding.step,
             frame: finding.frame,
-            kind: finding.kind(),
-            pair: match finding.detail {
+            kind,
+            pair: match detail {
                 FindingDetail::SuperfluousCollision { actual } | FindingDetail::RepeatedCollision { actual } => {
-                    Some((&actual).into())
+                    Some(actual.into())
                 }
                 detail => detail.pair().map(ImpulsePair::from),
             },
-            particle: match finding.detail.place() {
+            particle: match detail.place() {
                 FindingPlace::Particle(particle) => Some(particle),
                 _ => None,
             },
-            polynomial: None,
-            coefficient: None,
-            expected: None,
-            actual: None,
-            residual: None,
-            tolerance: tolerance(finding.kind()).map(Number),
-            rescaled: None,
+            polynomial: polynomial(detail),
+            coefficient,
+            expected,
+            actual,
+            residual: residual.map(Number),
+            tolerance: tolerance(kind).filter(|_| book == Book::Parity).map(Number),
+            rescaled,
             text: finding.what().to_string(),
-        };
-        view.fill(&finding.detail);
-        view
+        }
     }
 }
 
-impl FindingView {
-    fn fill(&mut self, detail: &FindingDetail) {
-        match *detail {
-            FindingDetail::MissedCollision { expected } => self.expected = Some(Value::Collision(expected.into())),
-            FindingDetail::SuperfluousCollision { actual } | FindingDetail::RepeatedCollision { actual } => {
-                self.actual = Some(Value::Collision(actual));
-            }
-            FindingDetail::WrongNormal { expected, actual, residual } => {
-                self.compare(Value::Collision(expected.into()), Value::Collision(actual));
-                self.residual = Some(Number(residual));
-            }
-            FindingDetail::ContactTime { expected, actual } => {
-                self.compare(Value::Collision(expected.into()), Value::Collision(actual));
-            }
-            FindingDetail::TrimmedTime { expected, actual, .. } => {
-                self.compare(Value::Number(Number(expected)), Value::Number(Number(actual)));
-            }
-            FindingDetail::BeyondReach { position, .. } => self.actual = Some(Value::Point(position)),
-            FindingDetail::PolynomialCount { expected, actual, .. }
-            | FindingDetail::PassCount { expected, actual, .. } => {
-                self.compare(Value::Count(expected), Value::Count(actual));
-            }
-            FindingDetail::PolynomialDegree { place, expected, actual_size, actual } => {
-                self.place(place, expected, actual);
-                self.compare(Value::Count(expected.coefficients().len()), Value::Count(actual_size));
-            }
-            FindingDetail::VanishingPolynomial { place, expected, actual } => {
-                self.place(place, expected, actual);
-                self.compare(Value::Polynomial(expected), Value::Polynomial(actual));
-            }
-            FindingDetail::Coefficient {
-                place,
-                power,
-                expected,
-                actual,
-                residual,
-                rescaled,
-                expected_polynomial,
-                actual_polynomial,
-            } => {
-                self.place(place, expected_polynomial, actual_polynomial);
-                self.rescaled = rescaled;
-                self.coefficient = Some(power);
-                self.compare(Value::Number(Number(expected)), Value::Number(Number(actual)));
-                self.residual = Some(Number(residual));
-            }
-            FindingDetail::Position { expected, actual, residual, .. }
-            | FindingDetail::Velocity { expected, actual, residual, .. } => {
-                self.compare(Value::Point(expected), Value::Point(actual));
-                self.residual = Some(Number(residual));
-            }
-            // The others have no values to be compared.
-            _ => {}
+/// The polynomial that a finding is about, where it compares two.
+fn polynomial(detail: &FindingDetail) -> Option<PolynomialView> {
+    let (place, expected, actual) = match *detail {
+        FindingDetail::PolynomialDegree { place, expected, actual, .. }
+        | FindingDetail::VanishingPolynomial { place, expected, actual }
+        | FindingDetail::Coefficient { place, expected_polynomial: expected, actual_polynomial: actual, .. } => {
+            (place, expected, actual)
         }
-    }
+        _ => return None,
+    };
+    let PolynomialPlace { pass, role, index, .. } = place;
+    Some(PolynomialView { index, role, pass, expected, actual })
+}
 
-    fn place(&mut self, place: PolynomialPlace, expected: Polynomial, actual: Polynomial) {
-        let PolynomialPlace { pass, role, index, .. } = place;
-        self.polynomial = Some(PolynomialView { index, role, pass, expected, actual });
-    }
-
-    fn compare(&mut self, expected: Value, actual: Value) {
-        self.expected = Some(expected);
-        self.actual = Some(actual);
+/// The values that a finding compares, the reference's first, and their distance.
+fn compared(detail: &FindingDetail) -> (Option<Value>, Option<Value>, Option<f64>) {
+    let both = |expected, actual, residual| (Some(expected), Some(actual), residual);
+    match *detail {
+        FindingDetail::MissedCollision { expected } => (Some(Value::Collision(expected.into())), None, None),
+        FindingDetail::SuperfluousCollision { actual } | FindingDetail::RepeatedCollision { actual } => {
+            (None, Some(Value::Collision(actual)), None)
+        }
+        FindingDetail::WrongNormal { expected, actual, residual } => {
+            both(Value::Collision(expected.into()), Value::Collision(actual), Some(residual))
+        }
+        FindingDetail::ContactTime { expected, actual } => {
+            both(Value::Collision(expected.into()), Value::Collision(actual), None)
+        }
+        FindingDetail::TrimmedTime { expected, actual, .. } => {
+            both(Value::Number(Number(expected)), Value::Number(Number(actual)), None)
+        }
+        FindingDetail::BeyondReach { position, .. } => (None, Some(Value::Point(position)), None),
+        FindingDetail::PolynomialCount { expected, actual, .. } | FindingDetail::PassCount { expected, actual, .. } => {
+            both(Value::Count(expected), Value::Count(actual), None)
+        }
+        FindingDetail::PolynomialDegree { expected, actual_size, .. } => {
+            both(Value::Count(expected.coefficients().len()), Value::Count(actual_size), None)
+        }
+        FindingDetail::VanishingPolynomial { expected, actual, .. } => {
+            both(Value::Polynomial(expected), Value::Polynomial(actual), None)
+        }
+        FindingDetail::Coefficient { expected, actual, residual, .. } => {
+            both(Value::Number(Number(expected)), Value::Number(Number(actual)), Some(residual))
+        }
+        FindingDetail::Position { expected, actual, residual, .. }
+        | FindingDetail::Velocity { expected, actual, residual, .. } => {
+            both(Value::Point(expected), Value::Point(actual), Some(residual))
+        }
+        // The others have no values to be compared.
+        _ => (None, None, None),
     }
 }

@@ -11,7 +11,6 @@ use std::{
     path::{Path, PathBuf},
     process::{Child, Command, Stdio},
     sync::Arc,
-    time::Duration,
 };
 
 use super::{
@@ -54,11 +53,9 @@ impl Supervisor {
     }
 
     fn command(&self, mode: &str) -> Command {
-        let mut command = Command::new(&self.program);
-        command.arg(SUPERVISOR_ARGUMENT).arg(mode).env_clear().current_dir("/");
+        let mut command = in_mode(Command::new(&self.program), mode);
         // Copies of programs lie there, which the probe tries.
         command.env("TMPDIR", std::env::temp_dir());
-        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         command
     }
 
@@ -67,10 +64,7 @@ impl Supervisor {
         let bwrap = bubblewrap::installed().ok_or_else(|| io::Error::other("bwrap is not installed"))?;
         // Inside, our own entry in /proc would be another program's.
         let program = self.program.canonicalize()?;
-        let mut command = bubblewrap::command(&bwrap, &program, folder, sys::user() == 0);
-        command.arg(SUPERVISOR_ARGUMENT).arg(mode).env_clear().current_dir("/");
-        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        Ok(command)
+        Ok(in_mode(bubblewrap::command(&bwrap, &program, folder, sys::user() == 0), mode))
     }
 
     /// Starts it for a run, with the descriptors that the run's walls need.
@@ -111,18 +105,21 @@ impl Supervisor {
             let (control, answers) = keeper.ask(order, files)?;
             Ok((Asked { host: Host::Kept(Box::new(keeper), pool.clone()), control, answers }, false))
         };
-        begin().map_err(|source| SandboxError::Supervisor { program: self.program.display().to_string(), source })
+        begin().map_err(|source| self.not_started(source))
     }
 
-    fn spawn(&self, mode: &str) -> Result<Child, SandboxError> {
-        self.command(mode)
-            .spawn()
-            .map_err(|source| SandboxError::Supervisor { program: self.program.display().to_string(), source })
+    fn not_started(&self, source: io::Error) -> SandboxError {
+        SandboxError::Supervisor { program: self.program.display().to_string(), source }
+    }
+
+    /// What a prober outside of bubblewrap finds.
+    fn probe_outside(&self) -> Result<Probe, SandboxError> {
+        Self::answer(self.command(MODE_PROBE).spawn().map_err(|source| self.not_started(source))?)
     }
 
     /// Has every wall tried once.
     pub(super) fn probe(&self) -> Result<Probe, SandboxError> {
-        let mut probe = Self::answer(self.spawn(MODE_PROBE)?)?;
+        let mut probe = self.probe_outside()?;
         if probe.namespaces.is_some() {
             probe.bubblewrap = self.try_bubblewrap(&probe).err();
         }
@@ -156,6 +153,13 @@ impl Supervisor {
             lost(format!("the probe ended with {}: {text}", output.status))
         })
     }
+}
+
+/// A supervisor's command, asked for this, without an environment.
+fn in_mode(mut command: Command, mode: &str) -> Command {
+    command.arg(SUPERVISOR_ARGUMENT).arg(mode).env_clear().current_dir("/");
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command
 }
 
 /// Starts a supervisor; the answer is also the other end of its standard input.
@@ -221,8 +225,20 @@ impl Backend {
     /// file rules (or, for root, a user per program). Nothing is run then; see [`Backend::unsandboxed`].
     pub fn best(supervisor: Supervisor) -> Result<Self, SandboxError> {
         let reports = layers::reports(&supervisor.probe()?);
-        let walls = layers::walls(&reports).map_err(|missing| SandboxError::Missing { missing })?;
+        let walls = layers::walls(&reports).map_err(lacking)?;
         Ok(Self { kind: Kind::launcher(supervisor, walls), layers: reports.into() })
+    }
+
+    /// The same with the walls of other reports, and with the file rules of a kernel with this version.
+    fn with(&self, reports: Vec<LayerReport>, landlock_version: u8) -> Result<Self, SandboxError> {
+        let kind = match &self.kind {
+            Kind::Launcher { supervisor, .. } => {
+                let walls = layers::walls(&reports).map_err(lacking)?;
+                Kind::launcher(supervisor.clone(), Walls { landlock_version, ..walls })
+            }
+            Kind::Fake(script) => Kind::Fake(script.clone()),
+        };
+        Ok(Self { kind, layers: reports.into() })
     }
 
     /// The same without one of its walls, to prove what the others hold alone. Reports state it.
@@ -231,15 +247,7 @@ impl Backend {
     ///
     /// [`SandboxError::Missing`] when the wall is required on this host.
     pub fn without(&self, layer: Layer) -> Result<Self, SandboxError> {
-        let reports = layers::without(&self.layers, layer);
-        let kind = match &self.kind {
-            Kind::Launcher { supervisor, .. } => {
-                let walls = layers::walls(&reports).map_err(|missing| SandboxError::Missing { missing })?;
-                Kind::launcher(supervisor.clone(), walls)
-            }
-            Kind::Fake(script) => Kind::Fake(script.clone()),
-        };
-        Ok(Self { kind, layers: reports.into() })
+        self.with(layers::without(&self.layers, layer), 0)
     }
 
     /// The same with the file rules of an older kernel (Landlock's version, from 1 on), to prove that they hold, too.
@@ -248,16 +256,7 @@ impl Backend {
     ///
     /// As for [`Backend::without`].
     pub fn with_landlock(&self, version: u8) -> Result<Self, SandboxError> {
-        let reports = layers::with_landlock(&self.layers, version);
-        let kind = match &self.kind {
-            Kind::Launcher { supervisor, .. } => {
-                let walls = layers::walls(&reports).map_err(|missing| SandboxError::Missing { missing })?;
-                let walls = Walls { landlock_version: version, ..walls };
-                Kind::launcher(supervisor.clone(), walls)
-            }
-            Kind::Fake(script) => Kind::Fake(script.clone()),
-        };
-        Ok(Self { kind, layers: reports.into() })
+        self.with(layers::with_landlock(&self.layers, version), version)
     }
 
     /// The same with bubblewrap in place of the grader's own namespaces, to prove that it holds, too. By itself a
@@ -267,13 +266,9 @@ impl Backend {
     ///
     /// [`SandboxError::Missing`] when bubblewrap is not installed or takes other walls away.
     pub fn in_bubblewrap(&self) -> Result<Self, SandboxError> {
-        let missing = |missing| SandboxError::Missing { missing };
         let Kind::Launcher { supervisor, .. } = &self.kind else { return Ok(self.clone()) };
-        let probe = Supervisor::answer(supervisor.spawn(MODE_PROBE)?)?;
-        supervisor.try_bubblewrap(&probe).map_err(missing)?;
-        let reports = layers::in_bubblewrap(&self.layers);
-        let walls = layers::walls(&reports).map_err(missing)?;
-        Ok(Self { kind: Kind::launcher(supervisor.clone(), walls), layers: reports.into() })
+        supervisor.try_bubblewrap(&supervisor.probe_outside()?).map_err(lacking)?;
+        self.with(layers::in_bubblewrap(&self.layers), 0)
     }
 
     /// Every wall that holds on this host, however few: nothing is refused for a missing one. For
@@ -285,7 +280,7 @@ impl Backend {
     /// when the supervisor does not start.
     pub fn unsandboxed(supervisor: Supervisor) -> Result<Self, SandboxError> {
         let reports = layers::reports(&supervisor.probe()?);
-        let walls = layers::whatever_holds(&reports).map_err(|missing| SandboxError::Missing { missing })?;
+        let walls = layers::whatever_holds(&reports).map_err(lacking)?;
         Ok(Self { kind: Kind::launcher(supervisor, walls), layers: reports.into() })
     }
 
@@ -376,9 +371,8 @@ impl Backend {
                         Err(_) => return Err(asked.lost()),
                     }
                 }
-                let (trace_limit, layers) = (job.limits.trace_bytes, self.layers.clone());
-                let Asked { host, control, answers } = asked;
-                let supervised = Supervised { host, answers, session, user, order, trace_limit, layers };
+                let (Asked { host, control, answers }, layers) = (asked, self.layers.clone());
+                let supervised = Supervised { host, answers, session, user, order, layers };
                 Ok(Running::new(supervised, control, reader, folder))
             }
             Ok(Event::Failed(failure)) => {
@@ -391,6 +385,11 @@ impl Backend {
             }
         }
     }
+}
+
+/// The error for walls that this host lacks.
+const fn lacking(missing: String) -> SandboxError {
+    SandboxError::Missing { missing }
 }
 
 /// Writes the job's files into its folder as it lies on the disk.
@@ -433,7 +432,6 @@ fn order(job: &Job, walls: Walls, examined: program::Program, supervisor: &Path)
     let set = set.map(|(name, value)| (name.as_bytes().to_vec(), value.as_bytes().to_vec()));
     let environment = given.chain(set).collect();
     let program = std::path::absolute(&job.program).unwrap_or_else(|_| job.program.clone());
-    let limits = &job.limits;
     Ok(RunOrder {
         program: wire::raw(&program),
         folder: wire::raw(&folder),
@@ -453,19 +451,8 @@ fn order(job: &Job, walls: Walls, examined: program::Program, supervisor: &Path)
         words: examined.script.iter().flat_map(|script| &script.words).map(|word| word.as_bytes().to_vec()).collect(),
         sanitised: examined.sanitised,
         walls,
-        cpu_micros: micros(limits.cpu),
-        wall_micros: micros(limits.wall),
-        memory: limits.memory,
-        output_bytes: limits.output_bytes,
-        folder_bytes: limits.folder_bytes,
-        folder_files: limits.folder_files,
-        processes: limits.processes,
-        open_files: limits.open_files,
+        limits: job.limits.clone(),
     })
-}
-
-fn micros(time: Duration) -> u64 {
-    u64::try_from(time.as_micros()).unwrap_or(u64::MAX)
 }
 
 /// The name of a trace pipe, which leads to no other folder.
@@ -494,12 +481,9 @@ impl TracePipe {
             std::fs::remove_file(&path).map_err(failed)?;
         }
         let folder = File::open(folder).map_err(failed)?;
-        sys::make_fifo(folder.as_fd(), &c_name).map_err(failed)?;
-        let open = |flags| sys::open_beneath(folder.as_fd(), &c_name, flags | libc::O_NONBLOCK).map(File::from);
-        let reader = open(libc::O_RDONLY).map_err(failed)?;
-        let writer = open(libc::O_WRONLY).map_err(failed)?;
+        let reader = sys::make_pipe(folder.as_fd(), &c_name).map_err(failed)?;
+        let writer = sys::open_beneath(folder.as_fd(), &c_name, libc::O_WRONLY | libc::O_NONBLOCK).map_err(failed)?;
         sys::set_blocking(reader.as_fd(), true).map_err(failed)?;
-        sys::enlarge_pipe(reader.as_fd(), wire::PIPE_BYTES);
-        Ok(Self { reader, _writer: writer })
+        Ok(Self { reader: reader.into(), _writer: writer.into() })
     }
 }

@@ -7,7 +7,7 @@
 
 use std::{
     fs::File,
-    io::{self, Read},
+    io,
     os::{fd::AsFd, unix::fs::OpenOptionsExt},
     path::Path,
 };
@@ -32,35 +32,17 @@ pub fn remove_folder(path: &Path) -> io::Result<()> {
     std::fs::remove_dir_all(path).or_else(gone)
 }
 
-/// The contents of the file `name` (which may contain `/`, but leads out of nowhere) in `folder`.
-///
-/// # Errors
-///
-/// When it is missing, not a regular file, reached through a link, has a second name, or is longer than `max_bytes`.
-pub fn regular_file(folder: &Path, name: &str, max_bytes: u64) -> Result<Vec<u8>, CollectError> {
-    let (file, length) = open_regular_file(folder, name, max_bytes)?;
-    let mut bytes = Vec::with_capacity(usize::try_from(length).unwrap_or(0));
-    // The length was checked; the bound holds even if the file grew since.
-    file.take(max_bytes)
-        .read_to_end(&mut bytes)
-        .map_err(|source| CollectError::System { name: name.escape_debug().to_string(), source })?;
-    Ok(bytes)
-}
-
-/// As [`regular_file`], but open, with its length in bytes: for files that are better read in pieces.
-///
-/// # Errors
-///
-/// As [`regular_file`].
-pub fn open_regular_file(folder: &Path, name: &str, max_bytes: u64) -> Result<(File, u64), CollectError> {
-    let folder = OpenFolder::open(folder)
-        .map_err(|source| CollectError::System { name: name.escape_debug().to_string(), source })?;
-    folder.regular_file(name, max_bytes)
-}
-
 #[cfg(test)]
 mod tests {
     use super::{super::sys, *};
+    use std::io::Read;
+
+    fn regular_file(folder: &Path, name: &str, max_bytes: u64) -> Result<Vec<u8>, CollectError> {
+        let (mut file, _) = OpenFolder::open(folder).unwrap().regular_file(name, max_bytes)?;
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes).unwrap();
+        Ok(bytes)
+    }
 
     fn problem(folder: &Path, name: &str) -> String {
         regular_file(folder, name, 1000).unwrap_err().to_string()

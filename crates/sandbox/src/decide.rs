@@ -28,10 +28,10 @@ pub(super) fn ended(order: &RunOrder, report: &Report, stderr: &[u8]) -> Ended {
         _ => {}
     }
     // A short run can pass a limit and end between two looks.
-    if report.peak_memory > order.memory {
+    if report.peak_memory > order.limits.memory {
         return Ended::MemoryLimit;
     }
-    if report.cpu_micros > order.cpu_micros {
+    if report.cpu > order.limits.cpu {
         return Ended::CpuLimit;
     }
     if report.stdout_truncated {
@@ -121,16 +121,12 @@ fn wants_display(stderr: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::job::Limits;
+    use std::time::Duration;
 
     fn order() -> RunOrder {
-        serde_json::from_value(serde_json::json!({
-            "program": [], "folder": [], "arguments": [], "environment": [], "readable": [], "executable": [], "named": [],
-            "libraries": [], "missing": ["libglut.so.3"], "own": [], "pipe": null, "files": [], "volatile": false, "interpreter": null, "words": [], "tools": false, "sanitised": false,
-            "walls": {"landlock": true, "landlock_version": 0, "scopes": true, "seccomp": true, "notify": true, "own_user": true, "namespaces": true, "group": true, "bubblewrap": false},
-            "cpu_micros": 1_000_000, "wall_micros": 2_000_000, "memory": 1000, "output_bytes": 10,
-            "folder_bytes": 10, "folder_files": 10, "processes": 1, "open_files": 10,
-        }))
-        .unwrap()
+        let limits = Limits { cpu: Duration::from_secs(1), memory: 1000, ..Limits::default() };
+        RunOrder { missing: vec!["libglut.so.3".into()], limits, ..RunOrder::default() }
     }
 
     fn exit(code: i32) -> Report {
@@ -158,7 +154,7 @@ mod tests {
     #[test]
     fn a_limit_passed_between_two_looks_is_still_passed() {
         assert_eq!(ended(&order(), &Report { peak_memory: 1001, ..exit(0) }, b""), Ended::MemoryLimit);
-        assert_eq!(ended(&order(), &Report { cpu_micros: 1_000_001, ..exit(0) }, b""), Ended::CpuLimit);
+        assert_eq!(ended(&order(), &Report { cpu: Duration::from_micros(1_000_001), ..exit(0) }, b""), Ended::CpuLimit);
         assert_eq!(ended(&order(), &Report { folder_over: true, ..exit(0) }, b""), Ended::FolderLimit);
         assert_eq!(ended(&order(), &exit(0), b""), Ended::Exited(0));
     }

@@ -9,6 +9,8 @@ use std::{
     time::Duration,
 };
 
+use serde::{Deserialize, Serialize};
+
 /// The rights of a program, beyond computing and writing into its working folder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Policy {
@@ -19,7 +21,7 @@ pub enum Policy {
 }
 
 /// The limits of one run. Every limit is always enforced; there is no "unlimited".
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Limits {
     /// Processor time of all the program's threads and processes together.
     pub cpu: Duration,

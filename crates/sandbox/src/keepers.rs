@@ -15,15 +15,15 @@ use std::{
 
 use super::{
     fault::{SandboxError, lost},
-    job::{Job, ProgramIdentity},
+    job::{Job, Limits, ProgramIdentity},
     outcome::StartProblem,
     program::Program,
     sys,
     wire::{self, Report, RunOrder},
 };
 
-/// The properties that all runs of one keeper share: all of the order but arguments, environment and working folder
-/// with its contents, and the very files that it names.
+/// The properties that all runs of one keeper share: all of the order but arguments, environment, working folder with its
+/// contents and the limit of the trace, which the grader heeds; and the very files that it names.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Kind {
     order: RunOrder,
@@ -49,6 +49,7 @@ impl Kind {
             environment: Vec::new(),
             pipe: None,
             files: Vec::new(),
+            limits: Limits { trace_bytes: 0, ..order.limits },
             ..order.clone()
         };
         let named = order.readable.iter().chain(&order.executable).chain(&order.named);
@@ -220,7 +221,7 @@ mod tests {
         assert_eq!(Kind::of(&same).unwrap(), kind);
         for other in [
             RunOrder { program: b"/bin/ls".to_vec(), ..order() },
-            RunOrder { memory: 7, ..order() },
+            RunOrder { limits: Limits { memory: 7, ..Limits::default() }, ..order() },
             RunOrder { readable: vec![b"/etc/hostname".to_vec()], ..order() },
         ] {
             assert_ne!(Kind::of(&other).unwrap(), kind);

@@ -273,8 +273,7 @@ pub(super) fn without(reports: &[LayerReport], layer: Layer) -> Vec<LayerReport>
     }
     // Root may do without file rules where nothing of the host is in sight.
     if [Layer::FileRules, Layer::Namespaces].contains(&layer) {
-        let active = |layer| reports.iter().any(|report| report.layer == layer && report.active);
-        let hidden = active(Layer::OwnUser) && active(Layer::Namespaces);
+        let hidden = is_active(&reports, Layer::OwnUser) && is_active(&reports, Layer::Namespaces);
         for report in reports.iter_mut().filter(|report| report.layer == Layer::FileRules) {
             report.required = !hidden;
         }
@@ -326,8 +325,13 @@ fn line(report: &LayerReport) -> String {
     format!("{}: {}{remedy}", report.layer.name(), report.detail)
 }
 
+/// Whether a wall holds.
+pub(super) fn is_active(reports: &[LayerReport], layer: Layer) -> bool {
+    reports.iter().any(|report| report.layer == layer && report.active)
+}
+
 fn active(reports: &[LayerReport]) -> Walls {
-    let active = |layer| reports.iter().any(|report| report.layer == layer && report.active);
+    let active = |layer| is_active(reports, layer);
     Walls {
         landlock: active(Layer::FileRules),
         landlock_version: 0,

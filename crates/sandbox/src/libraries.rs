@@ -65,11 +65,7 @@ pub(super) fn readable(
         system: FOLDERS.iter().filter_map(|folder| Path::new(folder).canonicalize().ok()).collect(),
         listed: cache.as_deref().map(listed).unwrap_or_default(),
         own,
-        folders: BTreeSet::new(),
-        found: BTreeSet::new(),
-        links: BTreeSet::new(),
-        names: BTreeSet::new(),
-        missing: Vec::new(),
+        ..Search::default()
     };
     search.folders.extend(search.system.clone());
     search.folders.extend(loader.and_then(Path::parent).map(Path::to_path_buf));
@@ -98,6 +94,7 @@ pub(super) fn readable(
     Readable { files, named, missing }
 }
 
+#[derive(Default)]
 struct Search<'a> {
     /// The system's folders.
     system: Vec<PathBuf>,

@@ -30,6 +30,12 @@ pub(super) fn load(path: &Path) {
     }
 }
 
+/// The bytes that a line of the kernel's tells after this word, in kB.
+pub(super) fn bytes_of(text: &str, word: &str) -> Option<u64> {
+    let line = text.lines().find_map(|line| line.strip_prefix(word)?.strip_suffix(" kB"))?;
+    line.trim().parse::<u64>().ok().map(|kib| kib << 10)
+}
+
 /// Whether memory may be moved to a disk, where it is resident for nobody.
 pub(super) fn has_swap() -> bool {
     asked().totalswap > 0

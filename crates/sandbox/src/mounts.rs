@@ -11,7 +11,7 @@ use std::{
     os::fd::{AsRawFd, BorrowedFd, FromRawFd, OwnedFd, RawFd},
 };
 
-use crate::sys::{Fork, SingleThread};
+use crate::sys::{Fork, SingleThread, check, done};
 
 /// Files there can be read and not changed.
 pub(super) const READ_ONLY: u64 = 0x1;
@@ -33,14 +33,10 @@ struct MountAttributes {
     user_namespace: u64,
 }
 
-fn check(answer: i64) -> io::Result<i64> {
-    if answer < 0 { Err(io::Error::last_os_error()) } else { Ok(answer) }
-}
-
 /// Leaves namespaces for new ones (`CLONE_NEW*`).
 pub(super) fn unshare(flags: i32) -> io::Result<()> {
     // SAFETY: an integer; nothing of ours depends on the namespaces that are left.
-    check(i64::from(unsafe { libc::unshare(flags) })).map(drop)
+    done(unsafe { libc::unshare(flags) })
 }
 
 /// Forks into new namespaces (`CLONE_NEW*`), in which the child is at once, and the first process if one is of
@@ -59,25 +55,15 @@ pub(super) fn fork_into(_: &SingleThread, namespaces: i32) -> io::Result<Fork> {
 pub(super) fn keep_to_ourselves() -> io::Result<()> {
     let flags = libc::MS_REC | libc::MS_PRIVATE;
     // SAFETY: the path is a constant; the other pointers are not read for a change of propagation.
-    let answer = unsafe { libc::mount(std::ptr::null(), c"/".as_ptr(), std::ptr::null(), flags, std::ptr::null()) };
-    check(i64::from(answer)).map(drop)
+    done(unsafe { libc::mount(std::ptr::null(), c"/".as_ptr(), std::ptr::null(), flags, std::ptr::null()) })
 }
 
-/// Mounts a fresh file system of this kind. What set-user bits and devices mean there is: nothing.
-pub(super) fn mount(kind: &CStr, target: &CStr, options: &CStr) -> io::Result<()> {
-    let flags = libc::MS_NOSUID | libc::MS_NODEV | libc::MS_NOEXEC;
-    // SAFETY: all texts outlive the call.
-    let answer = unsafe { libc::mount(kind.as_ptr(), target.as_ptr(), kind.as_ptr(), flags, options.as_ptr().cast()) };
-    check(i64::from(answer)).map(drop)
-}
-
-/// The same for files of a run, which may be executed where the order says so.
-pub(super) fn mount_folder(target: &CStr, options: &CStr, executable: bool) -> io::Result<()> {
+/// Mounts a fresh file system of this kind. What set-user bits and devices mean there is: nothing. Its files may be
+/// executed only where that is said.
+pub(super) fn mount(kind: &CStr, target: &CStr, options: &CStr, executable: bool) -> io::Result<()> {
     let flags = libc::MS_NOSUID | libc::MS_NODEV | if executable { 0 } else { libc::MS_NOEXEC };
     // SAFETY: all texts outlive the call.
-    let answer =
-        unsafe { libc::mount(c"tmpfs".as_ptr(), target.as_ptr(), c"tmpfs".as_ptr(), flags, options.as_ptr().cast()) };
-    check(i64::from(answer)).map(drop)
+    done(unsafe { libc::mount(kind.as_ptr(), target.as_ptr(), kind.as_ptr(), flags, options.as_ptr().cast()) })
 }
 
 /// A copy of the mounts at and beneath the path, which lies nowhere yet. A link at its end is not followed.
@@ -134,5 +120,5 @@ pub(super) fn change_root(root: &CStr, old: &CStr) -> io::Result<()> {
 /// Takes the mounts at and beneath the path away.
 pub(super) fn detach(path: &CStr) -> io::Result<()> {
     // SAFETY: the path outlives the call.
-    check(i64::from(unsafe { libc::umount2(path.as_ptr(), libc::MNT_DETACH) })).map(drop)
+    done(unsafe { libc::umount2(path.as_ptr(), libc::MNT_DETACH) })
 }

@@ -6,6 +6,8 @@ use std::{
     time::{Duration, Instant},
 };
 
+use super::machine;
+
 /// Whether a folder of this number of bytes may lie in memory: as many as there can be runs at one time, and as much
 /// again for the programs, must leave the machine and our own control groups room.
 pub(super) fn is_enough_for(bytes: u64) -> bool {
@@ -32,12 +34,7 @@ fn left() -> Option<u64> {
 
 /// The memory that the kernel could give to programs.
 fn available() -> Option<u64> {
-    available_in(&std::fs::read_to_string("/proc/meminfo").ok()?)
-}
-
-fn available_in(meminfo: &str) -> Option<u64> {
-    let line = meminfo.lines().find_map(|line| line.strip_prefix("MemAvailable:")?.strip_suffix(" kB"))?;
-    line.trim().parse::<u64>().ok().map(|kib| kib << 10)
+    machine::bytes_of(&std::fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable:")
 }
 
 /// A control group that this process is in and that may have a limit.
@@ -77,7 +74,7 @@ mod tests {
     fn a_small_folder_fits_and_one_larger_than_the_machine_does_not() {
         assert!(is_enough_for(1 << 20));
         assert!(!is_enough_for(1 << 60));
-        assert_eq!(available_in("MemTotal: 9 kB\nMemAvailable:    1024 kB\n"), Some(1 << 20));
+        assert_eq!(machine::bytes_of("MemTotal: 9 kB\nMemAvailable:    1024 kB\n", "MemAvailable:"), Some(1 << 20));
     }
 
     #[test]

@@ -8,7 +8,6 @@ use std::{
         Arc, Mutex, PoisonError,
         atomic::{AtomicU64, Ordering},
     },
-    time::Duration,
 };
 
 use super::{
@@ -61,7 +60,6 @@ pub(super) struct Supervised {
     pub(super) session: Option<i32>,
     pub(super) user: Option<u32>,
     pub(super) order: RunOrder,
-    pub(super) trace_limit: u64,
     pub(super) layers: Arc<[LayerReport]>,
 }
 
@@ -73,31 +71,29 @@ impl Running {
         trace: Option<File>,
         folder: Option<OpenFolder>,
     ) -> Self {
-        let trace_bytes = supervised.trace_limit;
-        let control = Arc::new(Mutex::new(Some(control)));
-        let traced = Arc::new(AtomicU64::new(0));
-        let trace = trace.map(|file| TraceReader {
-            source: Source::Pipe(file),
-            limit: trace_bytes,
-            traced: traced.clone(),
-            control: control.clone(),
-        });
+        let (limit, control) = (supervised.order.limits.trace_bytes, Arc::new(Mutex::new(Some(control))));
         let state = State::Supervised(Box::new(supervised));
-        Self { state, trace, folder, traced, canceller: Canceller { control } }
+        Self::reading(state, trace.map(Source::Pipe), limit, control, folder)
     }
 
     /// A run whose outcome is known already.
     pub(super) fn known(outcome: RunOutcome, trace: Option<Vec<u8>>, trace_bytes: u64) -> Self {
-        let control = ControlSocket::default();
-        let traced = Arc::new(AtomicU64::new(0));
-        let trace = trace.map(|bytes| TraceReader {
-            source: Source::Bytes(io::Cursor::new(bytes)),
-            limit: trace_bytes,
-            traced: traced.clone(),
-            control: control.clone(),
-        });
+        let source = trace.map(|bytes| Source::Bytes(io::Cursor::new(bytes)));
         let state = State::Known(Box::new(outcome), trace_bytes);
-        Self { state, trace, folder: None, traced, canceller: Canceller { control } }
+        Self::reading(state, source, trace_bytes, ControlSocket::default(), None)
+    }
+
+    fn reading(
+        state: State,
+        source: Option<Source>,
+        limit: u64,
+        control: ControlSocket,
+        folder: Option<OpenFolder>,
+    ) -> Self {
+        let traced = Arc::new(AtomicU64::new(0));
+        let reader = |source| TraceReader { source, limit, traced: traced.clone(), control: control.clone() };
+        let trace = source.map(reader);
+        Self { state, trace, folder, traced, canceller: Canceller { control } }
     }
 
     /// The bytes that the program writes into its trace pipe; `None` without one, and from the second call on.
@@ -166,16 +162,13 @@ impl Running {
                 return Err(error);
             }
         };
-        let report = match &event {
-            Event::Done(report) => Some(report),
-            _ => None,
-        };
-        supervised.host.rest(report, self.folder.is_none());
         let report = match event {
-            Event::Done(report) => report,
-            Event::Failed(failure) => return Err(set_up_failed(failure)),
-            Event::Ready { .. } => return Err(SandboxError::Lost { how: "it spoke out of turn".into() }),
+            Event::Done(report) => Ok(report),
+            Event::Failed(failure) => Err(set_up_failed(failure)),
+            Event::Ready { .. } => Err(SandboxError::Lost { how: "it spoke out of turn".into() }),
         };
+        supervised.host.rest(report.as_ref().ok(), self.folder.is_none());
+        let report = report?;
         if report.survivors > 0 {
             return Err(SandboxError::Survivors { count: report.survivors });
         }
@@ -187,9 +180,9 @@ impl Running {
         let traced = self.traced.load(Ordering::Relaxed);
         let ended = decide::ended(&supervised.order, &report, &stderr);
         Ok(RunOutcome {
-            ended: decide::beyond_trace(ended, traced > supervised.trace_limit),
-            cpu: Duration::from_micros(report.cpu_micros),
-            wall: Duration::from_micros(report.wall_micros),
+            ended: decide::beyond_trace(ended, traced > supervised.order.limits.trace_bytes),
+            cpu: report.cpu,
+            wall: report.wall,
             peak_memory: report.peak_memory,
             bytes_written: report.stdout_bytes + report.stderr_bytes + report.folder_growth + traced,
             stdout: Captured { bytes: stdout, truncated: report.stdout_truncated },
@@ -214,11 +207,7 @@ impl Drop for Running {
 /// The supervisor's last message and the captured bytes behind it.
 fn receive(answers: &mut File) -> io::Result<(Event, Vec<u8>, Vec<u8>)> {
     let event = wire::receive(&mut *answers)?;
-    let mut bytes = |length: u64| -> io::Result<Vec<u8>> {
-        let mut bytes = Vec::new();
-        let read = (&mut *answers).take(length).read_to_end(&mut bytes)?;
-        if read as u64 == length { Ok(bytes) } else { Err(io::ErrorKind::UnexpectedEof.into()) }
-    };
+    let mut bytes = |length| wire::receive_bytes(&mut *answers, length);
     let (first, second) = match &event {
         Event::Done(report) => (bytes(report.stdout_bytes)?, bytes(report.stderr_bytes)?),
         _ => Default::default(),

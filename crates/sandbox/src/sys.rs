@@ -15,8 +15,13 @@ use std::time::Duration;
 use seccompiler::sock_filter;
 
 /// Turns the kernel's -1 into the error it left behind.
-fn check(answer: i64) -> io::Result<i64> {
+pub(super) fn check(answer: i64) -> io::Result<i64> {
     if answer < 0 { Err(io::Error::last_os_error()) } else { Ok(answer) }
+}
+
+/// The same where the answer says no more than that.
+pub(super) fn done(answer: i32) -> io::Result<()> {
+    check(i64::from(answer)).map(drop)
 }
 
 /// The two sides of a fork.
@@ -84,50 +89,50 @@ pub(super) fn group() -> u32 {
 /// Starts a session of its own, without a controlling terminal.
 pub(super) fn new_session() -> io::Result<()> {
     // SAFETY: no arguments.
-    check(i64::from(unsafe { libc::setsid() })).map(drop)
+    done(unsafe { libc::setsid() })
 }
 
 /// A `prctl` whose arguments are integers.
-fn prctl(option: i32, argument: u64) -> io::Result<i64> {
+fn prctl(option: i32, argument: u64) -> io::Result<()> {
     let none: libc::c_ulong = 0;
     // SAFETY: only called with options that take integers; unused arguments are zero, as the kernel asks.
-    check(i64::from(unsafe { libc::prctl(option, argument as libc::c_ulong, none, none, none) }))
+    done(unsafe { libc::prctl(option, argument as libc::c_ulong, none, none, none) })
 }
 
 /// Makes this process adopt the orphans among its descendants.
 pub(super) fn become_reaper() -> io::Result<()> {
-    prctl(libc::PR_SET_CHILD_SUBREAPER, 1).map(drop)
+    prctl(libc::PR_SET_CHILD_SUBREAPER, 1)
 }
 
 /// Has the kernel kill this process when its parent dies.
 pub(super) fn die_with_parent() -> io::Result<()> {
-    prctl(libc::PR_SET_PDEATHSIG, libc::SIGKILL as u64).map(drop)
+    prctl(libc::PR_SET_PDEATHSIG, libc::SIGKILL as u64)
 }
 
 /// Gives up for ever the gain of privileges by executing a program.
 pub(super) fn no_new_privileges() -> io::Result<()> {
-    prctl(libc::PR_SET_NO_NEW_PRIVS, 1).map(drop)
+    prctl(libc::PR_SET_NO_NEW_PRIVS, 1)
 }
 
 /// Sets a limit (`RLIMIT_*`), soft and hard, never above the hard limit that is already there.
 pub(super) fn limit(resource: u32, value: u64) -> io::Result<()> {
     let mut old = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
     // SAFETY: `old` outlives the call; the resource number is checked by the kernel.
-    check(i64::from(unsafe { libc::getrlimit(resource, &raw mut old) }))?;
+    done(unsafe { libc::getrlimit(resource, &raw mut old) })?;
     let value = value.min(old.rlim_max);
     let new = libc::rlimit { rlim_cur: value, rlim_max: value };
     // SAFETY: `new` outlives the call.
-    check(i64::from(unsafe { libc::setrlimit(resource, &raw const new) })).map(drop)
+    done(unsafe { libc::setrlimit(resource, &raw const new) })
 }
 
 /// Becomes another user and group for good, and leaves all supplementary groups.
 pub(super) fn switch_user(id: u32) -> io::Result<()> {
     // SAFETY: an empty list needs no memory behind its pointer.
-    check(i64::from(unsafe { libc::setgroups(0, std::ptr::null()) }))?;
+    done(unsafe { libc::setgroups(0, std::ptr::null()) })?;
     // SAFETY: integers only.
-    check(i64::from(unsafe { libc::setresgid(id, id, id) }))?;
+    done(unsafe { libc::setresgid(id, id, id) })?;
     // SAFETY: integers only.
-    check(i64::from(unsafe { libc::setresuid(id, id, id) })).map(drop)
+    done(unsafe { libc::setresuid(id, id, id) })
 }
 
 /// Does something with the file permissions of another user, as who root may look into that user's `/proc` entries even
@@ -148,7 +153,7 @@ pub(super) fn with_files_of<T>(user: Option<u32>, action: impl FnOnce() -> T) ->
 /// Makes `new` a copy of the descriptor `old`, which stays open across `execve`.
 pub(super) fn duplicate_to(old: RawFd, new: RawFd) -> io::Result<()> {
     // SAFETY: integers only; the caller owns what lies at `new` (the standard streams of a fresh child).
-    check(i64::from(unsafe { libc::dup2(old, new) })).map(drop)
+    done(unsafe { libc::dup2(old, new) })
 }
 
 /// A copy of the descriptor under a number from `least` on, closed by the next `execve`.
@@ -163,26 +168,26 @@ pub(super) fn duplicate_from(fd: BorrowedFd<'_>, least: u32) -> io::Result<Owned
 /// Keeps the descriptor open across `execve`.
 pub(super) fn keep_on_execute(fd: BorrowedFd<'_>) -> io::Result<()> {
     // SAFETY: integers only, on an open descriptor.
-    check(i64::from(unsafe { libc::fcntl(fd.as_raw_fd(), libc::F_SETFD, 0) })).map(drop)
+    done(unsafe { libc::fcntl(fd.as_raw_fd(), libc::F_SETFD, 0) })
+}
+
+/// The facts of the file system that the descriptor lies on.
+fn about_file_system(fd: BorrowedFd<'_>) -> io::Result<libc::statvfs> {
+    // SAFETY: an all-zero structure is valid and outlives the call, which fills it.
+    unsafe {
+        let mut about: libc::statvfs = std::mem::zeroed();
+        done(libc::fstatvfs(fd.as_raw_fd(), &raw mut about)).map(|()| about)
+    }
 }
 
 /// Whether the open file lies where nothing may be executed (a mount with `noexec`).
 pub(super) fn forbids_execution(fd: BorrowedFd<'_>) -> bool {
-    // SAFETY: an all-zero structure is valid and outlives the call, which fills it.
-    unsafe {
-        let mut about: libc::statvfs = std::mem::zeroed();
-        libc::fstatvfs(fd.as_raw_fd(), &raw mut about) == 0 && about.f_flag & libc::ST_NOEXEC != 0
-    }
+    about_file_system(fd).is_ok_and(|about| about.f_flag & libc::ST_NOEXEC != 0)
 }
 
 /// Bytes and files of the file system that the descriptor lies on.
 pub(super) fn file_system_usage(fd: BorrowedFd<'_>) -> io::Result<(u64, u64)> {
-    // SAFETY: an all-zero structure is valid and outlives the call, which fills it.
-    let about = unsafe {
-        let mut about: libc::statvfs = std::mem::zeroed();
-        check(i64::from(libc::fstatvfs(fd.as_raw_fd(), &raw mut about)))?;
-        about
-    };
+    let about = about_file_system(fd)?;
     let bytes = about.f_blocks.saturating_sub(about.f_bfree).saturating_mul(about.f_frsize);
     Ok((bytes, about.f_files.saturating_sub(about.f_ffree)))
 }
@@ -244,7 +249,7 @@ pub(super) fn kill(pid: i32, signal: i32) -> io::Result<()> {
         return Err(io::Error::other("only single processes are ever signalled"));
     }
     // SAFETY: integers only; the process id is positive, so that no group is meant.
-    check(i64::from(unsafe { libc::kill(pid, signal) })).map(drop)
+    done(unsafe { libc::kill(pid, signal) })
 }
 
 /// Kills everybody in this process namespace if this process is the namespace's first, which is the answer; nothing
@@ -298,7 +303,7 @@ pub(super) fn children_usage() -> io::Result<(Duration, u64)> {
     // SAFETY: an all-zero `rusage` is a valid value; the kernel fills it.
     let usage = unsafe {
         let mut usage: libc::rusage = std::mem::zeroed();
-        check(i64::from(libc::getrusage(libc::RUSAGE_CHILDREN, &raw mut usage)))?;
+        done(libc::getrusage(libc::RUSAGE_CHILDREN, &raw mut usage))?;
         usage
     };
     let time = |value: libc::timeval| {
@@ -364,13 +369,7 @@ pub(super) fn set_blocking(fd: BorrowedFd<'_>, blocking: bool) -> io::Result<()>
     let flags = check(i64::from(unsafe { libc::fcntl(fd.as_raw_fd(), libc::F_GETFL) }))? as i32;
     let flags = if blocking { flags & !libc::O_NONBLOCK } else { flags | libc::O_NONBLOCK };
     // SAFETY: as above.
-    check(i64::from(unsafe { libc::fcntl(fd.as_raw_fd(), libc::F_SETFL, flags) })).map(drop)
-}
-
-/// Asks for a larger pipe buffer; the kernel may refuse, and the smaller one works, too.
-pub(super) fn enlarge_pipe(fd: BorrowedFd<'_>, bytes: i32) {
-    // SAFETY: integers only, on an open descriptor.
-    unsafe { libc::fcntl(fd.as_raw_fd(), libc::F_SETPIPE_SZ, bytes) };
+    done(unsafe { libc::fcntl(fd.as_raw_fd(), libc::F_SETFL, flags) })
 }
 
 /// Opens `name` beneath the folder with `flags`, never leaving the folder and never following a symbolic link.
@@ -396,23 +395,33 @@ pub(super) fn open_beneath(folder: BorrowedFd<'_>, name: &CStr, flags: i32) -> i
     Ok(unsafe { OwnedFd::from_raw_fd(fd as RawFd) })
 }
 
+/// Makes a FIFO in the folder; the answer is its reading end, which does not wait yet.
+pub(super) fn make_pipe(folder: BorrowedFd<'_>, name: &CStr) -> io::Result<OwnedFd> {
+    // The larger, the fewer switches between the program and the grader.
+    const BYTES: i32 = 1 << 20;
+    make_fifo(folder, name)?;
+    let reader = open_beneath(folder, name, libc::O_RDONLY | libc::O_NONBLOCK)?;
+    // SAFETY: integers only, on an open descriptor. The kernel may refuse, and a smaller pipe works, too.
+    unsafe { libc::fcntl(reader.as_raw_fd(), libc::F_SETPIPE_SZ, BYTES) };
+    Ok(reader)
+}
+
 /// Makes a FIFO in the folder, for its owner only.
 pub(super) fn make_fifo(folder: BorrowedFd<'_>, name: &CStr) -> io::Result<()> {
     // SAFETY: the name outlives the call.
-    check(i64::from(unsafe { libc::mkfifoat(folder.as_raw_fd(), name.as_ptr(), 0o600) })).map(drop)
+    done(unsafe { libc::mkfifoat(folder.as_raw_fd(), name.as_ptr(), 0o600) })
 }
 
 /// Gives an open file or folder (also one opened with `O_PATH`) to a user and group.
 pub(super) fn change_owner(fd: BorrowedFd<'_>, user: u32, group: u32) -> io::Result<()> {
     // SAFETY: the empty name is a constant; with AT_EMPTY_PATH the descriptor itself is meant.
-    let answer = unsafe { libc::fchownat(fd.as_raw_fd(), c"".as_ptr(), user, group, libc::AT_EMPTY_PATH) };
-    check(i64::from(answer)).map(drop)
+    done(unsafe { libc::fchownat(fd.as_raw_fd(), c"".as_ptr(), user, group, libc::AT_EMPTY_PATH) })
 }
 
 /// Makes the open folder the current one.
 pub(super) fn enter_folder(fd: BorrowedFd<'_>) -> io::Result<()> {
     // SAFETY: an open descriptor.
-    check(i64::from(unsafe { libc::fchdir(fd.as_raw_fd()) })).map(drop)
+    done(unsafe { libc::fchdir(fd.as_raw_fd()) })
 }
 
 /// Whether the current user may do `mode` (`X_OK`, `R_OK`) with the path.
@@ -507,22 +516,27 @@ pub(super) fn next_announcement(listener: BorrowedFd<'_>) -> io::Result<Option<A
     }
 }
 
-/// Lets the announced call go on as if it had not been announced.
-pub(super) fn let_through(listener: BorrowedFd<'_>, id: u64) -> io::Result<()> {
-    let flags = libc::SECCOMP_USER_NOTIF_FLAG_CONTINUE as u32;
-    let mut answer = libc::seccomp_notif_resp { id, val: 0, error: 0, flags };
-    // SAFETY: the structure is the one that this request reads, and it outlives the call.
-    let done = unsafe { libc::ioctl(listener.as_raw_fd(), libc::SECCOMP_IOCTL_NOTIF_SEND, &raw mut answer) };
-    check(i64::from(done)).map(drop)
+/// The answer to an announced call.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum CallAnswer {
+    /// It goes on as if it had not been announced.
+    GoOn,
+    /// It has succeeded already.
+    Done,
+    /// It fails with this error number.
+    Refused(i32),
 }
 
-/// Answers the announced call in the kernel's place: success, or an error number.
-pub(super) fn answer(listener: BorrowedFd<'_>, id: u64, result: Result<(), i32>) -> io::Result<()> {
-    let error = result.err().map_or(0, |errno| -errno);
-    let mut answer = libc::seccomp_notif_resp { id, val: 0, error, flags: 0 };
-    // SAFETY: as in `let_through`.
-    let done = unsafe { libc::ioctl(listener.as_raw_fd(), libc::SECCOMP_IOCTL_NOTIF_SEND, &raw mut answer) };
-    check(i64::from(done)).map(drop)
+/// Answers the announced call in the kernel's place.
+pub(super) fn answer(listener: BorrowedFd<'_>, id: u64, answer: CallAnswer) -> io::Result<()> {
+    let (error, flags) = match answer {
+        CallAnswer::GoOn => (0, libc::SECCOMP_USER_NOTIF_FLAG_CONTINUE as u32),
+        CallAnswer::Done => (0, 0),
+        CallAnswer::Refused(errno) => (-errno, 0),
+    };
+    let mut answer = libc::seccomp_notif_resp { id, val: 0, error, flags };
+    // SAFETY: the structure is the one that this request reads, and it outlives the call.
+    done(unsafe { libc::ioctl(listener.as_raw_fd(), libc::SECCOMP_IOCTL_NOTIF_SEND, &raw mut answer) })
 }
 
 /// Space for some descriptors in a control message, aligned as the kernel needs it.

@@ -9,10 +9,13 @@ use std::{
     io::{self, Read, Write},
     os::unix::ffi::{OsStrExt, OsStringExt},
     path::{Path, PathBuf},
+    time::Duration,
 };
 
 use fosssim_ended::Ended;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
+
+use super::job::Limits;
 
 /// The hidden first argument that turns the binary into the supervisor.
 pub(super) const SUPERVISOR_ARGUMENT: &str = "__sandbox-supervisor";
@@ -20,8 +23,6 @@ pub(super) const SUPERVISOR_ARGUMENT: &str = "__sandbox-supervisor";
 pub(super) const COMMAND_CANCEL: u8 = b'c';
 /// Command byte: stop the program, its trace is too long.
 pub(super) const COMMAND_TRACE_LIMIT: u8 = b't';
-/// The size of the trace pipe: the larger, the fewer switches between the program and the grader.
-pub(super) const PIPE_BYTES: i32 = 1 << 20;
 /// Few messages are longer than this.
 const USUAL_MESSAGE: u64 = 4 << 10;
 /// No message is longer than this; a longer one means that the streams are out of step.
@@ -100,14 +101,7 @@ pub(super) struct RunOrder {
     pub(super) words: Vec<Raw>,
     pub(super) sanitised: bool,
     pub(super) walls: Walls,
-    pub(super) cpu_micros: u64,
-    pub(super) wall_micros: u64,
-    pub(super) memory: u64,
-    pub(super) output_bytes: u64,
-    pub(super) folder_bytes: u64,
-    pub(super) folder_files: u64,
-    pub(super) processes: u32,
-    pub(super) open_files: u32,
+    pub(super) limits: Limits,
 }
 
 /// A message of the supervisor.
@@ -136,6 +130,11 @@ impl Failure {
     }
 }
 
+/// Makes an error of the system a failure of this stage.
+pub(super) fn stage(name: &'static str) -> impl FnOnce(io::Error) -> Failure {
+    move |error| Failure::new(name, &error)
+}
+
 /// The facts of a finished run.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Report {
@@ -145,8 +144,8 @@ pub(super) struct Report {
     pub(super) status: i32,
     /// The error number of `execve`, if the program never ran.
     pub(super) exec_errno: Option<i32>,
-    pub(super) cpu_micros: u64,
-    pub(super) wall_micros: u64,
+    pub(super) cpu: Duration,
+    pub(super) wall: Duration,
     pub(super) peak_memory: u64,
     /// The growth of the folder from the start to the end.
     pub(super) folder_growth: u64,

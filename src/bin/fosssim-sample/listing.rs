@@ -1,7 +1,7 @@
 //! The catalogue as a table or as JSON.
 use std::io::{self, Write};
 
-use fosssim_oracle::student::{Row, RowKind, all_rows};
+use fosssim_oracle::student::{Area, Row, RowKind, all_rows};
 use serde::Serialize;
 
 #[derive(Serialize)]
@@ -15,14 +15,14 @@ struct Listing {
 struct Entry {
     id: &'static str,
     kind: &'static str,
-    area: &'static str,
+    area: Area,
     explanation: &'static str,
     term: &'static str,
 }
 
 impl From<&Row> for Entry {
     fn from(row: &Row) -> Self {
-        Self { id: row.id, kind: row.kind.name(), area: row.area.name(), explanation: row.what, term: row.term }
+        Self { id: row.id, kind: row.kind.name(), area: row.area, explanation: row.what, term: row.term }
     }
 }
 

@@ -7,6 +7,7 @@ use crate::{
         grade::{one_line, points},
         number::counted,
         style::{Look, Style},
+        view::key,
     },
     sim::StepError,
     suite::{
@@ -156,7 +157,7 @@ fn head(plan: &Plan, style: Style) -> String {
 
 fn of_group(group: &PlannedGroup, style: Style) -> String {
     let marking = &group.marking;
-    let (points, visibility) = (counted_points(marking.points), marking.visibility.key().replace('_', " "));
+    let (points, visibility) = (counted_points(marking.points), key(&marking.visibility).replace('_', " "));
     let name = style.paint(Look::Strong, &one_line(&group.name));
     let (credit, hints) = (credit(marking.credit), marking.hints.words().0);
     let mut text = format!("\n{name}: {points}, {credit}, {visibility}, hints {hints}\n");
@@ -205,11 +206,11 @@ fn of_mistakes(parts: &[SeenPart], style: Style) -> String {
     }
     let title = style.paint(Look::Strong, "Known mistakes that a scene shows, by parts of the work");
     let mut text = format!("\n{title}\n");
-    let width = parts.iter().map(|part| part.area.name().len()).chain(["together".len()]).max().unwrap_or(0);
+    let width = parts.iter().map(|part| key(&part.area).len()).chain(["together".len()]).max().unwrap_or(0);
     let (mut all_seen, mut together) = (0, 0);
     for SeenPart { area, all, unseen } in parts {
         (all_seen, together) = (all_seen + all - unseen.len(), together + all);
-        let _ = writeln!(text, "  {:width$}  {:4} of {all:4}", area.name(), all - unseen.len());
+        let _ = writeln!(text, "  {:width$}  {:4} of {all:4}", key(area), all - unseen.len());
         if !unseen.is_empty() {
             let _ = writeln!(text, "    not shown: {}", unseen.join(", "));
         }

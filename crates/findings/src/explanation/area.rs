@@ -1,7 +1,7 @@
 //! The parts of the assignment.
 use serde::{Deserialize, Serialize};
 
-/// The part of the assignment to which a mistake belongs.
+/// The part of the assignment to which a mistake belongs. Listings have its name in JSON.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Area {
@@ -41,31 +41,4 @@ pub enum Area {
     Trace,
     /// How the program behaves as a process.
     Process,
-}
-
-impl Area {
-    /// Its name in listings.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Forces => "forces",
-            Self::Jacobians => "jacobians",
-            Self::Integrator => "integrator",
-            Self::Penalty => "penalty",
-            Self::NearPairs => "near-pairs",
-            Self::ParticleParticle => "particle-particle",
-            Self::ParticleEdge => "particle-edge",
-            Self::ParticleHalfPlane => "particle-half-plane",
-            Self::Handover => "handover",
-            Self::ContactVector => "contact-vector",
-            Self::Decision => "decision",
-            Self::Response => "response",
-            Self::ContinuousTime => "continuous-time",
-            Self::ImpulseLoop => "impulse-loop",
-            Self::ImpactZones => "impact-zones",
-            Self::Failsafe => "failsafe",
-            Self::Trace => "trace",
-            Self::Process => "process",
-        }
-    }
 }

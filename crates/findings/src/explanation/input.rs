@@ -1,7 +1,7 @@
 //! The inputs of a detection, as the assignment's notation calls them.
 use serde::{Deserialize, Serialize};
 
-/// An input of a detection.
+/// An input of a detection; its name in JSON is its letter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Input {
@@ -33,27 +33,4 @@ pub enum Input {
     N,
     /// The radius of the particle beside it.
     R,
-}
-
-impl Input {
-    /// Its letter.
-    #[must_use]
-    pub const fn letter(self) -> &'static str {
-        match self {
-            Self::X1 => "x1",
-            Self::X2 => "x2",
-            Self::X3 => "x3",
-            Self::Dx1 => "dx1",
-            Self::Dx2 => "dx2",
-            Self::Dx3 => "dx3",
-            Self::R1 => "r1",
-            Self::R2 => "r2",
-            Self::Re => "re",
-            Self::X => "x",
-            Self::Dx => "dx",
-            Self::P => "p",
-            Self::N => "n",
-            Self::R => "r",
-        }
-    }
 }

@@ -212,13 +212,9 @@ impl Explanation {
     /// Whether it says something of the program that other traces may say, too.
     #[must_use]
     pub fn is_vote(&self) -> bool {
-        let is_nothing = matches!(
-            self.about,
-            About::Scene { .. }
-                | About::NotFinite(_)
-                | About::Polynomials { found: OfPolynomials::Nothing | OfPolynomials::NearlyRight, .. }
-        );
-        !is_nothing
+        use OfPolynomials::{NearlyRight, Nothing};
+        let is_nothing = matches!(self.about, About::Polynomials { found: Nothing | NearlyRight, .. });
+        !is_nothing && !self.is_other_scene() && !self.is_not_finite()
     }
 
     /// Whether it explains all that it is about, as far as that can be.

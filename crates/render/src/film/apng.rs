@@ -30,10 +30,7 @@ impl<'a> Apng<'a> {
     /// When it can't be written, or is one more than was said.
     pub fn picture(&mut self, raster: &Raster) -> io::Result<()> {
         let after = rgb(raster);
-        let part = match self.before.is_empty() {
-            true => ChangedArea::whole(self.size),
-            false => ChangedArea::changed::<3>(self.size, &self.before, &after),
-        };
+        let part = ChangedArea::of::<3>(self.size, &self.before, &after);
         if !self.before.is_empty() {
             self.writer.reset_frame_position()?;
             self.writer.set_frame_dimension(part.width, part.height)?;

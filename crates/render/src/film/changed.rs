@@ -11,14 +11,12 @@ pub struct ChangedArea {
 }
 
 impl ChangedArea {
-    /// The whole picture.
-    pub const fn whole(size: Size) -> Self {
-        Self { left: 0, top: 0, width: size.width(), height: size.height() }
-    }
-
     /// The smallest part outside of which two pictures of `N` bytes per pixel are the same; one pixel where they are
-    /// the same everywhere, because a film has no empty pictures.
-    pub fn changed<const N: usize>(size: Size, before: &[u8], after: &[u8]) -> Self {
+    /// the same everywhere, because a film has no empty pictures. All of a film's first picture, which has none before.
+    pub fn of<const N: usize>(size: Size, before: &[u8], after: &[u8]) -> Self {
+        if before.is_empty() {
+            return Self { left: 0, top: 0, width: size.width(), height: size.height() };
+        }
         let row = N * size.width() as usize;
         let differs = |y: &usize| before[y * row..(y + 1) * row] != after[y * row..(y + 1) * row];
         let rows = 0..size.height() as usize;
@@ -80,7 +78,7 @@ mod tests {
         ] {
             let mut after = before.clone();
             dots.iter().for_each(|&(x, y)| after[y * 20 + x] = 1);
-            let part = ChangedArea::changed::<1>(size, &before, &after);
+            let part = ChangedArea::of::<1>(size, &before, &after);
             assert_eq!([part.left, part.top, part.width, part.height], expected, "{dots:?}");
             assert_eq!(part.cut::<1>(size, &after).iter().filter(|&&byte| byte == 1).count(), dots.len());
         }

@@ -8,14 +8,14 @@ use crate::number::short;
 use fosssim_num::{interval::Interval, polynomial::evaluate};
 
 /// A polynomial.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct PlottedPolynomial<'a> {
     /// Its name, in a few words.
-    pub name: &'a str,
+    pub name: String,
     /// Its coefficients, highest power first.
     pub coefficients: &'a [f64],
     /// Its real zeros.
-    pub zeros: &'a [f64],
+    pub zeros: Vec<f64>,
     /// Where it is positive.
     pub positive: &'a [Interval],
 }
@@ -69,7 +69,7 @@ impl PolynomialPlot<'_> {
             let top = row_top(number);
             sheet.line(ink, 2.0, &[[8.0, top + 8.0], [30.0, top + 8.0]]);
             sheet.marker(ink, [19.0, top + 8.0]);
-            sheet.text([36.0, top + 12.0], Anchor::Start, Tone::Plain, curve.name);
+            sheet.text([36.0, top + 12.0], Anchor::Start, Tone::Plain, &curve.name);
             sets(curve.positive, ink, top, 0.75, &mut sheet);
         }
         if let Some(common) = self.common {
@@ -189,15 +189,15 @@ mod tests {
         let (one, both) = ([set(0.5, 1.5)], [set(0.5, 1.0)]);
         let curves = [
             PlottedPolynomial {
-                name: "overlap",
+                name: "overlap".to_owned(),
                 coefficients: &[-0.25, 0.5, -0.1875],
-                zeros: &[0.5, 1.5],
+                zeros: vec![0.5, 1.5],
                 positive: &one,
             },
             PlottedPolynomial {
-                name: "approach",
+                name: "approach".to_owned(),
                 coefficients: &[-0.25, 0.25],
-                zeros: &[1.0],
+                zeros: vec![1.0],
                 positive: &[set(f64::NEG_INFINITY, 1.0)],
             },
         ];
@@ -212,9 +212,8 @@ mod tests {
 
     #[test]
     fn nothing_to_show_is_no_failure() {
-        let nothing = PlottedPolynomial { name: "", coefficients: &[], zeros: &[], positive: &[] };
-        let endless =
-            PlottedPolynomial { name: "", coefficients: &[f64::INFINITY, 1.0], zeros: &[f64::NAN], positive: &[] };
+        let curve = |coefficients, zeros| PlottedPolynomial { name: String::new(), coefficients, zeros, positive: &[] };
+        let (nothing, endless) = (curve(&[], Vec::new()), curve(&[f64::INFINITY, 1.0], vec![f64::NAN]));
         let svg = PolynomialPlot { title: "", curves: &[nothing, endless], common: None, impact: Some(f64::INFINITY) }
             .svg(Embedding::Inline);
         assert!(!svg.contains("NaN") && !svg.contains("style"), "{svg}");

@@ -9,8 +9,9 @@ mod residuals;
 mod sheet;
 
 pub use curves::{PlottedPolynomial, PolynomialPlot};
-pub use passes::{PASSES_AXIS, PassPlot};
-pub use residuals::{RESIDUALS_AXIS, ResidualPlot, Series};
+pub use passes::PassPlot;
+pub use residuals::{ResidualPlot, Series};
+pub use sheet::STEPS_AXIS;
 
 /// Where a plot goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

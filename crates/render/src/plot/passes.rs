@@ -1,7 +1,7 @@
 //! How often each step looked for collisions: as it should have, and as it did.
 use super::{
     Embedding,
-    sheet::{Anchor, Columns, Ink, Sheet, Tone, WIDTH, ticks},
+    sheet::{Anchor, Columns, Ink, LEFT, RIGHT, Sheet, Tone},
 };
 
 /// The contents of a plot of passes.
@@ -15,10 +15,6 @@ pub struct PassPlot<'a> {
     pub actual: &'a [Option<u32>],
 }
 
-const LEFT: f64 = 64.0;
-const RIGHT: f64 = WIDTH - 16.0;
-/// Where the first and the last step stand, in the plot's own units.
-pub const PASSES_AXIS: [f64; 2] = [LEFT, RIGHT];
 const TOP: f64 = 44.0;
 const BOTTOM: f64 = 150.0;
 const HEIGHT: f64 = 192.0;
@@ -38,18 +34,14 @@ impl PassPlot<'_> {
             sheet.rule(if count == 0 { Ink::Axis } else { Ink::Grid }, [LEFT, y(count)], [RIGHT, y(count)]);
             sheet.text([LEFT - 8.0, y(count) + 4.0], Anchor::End, Tone::Faint, &count.to_string());
         }
-        for tick in ticks(steps) {
-            let x = columns.x(tick - 1, LEFT, RIGHT);
-            sheet.text([x, BOTTOM + 16.0], Anchor::Middle, Tone::Faint, &tick.to_string());
-        }
-        sheet.text([RIGHT, HEIGHT - 6.0], Anchor::End, Tone::Faint, "step");
+        sheet.steps(&columns, BOTTOM + 16.0, HEIGHT - 6.0);
         let (mut expected, mut actual, mut differing) = (Vec::new(), Vec::new(), Vec::new());
         for column in 0..columns.columns {
             let range = columns.range(column);
             if range.is_empty() {
                 continue;
             }
-            let x = columns.x(range.start, LEFT, RIGHT);
+            let x = columns.x(range.start);
             // A step that differs stands for its column.
             let place = range.clone().find(|&place| self.differs(place));
             if place.is_some() {
@@ -68,10 +60,7 @@ impl PassPlot<'_> {
             sheet.marker(Ink::Bad, [x, TOP - 8.0]);
         }
         for (number, points) in [expected, actual].iter().enumerate() {
-            let ink = Ink::Series(number);
-            sheet.line(ink, 1.5, points);
-            let every = (points.len() / 12).max(1);
-            points.iter().skip(every * number / 2).step_by(every).for_each(|&point| sheet.marker(ink, point));
+            sheet.series(Ink::Series(number), points, number, 2);
         }
         sheet.legend([LEFT, HEIGHT - 6.0], &[(Ink::Series(0), "expected"), (Ink::Series(1), "actual")]);
         sheet.finish()

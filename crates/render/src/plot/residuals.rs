@@ -1,7 +1,7 @@
 //! Residuals over the steps, on a logarithmic scale, with the tolerance as a line.
 use super::{
     Embedding,
-    sheet::{Anchor, Columns, Ink, Sheet, Tone, WIDTH, ticks},
+    sheet::{Anchor, Columns, Ink, LEFT, RIGHT, Sheet, Tone, WIDTH},
 };
 use crate::number::{decades, short};
 
@@ -22,15 +22,11 @@ pub struct ResidualPlot<'a> {
     /// One to four residuals.
     pub series: &'a [Series<'a>],
     /// The tolerance of these residuals.
-    pub tolerance: Option<f64>,
+    pub tolerance: f64,
     /// A step to be pointed at, from 1, and why.
     pub mark: Option<(u32, &'a str)>,
 }
 
-const LEFT: f64 = 64.0;
-const RIGHT: f64 = WIDTH - 16.0;
-/// Where the first and the last step stand, in the plot's own units.
-pub const RESIDUALS_AXIS: [f64; 2] = [LEFT, RIGHT];
 const TOP: f64 = 48.0;
 const BOTTOM: f64 = 220.0;
 /// Zeros are drawn below the scale, and values that are no numbers above it.
@@ -47,36 +43,28 @@ impl ResidualPlot<'_> {
         let scale = Scale::of(self);
         scale.draw(&mut sheet);
         let columns = Columns::of(steps);
-        for tick in ticks(steps) {
-            let x = columns.x(tick - 1, LEFT, RIGHT);
-            sheet.text([x, BOTTOM + LANE + 16.0], Anchor::Middle, Tone::Faint, &tick.to_string());
-        }
-        sheet.text([RIGHT, HEIGHT - 6.0], Anchor::End, Tone::Faint, "step");
+        sheet.steps(&columns, BOTTOM + LANE + 16.0, HEIGHT - 6.0);
         if let Some((step, why)) = self.mark
             && (1..=steps).contains(&(step as usize))
         {
-            let x = columns.x(step as usize - 1, LEFT, RIGHT);
+            let x = columns.x(step as usize - 1);
             sheet.line(Ink::Bad, 1.0, &[[x, TOP - LANE], [x, BOTTOM + LANE]]);
             let (place, anchor) = if x < 0.6 * WIDTH { (x + 4.0, Anchor::Start) } else { (x - 4.0, Anchor::End) };
             sheet.text([place, TOP - LANE + 8.0], anchor, Tone::Bad, &format!("step {step}: {why}"));
         }
-        if let Some(tolerance) = self.tolerance {
-            let y = scale.y(tolerance);
-            sheet.line(Ink::Bad, 1.5, &[[LEFT, y], [RIGHT, y]]);
-            sheet.text([RIGHT, y - 4.0], Anchor::End, Tone::Bad, &format!("tolerance {}", short(tolerance)));
-        }
+        let y = scale.y(self.tolerance);
+        sheet.line(Ink::Bad, 1.5, &[[LEFT, y], [RIGHT, y]]);
+        sheet.text([RIGHT, y - 4.0], Anchor::End, Tone::Bad, &format!("tolerance {}", short(self.tolerance)));
         for (number, series) in self.series.iter().enumerate() {
             let ink = Ink::Series(number);
             let points: Vec<[f64; 2]> = (0..columns.columns)
                 .filter_map(|column| {
                     let range = columns.range(column);
                     let (place, value) = worst(series.values, range)?;
-                    Some([columns.x(place, LEFT, RIGHT), scale.y(value)])
+                    Some([columns.x(place), scale.y(value)])
                 })
                 .collect();
-            sheet.line(ink, 1.5, &points);
-            let every = (points.len() / 12).max(1);
-            points.iter().skip(every * number / 4).step_by(every).for_each(|&point| sheet.marker(ink, point));
+            sheet.series(ink, &points, number, 4);
         }
         let names: Vec<_> = self.series.iter().enumerate().map(|(k, series)| (Ink::Series(k), series.name)).collect();
         sheet.legend([LEFT, HEIGHT - 6.0], &names);
@@ -85,19 +73,17 @@ impl ResidualPlot<'_> {
 
     /// The plot in words, for readers who do not see it.
     fn description(&self) -> String {
-        let mut words = Vec::new();
-        for series in self.series {
-            let Some((place, value)) = worst(series.values, 0..series.values.len()) else { continue };
-            let mut text = format!("{}: largest {} in step {}", series.name, short(value), place + 1);
-            if let Some(tolerance) = self.tolerance {
-                // A value that is no number is not below the tolerance.
-                let above = series.values.iter().filter(|&&value| !(value < tolerance)).count();
-                text +=
-                    &format!(", {above} of {} steps not below the tolerance {}", series.values.len(), short(tolerance));
-            }
-            words.push(text);
-        }
-        words.join("; ")
+        let of = |Series { name, values }: &Series<'_>| {
+            let (place, value) = worst(values, 0..values.len())?;
+            // A value that is no number is not below the tolerance.
+            let above = values.iter().filter(|&&value| !(value < self.tolerance)).count();
+            let (largest, steps, tolerance) = (short(value), values.len(), short(self.tolerance));
+            Some(format!(
+                "{name}: largest {largest} in step {}, {above} of {steps} steps not below the tolerance {tolerance}",
+                place + 1
+            ))
+        };
+        self.series.iter().filter_map(of).collect::<Vec<_>>().join("; ")
     }
 }
 
@@ -118,7 +104,7 @@ struct Scale {
 
 impl Scale {
     fn of(plot: &ResidualPlot<'_>) -> Self {
-        let values = plot.series.iter().flat_map(|series| series.values).copied().chain(plot.tolerance);
+        let values = plot.series.iter().flat_map(|series| series.values).copied().chain([plot.tolerance]);
         let shown = values.map(f64::abs).filter(|value| *value > 0.0 && value.is_finite());
         let (least, most) =
             shown.fold((f64::INFINITY, 0.0_f64), |(least, most), value| (least.min(value), most.max(value)));
@@ -156,8 +142,7 @@ mod tests {
 
     fn plot(values: &[f64]) -> String {
         let series = [Series { name: "position", values }];
-        let plot =
-            ResidualPlot { title: "Residuals", series: &series, tolerance: Some(1e-10), mark: Some((3, "first")) };
+        let plot = ResidualPlot { title: "Residuals", series: &series, tolerance: 1e-10, mark: Some((3, "first")) };
         plot.svg(Embedding::Inline)
     }
 
@@ -186,7 +171,7 @@ mod tests {
         let svg = plot(&values);
         assert!(svg.len() < 30_000, "{}", svg.len());
         let series = [Series { name: "position", values: &values }];
-        let scale = Scale::of(&ResidualPlot { title: "", series: &series, tolerance: None, mark: None });
+        let scale = Scale::of(&ResidualPlot { title: "", series: &series, tolerance: 1e-10, mark: None });
         let top = crate::number::pixel(scale.y(1e-3));
         assert!(svg.contains(&format!(" {top}L")), "the peak is drawn");
     }

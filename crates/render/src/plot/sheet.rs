@@ -6,6 +6,13 @@ use std::fmt::Write;
 /// Widths of all sheets.
 pub const WIDTH: f64 = 640.0;
 
+/// Where the first and the last step stand in plots over the steps.
+pub const LEFT: f64 = 64.0;
+pub const RIGHT: f64 = WIDTH - 16.0;
+
+/// The same, for others who draw on them.
+pub const STEPS_AXIS: [f64; 2] = [LEFT, RIGHT];
+
 /// The ink of a mark: its class in the style sheet, and the colour for readers without one.
 #[derive(Debug, Clone, Copy)]
 pub enum Ink {
@@ -19,31 +26,17 @@ pub enum Ink {
     Series(usize),
 }
 
-impl Ink {
-    const fn stroke(self) -> (&'static str, &'static str) {
-        match self {
-            Self::Axis => ("ax", "#1b1f24"),
-            Self::Grid => ("gr", "#dfe3e8"),
-            Self::Bad => ("bs", "#b3261e"),
-            Self::Series(number) => match number % 4 {
-                0 => ("s1", "#0063a6"),
-                1 => ("s2", "#a34e00"),
-                2 => ("s3", "#00694a"),
-                _ => ("s4", "#84367c"),
-            },
-        }
-    }
+/// The colours of series.
+const SERIES: [&str; 4] = ["#0063a6", "#a34e00", "#00694a", "#84367c"];
 
-    const fn fill(self) -> (&'static str, &'static str) {
+impl Ink {
+    /// The class of what is drawn along (`s`) or filled (`f`), and the colour. Axes and grids are never filled.
+    fn look(self, kind: char) -> (String, &'static str) {
         match self {
-            Self::Axis | Self::Grid => ("ax", "#1b1f24"),
-            Self::Bad => ("bf", "#b3261e"),
-            Self::Series(number) => match number % 4 {
-                0 => ("f1", "#0063a6"),
-                1 => ("f2", "#a34e00"),
-                2 => ("f3", "#00694a"),
-                _ => ("f4", "#84367c"),
-            },
+            Self::Axis => ("ax".to_owned(), "#1b1f24"),
+            Self::Grid => ("gr".to_owned(), "#dfe3e8"),
+            Self::Bad => (format!("b{kind}"), "#b3261e"),
+            Self::Series(number) => (format!("{kind}{}", number % 4 + 1), SERIES[number % 4]),
         }
     }
 
@@ -121,13 +114,13 @@ impl Sheet {
 
     /// The attributes of a path that is drawn along.
     fn along(&self, ink: Ink) -> String {
-        let (class, colour) = ink.stroke();
+        let (class, colour) = ink.look('s');
         format!(" class=\"{class}\"{}{}", self.look("stroke", colour), self.look("fill", "none"))
     }
 
     /// The attributes of a shape that is filled.
     fn filled(&self, ink: Ink) -> String {
-        let (class, colour) = ink.fill();
+        let (class, colour) = ink.look('f');
         format!(" class=\"{class}\"{}", self.look("fill", colour))
     }
 
@@ -230,6 +223,21 @@ impl Sheet {
         );
     }
 
+    /// The axis of the steps: numbers on one line, its name on another.
+    pub fn steps(&mut self, columns: &Columns, numbers: f64, name: f64) {
+        for tick in ticks(columns.steps) {
+            self.text([columns.x(tick - 1), numbers], Anchor::Middle, Tone::Faint, &tick.to_string());
+        }
+        self.text([RIGHT, name], Anchor::End, Tone::Faint, "step");
+    }
+
+    /// The line of a series, the `number`th of `most`, with its markers between those of the others.
+    pub fn series(&mut self, ink: Ink, points: &[[f64; 2]], number: usize, most: usize) {
+        self.line(ink, 1.5, points);
+        let every = (points.len() / 12).max(1);
+        points.iter().skip(every * number / most).step_by(every).for_each(|&point| self.marker(ink, point));
+    }
+
     /// A legend in a row: line, marker and name of each series.
     pub fn legend(&mut self, [left, base]: [f64; 2], names: &[(Ink, &str)]) {
         let mut x = left;
@@ -271,11 +279,11 @@ impl Columns {
         at(column)..at(column + 1)
     }
 
-    /// The middle of a step's place (from 0) between `left` and `right`.
+    /// The middle of a step's place (from 0).
     #[expect(clippy::cast_precision_loss, reason = "steps fit into 32 bits")]
-    pub fn x(&self, place: usize, left: f64, right: f64) -> f64 {
+    pub fn x(&self, place: usize) -> f64 {
         let steps = (self.steps.max(2) - 1) as f64;
-        left + (right - left) * place as f64 / steps
+        LEFT + (RIGHT - LEFT) * place as f64 / steps
     }
 }
 

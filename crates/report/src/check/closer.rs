@@ -1,6 +1,6 @@
 //! Commands that look closer at the first thing that is wrong.
 use super::{Check, first};
-use fosssim_model::sim::Pair;
+use crate::describe::pair_key;
 
 /// The commands, ready to be typed; none where nothing is wrong, or where the trace came from standard input and is
 /// gone.
@@ -8,12 +8,11 @@ pub(super) fn commands(check: &Check<'_>) -> Vec<String> {
     let Some(first) = first::first(check).filter(|_| check.trace != "-") else { return Vec::new() };
     let (scene, trace, step) = (quoted(check.scene), quoted(check.trace), first.step);
     let mut commands = Vec::new();
-    if let (Some(Pair { kind, first: particle, second }), 1..) = (first.detail.pair(), step) {
+    if let (Some(pair), 1..) = (first.detail.pair().map(pair_key), step) {
         let pass = match first.detail.pass().map_or(0, |pass| pass.index) {
             0 => String::new(),
             index => format!(" --pass {}", index + 1),
         };
-        let pair = format!("{}:{particle},{second}", kind.short());
         commands
             .push(format!("fosssim-oracle detect --scene {scene} --trace {trace} --step {step} --pair {pair}{pass}"));
     }

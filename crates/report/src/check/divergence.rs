@@ -5,6 +5,7 @@ use super::super::{
     table::{Align, Cell, Table},
 };
 use fosssim_judge::{Finding, FindingDetail, Power, Rescaled, differing, factor};
+use fosssim_model::trace::LoggedImpulse;
 
 /// The block about one finding, with a heading and without advice.
 pub(super) fn render(finding: &Finding, steps: u32, style: Style) -> String {
@@ -95,17 +96,12 @@ impl SideBySide {
 pub(crate) fn side_by_side(detail: &FindingDetail) -> SideBySide {
     let rows = |rows: Vec<Row>| SideBySide { rows, ..SideBySide::default() };
     match detail {
-        FindingDetail::MissedCollision { expected } => {
-            rows(collision(Some((expected.normal.x, expected.normal.y, expected.time)), None))
-        }
+        FindingDetail::MissedCollision { expected } => rows(collision(Some((*expected).into()), None)),
         FindingDetail::SuperfluousCollision { actual } | FindingDetail::RepeatedCollision { actual } => {
-            rows(collision(None, Some((actual.normal.x, actual.normal.y, actual.time))))
+            rows(collision(None, Some(*actual)))
         }
         FindingDetail::WrongNormal { expected, actual, .. } | FindingDetail::ContactTime { expected, actual } => {
-            rows(collision(
-                Some((expected.normal.x, expected.normal.y, expected.time)),
-                Some((actual.normal.x, actual.normal.y, actual.time)),
-            ))
+            rows(collision(Some((*expected).into()), Some(*actual)))
         }
         FindingDetail::PolynomialCount { expected, actual, per_pass } => SideBySide {
             after: vec![format!("one pass over all pairs asks about {per_pass}")],
@@ -202,16 +198,14 @@ fn polynomials_with(
 /// The powers of a polynomial's coefficients; none has more.
 const POWERS: [&str; 7] = ["1", "t", "t^2", "t^3", "t^4", "t^5", "t^6"];
 
-/// Contact normal (x, y) and time.
-type Contact = (f64, f64, f64);
-
-fn collision(expected: Option<Contact>, actual: Option<Contact>) -> Vec<Row> {
-    let row = |name, part: fn(Contact) -> f64| match (expected.map(part), actual.map(part)) {
+/// Contact normal and time.
+fn collision(expected: Option<LoggedImpulse>, actual: Option<LoggedImpulse>) -> Vec<Row> {
+    let row = |name, part: fn(LoggedImpulse) -> f64| match (expected.map(part), actual.map(part)) {
         (Some(expected), Some(actual)) => numbers(name, expected, actual),
         (expected, actual) => {
             let value = |value: Option<f64>| value.map_or(Value::Nothing, Value::Number);
             Row { name, expected: value(expected), actual: value(actual), differs: false }
         }
     };
-    vec![row("normal x", |contact| contact.0), row("normal y", |contact| contact.1), row("time", |contact| contact.2)]
+    vec![row("normal x", |one| one.normal.x), row("normal y", |one| one.normal.y), row("time", |one| one.time)]
 }

@@ -4,7 +4,7 @@ use super::super::{
     style::{Look, Style},
     table::{Align, Table},
 };
-use fosssim_findings::Cause;
+use fosssim_findings::{BookFindings, Cause};
 use fosssim_judge::{
     Outcome, PairWords, PassWords,
     fair::{FairRefusal, FairVerdict, Form, Judgement, cause},
@@ -51,23 +51,24 @@ pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
         }
     }
     if !fair.findings.examples.is_empty() {
-        let mut table = Table::new([Align::Left, Align::Right, Align::Left]);
-        table.heading(["kind", "count", "first example"]);
-        for example in &fair.findings.examples {
-            let kind = example.kind();
-            table.row([
-                kind.to_string().into(),
-                count(fair.findings.counts.get(kind)).into(),
-                example.to_string().into(),
-            ]);
-        }
-        text += &table.render(style);
+        text += &kinds(&fair.findings, style);
     }
     if let Some(cause) = cause(outcome) {
         let (heading, sides) = (style.paint(Look::Notice, "The rule books differ:"), sides(cause));
         text += &format!("  {heading} {sides}:\n  {cause}\n");
     }
     Some(text)
+}
+
+/// The kinds of findings of a book, with their first examples.
+pub(super) fn kinds(found: &BookFindings, style: Style) -> String {
+    let mut table = Table::new([Align::Left, Align::Right, Align::Left]);
+    table.heading(["kind", "count", "first example"]);
+    for example in &found.examples {
+        let kind = example.kind();
+        table.row([kind.to_string().into(), count(found.counts.get(kind)).into(), example.to_string().into()]);
+    }
+    table.render(style)
 }
 
 /// The verdict's word, and its look.

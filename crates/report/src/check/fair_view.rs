@@ -1,10 +1,11 @@
 //! The fair rules' part of the check report, for programs.
 use super::super::view::FindingView;
 use fosssim_findings::{
-    BookFindings, Cause, Finding,
+    Book, Cause, Finding, FindingKind,
     fair::{Borderline, FairRefusal, FairVerdict, Form, Judgement, Shares},
 };
 use serde::Serialize;
+use serde_json::{Value, json};
 
 /// The fair rules' judgement.
 #[derive(Debug, Serialize)]
@@ -24,15 +25,15 @@ pub(super) struct FairView<'a> {
 /// All findings of one kind: how many, and the first.
 #[derive(Debug, Serialize)]
 pub(super) struct CountedView {
-    pub(super) count: u64,
+    count: u64,
     #[serde(flatten)]
-    pub(super) first: FindingView,
+    first: FindingView,
 }
 
 impl CountedView {
-    /// The findings of a book.
-    pub(super) fn all(found: &BookFindings, view: impl Fn(&Finding) -> FindingView) -> Vec<Self> {
-        found.examples.iter().map(|first| Self { count: found.counts.get(first.kind()), first: view(first) }).collect()
+    /// The first findings of each kind by a book, of which there are so many.
+    pub(super) fn all(book: Book, firsts: &[Finding], count: impl Fn(FindingKind) -> u64) -> Vec<Self> {
+        firsts.iter().map(|first| Self { count: count(first.kind()), first: FindingView::by(book, first) }).collect()
     }
 }
 
@@ -43,16 +44,8 @@ struct BorderlineView<'a> {
 }
 
 /// The reason why the two rule books differ.
-#[derive(Debug, Serialize)]
-pub(crate) struct CauseView {
-    key: Cause,
-    text: String,
-}
-
-impl From<Cause> for CauseView {
-    fn from(cause: Cause) -> Self {
-        Self { key: cause, text: cause.to_string() }
-    }
+pub(crate) fn cause_view(cause: Cause) -> Value {
+    json!({ "key": cause, "text": cause.to_string() })
 }
 
 impl<'a> From<&'a Judgement> for FairView<'a> {
@@ -61,8 +54,8 @@ impl<'a> From<&'a Judgement> for FairView<'a> {
             verdict: fair.verdict,
             refusal: fair.refusal,
             wrong_steps: fair.findings.wrong_steps,
-            first_divergence: fair.findings.first_divergence.as_ref().map(FindingView::fair),
-            findings: CountedView::all(&fair.findings, FindingView::fair),
+            first_divergence: fair.findings.first_divergence.as_ref().map(|first| FindingView::by(Book::Fair, first)),
+            findings: CountedView::all(Book::Fair, &fair.findings.examples, |kind| fair.findings.counts.get(kind)),
             factor: fair.factor,
             approach_form: fair.form,
             borderline: BorderlineView { count: fair.borderline, examples: &fair.borderline_examples },

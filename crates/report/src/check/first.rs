@@ -4,7 +4,7 @@ use fosssim_judge::Finding;
 use fosssim_mistakes::diagnose::Explanation;
 
 /// Where the trace is another scene's, nothing that differs is a mistake.
-pub(super) fn is_other_scene(check: &Check<'_>) -> bool {
+pub(crate) fn is_other_scene(check: &Check<'_>) -> bool {
     check.explanations.iter().any(Explanation::is_other_scene)
 }
 

@@ -29,11 +29,11 @@ use super::{
     explain::{self, ExplanationView},
     grade::annotation,
     style::Style,
-    view::{CHECK_SCHEMA, FindingView},
+    view::{CHECK_SCHEMA, FindingView, document},
 };
-pub(crate) use fair_view::CauseView;
+pub(crate) use fair_view::cause_view;
 use fair_view::{CountedView, FairView};
-use fosssim_findings::{Book, Damage, Finding, FindingKind, Outcome, Overall, Residuals, Rules, Ruling, Stop};
+use fosssim_findings::{Book, Damage, FindingKind, Outcome, Overall, Residuals, Rules, Ruling, Stop};
 use fosssim_judge::{Unreadable, fair::cause};
 use fosssim_mistakes::diagnose::Explanation;
 use fosssim_model::sim::SearchCounts;
@@ -121,23 +121,14 @@ impl Check<'_> {
     /// The report for programs: one JSON object, indented, with a line feed at its end.
     #[must_use]
     pub fn json(&self) -> String {
-        // A struct of plain values always serialises.
-        serde_json::to_string_pretty(&self.view()).unwrap_or_default() + "\n"
-    }
-
-    fn view(&self) -> CheckView<'_> {
         let outcome = self.outcome;
-        let account = outcome.findings_by(self.book());
-        let finding = |finding: &Finding| match self.book() {
-            Book::Parity => FindingView::from(finding),
-            Book::Fair => FindingView::fair(finding),
-        };
-        CheckView {
+        let (book, account) = (self.book(), outcome.findings_by(self.book()));
+        document(&CheckView {
             schema: CHECK_SCHEMA,
             scene: self.scene,
             trace: self.trace,
             rules: self.rules,
-            official: self.book(),
+            official: book,
             verdict: self.verdict(),
             summary: text::headline(self),
             parity: Parity {
@@ -147,9 +138,9 @@ impl Check<'_> {
                 messages: messages(outcome),
             },
             fair: outcome.fair.as_deref().map(FairView::from),
-            difference: cause(outcome).map(CauseView::from),
-            first_divergence: account.first_divergence.as_ref().map(finding),
-            findings: CountedView::all(account, finding),
+            difference: cause(outcome).map(cause_view),
+            first_divergence: account.first_divergence.as_ref().map(|first| FindingView::by(book, first)),
+            findings: CountedView::all(book, &account.examples, |kind| account.counts.get(kind)),
             advice: advice::lines(self),
             commands: closer::commands(self),
             notes: text::notes(self),
@@ -163,7 +154,7 @@ impl Check<'_> {
             damage: outcome.damage.as_ref().map(DamageView::from),
             trailing_bytes: outcome.trailing_bytes,
             root_searches: self.audit.then_some(outcome.searches),
-        }
+        })
     }
 }
 
@@ -200,7 +191,7 @@ struct CheckView<'a> {
     summary: String,
     parity: Parity,
     fair: Option<FairView<'a>>,
-    difference: Option<CauseView>,
+    difference: Option<serde_json::Value>,
     first_divergence: Option<FindingView>,
     findings: Vec<CountedView>,
     advice: Vec<&'static str>,

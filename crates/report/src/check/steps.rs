@@ -2,7 +2,6 @@
 use super::super::{
     number::{count, counted},
     style::{Look, Style},
-    view::FindingView,
 };
 use super::{Check, divergence, fair_view::CountedView};
 use fosssim_judge::{
@@ -140,21 +139,24 @@ pub(super) fn all(check: &Check<'_>) -> bool {
     check.steps.shown == StepChoice::All
 }
 
+/// The steps that were asked for, each with what is wrong in it; nothing when none was.
+fn shown<'a>(check: &Check<'_>, steps: &'a Steps) -> Option<Vec<(u32, Option<&'a Step>)>> {
+    let found = |number: u32| steps.kept.iter().find(|step| step.number == number);
+    match &check.steps.shown {
+        StepChoice::None => None,
+        StepChoice::All => Some(steps.kept.iter().map(|step| (step.number, Some(step))).collect()),
+        StepChoice::These(asked) => Some(asked.iter().map(|&number| (number, found(number))).collect()),
+    }
+}
+
 /// The section about single steps; nothing when none was asked for, or none is wrong.
 pub(super) fn render(check: &Check<'_>, style: Style) -> Option<String> {
     let (book, steps) = steps_of(check);
-    let blocks: Vec<String> = match &check.steps.shown {
-        StepChoice::None => return None,
-        StepChoice::All => steps.kept.iter().map(|step| block(check, step, style)).collect(),
-        StepChoice::These(asked) => asked
-            .iter()
-            .map(|&number| match steps.kept.iter().find(|step| step.number == number) {
-                Some(step) => block(check, step, style),
-                None => format!("{}\n", style.paint(Look::Strong, &nothing_wrong(check, number))),
-            })
-            .collect(),
+    let block = |(number, found): (u32, Option<&Step>)| match found {
+        Some(step) => block(check, step, style),
+        None => format!("{}\n", style.paint(Look::Strong, &nothing_wrong(check, number))),
     };
-    let mut text = blocks.join("\n");
+    let mut text = shown(check, &steps)?.into_iter().map(block).collect::<Vec<_>>().join("\n");
     let wrong = check.outcome.findings_by(book).wrong_steps;
     let shown = steps.kept.iter().filter(|step| step.number > 0).count() as u64;
     if check.steps.shown == StepChoice::All && shown < wrong {
@@ -205,31 +207,8 @@ pub(super) struct WrongStepView {
 /// The steps that were asked for; nothing when none was.
 pub(super) fn views(check: &Check<'_>) -> Option<Vec<WrongStepView>> {
     let (book, steps) = steps_of(check);
-    let view = |step: &Step| WrongStepView {
-        step: step.number,
-        findings: step
-            .firsts
-            .iter()
-            .map(|first| CountedView {
-                count: 1 + step.more.get(first.kind()),
-                first: match book {
-                    Book::Parity => FindingView::from(first),
-                    Book::Fair => FindingView::fair(first),
-                },
-            })
-            .collect(),
-    };
-    match &check.steps.shown {
-        StepChoice::None => None,
-        StepChoice::All => Some(steps.kept.iter().map(view).collect()),
-        StepChoice::These(asked) => Some(
-            asked
-                .iter()
-                .map(|&number| {
-                    let found = steps.kept.iter().find(|step| step.number == number);
-                    found.map_or(WrongStepView { step: number, findings: Vec::new() }, view)
-                })
-                .collect(),
-        ),
-    }
+    let counted = |step: &Step| CountedView::all(book, &step.firsts, |kind| 1 + step.more.get(kind));
+    let view =
+        |(step, found): (u32, Option<&Step>)| WrongStepView { step, findings: found.map(counted).unwrap_or_default() };
+    Some(shown(check, &steps)?.into_iter().map(view).collect())
 }

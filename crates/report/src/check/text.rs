@@ -15,7 +15,7 @@ use super::{
 use fosssim_judge::{Book, BookFindings, Outcome, Overall, Ruling, Stop, Unreadable, share};
 use fosssim_mistakes::diagnose::Explanation;
 use fosssim_model::sim::StepError;
-use std::iter;
+use std::{fmt::Display, iter};
 
 /// The advice where a trace has met a limit.
 const LIMIT: &str =
@@ -49,10 +49,7 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     // It comes again where all are shown.
     let first = first(check).filter(|_| !steps::all(check));
     parts.extend(first.map(|first| divergence::render(first, outcome.steps, style)));
-    let advice: String = advice::lines(check).iter().map(|line| format!("  - {line}\n")).collect();
-    if !advice.is_empty() {
-        parts.push(format!("{}\n{advice}", style.paint(Look::Strong, "What to look at")));
-    }
+    parts.extend(section("What to look at", "  - ", &advice::lines(check), style));
     parts.extend(steps::render(check, style).filter(|_| is_told));
     let has_tables = check.tables;
     if has_tables {
@@ -66,15 +63,18 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     } else {
         parts.extend(books::render(check, style));
     }
-    parts.extend(noted(check, style));
-    let mut commands: Vec<String> = closer::commands(check).iter().map(|command| format!("  $ {command}\n")).collect();
-    if !has_tables && !commands.is_empty() {
-        commands.push("  --tables shows all kinds of findings, and how much of each tolerance is used\n".to_owned());
-    }
-    if !commands.is_empty() {
-        parts.push(format!("{}\n{}", style.paint(Look::Strong, "Look closer"), commands.concat()));
-    }
+    parts.extend(section("Notes", "  - ", &notes(check), style));
+    let more = "  --tables shows all kinds of findings, and how much of each tolerance is used\n";
+    let commands = section("Look closer", "  $ ", &closer::commands(check), style);
+    parts.extend(commands.map(|commands| commands + if has_tables { "" } else { more }));
     parts.join("\n")
+}
+
+/// Lines under a heading; nothing without any.
+fn section(heading: &str, mark: &str, lines: &[impl Display], style: Style) -> Option<String> {
+    let heading = style.paint(Look::Strong, heading) + "\n";
+    let lines: String = lines.iter().map(|line| format!("{mark}{line}\n")).collect();
+    (!lines.is_empty()).then(|| heading + &lines)
 }
 
 /// The likely mistakes of the program. The likeliest ones fill no more than a screen.
@@ -85,11 +85,11 @@ fn explanations(check: &Check<'_>, style: Style) -> Option<String> {
     let has_example = check.tables || first(check).is_none();
     let without = |one: &Explanation| Explanation { example: None, ..one.clone() };
     let shown = if has_example { shown.to_vec() } else { shown.iter().map(without).collect() };
-    let mut lines: String = explain::lines(&shown).iter().map(|line| format!("  {line}\n")).collect();
+    let mut lines = explain::lines(&shown);
     if !more.is_empty() {
-        lines += &format!("  and {} of less weight (--tables)\n", counted(more.len() as u64, "more explanation"));
+        lines.push(format!("and {} of less weight (--tables)", counted(more.len() as u64, "more explanation")));
     }
-    (!lines.is_empty()).then(|| format!("{}\n{lines}", style.paint(Look::Strong, "What explains it")))
+    section("What explains it", "  ", &lines, style)
 }
 
 fn head(check: &Check<'_>, style: Style) -> String {
@@ -249,25 +249,12 @@ fn used(value: f64, bound: f64) -> String {
 }
 
 fn findings(account: &BookFindings, follow: u64, style: Style) -> String {
-    let mut table = Table::new([Align::Left, Align::Right, Align::Left]);
-    table.heading(["kind", "count", "first example"]);
-    for example in &account.examples {
-        let kind = example.kind();
-        table.row([kind.to_string().into(), count(account.counts.get(kind)).into(), example.to_string().into()]);
-    }
-    let plural = if account.wrong_steps == 1 { "step" } else { "steps" };
-    let heading = format!("Findings: {} in {} {plural}", count(account.counts.total()), count(account.wrong_steps));
-    let mut text = format!("{}\n{}", style.paint(Look::Strong, &heading), table.render(style));
+    let heading = format!("Findings: {} in {}", count(account.counts.total()), counted(account.wrong_steps, "step"));
+    let mut text = format!("{}\n{}", style.paint(Look::Strong, &heading), fair::kinds(account, style));
     if follow > 0 {
         text += &format!("  among them {}\n", follows::words(follow));
     }
     text
-}
-
-fn noted(check: &Check<'_>, style: Style) -> Option<String> {
-    let notes = notes(check);
-    let lines: String = notes.iter().map(|note| format!("  - {note}\n")).collect();
-    (!notes.is_empty()).then(|| format!("{}\n{lines}", style.paint(Look::Strong, "Notes")))
 }
 
 /// Further notes.

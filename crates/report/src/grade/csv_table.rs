@@ -1,9 +1,7 @@
 //! CSV for spreadsheets. A cell that a spreadsheet would take for a formula gets an apostrophe in front.
 use super::{likely_mistakes, no_points, one_line, phrases::NOT_GRADED, points};
-use crate::view::key;
-use crate::words;
-use fosssim_findings::speed::SpeedSource;
-use fosssim_findings::{Grade, PassedOver};
+use crate::{view::key, words};
+use fosssim_findings::{Grade, PassedOver, speed::SpeedSource};
 
 /// One row per scene.
 pub(super) fn scenes(grades: &[Grade], passed_over: &[PassedOver]) -> String {

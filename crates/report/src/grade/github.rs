@@ -12,36 +12,30 @@ pub(super) fn annotations(grades: &[Grade]) -> String {
     let mut text = String::new();
     for grade in grades {
         for warning in &grade.warnings {
-            let _ = writeln!(text, "::warning title={}::{}", property(&grade.submission), data(warning));
+            text += &annotation("warning", &grade.submission, warning);
         }
-        if let Some(build) = grade.build.as_ref().filter(|build| !build.end.is_success()) {
-            let title = property(&format!("{}: {}", grade.submission, words::build(&build.end)));
+        if let Some(build) = grade.failed_build() {
+            let title = format!("{}: {}", grade.submission, words::build(&build.end));
             let words: String = printed(&build.output).chars().take(4000).collect();
-            let _ =
-                writeln!(text, "::error title={title}::{}", words.lines().map(data).collect::<Vec<_>>().join("%0A"));
+            text += &annotation_of("error", &title, words.lines());
         }
         // GitHub shows the first ten: what matters most comes first, and once.
         let head = head_lines(grade);
-        if !head.is_empty() && grade.build.as_ref().is_none_or(|build| build.end.is_success()) {
-            let title = property(&format!("{}: {}, {}", grade.submission, grade.verdict, score(grade)));
-            let _ = writeln!(
-                text,
-                "::error title={title}::{}",
-                head.iter().map(|line| data(line)).collect::<Vec<_>>().join("%0A")
-            );
+        if !head.is_empty() && grade.failed_build().is_none() {
+            let title = format!("{}: {}, {}", grade.submission, grade.verdict, score(grade));
+            text += &annotation_of("error", &title, head.iter().map(String::as_str));
         }
         let wrong = grade.scenes().filter(|scene| !scene.verdict.is_accepted() && grade.unfit().is_none());
         for scene in wrong {
             let level = if scene.verdict == Verdict::NotRun { "warning" } else { "error" };
-            let title = property(&format!("{}: {} {}", grade.submission, scene.scene, scene.verdict));
+            let title = format!("{}: {} {}", grade.submission, scene.scene, scene.verdict);
             let words: Vec<String> =
                 std::iter::once(words::summary(scene)).chain(explain::sentence(&scene.settled)).collect();
-            let _ = writeln!(text, "::{level} title={title}::{}", data(&words.join("; ")));
+            text += &annotation(level, &title, &words.join("; "));
         }
         for scene in grade.scenes() {
             let Some(words) = difference(scene) else { continue };
-            let title = property(&format!("{}: {}", grade.submission, scene.scene));
-            let _ = writeln!(text, "::warning title={title}::{}", data(&words));
+            text += &annotation("warning", &format!("{}: {}", grade.submission, scene.scene), &words);
         }
     }
     text
@@ -49,7 +43,13 @@ pub(super) fn annotations(grades: &[Grade]) -> String {
 
 /// One annotation: `error` or `warning`, its title and its words.
 pub(crate) fn annotation(level: &str, title: &str, words: &str) -> String {
-    format!("::{level} title={}::{}\n", property(title), data(words))
+    annotation_of(level, title, [words])
+}
+
+/// The same with words in several lines.
+fn annotation_of<'a>(level: &str, title: &str, lines: impl IntoIterator<Item = &'a str>) -> String {
+    let lines: Vec<String> = lines.into_iter().map(data).collect();
+    format!("::{level} title={}::{}\n", property(title), lines.join("%0A"))
 }
 
 /// A warning per entry that is no submission.
@@ -60,6 +60,9 @@ pub(super) fn passed_over(entries: &[PassedOver]) -> String {
 
 /// The same as a list in Markdown.
 pub(super) fn list_of_passed_over(entries: &[PassedOver]) -> String {
+    if entries.is_empty() {
+        return String::new();
+    }
     let item = |entry: &PassedOver| format!("- {}: {}\n", cell(&entry.name), cell(&entry.why));
     format!("### Not graded\n\n{}\n", entries.iter().map(item).collect::<String>())
 }
@@ -85,7 +88,7 @@ pub(super) fn summary(grades: &[Grade]) -> String {
         for warning in &grade.warnings {
             let _ = writeln!(text, "**Warning:** {}\n", cell(warning));
         }
-        if let Some(build) = grade.build.as_ref().filter(|build| !build.end.is_success()) {
+        if let Some(build) = grade.failed_build() {
             if grade.unfit().is_none() {
                 let _ = writeln!(text, "{}\n", cell(&words::build(&build.end)));
             }

@@ -1,9 +1,10 @@
 //! Gradescope's results.json. A fault of ours has no score: the harness exits with an error instead of a zero.
-use super::speed_words;
-use super::{super::explain, difference, head_lines, plain, points, printed, see_above};
-use crate::{number::counted, words};
-use fosssim_findings::speed::{SpeedGrade, SpeedSource};
-use fosssim_findings::{Grade, SceneGrade, Verdict, Visibility};
+use super::{super::explain, difference, head_lines, plain, points, printed, see_above, speed_words};
+use crate::{number::counted, view::document, words};
+use fosssim_findings::{
+    Grade, SceneGrade, Verdict, Visibility,
+    speed::{SpeedGrade, SpeedSource},
+};
 use fosssim_mistakes::together::for_students;
 use serde::Serialize;
 use std::{borrow::Cow, fmt::Write};
@@ -33,7 +34,7 @@ struct Test {
     number: String,
     output: String,
     tags: Vec<String>,
-    visibility: &'static str,
+    visibility: Visibility,
 }
 
 #[derive(Serialize)]
@@ -68,7 +69,7 @@ pub(super) fn render(grade: &Grade) -> String {
                     }
                 },
                 tags: vec![scene.verdict.code().to_owned()],
-                visibility: group.visibility.key(),
+                visibility: group.visibility,
             });
         }
         if let Some(speed) = &group.speed {
@@ -84,7 +85,7 @@ pub(super) fn render(grade: &Grade) -> String {
                 number: format!("{}.{}", g + 1, group.scenes.len() + 1),
                 output: plain(&words),
                 tags: vec!["speed".to_owned()],
-                visibility: group.visibility.key(),
+                visibility: group.visibility,
             });
         }
     }
@@ -104,9 +105,7 @@ pub(super) fn render(grade: &Grade) -> String {
             sandbox: grade.layers.clone(),
         },
     };
-    let mut text = serde_json::to_string_pretty(&results).unwrap_or_default();
-    text.push('\n');
-    text
+    document(&results)
 }
 
 fn overall(grade: &Grade) -> String {
@@ -120,12 +119,10 @@ fn overall(grade: &Grade) -> String {
         }
         None => out_of_time(grade),
     }];
-    if let Some(build) = grade.build.as_ref().filter(|build| !build.end.is_success()) {
+    if let Some(build) = grade.failed_build() {
         lines.push(format!("{}\n{}", plain(&words::build(&build.end)), printed(&build.output)));
-    }
-    // A fault of the upload itself tells of no scene.
-    let told = grade.build.as_ref().is_some_and(|build| !build.end.is_success());
-    if !told {
+    } else {
+        // A fault of the upload itself tells of no scene.
         let shown = if grade.unfit().is_some() { Cow::Borrowed(grade) } else { for_students(grade) };
         lines.extend(head_lines(&shown).iter().map(|line| plain(line)));
     }
@@ -141,11 +138,10 @@ fn out_of_time(grade: &Grade) -> String {
         counted(grade.scenes().count() as u64, "scene")
     );
     let scenes = grade.groups.iter().flat_map(|group| group.scenes.iter().map(move |scene| (group, scene)));
-    let longest = if grade.shows_output || grade.is_visible() { Some(scenes) } else { None };
-    let longest = longest
-        .and_then(|scenes| scenes.max_by_key(|(_, scene)| scene.measured.wall))
-        .filter(|(_, scene)| !scene.measured.wall.is_zero());
-    if let Some((group, longest)) = longest {
+    let longest = scenes.max_by_key(|(_, scene)| scene.measured.wall);
+    if let Some((group, longest)) = longest.filter(|(_, scene)| !scene.measured.wall.is_zero())
+        && (grade.shows_output || grade.is_visible())
+    {
         let _ = write!(text, " Your program took {:.1} s", grade.wall.as_secs_f64());
         let (seconds, scene, summary) =
             (longest.measured.wall.as_secs_f64(), plain(&longest.scene), plain(&words::summary(longest)));

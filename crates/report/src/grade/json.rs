@@ -1,9 +1,10 @@
 //! Our own JSON (`schemas/grade.schema.json`): everything a grade holds.
-use super::speed_words;
-use super::{super::explain::ExplanationView, phrases::NOT_GRADED, plain, printed};
-use crate::{check::CauseView, words};
-use fosssim_findings::speed::{SpeedGrade, SpeedSource};
-use fosssim_findings::{Book, Grade, GroupGrade, PassedOver, Rules, SceneGrade, Visibility};
+use super::{super::explain::ExplanationView, phrases::NOT_GRADED, plain, printed, speed_words};
+use crate::{check::cause_view, view::document, words};
+use fosssim_findings::{
+    Book, Grade, GroupGrade, PassedOver, Rules, SceneGrade, Visibility,
+    speed::{SpeedGrade, SpeedSource},
+};
 use fosssim_mistakes::together::{likely_mistake, likely_mistakes};
 use serde::Serialize;
 
@@ -17,13 +18,7 @@ struct GradeDocument {
     grades: Vec<GradeView>,
     /// Entries of the class that are no submissions; left out where there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    passed_over: Vec<PassedOverView>,
-}
-
-#[derive(Serialize)]
-struct PassedOverView {
-    name: String,
-    why: String,
+    passed_over: Vec<PassedOver>,
 }
 
 #[derive(Serialize)]
@@ -97,7 +92,7 @@ struct SceneView {
     verdict: &'static str,
     code: &'static str,
     summary: String,
-    difference: Option<CauseView>,
+    difference: Option<serde_json::Value>,
     details: Vec<String>,
     explanations: Vec<ExplanationView>,
     points: Option<f64>,
@@ -115,14 +110,11 @@ struct SceneView {
 /// All grades in one document.
 pub(super) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     let (grades, passed_over) = (grades.iter().map(view).collect(), passed_over.iter().map(passed).collect());
-    let document = GradeDocument { schema: SCHEMA, version: env!("CARGO_PKG_VERSION"), grades, passed_over };
-    let mut text = serde_json::to_string_pretty(&document).unwrap_or_default();
-    text.push('\n');
-    text
+    document(&GradeDocument { schema: SCHEMA, version: env!("CARGO_PKG_VERSION"), grades, passed_over })
 }
 
-fn passed(entry: &PassedOver) -> PassedOverView {
-    PassedOverView { name: plain(&entry.name), why: plain(&entry.why) }
+fn passed(entry: &PassedOver) -> PassedOver {
+    PassedOver { name: plain(&entry.name), why: plain(&entry.why) }
 }
 
 /// A line per grade, and one per entry that is no submission, which has no points either.
@@ -130,7 +122,7 @@ fn passed(entry: &PassedOver) -> PassedOverView {
 pub fn lines(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     let grades = grades.iter().map(|grade| serde_json::to_string(&view(grade)));
     let passed_over = passed_over.iter().map(|entry| {
-        let PassedOverView { name, why } = passed(entry);
+        let PassedOver { name, why } = passed(entry);
         let line = serde_json::json!({ "submission": name, "verdict": NOT_GRADED, "points": null, "reason": why });
         serde_json::to_string(&line)
     });
@@ -203,7 +195,7 @@ fn scene(scene: &SceneGrade) -> SceneView {
         verdict: scene.verdict.words(),
         code: scene.verdict.code(),
         summary: plain(&words::summary(scene)),
-        difference: scene.differs.map(CauseView::from),
+        difference: scene.differs.map(cause_view),
         details: words::details(scene).iter().map(|detail| plain(detail)).collect(),
         explanations: scene.settled.iter().map(ExplanationView::from).collect(),
         points: scene.points,

@@ -69,7 +69,7 @@ fn case(grade: &Grade, scene: &SceneGrade) -> TestCase {
             status.set_message(plain(&words::summary(scene)));
             let mut description = words::details(scene);
             description.extend(explain::lines(&scene.settled));
-            if let Some(build) = grade.build.as_ref().filter(|build| !build.end.is_success()) {
+            if let Some(build) = grade.failed_build() {
                 description.extend([words::build(&build.end), printed(&build.output)]);
             }
             if !description.is_empty() {

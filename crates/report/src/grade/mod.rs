@@ -17,86 +17,31 @@ mod speed;
 mod text;
 mod told;
 
-use crate::page::{Audience, GradePage};
 use fosssim_findings::{Grade, GroupGrade, Hints, Rules, SceneGrade, SceneResult, Visibility, result::Measurements};
 use std::sync::{Mutex, PoisonError};
 
-/// Whether a format's document holds the grades of several submissions, and how it comes about then.
-macro_rules! takes {
-    (several) => {
-        true
-    };
-    (one) => {
-        false
-    };
-    (several $render:expr, $grades:expr) => {
-        $render($grades)
-    };
-    (one $render:expr, $grades:expr) => {
-        $grades.first().map($render).unwrap_or_default()
-    };
-}
-
-/// The formats, one line each: name on the command line, whether one document takes several grades, and who writes it.
-macro_rules! formats {
-    ($($(#[$doc:meta])* $format:ident, $name:literal, $takes:ident $render:expr;)*) => {
-        /// The formats, in the order in which help lists them.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-        pub enum Format {
-            $($(#[$doc])* $format,)*
-        }
-
-        impl Format {
-            /// All formats.
-            pub const ALL: &'static [Self] = &[$(Self::$format,)*];
-
-            /// The name under which the command line knows it.
-            #[must_use]
-            pub const fn name(self) -> &'static str {
-                match self {
-                    $(Self::$format => $name,)*
-                }
-            }
-
-            /// Whether one document holds the grades of several submissions.
-            #[must_use]
-            pub const fn takes_several(self) -> bool {
-                match self {
-                    $(Self::$format => takes!($takes),)*
-                }
-            }
-
-            /// The document. Formats for one submission ([`Format::takes_several`]) show the first.
-            #[must_use]
-            pub fn render(self, grades: &[Grade]) -> String {
-                match self {
-                    $(Self::$format => takes!($takes $render, grades),)*
-                }
-            }
-        }
-    };
-}
-
-formats! {
+/// The formats, in the order in which help lists them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
     /// For people.
-    Text, "text", several without_colours;
+    Text,
     /// Our own, versioned (`schemas/grade.schema.json`).
-    Json, "json", several |grades| json::render(grades, &[]);
+    Json,
     /// JUnit XML (`schemas/junit.xsd`).
-    Junit, "junit", several |grades| junit::render(grades, &[]);
+    Junit,
     /// Gradescope's results.json (`schemas/gradescope.schema.json`).
-    Gradescope, "gradescope", one gradescope::render;
+    Gradescope,
     /// PrairieLearn's results.json (`schemas/prairielearn.schema.json`).
-    Prairielearn, "prairielearn", one prairielearn::render;
+    Prairielearn,
     /// GitHub Actions annotations.
-    Github, "github", several github::annotations;
+    Github,
     /// A Markdown summary, for GitHub's step summary.
-    Markdown, "markdown", several github::summary;
+    Markdown,
     /// One row per scene, for spreadsheets.
-    Csv, "csv", several |grades| csv_table::scenes(grades, &[]);
+    Csv,
     /// One file to look at ([`page::GradePage`](crate::page::GradePage)); without cards here, because these lie on a
     /// disk.
-    Html, "html", one page;
+    Html,
 }
 
 /// The document for programs ([`Format::Json`]), alone: without what the other formats need.
@@ -106,6 +51,47 @@ pub fn json(grades: &[Grade]) -> String {
 }
 
 impl Format {
+    /// All formats.
+    pub const ALL: &'static [Self] = &[
+        Self::Text,
+        Self::Json,
+        Self::Junit,
+        Self::Gradescope,
+        Self::Prairielearn,
+        Self::Github,
+        Self::Markdown,
+        Self::Csv,
+        Self::Html,
+    ];
+
+    /// The name under which the command line knows it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Text => "text",
+            Self::Json => "json",
+            Self::Junit => "junit",
+            Self::Gradescope => "gradescope",
+            Self::Prairielearn => "prairielearn",
+            Self::Github => "github",
+            Self::Markdown => "markdown",
+            Self::Csv => "csv",
+            Self::Html => "html",
+        }
+    }
+
+    /// Whether one document holds the grades of several submissions.
+    #[must_use]
+    pub const fn takes_several(self) -> bool {
+        !matches!(self, Self::Gradescope | Self::Prairielearn | Self::Html)
+    }
+
+    /// The document. Formats for one submission ([`Format::takes_several`]) show the first.
+    #[must_use]
+    pub fn render(self, grades: &[Grade]) -> String {
+        self.render_class(grades, &[])
+    }
+
     /// The format with this name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
@@ -124,24 +110,14 @@ impl Format {
     }
 }
 
-/// Lines for people, without colours.
-fn without_colours(grades: &[Grade]) -> String {
-    text::Text::default().render(grades)
-}
-
-/// A submission's page.
-fn page(grade: &Grade) -> String {
-    GradePage { grade, card: &|_| None, class: None, reader: Audience::Staff }.html()
-}
-
 pub use class::class;
 pub(crate) use class::hardest;
 pub use csv_table::submissions as csv_of_submissions;
 pub(crate) use github::annotation;
 pub use json::lines as json_lines;
 pub use passed_over::{not_graded, warn_of};
-pub(crate) use phrases::without_codes;
 pub use phrases::{difference, head_lines, likely_mistakes, no_points, one_line, plain, points, printed, reached};
+pub(crate) use phrases::{is_unseen, without_codes, wrong_scenes};
 use phrases::{see_above, wrong_first};
 pub(crate) use speed::speed_words;
 pub use text::{Advice, Text, TextDetail, changes, score, shortened, table as text_table};

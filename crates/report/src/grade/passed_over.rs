@@ -1,6 +1,7 @@
 //! The entries of a class's folder that are no submissions, in every format: a list says who is missing in it.
-use super::{Format, csv_table, github, json, junit, one_line, shortened};
+use super::{Format, Text, csv_table, github, gradescope, json, junit, one_line, prairielearn, shortened};
 use crate::{
+    page::{Audience, GradePage},
     style::{Look, Style},
     table::{Align, Table},
 };
@@ -31,15 +32,20 @@ impl Format {
     /// As [`Format::render`], with the entries that are no submissions.
     #[must_use]
     pub fn render_class(self, grades: &[Grade], passed_over: &[PassedOver]) -> String {
-        let is_class = grades.len() > 1 && !passed_over.is_empty();
+        let first = |render: &dyn Fn(&Grade) -> String| grades.first().map(render).unwrap_or_default();
+        let others = if grades.len() > 1 { passed_over } else { &[] };
         match self {
+            Self::Text => Text::default().render(grades) + &not_graded(grades, others, Style::Plain),
+            Self::Json => json::render(grades, others),
+            Self::Junit => junit::render(grades, others),
+            Self::Gradescope => first(&gradescope::render),
+            Self::Prairielearn => first(&prairielearn::render),
+            Self::Github => github::annotations(grades) + &github::passed_over(others),
+            Self::Markdown => github::summary(grades) + &github::list_of_passed_over(others),
             Self::Csv => csv_table::scenes(grades, passed_over),
-            Self::Text if is_class => self.render(grades) + &not_graded(grades, passed_over, Style::Plain),
-            Self::Json if is_class => json::render(grades, passed_over),
-            Self::Junit if is_class => junit::render(grades, passed_over),
-            Self::Github if is_class => github::annotations(grades) + &github::passed_over(passed_over),
-            Self::Markdown if is_class => github::summary(grades) + &github::list_of_passed_over(passed_over),
-            _ => self.render(grades),
+            Self::Html => {
+                first(&|grade| GradePage { grade, card: &|_| None, class: None, reader: Audience::Staff }.html())
+            }
         }
     }
 }

@@ -56,6 +56,13 @@ pub fn printed(text: &str) -> String {
     plain(&without_codes(text))
 }
 
+/// Marks that change the direction of the text could show a report's words in another order, and what has no width makes
+/// two names look alike.
+pub(crate) const fn is_unseen(c: char) -> bool {
+    matches!(c, '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}'
+        | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}')
+}
+
 /// Somebody else's words without control characters: escape codes, bells and NULs become visible, line breaks and
 /// tabs stay, characters that XML 1.0 forbids and those that nobody sees are replaced.
 #[must_use]
@@ -66,17 +73,7 @@ pub fn plain(text: &str) -> String {
             '\n' | '\t' => plain.push(c),
             '\r' => {}
             '\u{fffe}' | '\u{ffff}' => plain.push('\u{fffd}'),
-            // Marks that change the direction of the text could show a report's words in another order, and what has no
-            // width makes two names look alike.
-            '\u{ad}'
-            | '\u{61c}'
-            | '\u{180e}'
-            | '\u{200b}'..='\u{200f}'
-            | '\u{2028}'..='\u{202e}'
-            | '\u{2060}'..='\u{206f}'
-            | '\u{feff}'
-            | '\u{fff9}'..='\u{fffb}'
-            | '\u{e0000}'..='\u{e007f}' => plain.push('\u{fffd}'),
+            c if is_unseen(c) => plain.push('\u{fffd}'),
             c if c.is_control() => plain.push_str(&format!("\\x{:02x}", u32::from(c))),
             c => plain.push(c),
         }
@@ -94,8 +91,7 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
     if let Some(unfit) = words::unfit(grade) {
         return vec![unfit];
     }
-    let wrong = |scene: &&SceneGrade| scene.verdict.is_wrong_trace();
-    let wrong = counted(grade.scenes().filter(wrong).count() as u64, "wrong scene");
+    let wrong = wrong_scenes(grade);
     let mut rank = "most likely mistake";
     let line = |(mistake, explained): (Explanation, usize)| {
         let what = words::explanation::what_or(&mistake);
@@ -106,6 +102,12 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
     };
     let located = grade.located.as_ref().map(words::located);
     located.into_iter().chain(likely_mistakes(grade).into_iter().map(line)).collect()
+}
+
+/// The number of scenes for which an explanation is looked for, with their noun.
+pub(crate) fn wrong_scenes(grade: &Grade) -> String {
+    let wrong = grade.scenes().filter(|scene| scene.verdict.is_wrong_trace());
+    counted(wrong.count() as u64, "wrong scene")
 }
 
 /// The text for a scene whose reason is that of the whole submission.

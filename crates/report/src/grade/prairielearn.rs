@@ -1,7 +1,6 @@
 //! PrairieLearn's results.json: a score in [0, 1]; `gradable: false` for faults of ours, which charge no attempt.
-use super::speed_words;
-use super::{super::explain, difference, head_lines, one_line, plain, printed, score, see_above};
-use crate::words;
+use super::{super::explain, difference, head_lines, one_line, plain, printed, score, see_above, speed_words};
+use crate::{view::document, words};
 use fosssim_findings::{Grade, SceneGrade, Verdict};
 use fosssim_mistakes::together::for_students;
 use serde::Serialize;
@@ -71,7 +70,7 @@ pub(super) fn render(grade: &Grade) -> String {
             }
         }))
         .collect();
-    let build = grade.build.as_ref().filter(|build| !build.end.is_success());
+    let build = grade.failed_build();
     // A fault of the upload itself is the same in all groups.
     let head = match build {
         Some(_) => Vec::new(),
@@ -113,9 +112,7 @@ pub(super) fn render(grade: &Grade) -> String {
             .collect(),
         tests,
     };
-    let mut text = serde_json::to_string_pretty(&results).unwrap_or_default();
-    text.push('\n');
-    text
+    document(&results)
 }
 
 /// Everything about a scene that its message does not say.

@@ -1,9 +1,6 @@
 //! A detection call on a page: curves, intervals, coefficients.
-use super::{
-    data::key,
-    markup::{compared, number, text},
-};
-use crate::{detect::Detect, number::general};
+use super::markup::{compared, number, text};
+use crate::{describe::pair_key, detect::Detect, number::general};
 use fosssim_evidence::{InspectedCall, Logged};
 use fosssim_judge::{
     PairWords, PassWords, differing, factor,
@@ -24,7 +21,7 @@ pub(super) fn html(step: u32, call: &InspectedCall, depth: usize, open: bool) ->
          <section data-step=\"{step}\" data-pair=\"{2}\">",
         text(&PairWords(call.pair).to_string()),
         text(&PassWords(call.pass).to_string()),
-        key(call.pair)
+        pair_key(call.pair)
     );
     let study = match &call.study {
         Ok(study) => study,
@@ -86,13 +83,10 @@ fn is_flat(set: &[Interval]) -> bool {
 
 /// The curves of the trace, as the expected ones are drawn.
 fn yours(step: u32, call: &InspectedCall, study: &Study, logged: &[Vec<f64>]) -> String {
-    let names: Vec<String> = study.curves.iter().map(|curve| curve.role.to_string()).collect();
     let sets: Vec<Vec<Interval>> = logged.iter().map(|own| positive(own)).collect();
-    let zeros: Vec<Vec<f64>> = sets.iter().map(|set| ends(set)).collect();
-    let parts = names.iter().zip(logged).zip(zeros.iter().zip(&sets));
-    let curves: Vec<PlottedPolynomial<'_>> = parts
-        .map(|((name, coefficients), (zeros, positive))| PlottedPolynomial { name, coefficients, zeros, positive })
-        .collect();
+    let own = study.curves.iter().zip(logged).zip(&sets);
+    let curves: Vec<PlottedPolynomial<'_>> =
+        own.map(|((curve, own), set)| plotted(curve.role.to_string(), own, set)).collect();
     if sets.iter().all(|set| is_flat(set)) {
         return String::new();
     }
@@ -101,6 +95,11 @@ fn yours(step: u32, call: &InspectedCall, study: &Study, logged: &[Vec<f64>]) ->
     let title = format!("Yours in step {step}: {}", PairWords(call.pair));
     let svg = PolynomialPlot { title: &title, curves: &curves, common: Some(&common), impact }.svg(Embedding::Inline);
     format!("<figure tabindex=\"0\">{svg}</figure>\n")
+}
+
+/// The curve of a polynomial that is positive on this set.
+fn plotted<'a>(name: String, coefficients: &'a [f64], positive: &'a [Interval]) -> PlottedPolynomial<'a> {
+    PlottedPolynomial { name, coefficients, zeros: ends(positive), positive }
 }
 
 /// Where a set ends within the step the polynomial is zero.
@@ -133,14 +132,11 @@ fn common(logged: &[Vec<f64>]) -> Vec<Interval> {
 
 /// The decision of the trace's own polynomials.
 fn own_decision(logged: &[Vec<f64>]) -> String {
-    let first = common(logged).iter().map(|set| set.lo).reduce(f64::min);
-    match first {
-        Some(time) => {
-            format!("<p>By your polynomials all are positive from time {} on: a collision.</p>\n", number(time))
-        }
-        None => "<p>By your polynomials there is no time in the step at which all are positive: no collision.</p>\n"
-            .to_owned(),
-    }
+    let says = match common(logged).iter().map(|set| set.lo).reduce(f64::min) {
+        Some(time) => format!("all are positive from time {} on: a collision", number(time)),
+        None => "there is no time in the step at which all are positive: no collision".to_owned(),
+    };
+    format!("<p>By your polynomials {says}.</p>\n")
 }
 
 /// Expected and actual curve of one polynomial.
@@ -149,12 +145,7 @@ fn both(step: u32, role: &str, expected: &[f64], set: &[Interval], logged: &[f64
     if is_flat(set) && is_flat(&own) {
         return String::new();
     }
-    let (yours, right) = (format!("{role}, yours"), format!("{role}, expected"));
-    let (zeros_of_right, zeros_of_own) = (ends(set), ends(&own));
-    let curves = [
-        PlottedPolynomial { name: &right, coefficients: expected, zeros: &zeros_of_right, positive: set },
-        PlottedPolynomial { name: &yours, coefficients: logged, zeros: &zeros_of_own, positive: &own },
-    ];
+    let curves = [plotted(format!("{role}, expected"), expected, set), plotted(format!("{role}, yours"), logged, &own)];
     let title = format!("Step {step}: {role}, expected and yours");
     let svg = PolynomialPlot { title: &title, curves: &curves, common: None, impact: None }.svg(Embedding::Inline);
     format!("<figure tabindex=\"0\">{svg}</figure>\n")

@@ -1,18 +1,19 @@
 //! One judged trace on a page.
 use super::{
-    Case, call, data,
+    Case, call, data, document,
     markup::{self, compared, text},
     packed::Precision,
-    strip,
+    script, strip,
 };
 use crate::{
     check::{
         Check, advice,
         books::{BookWords, verdicts},
         divergence::{self, SideBySide, Value},
-        first::first,
+        first::{first, is_other_scene},
         follows, headline, notes, problem,
     },
+    describe::pair_key,
     explain::Told,
     number::count,
     style::Look,
@@ -22,7 +23,7 @@ use fosssim_findings::{Finding, FindingDetail, Hints};
 use fosssim_judge::{BookFindings, PairWords, fair::cause};
 use fosssim_mistakes::diagnose::Explanation;
 use fosssim_num::tolerances::PARITY_MAXIMUM;
-use fosssim_render::plot::{Embedding, PASSES_AXIS, PassPlot, RESIDUALS_AXIS, ResidualPlot, Series};
+use fosssim_render::plot::{Embedding, PassPlot, ResidualPlot, STEPS_AXIS, Series};
 use std::fmt::Write;
 
 /// The greatest number of calls that are shown.
@@ -32,8 +33,13 @@ const CALLS: usize = 6;
 pub(super) const FIRST: &str = "Where it goes wrong first";
 
 impl Case<'_> {
+    /// A page about this case alone; the title is that of the window.
+    pub(super) fn page(&self, title: &str) -> String {
+        document(title, &self.html("0"), script())
+    }
+
     /// The case as a page's own content.
-    pub(super) fn html(&self, key: &str) -> String {
+    fn html(&self, key: &str) -> String {
         let check = &self.check;
         let look = match (check.accepted(), check.difference()) {
             (true, None) => "good",
@@ -56,17 +62,12 @@ impl Case<'_> {
         if let (Some(sides), Some(cause)) = (check.difference(), cause(check.outcome)) {
             let _ = writeln!(out, "<p><span class=\"chip warn\">the rule books differ</span> {sides}: {cause}</p>");
         }
-        let explanations = if self.is_other_scene() { &[][..] } else { check.explanations };
+        let explanations = if is_other_scene(check) { &[][..] } else { check.explanations };
         out += &self.trace_part(key, 1, &(self.stopped() + &mistakes(explanations, self.first().is_some())));
         if let Some(evidence) = self.evidence {
             out += &data::blocks(self, evidence, key, Precision::AsRoomAllows);
         }
         out + "</article>\n"
-    }
-
-    /// Where the trace is another scene's, nothing that differs is a mistake.
-    fn is_other_scene(&self) -> bool {
-        self.check.explanations.iter().any(|one| one.is_other_scene())
     }
 
     /// The finding that is shown first: of the book that counts, or of the other one where that has none.
@@ -139,18 +140,10 @@ impl Case<'_> {
                 text(&subject(first)),
                 values(&divergence::side_by_side(&first.detail))
             );
-            let advice = advice::lines(&self.check);
-            if !advice.is_empty() {
-                let lines: String = advice.iter().map(|line| format!("<li>{}</li>", text(line))).collect();
-                let _ =
-                    writeln!(out, "<section class=\"card\">{}<ul>{lines}</ul></section>", heading("What to look at"));
-            }
+            out += &list(&heading("What to look at"), &advice::lines(&self.check));
         }
         out += &books(&self.check, &heading("Rule books"));
-        let notes: String = notes(&self.check).iter().map(|note| format!("<li>{}</li>", text(note))).collect();
-        if !notes.is_empty() {
-            let _ = writeln!(out, "<section class=\"card\">{}<ul>{notes}</ul></section>", heading("Notes"));
-        }
+        out += &list(&heading("Notes"), &notes(&self.check));
         out + "</div>\n"
     }
 
@@ -178,6 +171,15 @@ impl Case<'_> {
         }
         out
     }
+}
+
+/// A card with these lines; nothing without any.
+fn list(heading: &str, lines: &[impl AsRef<str>]) -> String {
+    if lines.is_empty() {
+        return String::new();
+    }
+    let lines: String = lines.iter().map(|line| format!("<li>{}</li>", text(line.as_ref()))).collect();
+    format!("<section class=\"card\">{heading}<ul>{lines}</ul></section>\n")
 }
 
 /// The motion: a strip of all steps, whose place the viewer takes where there are scripts.
@@ -320,13 +322,14 @@ fn plots(evidence: &Evidence, key: &str, first: Option<u32>) -> String {
     let residuals = ResidualPlot {
         title: "How far each step ends from where it should",
         series: &series,
-        tolerance: Some(PARITY_MAXIMUM),
+        tolerance: PARITY_MAXIMUM,
         mark: first.map(|step| (step, "first divergence")),
     };
     let expected: Vec<u32> = evidence.steps.iter().map(|step| step.expected_passes).collect();
     let actual: Vec<Option<u32>> = evidence.steps.iter().map(|step| step.actual_passes).collect();
     let passes = PassPlot { title: "Detection passes in each step", expected: &expected, actual: &actual };
-    let figure = |svg: &str, [left, right]: [f64; 2]| {
+    let [left, right] = STEPS_AXIS;
+    let figure = |svg: &str| {
         format!(
             "<figure tabindex=\"0\" data-plot=\"{key}\" data-left=\"{left}\" data-right=\"{right}\" data-steps=\"{steps}\">{svg}</figure>\n"
         )
@@ -334,11 +337,11 @@ fn plots(evidence: &Evidence, key: &str, first: Option<u32>) -> String {
     let mut out = String::new();
     // Flat curves show nothing.
     if evidence.steps.iter().any(|step| !(step.position.max(step.velocity) <= PARITY_MAXIMUM)) {
-        out += &figure(&residuals.svg(Embedding::Inline), RESIDUALS_AXIS);
+        out += &figure(&residuals.svg(Embedding::Inline));
     }
     let differ = evidence.steps.iter().any(|step| step.actual_passes != Some(step.expected_passes));
     if evidence.layout.polynomials && differ {
-        out += &figure(&passes.svg(Embedding::Inline), PASSES_AXIS);
+        out += &figure(&passes.svg(Embedding::Inline));
     }
     if out.is_empty() { out } else { format!("<div class=\"charts\">\n{out}</div>\n") }
 }
@@ -346,13 +349,9 @@ fn plots(evidence: &Evidence, key: &str, first: Option<u32>) -> String {
 /// All kinds of findings, folded; those that only follow from wrong positions under that name.
 fn findings(account: &BookFindings, follow: u64) -> String {
     let of_formula = |finding: &&Finding| follow > 0 && follows::is_of_formula(finding.kind());
-    let mut out = format!(
-        "<details class=\"table\"><summary>All findings: {}</summary>\n\
-         <div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Findings\"><table><thead><tr>\
-         <th scope=\"col\">kind</th><th scope=\"col\" class=\"num\">count</th><th scope=\"col\">first example</th></tr></thead>\
-         <tbody>\n",
-        count(account.counts.total())
-    );
+    let total = count(account.counts.total());
+    let mut out = format!("<details class=\"table\"><summary>All findings: {total}</summary>\n");
+    out += &markup::table("scroll", "Findings", "", &["kind", "#count", "first example"]);
     for example in account.examples.iter().filter(|example| !of_formula(example)) {
         let kind = example.kind();
         let _ = writeln!(
@@ -360,7 +359,7 @@ fn findings(account: &BookFindings, follow: u64) -> String {
             "<tr data-step=\"{}\" data-pair=\"{}\"><th scope=\"row\">{}</th><td class=\"num\">{}</td>\
              <td class=\"words\">{}</td></tr>",
             example.step,
-            Focus::from(example).pair.map(data::key).unwrap_or_default(),
+            Focus::from(example).pair.map(pair_key).unwrap_or_default(),
             text(&kind.to_string()),
             count(account.counts.get(kind)),
             text(&example.to_string())

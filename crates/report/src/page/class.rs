@@ -2,7 +2,7 @@
 use super::{
     document,
     graded::key,
-    markup::{data, text},
+    markup::{data, table, text},
 };
 use crate::{
     grade::{hardest, likely_mistakes, one_line, points, reached},
@@ -70,10 +70,8 @@ impl ClassPage<'_> {
             format!("<tr><th scope=\"row\"><bdi>{name}</bdi></th><td>{why}</td></tr>\n")
         };
         let rows: String = self.passed_over.iter().map(row).collect();
-        format!(
-            "<h2>Not graded</h2>\n<div class=\"card scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Not graded\"><table><thead><tr><th scope=\"col\">entry</th><th scope=\"col\">why</th></tr></thead>\
-             <tbody>\n{rows}</tbody></table></div>\n"
-        )
+        let head = table("card scroll", "Not graded", "", &["entry", "why"]);
+        format!("<h2>Not graded</h2>\n{head}{rows}</tbody></table></div>\n")
     }
 
     fn links(&self, members: &[usize]) -> String {
@@ -91,53 +89,33 @@ impl ClassPage<'_> {
              <p class=\"hint keys\">Scenes in the order of the suite: <span><span class=\"h h-r\"></span> accepted</span> \
              <span><span class=\"h h-w\"></span> wrong</span> <span><span class=\"h h-e\"></span> crashed, too slow or \
              unreadable</span> <span><span class=\"h h-n\"></span> not run</span> <output class=\"pointed\"></output></p>\n\
-             <script type=\"application/json\" id=\"scenes\">{}</script>\n\
-             <div class=\"card scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Submissions\">\
-             <table class=\"sortable stack\"><thead><tr>",
+             <script type=\"application/json\" id=\"scenes\">{}</script>\n",
             data(&serde_json::json!(names))
         );
-        for name in [
-            "submission",
-            "verdict",
-            "points",
-            "accepted",
-            "scenes",
-            "likely mistakes, or the reason",
-            "rule books differ",
-        ] {
-            let look = if matches!(name, "points" | "accepted" | "rule books differ") { " class=\"num\"" } else { "" };
-            let _ = write!(out, "<th scope=\"col\"{look}>{name}</th>");
-        }
-        out += "</tr></thead><tbody>\n";
+        let why = "likely mistakes, or the reason";
+        let headings = ["submission", "verdict", "#points", "#accepted", "scenes", why, "#rule books differ"];
+        out += &table("card scroll", "Submissions", "sortable stack", &headings);
         for grade in self.grades {
             let look = if grade.verdict.is_accepted() { "good" } else { "bad" };
-            let _ = write!(
-                out,
-                "<tr><th scope=\"row\">{}</th><td><span class=\"chip {look}\">{}</span></td>",
-                self.link(grade),
-                grade.verdict.words()
-            );
             let sort = grade.points.map_or_else(String::new, |points| format!("{points}"));
-            let _ = write!(
-                out,
-                "<td class=\"num\" data-label=\"points\" data-sort=\"{sort}\">{} of {}</td>",
-                reached(grade.points),
-                points(grade.max_points)
-            );
             let (accepted, all) = (grade.count(Verdict::Accepted), grade.scenes().count());
-            let _ = write!(
-                out,
-                "<td class=\"num\" data-label=\"accepted\" data-sort=\"{accepted}\">{accepted} of {all}</td>"
-            );
-            let _ = write!(out, "<td class=\"heat\" data-sort=\"{accepted}\">{}</td>", heat(grade));
             let mistakes = likely_mistakes(grade).into_iter().map(|(mistake, _)| words::explanation::what_or(&mistake));
             let likely: Vec<String> = grade.located.iter().map(words::located).chain(mistakes).collect();
             let words = if likely.is_empty() { words::reason(grade).unwrap_or_default() } else { likely.join(" ") };
-            let _ = write!(out, "<td class=\"words\">{}</td>", text(&short(&words)));
-            let differing = grade.differing();
             let _ = writeln!(
                 out,
-                "<td class=\"num\" data-label=\"rule books differ\" data-sort=\"{differing}\">{differing}</td></tr>"
+                "<tr><th scope=\"row\">{}</th><td><span class=\"chip {look}\">{}</span></td>\
+                 <td class=\"num\" data-label=\"points\" data-sort=\"{sort}\">{} of {}</td>\
+                 <td class=\"num\" data-label=\"accepted\" data-sort=\"{accepted}\">{accepted} of {all}</td>\
+                 <td class=\"heat\" data-sort=\"{accepted}\">{}</td><td class=\"words\">{}</td>\
+                 <td class=\"num\" data-label=\"rule books differ\" data-sort=\"{6}\">{6}</td></tr>",
+                self.link(grade),
+                grade.verdict.words(),
+                reached(grade.points),
+                points(grade.max_points),
+                heat(grade),
+                text(&short(&words)),
+                grade.differing()
             );
         }
         out + "</tbody></table></div>\n"
@@ -204,9 +182,8 @@ impl ClassPage<'_> {
         if !scenes.is_empty() {
             let wrong = counted(scenes.len() as u64, "scene");
             let _ = write!(out, "<details class=\"table\"><summary>{wrong} that not everybody has right</summary>");
-            out += "<div class=\"card scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Scenes by failure rate\">\
-                    <table class=\"sortable\"><thead><tr><th scope=\"col\">scene</th><th scope=\"col\">failed</th>\
-                    <th scope=\"col\">of</th><th scope=\"col\">rate</th></tr></thead><tbody>\n";
+            let headings = ["scene", "failed", "of", "rate"];
+            out += &table("card scroll", "Scenes by failure rate", "sortable", &headings);
             for (scene, share) in scenes {
                 let failed = share.run - share.accepted;
                 let percent = 100 * failed / share.run.max(1);
@@ -243,8 +220,8 @@ impl ClassPage<'_> {
         if differing.is_empty() {
             return out + "<p>Both rule books, as far as they were asked, agree on everything.</p>\n";
         }
-        out += "<div class=\"card scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Where the rule books differ\"><table class=\"sortable\"><thead><tr><th scope=\"col\">submission</th><th scope=\"col\">scenes</th>\
-                <th scope=\"col\">why, with the number of scenes</th></tr></thead><tbody>\n";
+        let headings = ["submission", "scenes", "why, with the number of scenes"];
+        out += &table("card scroll", "Where the rule books differ", "sortable", &headings);
         for grade in differing {
             let mut causes: BTreeMap<String, (usize, bool)> = BTreeMap::new();
             for cause in grade.scenes().filter_map(|scene| scene.differs) {

@@ -3,7 +3,10 @@ use super::{
     Case, markup,
     packed::{Packed, Precision, Rounded},
 };
-use crate::check::{first::first, follows};
+use crate::{
+    check::{first::first, follows},
+    describe::pair_key,
+};
 use fosssim_evidence::{Evidence, InspectedPass, InspectedStep, Track};
 use fosssim_findings::Hints;
 use fosssim_judge::{FindingDetail, PassWords};
@@ -46,7 +49,7 @@ fn of_case(case: &Case<'_>, evidence: &Evidence, rounded: Option<&Rounded>) -> V
                 Ok(study) => study.curves.iter().flat_map(|curve| curve.real_zeros()).collect(),
                 Err(_) => Vec::new(),
             };
-            json!({"step": up.step, "pair": key(call.pair), "zeros": zeros})
+            json!({"step": up.step, "pair": pair_key(call.pair), "zeros": zeros})
         })
     });
     let first = first(&case.check);
@@ -124,19 +127,14 @@ fn pass(up: &InspectedPass) -> Value {
 }
 
 fn keys(pairs: &[Pair]) -> Vec<String> {
-    pairs.iter().map(|pair| key(*pair)).collect()
+    pairs.iter().map(|pair| pair_key(*pair)).collect()
 }
 
 fn contact(impulse: &Impulse) -> Value {
-    json!([key(impulse.pair), impulse.time, impulse.normal.x, impulse.normal.y])
+    json!([pair_key(impulse.pair), impulse.time, impulse.normal.x, impulse.normal.y])
 }
 
 fn logged(impulse: &LoggedImpulse) -> Option<Value> {
     let pair = format!("{}:{},{}", impulse.kind()?.short(), impulse.first, impulse.second);
     Some(json!([pair, impulse.time, impulse.normal.x, impulse.normal.y]))
-}
-
-/// A pair as `detect --pair` takes it.
-pub(super) fn key(pair: Pair) -> String {
-    format!("{}:{},{}", pair.kind.short(), pair.first, pair.second)
 }

@@ -1,5 +1,5 @@
 //! The page about a trace that has just been judged.
-use super::{Case, Page, WhatIf};
+use super::{Case, WhatIf};
 use crate::{check::Check, words::explanation};
 use fosssim_evidence::{Evidence, Examined, Track};
 use fosssim_findings::Hints;
@@ -31,6 +31,5 @@ pub fn of_examined(check: Check<'_>, examined: &Examined<'_>, evidence: &Evidenc
     let what_if = check.explanations.first().and_then(|first| WhatIf::of(scene, first, trace.as_deref(), evidence));
     let title = format!("{}: {}", check.verdict(), check.scene);
     let (evidence, what_if) = (Some(evidence), what_if.as_ref());
-    let case = Case { check, scene, evidence, what_if, hints: Hints::Full, has_trace: true };
-    Page { title: &title, cases: vec![case] }.html()
+    Case { check, scene, evidence, what_if, hints: Hints::Full, has_trace: true }.page(&title)
 }

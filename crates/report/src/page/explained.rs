@@ -1,31 +1,27 @@
 //! The page of `explain`: what is likely wrong with a program, trace by trace and all together.
-use super::{Card, case::mistakes, document, graded::key, markup::text, script};
+use super::{
+    Card,
+    case::mistakes,
+    document,
+    graded::{self, key, rank},
+    markup::text,
+    script,
+};
 use crate::{
     diagnosis::{Case, Diagnosis},
-    grade::one_line,
-    words::{self, first_divergence},
+    words::first_divergence,
 };
 use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 use std::fmt::Write;
 
 /// One trace with what was drawn of it.
-#[derive(Debug, Clone, Copy)]
-pub struct ExplainedCase<'a> {
-    /// The trace, and its explanations.
-    pub case: &'a Case,
-    /// The pictures and the motion, where they were drawn.
-    pub card: Option<&'a Card>,
-}
+type ExplainedCase<'a> = (&'a Case, Option<&'a Card>);
 
-impl ExplainedCase<'_> {
-    /// How much it takes to see what is wrong: without pictures, by another mistake than the common ones, by several
-    /// that can't be told apart, and how large the motion is. The least is the most telling.
-    fn telling(&self, common: &[Explanation]) -> (bool, usize, usize, usize) {
-        let own = &self.case.explanations;
-        let rank = common.iter().position(|one| is_named_in(one, own));
-        let rank = rank.unwrap_or(common.len() + usize::from(own.is_empty()));
-        (self.card.is_none(), rank, own.len(), self.card.map_or(0, |card| card.sizes().1))
-    }
+/// How much it takes to see what is wrong: without pictures, by another mistake than the common ones, by several that
+/// can't be told apart, and how large the motion is. The least is the most telling.
+fn telling((case, card): ExplainedCase<'_>, common: &[Explanation]) -> (bool, usize, usize, usize) {
+    let own = &case.explanations;
+    (card.is_none(), rank(common, own), own.len(), card.map_or(0, |card| card.sizes().1))
 }
 
 /// A page about some traces of one program.
@@ -51,13 +47,7 @@ impl Explained<'_> {
             (_, wrong) => format!("{wrong} of {} traces are wrong", cases.len()),
         };
         let mut body = format!("<h1><span class=\"{look}\">{}</span></h1>\n", text(&title));
-        if let Some(found) = located {
-            let words = text(&one_line(&words::located(found)));
-            let _ = writeln!(
-                body,
-                "<h2>Where it fails</h2>\n<div class=\"card mistake\"><p class=\"lead\">{words}</p></div>"
-            );
-        }
+        body.extend(located.as_ref().map(graded::located));
         // A single trace says it itself.
         for one in common.iter().filter(|_| cases.len() > 1) {
             let explained = cases.iter().filter(|case| is_named_in(one, &case.explanations)).count();
@@ -65,18 +55,18 @@ impl Explained<'_> {
             body += &mistakes(std::slice::from_ref(one), false);
         }
         let all: Vec<ExplainedCase<'_>> =
-            cases.iter().zip(self.cards).map(|(case, card)| ExplainedCase { case, card: card.as_ref() }).collect();
+            cases.iter().zip(self.cards).map(|(case, card)| (case, card.as_ref())).collect();
         let first =
-            (0..all.len()).filter(|&number| !cases[number].accepted).min_by_key(|&number| all[number].telling(common));
-        for (number, one) in all.iter().enumerate() {
+            (0..all.len()).filter(|&number| !cases[number].accepted).min_by_key(|&number| telling(all[number], common));
+        for (number, &one) in all.iter().enumerate() {
             body += &article(one, number, first == Some(number));
         }
         document(&title, &body, script())
     }
 }
 
-fn article(one: &ExplainedCase<'_>, number: usize, open: bool) -> String {
-    let Case { scene, trace, accepted, note, first, explanations } = one.case;
+fn article((case, card): ExplainedCase<'_>, number: usize, open: bool) -> String {
+    let Case { scene, trace, accepted, note, first, explanations } = case;
     let key = key(&format!("{number} {scene}"));
     let (look, word) = if *accepted { ("good", "right") } else { ("bad", "wrong") };
     let mut out = format!(
@@ -93,9 +83,9 @@ fn article(one: &ExplainedCase<'_>, number: usize, open: bool) -> String {
     if !*accepted && explanations.is_empty() {
         out += "<p>No known mistake explains it.</p>\n";
     }
-    let mistakes = mistakes(explanations, one.card.is_some_and(Card::has_values));
-    out += &one.card.map_or_else(|| mistakes.clone(), |card| card.html(&key, &mistakes));
+    let mistakes = mistakes(explanations, card.is_some_and(Card::has_values));
+    out += &card.map_or_else(|| mistakes.clone(), |card| card.html(&key, &mistakes));
     out += "</details>\n";
-    out += &one.card.map(|card| card.data(&key)).unwrap_or_default();
+    out += &card.map(|card| card.data(&key)).unwrap_or_default();
     out + "</article>\n"
 }

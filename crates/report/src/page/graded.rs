@@ -3,16 +3,19 @@ use super::{
     Card,
     case::mistakes,
     document,
-    markup::text,
-    room::{self, KeptMotion, OUTPUTS, Room},
+    markup::{table, text},
+    room::{self, OUTPUTS, Room},
     script,
 };
 use crate::{
-    grade::{difference, likely_mistakes, no_points, one_line, points, reached, score, speed_words, without_codes},
+    grade::{
+        difference, likely_mistakes, no_points, one_line, points, reached, score, speed_words, without_codes,
+        wrong_scenes,
+    },
     number::counted,
     words,
 };
-use fosssim_findings::{Grade, GroupGrade, SceneGrade, Verdict, Visibility};
+use fosssim_findings::{Grade, GroupGrade, SceneGrade, Verdict, Visibility, located::Located};
 use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 use fosssim_mistakes::together::for_students;
 use sha2::{Digest, Sha256};
@@ -95,7 +98,7 @@ impl GradePage<'_> {
         for warning in &grade.warnings {
             let _ = writeln!(out, "<p class=\"bad\">Warning: {}</p>", text(warning));
         }
-        if let Some(build) = grade.build.as_ref().filter(|build| !build.end.is_success()) {
+        if let Some(build) = grade.failed_build() {
             let _ = writeln!(out, "<h2>The build</h2>\n<p>{}</p>", text(&words::build(&build.end)));
             out += &printed("What it printed", &build.output, &mut OUTPUTS.clone());
         } else if let Some(unfit) = words::unfit(grade) {
@@ -105,19 +108,12 @@ impl GradePage<'_> {
             out += "<p class=\"hint\">Points, verdict and likely mistakes are those of the groups on this page. The grade has \
                     others, too.</p>\n";
         }
-        if let Some(located) = &grade.located {
-            let words = text(&one_line(&words::located(located)));
-            let _ = writeln!(
-                out,
-                "<h2>Where it fails</h2>\n<div class=\"card mistake\"><p class=\"lead\">{words}</p></div>"
-            );
-        }
+        out.extend(grade.located.as_ref().map(located));
         out += "<div class=\"split halves\">\n";
         // A fault of the submission itself says it all.
         let likely = if grade.unfit().is_some() { Vec::new() } else { likely_mistakes(grade) };
         if !likely.is_empty() {
-            let wrong = |scene: &&SceneGrade| scene.verdict.is_wrong_trace();
-            let wrong = counted(grade.scenes().filter(wrong).count() as u64, "wrong scene");
+            let wrong = wrong_scenes(grade);
             let plural = if likely.len() == 1 { "" } else { "s" };
             let _ = writeln!(out, "<section>\n<h2>Likely mistake{plural}</h2>\n<div class=\"mistakes\">");
             for (mistake, explained) in likely {
@@ -139,6 +135,12 @@ impl GradePage<'_> {
     }
 }
 
+/// Where a program fails.
+pub(super) fn located(found: &Located) -> String {
+    let words = text(&one_line(&words::located(found)));
+    format!("<h2>Where it fails</h2>\n<div class=\"card mistake\"><p class=\"lead\">{words}</p></div>\n")
+}
+
 /// The likely mistakes of all scenes together.
 fn likely(grade: &Grade) -> Vec<Explanation> {
     likely_mistakes(grade).into_iter().map(|(mistake, _)| mistake).collect()
@@ -149,9 +151,14 @@ fn likely(grade: &Grade) -> Vec<Explanation> {
 /// explains it, if any; how many other mistakes would do the same there; how large its motion is.
 fn telling(scene: &SceneGrade, card: Option<&Card>, likely: &[Explanation]) -> (bool, bool, usize, usize, usize) {
     let own = &scene.explanations;
-    let rank = likely.iter().position(|one| is_named_in(one, own));
-    let rank = rank.unwrap_or(likely.len() + usize::from(own.is_empty()));
-    (card.is_none(), scene.differs.is_some(), rank, own.len(), card.map_or(0, |card| card.sizes().1))
+    (card.is_none(), scene.differs.is_some(), rank(likely, own), own.len(), card.map_or(0, |card| card.sizes().1))
+}
+
+/// Which of the likely mistakes is the first among some explanations; other explanations come behind all of them, and
+/// none at all last.
+pub(super) fn rank(likely: &[Explanation], own: &[Explanation]) -> usize {
+    let named = likely.iter().position(|one| is_named_in(one, own));
+    named.unwrap_or(likely.len() + usize::from(own.is_empty()))
 }
 
 /// A link to a scene's card.
@@ -180,12 +187,8 @@ fn scenes(grade: &Grade, told: &[(&SceneGrade, Option<Card>)]) -> String {
     if missing > 0 {
         let _ = write!(words, ", {missing} not run");
     }
-    let _ = write!(
-        out,
-        "<h2>The other scenes</h2>\n<details class=\"table\"><summary>{words}</summary>\n\
-         <div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Other scenes\"><table><thead><tr><th scope=\"col\">scene</th><th scope=\"col\">verdict</th><th scope=\"col\">points</th>\
-         </tr></thead><tbody>\n"
-    );
+    let _ = writeln!(out, "<h2>The other scenes</h2>\n<details class=\"table\"><summary>{words}</summary>");
+    out += &table("scroll", "Other scenes", "", &["scene", "verdict", "points"]);
     for scene in rest {
         let _ = writeln!(
             out,
@@ -218,12 +221,9 @@ fn is_told(scene: &SceneGrade) -> bool {
 
 fn groups(groups: &[GroupGrade], told: &[(&SceneGrade, Option<Card>)], reader: Audience) -> String {
     let tells_who = reader == Audience::Staff && groups.iter().any(|group| group.visibility != Visibility::Visible);
-    let who = if tells_who { "<th scope=\"col\">who sees it</th>" } else { "" };
-    let mut out = format!(
-        "<section>\n<h2>Groups</h2>\n<div class=\"card scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Groups\"><table class=\"stack\"><thead><tr><th scope=\"col\">group</th><th scope=\"col\">verdict</th>\
-         <th scope=\"col\" class=\"num\">points</th><th scope=\"col\" class=\"num\">scenes accepted</th><th scope=\"col\">to look at</th>{who}</tr></thead>\
-         <tbody>\n",
-    );
+    let headings = ["group", "verdict", "#points", "#scenes accepted", "to look at", "who sees it"];
+    let headings = if tells_who { &headings[..] } else { &headings[..5] };
+    let mut out = "<section>\n<h2>Groups</h2>\n".to_owned() + &table("card scroll", "Groups", "stack", headings);
     for group in groups {
         let is_here = |scene: &SceneGrade| group.scenes.iter().any(|one| one.scene == scene.scene);
         let first = told.iter().find(|(scene, _)| is_here(scene)).map_or_else(String::new, |(scene, _)| link(scene));
@@ -247,7 +247,7 @@ fn groups(groups: &[GroupGrade], told: &[(&SceneGrade, Option<Card>)], reader: A
             group.scenes.len(),
         );
         if let Some(speed) = &group.speed {
-            let columns = 5 + usize::from(tells_who);
+            let columns = headings.len();
             let _ = writeln!(out, "<tr><td colspan=\"{columns}\">{}</td></tr>", text(&speed_words(speed)));
         }
     }
@@ -270,7 +270,7 @@ fn article(scene: &SceneGrade, (card, room): (Option<&Card>, Room), open: bool, 
         text(&one_line(&words::summary(scene))),
     );
     // A detail that a card shows with its values need not be said again.
-    let is_shown = matches!(room, Room::Pictures(_)) && card.is_some_and(Card::has_values);
+    let is_shown = room != Room::Words && card.is_some_and(Card::has_values);
     let details = words::details(scene).into_iter().skip(usize::from(is_shown));
     let lines: Vec<String> = difference(scene).into_iter().chain(details).collect();
     if !lines.is_empty() {
@@ -288,7 +288,7 @@ fn article(scene: &SceneGrade, (card, room): (Option<&Card>, Room), open: bool, 
             out += "<p class=\"hint\">The pictures and the motion have no room on this page.</p>\n";
         }
         (Some(card), _) => {
-            if room == Room::Pictures(KeptMotion::None) && card.sizes().1 > 0 {
+            if room == Room::Pictures && card.sizes().1 > 0 {
                 out += "<p class=\"hint\">The motion has no room on this page.</p>\n";
             }
             out += &card.html(&key, &mistakes);
@@ -298,8 +298,8 @@ fn article(scene: &SceneGrade, (card, room): (Option<&Card>, Room), open: bool, 
     out += &printed("Standard error", &scene.stderr, outputs);
     out += "</details>\n";
     out += &match (card, room) {
-        (Some(card), Room::Pictures(KeptMotion::Exact)) => card.data(&key),
-        (Some(card), Room::Pictures(KeptMotion::Rounded)) => card.rounded(&key),
+        (Some(card), Room::Exact) => card.data(&key),
+        (Some(card), Room::Rounded) => card.rounded(&key),
         _ => String::new(),
     };
     out + "</article>\n"

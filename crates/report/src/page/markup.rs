@@ -1,12 +1,15 @@
 //! Hostile text in HTML: it stays text.
-use crate::number::{beside, general};
+use crate::{
+    grade::is_unseen,
+    number::{beside, general},
+};
 use std::fmt::Write;
 
 /// Text in which what can't be seen, or turns the direction of writing, is written out as its code point.
 pub(super) fn visible(raw: &str) -> String {
     let mut out = String::with_capacity(raw.len());
     for c in raw.chars() {
-        if is_hidden(c) {
+        if c.is_control() && !matches!(c, '\n' | '\t') || is_unseen(c) {
             let _ = write!(out, "\\u{{{:x}}}", u32::from(c));
         } else {
             out.push(c);
@@ -31,16 +34,24 @@ pub(super) fn text(raw: &str) -> String {
     out
 }
 
-/// Control and format characters, and those that browsers make of bytes that are no text.
-fn is_hidden(c: char) -> bool {
-    c.is_control() && !matches!(c, '\n' | '\t')
-        || matches!(c, '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}'
-            | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}')
-}
-
 /// JSON as it may stand in a data block: nothing in it ends the element.
 pub(super) fn data(value: &serde_json::Value) -> String {
     value.to_string().replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")
+}
+
+/// The beginning of a table up to its first row, in a box that scrolls: the box's classes and name, the table's classes,
+/// and the headings of its columns. Those of numbers begin with `#`.
+pub(super) fn table(look: &str, label: &str, class: &str, headings: &[&str]) -> String {
+    let class = if class.is_empty() { String::new() } else { format!(" class=\"{class}\"") };
+    let heading = |name: &&str| match name.strip_prefix('#') {
+        Some(name) => format!("<th scope=\"col\" class=\"num\">{name}</th>"),
+        None => format!("<th scope=\"col\">{name}</th>"),
+    };
+    let headings: String = headings.iter().map(heading).collect();
+    format!(
+        "<div class=\"{look}\" tabindex=\"0\" role=\"region\" aria-label=\"{label}\"><table{class}><thead><tr>{headings}\
+         </tr></thead><tbody>\n"
+    )
 }
 
 /// A number in a table.

@@ -22,7 +22,7 @@ mod tests;
 pub use card::Card;
 pub use class::ClassPage;
 pub use examined::of_examined;
-pub use explained::{Explained, ExplainedCase};
+pub use explained::Explained;
 pub use graded::{Audience, GradePage};
 
 use super::check::Check;
@@ -74,24 +74,6 @@ pub struct Case<'a> {
     pub hints: Hints,
     /// Whether the reader of the page has the trace, so that commands may name it.
     pub has_trace: bool,
-}
-
-/// A page about some traces.
-#[derive(Debug, Clone)]
-pub struct Page<'a> {
-    /// The title of the window.
-    pub title: &'a str,
-    /// The traces, in the order of the page.
-    pub cases: Vec<Case<'a>>,
-}
-
-impl Page<'_> {
-    /// The file.
-    #[must_use]
-    pub fn html(&self) -> String {
-        let body: String = self.cases.iter().enumerate().map(|(number, case)| case.html(&number.to_string())).collect();
-        document(self.title, &body, script())
-    }
 }
 
 /// The viewer's script without what only its authors need: indentation and lines that are comments. No text in it goes

@@ -10,20 +10,16 @@ pub(super) const OUTPUTS: usize = 200_000;
 /// The part of it for pictures and tables, before the first motion has room.
 const STILL: usize = BUDGET / 3 * 2;
 
-/// Which parts of a scene's card fit on the page.
+/// Which parts of a scene's card fit on the page; each has those before it, too.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Room {
     /// Its words alone.
     Words,
-    /// Words and pictures, and a motion of this precision.
-    Pictures(KeptMotion),
-}
-
-/// How precisely a motion is kept.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum KeptMotion {
-    None,
+    /// Pictures.
+    Pictures,
+    /// The rounded motion.
     Rounded,
+    /// The exact motion.
     Exact,
 }
 
@@ -37,25 +33,25 @@ pub(super) fn share_out<'a>(cards: impl Iterator<Item = Option<&'a Card>> + Clon
     for (card, room) in cards.clone().zip(&mut rooms) {
         let Some((html, _)) = card.map(Card::sizes) else { continue };
         if html <= still {
-            (still, left, *room) = (still - html, left - html, Room::Pictures(KeptMotion::None));
+            (still, left, *room) = (still - html, left - html, Room::Pictures);
         }
     }
     for (card, room) in cards.clone().zip(&mut rooms).filter(|(_, room)| **room != Room::Words) {
         let Some(card) = card else { continue };
         let (size, how) = match card.rounded_size() {
-            Some(size) => (size, KeptMotion::Rounded),
-            None => (card.sizes().1, KeptMotion::Exact),
+            Some(size) => (size, Room::Rounded),
+            None => (card.sizes().1, Room::Exact),
         };
         if size <= left {
-            (left, *room) = (left - size, Room::Pictures(how));
+            (left, *room) = (left - size, how);
         }
     }
-    for (card, room) in cards.zip(&mut rooms).filter(|(_, room)| **room == Room::Pictures(KeptMotion::Rounded)) {
+    for (card, room) in cards.zip(&mut rooms).filter(|(_, room)| **room == Room::Rounded) {
         let Some((size, rounded)) = card.and_then(|card| Some((card.sizes().1, card.rounded_size()?))) else {
             continue;
         };
         if size <= left + rounded {
-            (left, *room) = (left + rounded - size, Room::Pictures(KeptMotion::Exact));
+            (left, *room) = (left + rounded - size, Room::Exact);
         }
     }
     rooms
@@ -63,13 +59,10 @@ pub(super) fn share_out<'a>(cards: impl Iterator<Item = Option<&'a Card>> + Clon
 
 /// The text of the page about cards that have no room on it.
 pub(super) fn left_out<'a>(cards: impl Iterator<Item = Option<&'a Card>>, rooms: &[Room]) -> String {
-    let of: Vec<Room> = cards
-        .zip(rooms)
-        .filter(|(card, _)| card.is_some_and(|card| card.sizes().1 > 0))
-        .map(|(_, room)| *room)
-        .collect();
-    let without = of.iter().filter(|room| matches!(room, Room::Words | Room::Pictures(KeptMotion::None))).count();
-    let rounded = of.iter().filter(|room| **room == Room::Pictures(KeptMotion::Rounded)).count();
+    let with_motion = cards.zip(rooms).filter(|(card, _)| card.is_some_and(|card| card.sizes().1 > 0));
+    let of: Vec<Room> = with_motion.map(|(_, room)| *room).collect();
+    let without = of.iter().filter(|room| matches!(room, Room::Words | Room::Pictures)).count();
+    let rounded = of.iter().filter(|room| **room == Room::Rounded).count();
     let scenes = |count: usize| if count == 1 { "one scene is".to_owned() } else { format!("{count} scenes are") };
     let mut says = Vec::new();
     if without > 0 {
@@ -110,20 +103,14 @@ mod tests {
     #[test]
     fn motions_are_rounded_before_they_are_left_out() {
         let (all, says) = rooms(&vec![card(50_000, 500_000, 50_000); 3]);
-        assert_eq!((&all[..], says.as_str()), (&[Room::Pictures(KeptMotion::Exact); 3][..], ""));
+        assert_eq!((&all[..], says.as_str()), (&[Room::Exact; 3][..], ""));
         let (all, says) = rooms(&vec![card(50_000, 500_000, 50_000); 10]);
-        let count = |room| all.iter().filter(|one| **one == Room::Pictures(room)).count();
-        assert!(
-            count(KeptMotion::Exact) > 0 && count(KeptMotion::Rounded) > 0 && count(KeptMotion::None) == 0,
-            "{all:?}"
-        );
-        assert_eq!(all[0], Room::Pictures(KeptMotion::Exact));
+        let count = |room| all.iter().filter(|one| **one == room).count();
+        assert!(count(Room::Exact) > 0 && count(Room::Rounded) > 0 && count(Room::Pictures) == 0, "{all:?}");
+        assert_eq!(all[0], Room::Exact);
         assert!(says.contains("scenes are here with a motion that is rounded") && !says.contains("without"), "{says}");
         let (all, says) = rooms(&vec![card(50_000, 500_000, 200_000); 30]);
-        assert!(
-            all.contains(&Room::Pictures(KeptMotion::Rounded)) && all.contains(&Room::Pictures(KeptMotion::None)),
-            "{all:?}"
-        );
+        assert!(all.contains(&Room::Rounded) && all.contains(&Room::Pictures), "{all:?}");
         assert!(says.contains("scenes are without the motion here") && says.contains("rounded"), "{says}");
         let (all, _) = rooms(&vec![card(500_000, 10, 0); 30]);
         assert_eq!(all.iter().filter(|room| **room == Room::Words).count(), 27);

@@ -33,8 +33,7 @@ fn told(scene: &Scene, scene_name: &str, trace_name: &str, trace: &[u8], hints: 
     let focus: Vec<Focus> = outcome.parity.findings.examples.iter().map(Focus::from).collect();
     let evidence = gather(scene, &mut &trace[..], &rulings.into_steps(&outcome), true, &focus, BUDGET);
     let check = check_of(scene_name, trace_name, &outcome, &explanations);
-    let case = Case { check, scene, evidence: Some(&evidence), what_if: None, hints, has_trace: true };
-    Page { title: trace_name, cases: vec![case] }.html()
+    Case { check, scene, evidence: Some(&evidence), what_if: None, hints, has_trace: true }.page(trace_name)
 }
 
 fn check_of<'a>(scene: &'a str, trace: &'a str, outcome: &'a Outcome, explanations: &'a [Explanation]) -> Check<'a> {
@@ -128,7 +127,7 @@ fn a_page_about_no_trace_has_no_verdicts_of_books() {
     let outcome = replay::judge(&scene, &b""[..], &replay::Options { fair: true, ..Default::default() }, &mut ());
     let check = Check { looks_like: Some("is empty"), ..check_of("head-on", "mine.bin", &outcome, &[]) };
     let case = Case { check, scene: &scene, evidence: None, what_if: None, hints: Hints::Full, has_trace: true };
-    let html = Page { title: "mine.bin", cases: vec![case] }.html();
+    let html = case.page("mine.bin");
     assert!(html.contains("is no trace: it is empty") && !html.contains("fair rules"), "{html}");
 }
 
@@ -162,7 +161,7 @@ fn names_and_texts_that_look_like_markup_stay_text() {
 /// The policy allows the script and the style sheet that are there, by their digests, and nothing that needs more.
 #[test]
 fn the_policy_fits_the_page() {
-    let html = Page { title: "empty", cases: Vec::new() }.html();
+    let html = document("empty", "", script());
     let between = |from: &str, to: &str| html.split_once(from).and_then(|(_, rest)| rest.split_once(to)).expect(from).0;
     assert!(html.contains(&format!("script-src '{}'", digest(between("<script>", "</script>")))));
     assert!(html.contains(&format!("style-src '{}'", digest(between("<style>", "</style>")))));

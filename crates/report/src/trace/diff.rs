@@ -103,10 +103,11 @@ pub fn diff_json(names: &TraceNames<'_>, comparison: &Comparison) -> String {
 
 /// Rows of a table: what is compared, left, right.
 fn rows(block: &Block) -> Vec<(String, String, String)> {
-    let one = |name: String, left: String, right: String| vec![(name, left, right)];
+    let numbers = |name: String, left: f64, right: f64| vec![(name, bits(left, right), bits(right, left))];
+    let counts = |name: String, left: usize, right: usize| vec![(name, left.to_string(), right.to_string())];
     match *block {
         Block::Coordinate { quantity, particle, axis, left, right } => {
-            one(format!("{quantity} {axis} of particle {particle}"), bits(left, right), bits(right, left))
+            numbers(format!("{quantity} {axis} of particle {particle}"), left, right)
         }
         Block::Impulse { index, left, right } => {
             let row = |name: &str, left: String, right: String| (format!("impulse {index}, {name}"), left, right);
@@ -119,12 +120,12 @@ fn rows(block: &Block) -> Vec<(String, String, String)> {
                 row("time", bits(left.time, right.time), bits(right.time, left.time)),
             ]
         }
-        Block::Count { list, left, right } => one(format!("number of {list}s"), left.to_string(), right.to_string()),
+        Block::Count { list, left, right } => counts(format!("number of {list}s"), left, right),
         Block::PolynomialSize { index, left, right } => {
-            one(format!("coefficients of polynomial {index}"), left.to_string(), right.to_string())
+            counts(format!("coefficients of polynomial {index}"), left, right)
         }
         Block::Coefficient { index, power, left, right } => {
-            one(format!("t^{power} of polynomial {index}"), bits(left, right), bits(right, left))
+            numbers(format!("t^{power} of polynomial {index}"), left, right)
         }
     }
 }

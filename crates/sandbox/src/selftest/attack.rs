@@ -7,31 +7,37 @@ use std::time::Duration;
 
 use crate::{
     job::Policy,
+    layers::{Layer, LayerReport, is_active},
     outcome::{Ended, Stream},
 };
 
-/// The needs of an attack, without which it proves nothing.
+/// The need of an attack, without which it proves nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum AttackNeed {
-    FileRules,
-    /// Files of the host are closed to programs, or out of sight.
-    HiddenFiles,
-    SignalScope,
-    NamedCalls,
-    X86,
+pub(super) struct AttackNeed {
+    pub(super) name: &'static str,
+    /// The walls that meet it, one of them for all.
+    walls: &'static [Layer],
+    /// Whether the processor meets it.
+    by_processor: bool,
 }
 
 impl AttackNeed {
-    const ALL: [Self; 5] = [Self::FileRules, Self::HiddenFiles, Self::SignalScope, Self::NamedCalls, Self::X86];
+    const ALL: [Self; 5] = [
+        Self::of("file rules", &[Layer::FileRules]),
+        // Files of the host are closed to programs, or out of sight.
+        Self::of("hidden files", &[Layer::FileRules, Layer::Namespaces]),
+        Self::of("signal scope", &[Layer::Scopes, Layer::OwnUser]),
+        Self::of("named violations", &[Layer::NamedCalls]),
+        Self { name: "x86_64", walls: &[], by_processor: cfg!(target_arch = "x86_64") },
+    ];
 
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::FileRules => "file rules",
-            Self::HiddenFiles => "hidden files",
-            Self::SignalScope => "signal scope",
-            Self::NamedCalls => "named violations",
-            Self::X86 => "x86_64",
-        }
+    const fn of(name: &'static str, walls: &'static [Layer]) -> Self {
+        Self { name, walls, by_processor: false }
+    }
+
+    /// Whether it is met where these walls are.
+    pub(super) fn is_met(self, layers: &[LayerReport]) -> bool {
+        self.by_processor || self.walls.iter().any(|wall| is_active(layers, *wall))
     }
 }
 
@@ -109,7 +115,7 @@ impl Attack {
                     attack.wall = Some(Duration::from_millis(milliseconds));
                 }
                 "needs" => {
-                    let need = AttackNeed::ALL.into_iter().find(|need| need.name() == value);
+                    let need = AttackNeed::ALL.into_iter().find(|need| need.name == value);
                     attack.needs.push(need.ok_or_else(|| format!("unknown need: {value}"))?);
                 }
                 "leaves" => attack.leaves = Some(value.into()),
@@ -143,7 +149,7 @@ mod tests {
         let attack = Attack::parse("a", text).unwrap();
         assert_eq!(attack.policy, Policy::Tools);
         assert_eq!(attack.wall, Some(Duration::from_millis(300)));
-        assert_eq!((attack.needs, attack.pipe), (vec![AttackNeed::FileRules], Some(Some(6))));
+        assert_eq!((attack.needs, attack.pipe), (vec![AttackNeed::ALL[0]], Some(Some(6))));
         let matches = |ended: &Ended| attack.expected.iter().any(|expected| expected.matches(ended));
         assert!(matches(&Ended::Exited(0)) && !matches(&Ended::Exited(66)));
         assert!(matches(&Ended::Violation { call: "ptrace".into() }));

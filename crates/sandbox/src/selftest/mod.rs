@@ -20,16 +20,13 @@ use std::{
 
 use include_dir::{Dir, include_dir};
 
-use self::{
-    attack::{Attack, AttackNeed},
-    decoy::Decoy,
-};
+use self::{attack::Attack, decoy::Decoy};
 use super::{
     backend::Backend,
     collect::{self, CollectError},
     fault::SandboxError,
     job::{Job, Limits},
-    layers::Layer,
+    layers::{Layer, is_active},
     outcome::{Ended, RunOutcome},
     running::Running,
     supervisor::processes,
@@ -120,8 +117,7 @@ pub fn run_some(
     chosen: impl Fn(&str) -> bool,
     mut report: impl FnMut(&Promise) + Send,
 ) -> Result<PromiseTable, SandboxError> {
-    let filtered = backend.layers().iter().any(|report| report.layer == Layer::CallFilter && report.active);
-    if !filtered {
+    if !is_active(backend.layers(), Layer::CallFilter) {
         return Err(SandboxError::Missing { missing: "the attacks run inside the sandbox only".into() });
     }
     let folder_error = |source: std::io::Error| SandboxError::Folder { folder: folder.display().to_string(), source };
@@ -180,8 +176,8 @@ struct Place<'a> {
 impl Place<'_> {
     /// Tries one attack; both answers are states of its promise.
     fn try_attack(&self, attack: &Attack) -> Result<PromiseState, PromiseState> {
-        if let Some(need) = attack.needs.iter().find(|need| !self.offers(**need)) {
-            return Ok(PromiseState::NotTested(format!("this machine lacks: {}", need.name())));
+        if let Some(need) = attack.needs.iter().find(|need| !need.is_met(self.backend.layers())) {
+            return Ok(PromiseState::NotTested(format!("this machine lacks: {}", need.name)));
         }
         let built = self.build(attack).map_err(PromiseState::NotTested)?;
         let broken = |text: String| PromiseState::Broken(text);
@@ -250,17 +246,6 @@ impl Place<'_> {
         left_as_expected(attack, &folder).map_err(broken)?;
         decoy.clear().map_err(|error| broken(format!("its folder cannot be removed: {error}")))?;
         Ok(PromiseState::Held)
-    }
-
-    fn offers(&self, need: AttackNeed) -> bool {
-        let active = |layer| self.backend.layers().iter().any(|report| report.layer == layer && report.active);
-        match need {
-            AttackNeed::FileRules => active(Layer::FileRules),
-            AttackNeed::HiddenFiles => active(Layer::FileRules) || active(Layer::Namespaces),
-            AttackNeed::SignalScope => active(Layer::Scopes) || active(Layer::OwnUser),
-            AttackNeed::NamedCalls => active(Layer::NamedCalls),
-            AttackNeed::X86 => cfg!(target_arch = "x86_64"),
-        }
     }
 
     /// The built program; built anew only when a source or the compiler's name has changed.

@@ -9,16 +9,19 @@ use std::{
 
 use crate::{
     machine,
-    sys::{self, Announced},
+    sys::{self, Announced, CallAnswer},
 };
 
 /// Tells the thread how much memory the machine has and how long it has been up, and nothing of what is in use: the C
-/// library sorts long arrays by it. The error number is for the caller; `None` where its memory cannot be written.
-pub(super) fn about_machine(announced: &Announced, user: Option<u32>) -> Option<Result<(), i32>> {
+/// library sorts long arrays by it. A kernel whose other walls keep us from the memory answers itself.
+pub(super) fn about_machine(announced: &Announced, user: Option<u32>) -> CallAnswer {
     let told = machine::without_others();
     let path = format!("/proc/{}/mem", announced.thread);
-    let memory = sys::with_files_of(user, || File::options().write(true).open(path)).ok()?;
-    Some(memory.write_all_at(&told, announced.arguments[0]).map_err(|_| libc::EFAULT))
+    match sys::with_files_of(user, || File::options().write(true).open(path)) {
+        Err(_) => CallAnswer::GoOn,
+        Ok(memory) if memory.write_all_at(&told, announced.arguments[0]).is_ok() => CallAnswer::Done,
+        Ok(_) => CallAnswer::Refused(libc::EFAULT),
+    }
 }
 
 /// Whether the process may wait for children with their counters, among which are page faults. The driver of clang
@@ -78,7 +81,8 @@ impl SharedWaits {
             }
             // A thread that waits with a limit of time looks at its word after that, too. A thread that is gone needs
             // no answer.
-            let _ = sys::answer(listener, *id, if *limited { Err(libc::ETIMEDOUT) } else { Ok(()) });
+            let answer = if *limited { CallAnswer::Refused(libc::ETIMEDOUT) } else { CallAnswer::Done };
+            let _ = sys::answer(listener, *id, answer);
             false
         });
     }

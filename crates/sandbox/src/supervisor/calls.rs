@@ -8,9 +8,13 @@
 /// A call's name and number.
 pub(super) type Call = (&'static str, i64);
 
+/// A list of calls. Those behind `old` are older names, or dangers, that only x86_64 has.
 macro_rules! calls {
-    ($($name:ident)*) => {
-        &[$((stringify!($name), libc::$name)),*]
+    ($($name:ident)* $(; old: $($old:ident)*)?) => {
+        &[
+            $((stringify!($name), libc::$name),)*
+            $($(#[cfg(target_arch = "x86_64")] (stringify!($old), libc::$old),)*)?
+        ]
     };
 }
 
@@ -34,45 +38,30 @@ pub(super) const ALLOWED: &[Call] = calls![
     SYS_sched_get_priority_min SYS_getpriority SYS_set_tid_address SYS_set_robust_list SYS_get_robust_list SYS_futex
     SYS_rseq SYS_getrandom SYS_getcpu SYS_exit SYS_exit_group SYS_wait4 SYS_waitid SYS_restart_syscall
     SYS_ioctl SYS_prctl SYS_prlimit64 SYS_kill SYS_tkill SYS_tgkill SYS_clone SYS_execve SYS_execveat
-];
-
-/// The older names of allowed calls, which only older processor families still have.
-#[cfg(target_arch = "x86_64")]
-pub(super) const ALLOWED_OLD: &[Call] = calls![
+    ; old:
     SYS_open SYS_creat SYS_stat SYS_lstat SYS_access SYS_readlink SYS_getdents SYS_mkdir SYS_rmdir SYS_unlink SYS_rename
     SYS_dup2 SYS_pipe SYS_poll SYS_select SYS_eventfd SYS_epoll_create SYS_epoll_wait
     SYS_pause SYS_alarm SYS_time SYS_getpgrp SYS_getrlimit SYS_setrlimit SYS_arch_prctl
 ];
-#[cfg(not(target_arch = "x86_64"))]
-pub(super) const ALLOWED_OLD: &[Call] = &[];
 
 /// Starting a process by the older names; a submission has no business with them, compilers do.
-#[cfg(target_arch = "x86_64")]
-pub(super) const FORKING: &[Call] = calls![SYS_fork SYS_vfork];
-#[cfg(not(target_arch = "x86_64"))]
-pub(super) const FORKING: &[Call] = &[];
+pub(super) const FORKING: &[Call] = calls![; old: SYS_fork SYS_vfork];
 
 /// Links and special files: the folder's rules forbid most of them anyway. Answered with `EPERM`.
-pub(super) const LINKING: &[Call] = calls![SYS_linkat SYS_symlinkat SYS_mknodat];
-#[cfg(target_arch = "x86_64")]
-pub(super) const LINKING_OLD: &[Call] = calls![SYS_link SYS_symlink SYS_mknod];
-#[cfg(not(target_arch = "x86_64"))]
-pub(super) const LINKING_OLD: &[Call] = &[];
+pub(super) const LINKING: &[Call] = calls![
+    SYS_linkat SYS_symlinkat SYS_mknodat
+    ; old:
+    SYS_link SYS_symlink SYS_mknod
+];
 
 /// Permission bits by name or descriptor. Landlock does not know them, so that a program under the grader's own user
 /// could change the grader's files.
-pub(super) const MODES: &[Call] = calls![SYS_fchmodat SYS_fchmod];
-#[cfg(target_arch = "x86_64")]
-pub(super) const MODES_OLD: &[Call] = calls![SYS_chmod];
-#[cfg(not(target_arch = "x86_64"))]
-pub(super) const MODES_OLD: &[Call] = &[];
+pub(super) const MODES: &[Call] = calls![SYS_fchmodat SYS_fchmod; old: SYS_chmod];
 
 /// Times of files, which Landlock does not know either.
 pub(super) const TIMES: &[Call] = calls![SYS_utimensat];
-#[cfg(target_arch = "x86_64")]
-pub(super) const TIMES_OLD: &[Call] = calls![SYS_utime SYS_utimes SYS_futimesat];
-#[cfg(not(target_arch = "x86_64"))]
-pub(super) const TIMES_OLD: &[Call] = &[];
+/// The same by older names, which never take an open file.
+pub(super) const TIMES_BY_NAME: &[Call] = calls![; old: SYS_utime SYS_utimes SYS_futimesat];
 
 /// Calls that libraries try and can do without; refused with `EPERM` or `EACCES` rather than taken for an attack. The C
 /// library asks the name service by a socket, for one. Counters of page faults and of free blocks are among them:
@@ -84,13 +73,9 @@ pub(super) const REFUSED: &[Call] = calls![
     SYS_personality SYS_shmget SYS_shmat SYS_shmctl SYS_semget SYS_semctl SYS_semop SYS_msgget SYS_msgsnd SYS_msgrcv
     SYS_mincore SYS_fadvise64 SYS_msgctl SYS_mq_open SYS_rt_sigqueueinfo SYS_rt_tgsigqueueinfo SYS_pidfd_send_signal SYS_mlockall SYS_ioprio_set
     SYS_getrusage SYS_statfs SYS_fstatfs
+    ; old:
+    SYS_chown SYS_lchown
 ];
-
-/// Refused calls that only older processor families have.
-#[cfg(target_arch = "x86_64")]
-pub(super) const REFUSED_OLD: &[Call] = calls![SYS_chown SYS_lchown];
-#[cfg(not(target_arch = "x86_64"))]
-pub(super) const REFUSED_OLD: &[Call] = &[];
 
 /// The kernel's dangerous corners. No submission comes here by accident: the program is stopped and the call named.
 pub(super) const FORBIDDEN: &[Call] = calls![
@@ -102,13 +87,9 @@ pub(super) const FORBIDDEN: &[Call] = calls![
     SYS_clock_settime SYS_adjtimex SYS_clock_adjtime SYS_syslog SYS_quotactl SYS_open_by_handle_at
     SYS_name_to_handle_at SYS_fanotify_init SYS_fanotify_mark SYS_vhangup SYS_lookup_dcookie SYS_nfsservctl
     SYS_move_pages SYS_migrate_pages SYS_vmsplice
+    ; old:
+    SYS_iopl SYS_ioperm SYS_modify_ldt SYS_kexec_file_load
 ];
-
-/// Forbidden calls that only x86 has.
-#[cfg(target_arch = "x86_64")]
-pub(super) const FORBIDDEN_OLD: &[Call] = calls![SYS_iopl SYS_ioperm SYS_modify_ldt SYS_kexec_file_load];
-#[cfg(not(target_arch = "x86_64"))]
-pub(super) const FORBIDDEN_OLD: &[Call] = &[];
 
 /// Locks of whole files. They need no right to write, so that they are for build tools in their own folder only.
 pub(super) const LOCKS: &[Call] = calls![SYS_flock];
@@ -119,32 +100,13 @@ pub(super) const IDENTITY: &[Call] =
     calls![SYS_setuid SYS_setgid SYS_setreuid SYS_setregid SYS_setresuid SYS_setresgid];
 
 /// Every group: what exists at all.
-pub(super) const GROUPS: [&[Call]; 15] = [
-    ALLOWED,
-    ALLOWED_OLD,
-    FORKING,
-    LINKING,
-    LINKING_OLD,
-    MODES,
-    MODES_OLD,
-    TIMES,
-    TIMES_OLD,
-    LOCKS,
-    IDENTITY,
-    REFUSED,
-    REFUSED_OLD,
-    FORBIDDEN,
-    FORBIDDEN_OLD,
-];
+pub(super) const GROUPS: [&[Call]; 10] =
+    [ALLOWED, FORKING, LINKING, MODES, TIMES, TIMES_BY_NAME, LOCKS, IDENTITY, REFUSED, FORBIDDEN];
 
 /// The usual name of a call.
 pub(super) fn name(number: i64) -> String {
-    for (name, known) in GROUPS.into_iter().flatten() {
-        if *known == number {
-            return name.trim_start_matches("SYS_").to_string();
-        }
-    }
-    format!("number {number}")
+    let known = GROUPS.into_iter().flatten().find(|(_, known)| *known == number);
+    known.map_or_else(|| format!("number {number}"), |(name, _)| name.trim_start_matches("SYS_").to_string())
 }
 
 #[cfg(test)]

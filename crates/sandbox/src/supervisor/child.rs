@@ -22,7 +22,7 @@ use seccompiler::BpfProgram;
 use super::{filter, filter::Purpose, processes, walls};
 use crate::{
     sys,
-    wire::{self, Failure, Raw, RunOrder},
+    wire::{self, Failure, Raw, RunOrder, stage},
 };
 
 /// The stage whose failure is the program's and not ours.
@@ -73,7 +73,6 @@ type Strings = Vec<CString>;
 
 /// Puts up every wall; the answer is the program's arguments and environment.
 fn prepare(plan: &mut Plan) -> Result<(Strings, Strings), Failure> {
-    let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
     sys::new_session().map_err(stage("start a session"))?;
     for group in &mut plan.groups {
         group.write_all(b"0").map_err(stage("enter the control group"))?;
@@ -135,9 +134,11 @@ fn limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
     const SANITISERS_SPACE: u64 = 64 << 40;
     // One byte, not none: the kernel pipes the dumps of programs with a limit of 0 to a handler, if the host has one.
     sys::limit(libc::RLIMIT_CORE, 1)?;
-    sys::limit(libc::RLIMIT_FSIZE, order.folder_bytes)?;
-    sys::limit(libc::RLIMIT_NOFILE, u64::from(order.open_files))?;
-    sys::limit(libc::RLIMIT_CPU, order.cpu_micros.div_ceil(1_000_000) + SPARE_SECONDS)?;
+    let limits = &order.limits;
+    sys::limit(libc::RLIMIT_FSIZE, limits.folder_bytes)?;
+    sys::limit(libc::RLIMIT_NOFILE, u64::from(limits.open_files))?;
+    let begun = u64::from(limits.cpu.subsec_nanos() > 0);
+    sys::limit(libc::RLIMIT_CPU, limits.cpu.as_secs().saturating_add(begun + SPARE_SECONDS))?;
     sys::limit(libc::RLIMIT_STACK, STACK)?;
     sys::limit(libc::RLIMIT_MEMLOCK, 64 << 10)?;
     sys::limit(libc::RLIMIT_MSGQUEUE, 0)?;
@@ -145,12 +146,12 @@ fn limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
     // The count is per user, like that of processes.
     sys::limit(libc::RLIMIT_SIGPENDING, PENDING_SIGNALS)?;
     // Address space is not memory: libraries reserve more than they touch. What is touched is watched.
-    let space = order.memory.saturating_mul(2).saturating_add(SPARE_MEMORY);
+    let space = limits.memory.saturating_mul(2).saturating_add(SPARE_MEMORY);
     sys::limit(libc::RLIMIT_AS, if order.sanitised { space.max(SANITISERS_SPACE) } else { space })?;
     // The count is per user: what ours does already is added, and room for other runs that begin later.
     // The run's own user has none but in another container that hands out the same numbers.
     let others = if own_user { 0 } else { processes::threads_of_user(sys::user()) };
-    sys::limit(libc::RLIMIT_NPROC, u64::from(order.processes) + SPARE_PROCESSES + SPARE_FOR_OTHERS + others)?;
+    sys::limit(libc::RLIMIT_NPROC, u64::from(limits.processes) + SPARE_PROCESSES + SPARE_FOR_OTHERS + others)?;
     Ok(())
 }
 

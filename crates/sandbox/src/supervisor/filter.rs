@@ -13,7 +13,7 @@ use seccompiler::{
 };
 
 use super::{
-    calls,
+    calls::{self, Call},
     search::{self, Answer},
 };
 
@@ -196,27 +196,26 @@ fn refusals(purpose: Purpose) -> io::Result<Vec<Layer>> {
     let mut refuse = |errno: i32, call: i64, rules: Vec<SeccompRule>| {
         refusals.entry(errno).or_default().insert(call, rules);
     };
-    for (_, call) in calls::REFUSED.iter().chain(calls::REFUSED_OLD) {
-        let network = *call == libc::SYS_socket || *call == libc::SYS_socketpair;
-        refuse(if network { libc::EACCES } else { libc::EPERM }, *call, Vec::new());
-    }
-    if !purpose.tools {
-        for (_, call) in calls::LINKING.iter().chain(calls::LINKING_OLD).chain(calls::IDENTITY) {
-            refuse(libc::EPERM, *call, Vec::new());
+    let own_files = purpose.tools && purpose.own_user;
+    // The supervisor decides about these in a build tool's stead.
+    let asked = purpose.tools && purpose.announce;
+    for (group, is_refused) in [
+        (calls::REFUSED, true),
+        (calls::LINKING, !purpose.tools),
+        (calls::IDENTITY, !purpose.tools),
+        (calls::TIMES_BY_NAME, !own_files),
+        (calls::MODES, !own_files && !asked),
+        (calls::LOCKS, !asked),
+    ] {
+        for (_, call) in group.iter().filter(|_| is_refused) {
+            let network = *call == libc::SYS_socket || *call == libc::SYS_socketpair;
+            refuse(if network { libc::EACCES } else { libc::EPERM }, *call, Vec::new());
         }
     }
-    if !(purpose.tools && purpose.own_user) {
-        for (_, call) in calls::TIMES_OLD {
-            refuse(libc::EPERM, *call, Vec::new());
-        }
+    if !own_files {
         // A build tool may set the times of a file that it has open (no path: a null pointer), which is what most do.
         let named = given(1)?;
         refuse(libc::EPERM, libc::SYS_utimensat, if purpose.tools { vec![named] } else { Vec::new() });
-        if !(purpose.tools && purpose.announce) {
-            for (_, call) in calls::MODES.iter().chain(calls::MODES_OLD) {
-                refuse(libc::EPERM, *call, Vec::new());
-            }
-        }
     }
     // Words in a file's pages are the same words for everybody who maps it: a library's would wake other runs.
     let private = libc::FUTEX_PRIVATE_FLAG as u64;
@@ -230,7 +229,7 @@ fn refusals(purpose: Purpose) -> io::Result<Vec<Layer>> {
     }
     // The last argument of both asks for the counters of children.
     refuse(libc::EPERM, libc::SYS_waitid, vec![given(4)?]);
-    if !(purpose.tools && purpose.announce) {
+    if !asked {
         refuse(libc::EPERM, libc::SYS_wait4, vec![given(3)?]);
     }
     refuse(libc::ENOTTY, libc::SYS_ioctl, vec![all_differ(1, &HARMLESS_REQUESTS)?]);
@@ -239,16 +238,11 @@ fn refusals(purpose: Purpose) -> io::Result<Vec<Layer>> {
     let unseen = (libc::MAP_ANONYMOUS | libc::MAP_SHARED) as u64;
     let huge = libc::MAP_HUGETLB as u64;
     refuse(libc::EPERM, libc::SYS_mmap, vec![masked(3, unseen, unseen)?, masked(3, huge, huge)?]);
-    let asynchronous = vec![condition(1, SeccompCmpOp::Eq, libc::F_SETFL as u64)?, has(2, libc::O_ASYNC as u64)?];
-    let lockable = purpose.tools && purpose.announce;
-    let commands =
-        if lockable { [&HARMLESS_COMMANDS[..], &LOCK_COMMANDS[..]].concat() } else { HARMLESS_COMMANDS.into() };
+    let flag = libc::O_ASYNC as u64;
+    let asynchronous =
+        vec![condition(1, SeccompCmpOp::Eq, libc::F_SETFL as u64)?, condition(2, SeccompCmpOp::MaskedEq(flag), flag)?];
+    let commands = if asked { [&HARMLESS_COMMANDS[..], &LOCK_COMMANDS[..]].concat() } else { HARMLESS_COMMANDS.into() };
     refuse(libc::EPERM, libc::SYS_fcntl, vec![all_differ(1, &commands)?, rule(asynchronous)?]);
-    if !lockable {
-        for (_, call) in calls::LOCKS {
-            refuse(libc::EPERM, *call, Vec::new());
-        }
-    }
     // Opening a file for reading only can empty it, and older Landlocks do not notice.
     let (mask, emptied) = ((libc::O_ACCMODE | libc::O_TRUNC) as u64, libc::O_TRUNC as u64);
     refuse(libc::EPERM, libc::SYS_openat, vec![masked(2, mask, emptied)?]);
@@ -292,20 +286,16 @@ type Rules = BTreeMap<i64, Vec<SeccompRule>>;
 
 /// Which calls end the program, or are the supervisor's to decide.
 fn forbidden(purpose: Purpose) -> io::Result<Rules> {
-    let mut rules: Rules =
-        calls::FORBIDDEN.iter().chain(calls::FORBIDDEN_OLD).map(|(_, call)| (*call, Vec::new())).collect();
-    let mut clone = Vec::new();
-    for flag in NAMESPACE_FLAGS {
-        clone.push(rule(vec![condition(0, SeccompCmpOp::MaskedEq(flag), flag)?])?);
-    }
+    let always = |group: &[Call]| group.iter().map(|(_, call)| (*call, Vec::new())).collect::<Rules>();
+    let mut rules = always(calls::FORBIDDEN);
+    let mut clone = NAMESPACE_FLAGS.map(|flag| masked(0, flag, flag)).into_iter().collect::<io::Result<Vec<_>>>()?;
     if !purpose.tools {
-        rules.extend(calls::FORKING.iter().map(|(_, call)| (*call, Vec::new())));
-        let threads = libc::CLONE_THREAD as u64;
-        clone.push(rule(vec![condition(0, SeccompCmpOp::MaskedEq(threads), 0)?])?);
+        rules.extend(always(calls::FORKING));
+        clone.push(masked(0, libc::CLONE_THREAD as u64, 0)?);
         // The supervisor lets the first one through, which starts the program itself. Where it hears nothing, only the
         // one by that descriptor gets past the filter.
         rules.insert(libc::SYS_execve, Vec::new());
-        let entrance = purpose.entrance.map(|number| rule(vec![condition(0, SeccompCmpOp::Ne, number)?]));
+        let entrance = purpose.entrance.map(|number| all_differ(0, &[number]));
         rules.insert(libc::SYS_execveat, entrance.into_iter().collect::<io::Result<_>>()?);
     }
     let parted = (libc::CLONE_THREAD | libc::CLONE_FILES) as u64;
@@ -315,20 +305,18 @@ fn forbidden(purpose: Purpose) -> io::Result<Rules> {
         // The supervisor answers itself: what the machine has, without what others use of it; and that a thread may
         // have ended, without a wait that others could end.
         rules.insert(libc::SYS_sysinfo, Vec::new());
-        let waits = SHARED_WAITS.iter().map(|wait| rule(vec![condition(1, SeccompCmpOp::Eq, *wait)?]));
-        rules.insert(libc::SYS_futex, waits.collect::<io::Result<_>>()?);
+        rules.insert(libc::SYS_futex, each(1, &SHARED_WAITS)?);
     }
     if purpose.tools && purpose.announce {
         // The supervisor looks who asks for counters.
         rules.insert(libc::SYS_wait4, vec![given(3)?]);
         // The supervisor looks where the file lies.
-        rules.extend(calls::LOCKS.iter().map(|(_, call)| (*call, Vec::new())));
-        let locks = LOCK_COMMANDS.iter().map(|command| rule(vec![condition(1, SeccompCmpOp::Eq, *command)?]));
-        rules.insert(libc::SYS_fcntl, locks.collect::<io::Result<_>>()?);
+        rules.extend(always(calls::LOCKS));
+        rules.insert(libc::SYS_fcntl, each(1, &LOCK_COMMANDS)?);
     }
     if purpose.tools && purpose.announce && !purpose.own_user {
         // The supervisor changes the mode itself, in the working folder only.
-        rules.extend(calls::MODES.iter().chain(calls::MODES_OLD).map(|(_, call)| (*call, Vec::new())));
+        rules.extend(always(calls::MODES));
     }
     Ok(rules)
 }
@@ -358,6 +346,11 @@ fn differ(argument: u8, values: &[u64]) -> impl Iterator<Item = io::Result<Secco
     values.iter().map(move |value| condition(argument, SeccompCmpOp::Ne, *value))
 }
 
+/// Rules that match when the argument is one of the values.
+fn each(argument: u8, values: &[u64]) -> io::Result<Vec<SeccompRule>> {
+    values.iter().map(|value| rule(vec![condition(argument, SeccompCmpOp::Eq, *value)?])).collect()
+}
+
 /// Matches when the argument is no null pointer.
 fn given(argument: u8) -> io::Result<SeccompRule> {
     let given = SeccompCondition::new(argument, SeccompCmpArgLen::Qword, SeccompCmpOp::Ne, 0);
@@ -380,11 +373,6 @@ fn clocks_of_others(own: Option<i32>) -> io::Result<SeccompRule> {
 /// Matches when the bits of the mask have this value.
 fn masked(argument: u8, mask: u64, value: u64) -> io::Result<SeccompRule> {
     rule(vec![condition(argument, SeccompCmpOp::MaskedEq(mask), value)?])
-}
-
-/// Matches when the bit is set.
-fn has(argument: u8, bit: u64) -> io::Result<SeccompCondition> {
-    condition(argument, SeccompCmpOp::MaskedEq(bit), bit)
 }
 
 fn rule(conditions: Vec<SeccompCondition>) -> io::Result<SeccompRule> {

@@ -22,7 +22,7 @@ use crate::sys;
 /// Nobody nests folders deeper than this by accident.
 const DEEPEST: u32 = 32;
 /// Blocks that `stat` counts in.
-const BLOCK: u64 = 512;
+pub(super) const BLOCK: u64 = 512;
 
 /// The contents of a folder, counted.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

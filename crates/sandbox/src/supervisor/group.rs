@@ -43,8 +43,8 @@ struct Part {
     kind: Kind,
     path: PathBuf,
     folder: File,
-    /// The limits whose controllers are there.
-    limits: Vec<Limit>,
+    /// The quantities whose controllers are there, so that the kernel limits them.
+    limits: Vec<&'static str>,
 }
 
 impl Group {
@@ -60,7 +60,8 @@ impl Group {
         let mut problem = io::Error::other("no control groups are mounted");
         let mut parts: Vec<Part> = Vec::new();
         for kind in [Kind::Unified, Kind::Memory] {
-            if parts.iter().any(|part| part.limits.iter().any(|limit| kind.limits().contains(limit))) {
+            if parts.iter().flat_map(|part| &part.limits).any(|held| kind.limits().iter().any(|(name, _)| name == held))
+            {
                 continue;
             }
             match Part::make(kind, &places_in(&mounts, &groups, kind)) {
@@ -79,11 +80,9 @@ impl Group {
 
     /// The quantities that the kernel limits.
     pub(super) fn controls(&self) -> Vec<&'static str> {
-        [Limit::Memory, Limit::Processes]
-            .into_iter()
-            .filter(|limit| self.parts.iter().any(|part| part.limits.contains(limit)))
-            .map(Limit::name)
-            .collect()
+        let mut limits: Vec<&str> = self.parts.iter().flat_map(|part| part.limits.iter().copied()).collect();
+        limits.sort_unstable();
+        limits
     }
 
     /// Through these files a process enters the group, by writing a zero to each.
@@ -121,8 +120,9 @@ impl Group {
     fn set_limits(&self, order: &RunOrder) -> io::Result<()> {
         // Files count here, the working folder's above all, and so do buffers of others, but not for the program's own
         // limit.
-        let memory = order.memory.saturating_add(order.folder_bytes).saturating_add(SPARE_MEMORY);
-        let processes = order.processes.saturating_add(SPARE_PROCESSES);
+        let limits = &order.limits;
+        let memory = limits.memory.saturating_add(limits.folder_bytes).saturating_add(SPARE_MEMORY);
+        let processes = limits.processes.saturating_add(SPARE_PROCESSES);
         for part in &self.parts {
             let values: &[(&CStr, String)] = match part.kind {
                 Kind::Unified => &[
@@ -149,45 +149,15 @@ impl Group {
     }
 }
 
-/// A quantity that the kernel can limit for a group.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Limit {
-    Memory,
-    Processes,
-}
-
-impl Limit {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Memory => "memory",
-            Self::Processes => "threads and processes",
-        }
-    }
-}
+/// A quantity that the kernel can limit for a group, and the file without which it does not.
+type Limit = (&'static str, &'static CStr);
 
 impl Kind {
-    /// The limits of such a group, if its controller is there.
+    /// The limits of such a group, if their controllers are there.
     fn limits(self) -> &'static [Limit] {
         match self {
-            Self::Unified => &[Limit::Memory, Limit::Processes],
-            Self::Memory => &[Limit::Memory],
-        }
-    }
-
-    /// The file without which the limit is not set.
-    fn file(self, limit: Limit) -> &'static CStr {
-        match (self, limit) {
-            (Self::Memory, _) => c"memory.limit_in_bytes",
-            (_, Limit::Memory) => c"memory.max",
-            (_, Limit::Processes) => c"pids.max",
-        }
-    }
-
-    /// The controller's name in version 1.
-    fn controller(self) -> Option<&'static str> {
-        match self {
-            Self::Unified => None,
-            Self::Memory => Some("memory"),
+            Self::Unified => &[("memory", c"memory.max"), ("threads and processes", c"pids.max")],
+            Self::Memory => &[("memory", c"memory.limit_in_bytes")],
         }
     }
 }
@@ -237,8 +207,8 @@ impl Part {
     }
 
     fn look_for_limits(&mut self) {
-        let held = |limit: &&Limit| self.open(self.kind.file(**limit), libc::O_WRONLY).is_ok();
-        self.limits = self.kind.limits().iter().filter(held).copied().collect();
+        let held = |(name, file): &Limit| self.open(file, libc::O_WRONLY).is_ok().then_some(*name);
+        self.limits = self.kind.limits().iter().filter_map(held).collect();
     }
 
     fn entrance(&self) -> io::Result<File> {
@@ -314,10 +284,12 @@ pub(crate) fn memory_groups() -> Vec<PathBuf> {
 
 /// Where a group might be made: in our own group, then in its parents up to the root of what is mounted here.
 fn places_in(mounts: &str, groups: &str, kind: Kind) -> Vec<PathBuf> {
-    let concerns = |list: &str| kind.controller().is_some_and(|name| list.split(',').any(|word| word == name));
+    let of_memory = |list: &str| list.split(',').any(|word| word == "memory");
     let own = groups.lines().find_map(|line| match kind {
         Kind::Unified => line.strip_prefix("0::"),
-        _ => line.split_once(':')?.1.split_once(':').filter(|(list, _)| concerns(list)).map(|(_, path)| path),
+        Kind::Memory => {
+            line.split_once(':')?.1.split_once(':').filter(|(list, _)| of_memory(list)).map(|(_, path)| path)
+        }
     });
     let Some(own) = own else { return Vec::new() };
     let mounted = mounts.lines().find_map(|line| {
@@ -325,7 +297,7 @@ fn places_in(mounts: &str, groups: &str, kind: Kind) -> Vec<PathBuf> {
         let mut fields = before.split(' ').skip(3);
         let fits = match kind {
             Kind::Unified => after.starts_with("cgroup2 "),
-            _ => after.starts_with("cgroup ") && after.rsplit(' ').next().is_some_and(concerns),
+            Kind::Memory => after.starts_with("cgroup ") && after.rsplit(' ').next().is_some_and(of_memory),
         };
         fits.then_some((fields.next()?, fields.next()?))
     });
@@ -423,7 +395,8 @@ mod tests {
             Part { kind, folder: File::open(&path).unwrap(), path, limits: Vec::new() }
         };
         let mut group = Group { parts: vec![part(Kind::Unified, &unified), part(Kind::Memory, &memory)] };
-        let order = RunOrder { memory: 1 << 20, folder_bytes: 1 << 10, processes: 4, ..RunOrder::default() };
+        let limits = crate::Limits { memory: 1 << 20, folder_bytes: 1 << 10, processes: 4, ..crate::Limits::default() };
+        let order = RunOrder { limits, ..RunOrder::default() };
         group.set_limits(&order).unwrap();
         assert!(group.controls().is_empty() && !group.was_out_of_memory() && group.cpu().is_zero());
         std::fs::write(unified.path().join("pids.max"), "").unwrap();

@@ -8,8 +8,9 @@ use std::{
     path::Path,
 };
 
-/// Blocks that `stat` counts in.
-const BLOCK: u64 = 512;
+use super::folder::BLOCK;
+use crate::machine;
+
 /// How the kernel marks the name of a file that has none any more.
 const GONE: &[u8] = b" (deleted)";
 /// The names of shared memory that is in no folder.
@@ -49,8 +50,7 @@ pub(super) fn of(members: &[(i32, i32)], root: &Path, executed: bool, page_table
         mapped.extend(maps.split(|byte| *byte == b'\n').filter_map(Mapping::parse));
         if page_tables {
             let status = std::fs::read_to_string(format!("{task}/status")).unwrap_or_default();
-            let line = status.lines().find_map(|line| line.strip_prefix("VmPTE:")?.strip_suffix(" kB"));
-            holdings.memory += line.and_then(|line| line.trim().parse::<u64>().ok()).unwrap_or(0) << 10;
+            holdings.memory += machine::bytes_of(&status, "VmPTE:").unwrap_or(0);
         }
     }
     let shown = as_shown(root);

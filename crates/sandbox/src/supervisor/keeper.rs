@@ -31,7 +31,7 @@ use super::{
 use crate::{
     mounts,
     sys::{self, Fork, Readiness},
-    wire::{self, Event, Failure, Raw, RunOrder},
+    wire::{self, Event, Failure, Raw, RunOrder, stage},
 };
 
 /// A keeper without orders goes after this time, so that its user is there for others.
@@ -98,7 +98,6 @@ enum Side {
 
 /// Takes the resources that a run has to itself, and prepares its world in a child.
 fn settle(order: &RunOrder) -> Result<Side, Failure> {
-    let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
     sys::new_session().map_err(stage("start the supervisor's session"))?;
     let alone = sys::single_thread().map_err(stage("fork"))?;
     let held = Held::take(order)?;
@@ -156,8 +155,7 @@ impl Keeper {
     fn supervise(&mut self, request: RunRequest) -> u8 {
         let RunRequest { order, control, mut answers, folder, files } = request;
         let Some(held) = self.held.take() else { return 1 };
-        let bound =
-            sys::die_with_parent().map_err(|error| Failure::new("bind the supervisor's life to its keeper's", &error));
+        let bound = sys::die_with_parent().map_err(stage("bind the supervisor's life to its keeper's"));
         let finished = bound
             .and_then(|()| view::complete(&order, folder.as_fd(), &files))
             .and_then(|()| Run::start(order, control, held, &self.prepared))

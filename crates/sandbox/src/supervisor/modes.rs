@@ -23,7 +23,7 @@ const MODE_BITS: u64 = 0o1777;
 
 /// Whether the call changes permission bits.
 pub(super) fn concerns(call: i64) -> bool {
-    calls::MODES.iter().chain(calls::MODES_OLD).any(|(_, number)| *number == call)
+    calls::MODES.iter().any(|(_, number)| *number == call)
 }
 
 /// Carries out the call if it means something beneath `folder`, whose path is `root`.

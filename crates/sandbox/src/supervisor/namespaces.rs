@@ -8,13 +8,11 @@
 //! A supervisor that serves many runs ([`keeper`](super::keeper)) moves in once, and gives each run a process
 //! namespace, mounts and messages of its own within.
 
-use std::io;
-
 use super::view;
 use crate::{
     mounts,
     sys::{self, Fork},
-    wire::{Failure, RunOrder},
+    wire::{Failure, RunOrder, stage},
 };
 
 /// Where a supervisor finds itself after [`enter`].
@@ -31,7 +29,6 @@ pub(super) enum Side {
 ///
 /// The step that failed. The process is then somewhere between the worlds and must end.
 pub(super) fn enter(order: &RunOrder) -> Result<Side, Failure> {
-    let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
     match leave()? {
         Fork::Parent(inside) => Ok(Side::Outside(sys::wait_for(inside).map_err(stage("wait"))?)),
         Fork::Child => {
@@ -50,7 +47,6 @@ pub(super) fn enter(order: &RunOrder) -> Result<Side, Failure> {
 ///
 /// As for [`enter`].
 pub(super) fn leave() -> Result<Fork, Failure> {
-    let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
     let (user, group) = (sys::user(), sys::group());
     if user == 0 {
         mounts::unshare(libc::CLONE_NEWPID).map_err(stage("make a process namespace"))?;

@@ -8,7 +8,7 @@ use super::{child, filter, group::Group, slot, walls};
 use crate::{
     mounts,
     sys::{self, Fork, SingleThread},
-    wire::{Failure, RunOrder},
+    wire::{Failure, RunOrder, stage},
 };
 
 /// The resources that a run has to itself on this machine, for as long as this is held.
@@ -25,7 +25,7 @@ impl Held {
         let taken = |error: io::Error| Failure::new(format!("take a user of its own ({error})"), &error);
         let slot = order.walls.own_user.then(slot::take).transpose().map_err(taken)?;
         let group = order.walls.group.then(|| Group::make(order)).transpose();
-        Ok(Self { slot, group: group.map_err(|error| Failure::new("make a control group", &error))? })
+        Ok(Self { slot, group: group.map_err(stage("make a control group"))? })
     }
 }
 
@@ -44,8 +44,7 @@ impl Prepared {
     pub(super) fn of(order: &RunOrder, number: i32, alone: SingleThread) -> Result<Self, Failure> {
         let open = || walls::Places::of(order).out_of_the_way();
         let purpose = child::purpose(order, order.walls.own_user, None, number);
-        let filters =
-            filter::filters(purpose).map_err(|error| Failure::new("compile the system call filter", &error))?;
+        let filters = filter::filters(purpose).map_err(stage("compile the system call filter"))?;
         let places = order.walls.landlock.then(open).flatten();
         let filters = Some(child::Filters::new((purpose, filters)));
         Ok(Self { places, filters, ignored: Some(sys::ignored_signals().into()), alone: Some(alone) })

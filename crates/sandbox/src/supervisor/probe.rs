@@ -113,7 +113,7 @@ fn try_execution() -> (Option<String>, bool) {
 
 /// Ends a child by its control group; the answer is the limits of such a group, and whether it could end the child.
 fn try_group() -> io::Result<(Vec<&'static str>, bool)> {
-    let group = Group::make(&RunOrder { memory: 1 << 30, processes: 64, ..RunOrder::default() })?;
+    let group = Group::make(&RunOrder::default())?;
     let mut entrances = group.entrances()?;
     let (mut waits, entered) = io::pipe()?;
     let Fork::Parent(child) = sys::fork()? else {

@@ -2,6 +2,7 @@
 
 use std::{
     collections::BTreeSet,
+    path::Path,
     time::{Duration, Instant},
 };
 
@@ -32,8 +33,8 @@ impl Stat {
         if self.state != b'Z' || !self.is_alive() {
             return self.resident_pages;
         }
-        let read = |thread| std::fs::read(format!("/proc/{}/task/{thread}/stat", self.pid)).ok();
-        threads(self.pid).filter_map(|thread| Some(parse(&read(thread)?)?.resident_pages)).max().unwrap_or(0)
+        let threads = threads(self.pid).filter_map(|thread| read_thread(self.pid, thread));
+        threads.map(|stat| stat.resident_pages).max().unwrap_or(0)
     }
 }
 
@@ -70,9 +71,7 @@ pub(super) fn usage(pid: i32, tree: bool) -> Usage {
 /// Bytes of a process that were moved to a disk. Where the main thread has left, another one knows.
 fn swapped(pid: i32) -> u64 {
     let of = |thread: i32| {
-        let status = std::fs::read_to_string(format!("/proc/{pid}/task/{thread}/status")).ok()?;
-        let line = status.lines().find_map(|line| line.strip_prefix("VmSwap:")?.strip_suffix(" kB"))?;
-        Some(line.trim().parse::<u64>().ok()? << 10)
+        machine::bytes_of(&std::fs::read_to_string(format!("/proc/{pid}/task/{thread}/status")).ok()?, "VmSwap:")
     };
     of(pid).or_else(|| threads(pid).find_map(of)).unwrap_or(0)
 }
@@ -86,11 +85,8 @@ pub(super) fn members(pid: i32, tree: bool) -> Vec<(i32, i32)> {
         if stat.state != b'Z' {
             return Some((stat.pid, stat.pid));
         }
-        let alive = |thread: &i32| {
-            let stat =
-                std::fs::read(format!("/proc/{}/task/{thread}/stat", stat.pid)).ok().and_then(|line| parse(&line));
-            stat.is_some_and(|stat| !matches!(stat.state, b'Z' | b'X'))
-        };
+        let is_living = |stat: Stat| !matches!(stat.state, b'Z' | b'X');
+        let alive = |thread: &i32| read_thread(stat.pid, *thread).is_some_and(is_living);
         threads(stat.pid).find(alive).map(|thread| (stat.pid, thread))
     };
     stats.iter().filter_map(living).collect()
@@ -98,8 +94,7 @@ pub(super) fn members(pid: i32, tree: bool) -> Vec<(i32, i32)> {
 
 /// The threads of a process.
 pub(crate) fn threads(pid: i32) -> impl Iterator<Item = i32> {
-    let entries = std::fs::read_dir(format!("/proc/{pid}/task")).into_iter().flatten().flatten();
-    entries.filter_map(|entry| entry.file_name().to_str()?.parse().ok())
+    numbers_in(format!("/proc/{pid}/task"))
 }
 
 /// The processes of a user, by the ids that `/proc` entries belong to.
@@ -216,8 +211,17 @@ fn descendants() -> Vec<Stat> {
 
 /// All process ids.
 pub(crate) fn all() -> impl Iterator<Item = i32> {
-    let entries = std::fs::read_dir("/proc").into_iter().flatten().flatten();
+    numbers_in("/proc")
+}
+
+/// The entries of a folder that are numbers.
+fn numbers_in(folder: impl AsRef<Path>) -> impl Iterator<Item = i32> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     entries.filter_map(|entry| entry.file_name().to_str()?.parse().ok())
+}
+
+fn read_thread(pid: i32, thread: i32) -> Option<Stat> {
+    parse(&std::fs::read(format!("/proc/{pid}/task/{thread}/stat")).ok()?)
 }
 
 fn read(pid: i32) -> Option<Stat> {

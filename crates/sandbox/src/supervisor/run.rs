@@ -1,6 +1,7 @@
 //! One supervised run: start, watch, kill, report.
 
 use std::{
+    ffi::CString,
     fs::File,
     io::{self, Read, Write},
     os::{
@@ -28,8 +29,8 @@ use super::{
 use crate::{
     job::Limits,
     outcome::{Ended, Stream},
-    sys::{self, Fork, Readiness},
-    wire::{self, Event, Failure, Report, RunOrder},
+    sys::{self, CallAnswer, Fork, Readiness},
+    wire::{self, Event, Failure, Report, RunOrder, stage},
 };
 
 /// How often clocks and counters are looked at. A look costs some ten microseconds.
@@ -44,7 +45,7 @@ pub(super) fn main() -> ExitCode {
     };
     let Ok((mut control, mut answers)) = streams() else { return ExitCode::from(2) };
     let settled = wire::receive::<RunOrder>(&mut control)
-        .map_err(|error| Failure::new("read the order", &error))
+        .map_err(stage("read the order"))
         .and_then(|order| settle(order, control));
     ExitCode::from(match settled {
         Ok(SettledRun::Here(run)) => tell(run.finish(&mut answers), &mut answers),
@@ -75,7 +76,6 @@ enum SettledRun {
 
 /// Finds a user and a world for the run, and starts it there.
 fn settle(order: RunOrder, control: File) -> Result<SettledRun, Failure> {
-    let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
     // Alone in its session, the supervisor does not get the terminal's Ctrl-C; the grader tells it to stop.
     sys::new_session().map_err(stage("start the supervisor's session"))?;
     let held = Held::take(&order)?;
@@ -124,7 +124,6 @@ impl Run {
     /// Prepares everything and forks.
     pub(super) fn start(order: RunOrder, control: File, held: Held, prepared: &Prepared) -> Result<Self, Failure> {
         let (order, Held { slot, group }) = (Rc::new(order), held);
-        let stage = |name: &'static str| move |error: io::Error| Failure::new(name, &error);
         sys::become_reaper().map_err(stage("become the reaper"))?;
         let folder: OwnedFd = File::open(wire::path(&order.folder)).map_err(stage("open the working folder"))?.into();
         // The kernel has counted the files that were just laid out in memory.
@@ -132,16 +131,15 @@ impl Run {
             true => folder::in_use(folder.as_fd()),
             false => contents(&order, folder.as_fd()),
         };
-        let volatile_pipe = match &order.pipe {
-            Some(name) if order.volatile => {
-                Some(make_pipe(folder.as_fd(), name).map_err(stage("make the trace pipe"))?)
-            }
-            _ => None,
-        };
+        let name = order.pipe.clone().map(CString::new).transpose();
+        let name = name.map_err(|error| Failure::new("make the trace pipe", &error.into()))?;
+        let made = name.as_ref().filter(|_| order.volatile).map(|name| sys::make_pipe(folder.as_fd(), name));
+        let volatile_pipe = made.transpose().map_err(stage("make the trace pipe"))?;
         let slot = slot.map(|slot| owner_before(folder.as_fd(), slot.user).map(|owner| (slot, owner))).transpose();
         let slot = slot.map_err(stage("give the working folder away"))?;
-        let pipe = order.pipe.as_ref().map(|name| open_pipe(folder.as_fd(), name)).transpose();
-        let pipe = pipe.map_err(stage("open the trace pipe"))?;
+        // This end says how full it is.
+        let open = |name: &CString| sys::open_beneath(folder.as_fd(), name, libc::O_WRONLY | libc::O_NONBLOCK);
+        let pipe = name.as_ref().map(open).transpose().map_err(stage("open the trace pipe"))?;
         if order.volatile {
             hand_over(&control, folder.as_fd(), volatile_pipe).map_err(stage("hand the working folder over"))?;
         }
@@ -176,8 +174,8 @@ impl Run {
         // The child's parts are closed here, so that the ends of pipes and sockets can be seen.
         drop(plan);
         Ok(Self {
-            stdout: CapturedStream::new(stdout, order.output_bytes).map_err(stage("read standard output"))?,
-            stderr: CapturedStream::new(stderr, order.output_bytes).map_err(stage("read standard error"))?,
+            stdout: CapturedStream::new(stdout, order.limits.output_bytes).map_err(stage("read standard output"))?,
+            stderr: CapturedStream::new(stderr, order.limits.output_bytes).map_err(stage("read standard error"))?,
             order,
             control,
             folder,
@@ -203,7 +201,7 @@ impl Run {
 
     /// Watches until the program has ended or must end, ends everything, and reports. `None` when the grader is gone.
     pub(super) fn finish(mut self, answers: &mut File) -> Result<Option<FinishedRun>, Failure> {
-        let user = self.slot.as_ref().map(|(slot, _)| slot.user);
+        let user = self.user();
         // A grader that is gone shows as the end of the control pipe, too.
         let walls = self.order.walls;
         let session = (!walls.namespaces && !walls.bubblewrap).then_some(self.child);
@@ -239,10 +237,9 @@ impl Run {
         };
         // Files that a submission leaves in memory nobody looks at but root.
         if let Some((_, (owner, group))) = self.slot.as_ref().filter(|_| !self.order.volatile || self.order.tools) {
-            folder::give(self.folder.as_fd(), *owner, *group)
-                .map_err(|error| Failure::new("take the working folder back", &error))?;
+            folder::give(self.folder.as_fd(), *owner, *group).map_err(stage("take the working folder back"))?;
         }
-        watched.map_err(|error| Failure::new("watch the program", &error))?;
+        watched.map_err(stage("watch the program"))?;
         if self.orphaned {
             return Ok(None);
         }
@@ -261,13 +258,13 @@ impl Run {
         );
         let out_of_memory = self.group.as_ref().is_some_and(Group::was_out_of_memory);
         self.blame_if(out_of_memory, Ended::MemoryLimit);
-        let (cpu, largest) = sys::children_usage().map_err(|error| Failure::new("ask for the usage", &error))?;
+        let (cpu, largest) = sys::children_usage().map_err(stage("ask for the usage"))?;
         let report = Report {
             cause: self.cause.take(),
             status: main_status.unwrap_or(0),
             exec_errno,
-            cpu_micros: micros(cpu.max(self.uncounted_cpu())),
-            wall_micros: micros(wall),
+            cpu: cpu.max(self.uncounted_cpu()),
+            wall,
             peak_memory: largest.max(self.peak_memory),
             folder_growth: after.bytes.saturating_sub(self.folder_before.bytes),
             folder_over: self.over(&after) || !shallow,
@@ -337,6 +334,11 @@ impl Run {
         Ok(())
     }
 
+    /// The user that the program runs as, if it is its own.
+    fn user(&self) -> Option<u32> {
+        self.slot.as_ref().map(|(slot, _)| slot.user)
+    }
+
     /// Notes the first cause.
     fn blame_if(&mut self, condition: bool, cause: Ended) {
         if condition && self.cause.is_none() {
@@ -384,46 +386,28 @@ impl Run {
         // The socket closes when the program starts, before its first instruction.
         self.hear();
         let executes = announced.call == libc::SYS_execve || announced.call == libc::SYS_execveat;
-        let starting = self.status.is_some();
-        if executes && starting {
+        let (user, root) = (self.user(), wire::path(&self.order.folder));
+        let unless = |allowed| if allowed { CallAnswer::GoOn } else { CallAnswer::Refused(libc::EPERM) };
+        let answer = match announced.call {
+            _ if executes && self.status.is_some() => Some(CallAnswer::GoOn),
+            libc::SYS_futex => {
+                self.waits.add(&announced, Instant::now());
+                return Ok(());
+            }
+            libc::SYS_sysinfo => Some(answers::about_machine(&announced, user)),
+            libc::SYS_wait4 => Some(unless(answers::may_count_children(&announced, user))),
+            call if locks::concerns(call) => {
+                Some(unless(sys::with_files_of(user, || locks::is_inside(&announced, &root))))
+            }
+            call if modes::concerns(call) => Some(match modes::change(&announced, self.folder.as_fd(), &root) {
+                Ok(()) => CallAnswer::Done,
+                Err(errno) => CallAnswer::Refused(errno),
+            }),
+            _ => None,
+        };
+        if let Some(answer) = answer {
             // The caller may have been killed meanwhile; then nobody waits for this answer.
-            let _ = sys::let_through(listener.as_fd(), announced.id);
-            return Ok(());
-        }
-        let user = self.slot.as_ref().map(|(slot, _)| slot.user);
-        if announced.call == libc::SYS_futex {
-            self.waits.add(&announced, Instant::now());
-            return Ok(());
-        }
-        if announced.call == libc::SYS_sysinfo {
-            // As above. A kernel whose other walls keep us from the memory answers itself.
-            let _ = match answers::about_machine(&announced, user) {
-                Some(result) => sys::answer(listener.as_fd(), announced.id, result),
-                None => sys::let_through(listener.as_fd(), announced.id),
-            };
-            return Ok(());
-        }
-        if announced.call == libc::SYS_wait4 {
-            // As above.
-            let _ = match answers::may_count_children(&announced, user) {
-                true => sys::let_through(listener.as_fd(), announced.id),
-                false => sys::answer(listener.as_fd(), announced.id, Err(libc::EPERM)),
-            };
-            return Ok(());
-        }
-        if locks::concerns(announced.call) {
-            // As above.
-            let root = wire::path(&self.order.folder);
-            let _ = match sys::with_files_of(user, || locks::is_inside(&announced, &root)) {
-                true => sys::let_through(listener.as_fd(), announced.id),
-                false => sys::answer(listener.as_fd(), announced.id, Err(libc::EPERM)),
-            };
-            return Ok(());
-        }
-        if modes::concerns(announced.call) {
-            let result = modes::change(&announced, self.folder.as_fd(), &wire::path(&self.order.folder));
-            // As above.
-            let _ = sys::answer(listener.as_fd(), announced.id, result);
+            let _ = sys::answer(listener.as_fd(), announced.id, answer);
             return Ok(());
         }
         let mut call = calls::name(announced.call);
@@ -462,18 +446,18 @@ impl Run {
         let reaped = sys::children_usage().map_or(Duration::ZERO, |(cpu, _)| cpu);
         let memory = usage.memory + self.unseen_memory;
         self.peak_memory = self.peak_memory.max(memory);
-        self.blame_if(memory > self.order.memory, Ended::MemoryLimit);
-        self.blame_if(usage.threads > u64::from(self.order.processes), Ended::ProcessLimit);
+        self.blame_if(memory > self.order.limits.memory, Ended::MemoryLimit);
+        self.blame_if(usage.threads > u64::from(self.order.limits.processes), Ended::ProcessLimit);
         let cpu = (usage.cpu + reaped).max(self.uncounted_cpu());
-        self.blame_if(micros(cpu) > self.order.cpu_micros, Ended::CpuLimit);
+        self.blame_if(cpu > self.order.limits.cpu, Ended::CpuLimit);
         let full = self.pipe.as_ref().is_some_and(|pipe| sys::is_full(pipe.as_fd()));
         self.stalled.look(full, Instant::now());
-        self.blame_if(micros(self.wall()) > self.order.wall_micros, Ended::WallLimit);
+        self.blame_if(self.wall() > self.order.limits.wall, Ended::WallLimit);
     }
 
     /// Time on the clock that is the program's own: without that in which it waited for the reader of its trace.
     fn wall(&self) -> Duration {
-        let patience = Duration::from_micros(self.order.wall_micros).saturating_mul(Limits::PATIENCE);
+        let patience = self.order.limits.wall.saturating_mul(Limits::PATIENCE);
         self.began.elapsed().saturating_sub(self.stalled.total.min(patience))
     }
 
@@ -485,7 +469,8 @@ impl Run {
 
     /// Looks at the working folder, at removed files that are still in use, and at memory that is resident for nobody.
     fn look_at_folder(&mut self) {
-        let mut contents = folder::measure(self.folder.as_fd(), self.order.folder_bytes, self.order.folder_files);
+        let mut contents =
+            folder::measure(self.folder.as_fd(), self.order.limits.folder_bytes, self.order.limits.folder_files);
         if self.order.volatile {
             contents = contents.at_least(folder::in_use(self.folder.as_fd()));
         }
@@ -494,7 +479,7 @@ impl Run {
         if self.order.volatile && !self.can_hide_memory() {
             return;
         }
-        let user = self.slot.as_ref().map(|(slot, _)| slot.user);
+        let user = self.user();
         let members = processes::members(self.child, self.has_children());
         let root = wire::path(&self.order.folder);
         let page_tables = self.order.sanitised;
@@ -519,7 +504,9 @@ impl Run {
     }
 
     fn over(&self, contents: &FolderUsage) -> bool {
-        contents.over || contents.bytes > self.order.folder_bytes || contents.files > self.order.folder_files
+        contents.over
+            || contents.bytes > self.order.limits.folder_bytes
+            || contents.files > self.order.limits.folder_files
     }
 }
 
@@ -527,21 +514,6 @@ impl Run {
 fn contents(order: &RunOrder, folder: BorrowedFd<'_>) -> FolderUsage {
     let contents = folder::measure(folder, u64::MAX, u64::MAX);
     if order.volatile { contents.at_least(folder::in_use(folder)) } else { contents }
-}
-
-/// Makes the trace pipe in the folder; the answer is its reading end.
-fn make_pipe(folder: BorrowedFd<'_>, name: &[u8]) -> io::Result<OwnedFd> {
-    let name = std::ffi::CString::new(name).map_err(io::Error::other)?;
-    sys::make_fifo(folder, &name)?;
-    let reader = sys::open_beneath(folder, &name, libc::O_RDONLY | libc::O_NONBLOCK)?;
-    sys::enlarge_pipe(reader.as_fd(), wire::PIPE_BYTES);
-    Ok(reader)
-}
-
-/// The end of the trace pipe that says how full it is.
-fn open_pipe(folder: BorrowedFd<'_>, name: &[u8]) -> io::Result<OwnedFd> {
-    let name = std::ffi::CString::new(name).map_err(io::Error::other)?;
-    sys::open_beneath(folder, &name, libc::O_WRONLY | libc::O_NONBLOCK)
 }
 
 /// Gives the working folder to the run's own user; whose it was.
@@ -557,9 +529,9 @@ fn entrance(order: &RunOrder, opened: &OpenedFile) -> Result<Option<OwnedFd>, Fa
         return Ok(None);
     }
     let interpreter = order.interpreter.as_ref().map(|path| OpenedFile::new(&wire::path(path), false)).transpose();
-    let interpreter = interpreter.map_err(|error| Failure::new("open the interpreter", &error))?;
-    let entrance = interpreter.as_ref().unwrap_or(opened).under_number(order.open_files);
-    entrance.map(Some).map_err(|error| Failure::new("open the program once more", &error))
+    let interpreter = interpreter.map_err(stage("open the interpreter"))?;
+    let entrance = interpreter.as_ref().unwrap_or(opened).under_number(order.limits.open_files);
+    entrance.map(Some).map_err(stage("open the program once more"))
 }
 
 /// Gives the grader the folder and the reading end of the pipe. Only now, with a writer, may a read wait.
@@ -568,8 +540,4 @@ fn hand_over(control: &File, folder: BorrowedFd<'_>, pipe: Option<OwnedFd>) -> i
     let Some(pipe) = pipe else { return sys::send_descriptors(&socket, wire::FOLDER, [folder]) };
     sys::set_blocking(pipe.as_fd(), true)?;
     sys::send_descriptors(&socket, wire::FOLDER, [folder, pipe.as_fd()])
-}
-
-fn micros(time: Duration) -> u64 {
-    u64::try_from(time.as_micros()).unwrap_or(u64::MAX)
 }

@@ -21,7 +21,7 @@ use crate::{
     libraries,
     mounts::{self, NO_DEVICES, NO_SET_USER, READ_ONLY},
     sys,
-    wire::{self, Failure, Raw, RunOrder},
+    wire::{self, Failure, Raw, RunOrder, stage},
 };
 
 /// Where the new root is put together: a folder that every Linux has. It is in sight again once the roots have changed.
@@ -75,7 +75,7 @@ pub(super) fn prepare(order: &RunOrder) -> Result<(), Failure> {
     if sys::user() != 0 {
         // The kernel lets an ordinary user show processes only where others are in sight.
         std::fs::create_dir(WITNESS).map_err(stage("make /proc"))?;
-        mounts::mount(c"proc", &text(Path::new(WITNESS))?, c"").map_err(stage("mount /proc"))?;
+        mounts::mount(c"proc", &text(Path::new(WITNESS))?, c"", false).map_err(stage("mount /proc"))?;
     }
     leave_host()
 }
@@ -100,18 +100,15 @@ pub(super) fn complete(order: &RunOrder, folder: BorrowedFd<'_>, files: &[(Raw, 
     close_root()
 }
 
-fn stage(name: &'static str) -> impl FnOnce(io::Error) -> Failure {
-    move |error| Failure::new(name, &error)
-}
-
 /// A new root with all that lies outside the working folder, and that folder where it does not lie in memory.
 fn begin(order: &RunOrder) -> Result<FileView, Failure> {
     sys::file_mask(0o022);
     mounts::keep_to_ourselves().map_err(stage("keep mounts to itself"))?;
-    mounts::mount(c"tmpfs", &text(Path::new(SITE))?, &text(Path::new(ROOM))?).map_err(stage("make a root folder"))?;
+    let (site, room) = (text(Path::new(SITE))?, text(Path::new(ROOM))?);
+    mounts::mount(c"tmpfs", &site, &room, false).map_err(stage("make a root folder"))?;
     let old = PathBuf::from(format!("{SITE}{HOST}"));
     std::fs::create_dir(&old).map_err(stage("make a root folder"))?;
-    mounts::change_root(&text(Path::new(SITE))?, &text(&old)?).map_err(stage("change the root folder"))?;
+    mounts::change_root(&site, &text(&old)?).map_err(stage("change the root folder"))?;
     let mut view = FileView { placed: Vec::new() };
     let mut readable = walls::in_sight(order);
     readable.sort_by_key(|path| path.as_os_str().len());
@@ -163,7 +160,7 @@ fn hide(path: &Path) -> io::Result<()> {
 /// Shows the run's processes, and to a submission nothing else: other entries of `/proc` count for the whole machine.
 fn add_processes(order: &RunOrder) -> Result<(), Failure> {
     let shown = if order.tools { c"" } else { c"subset=pid" };
-    mounts::mount(c"proc", c"/proc", shown).map_err(stage("mount /proc"))
+    mounts::mount(c"proc", c"/proc", shown, false).map_err(stage("mount /proc"))
 }
 
 fn leave_host() -> Result<(), Failure> {
@@ -179,12 +176,12 @@ fn close_root() -> Result<(), Failure> {
 fn lay_out(folder: &Path, from: &Path, order: &RunOrder) -> io::Result<()> {
     std::fs::create_dir_all(folder)?;
     let options = CString::new(volatile::options(order)).map_err(io::Error::other)?;
-    mounts::mount_folder(&c_string(folder)?, &options, order.tools)?;
+    mounts::mount(c"tmpfs", &c_string(folder)?, &options, order.tools)?;
     volatile::copy(from, folder)
 }
 
 fn text(path: &Path) -> Result<CString, Failure> {
-    c_string(path).map_err(|error| Failure::new("read a path", &error))
+    c_string(path).map_err(stage("read a path"))
 }
 
 fn c_string(path: &Path) -> io::Result<CString> {

@@ -122,8 +122,12 @@ impl Places {
         moved.collect::<Option<_>>().map(Self)
     }
 
+    /// Adds the place with as much of the access as makes sense there.
     fn add(&mut self, path: &Path, access: BitFlags<AccessFs>) {
-        self.0.extend(place(path, access));
+        let Ok(opened) = at_place(path) else { return };
+        let is_folder = opened.metadata().is_ok_and(|metadata| metadata.is_dir());
+        let access = if is_folder { access } else { access & AccessFs::from_file(NEWEST) };
+        self.0.push((opened.into(), access));
     }
 
     /// Like [`Places::add`], but without the grader's own files beneath the path.
@@ -135,13 +139,6 @@ impl Places {
             }
         }
     }
-}
-
-/// The open place, with as much of the access as makes sense there.
-fn place(path: &Path, access: BitFlags<AccessFs>) -> Option<(OwnedFd, BitFlags<AccessFs>)> {
-    let opened = at_place(path).ok()?;
-    let is_folder = opened.metadata().is_ok_and(|metadata| metadata.is_dir());
-    Some((opened.into(), if is_folder { access } else { access & AccessFs::from_file(NEWEST) }))
 }
 
 /// The file at the path, open for being named only.

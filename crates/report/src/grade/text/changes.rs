@@ -1,6 +1,6 @@
 //! The changes between two gradings of the same submissions: what became right and what became wrong.
+use super::some;
 use crate::{
-    grade::one_line,
     number::counted,
     style::{Look, Style},
 };
@@ -31,7 +31,7 @@ pub fn changes(before: &[Grade], after: &[Grade], style: Style) -> String {
     {
         if !names.is_empty() {
             let count = style.paint(look, &format!("{} {word}", counted(names.len() as u64, "scene")));
-            text += &format!("{count} since the last run: {}\n", list(names));
+            text += &format!("{count} since the last run: {}\n", some(names, NAMED));
         }
     }
     if text.is_empty() && same > 0 {
@@ -45,10 +45,4 @@ fn run(grades: &[Grade]) -> impl Iterator<Item = ((&str, &str), &SceneGrade)> {
     let scenes = grades.iter().flat_map(|grade| grade.scenes().map(|scene| (grade.submission.as_str(), scene)));
     let ran = scenes.filter(|(_, scene)| scene.verdict != Verdict::NotRun);
     ran.map(|(submission, scene)| ((submission, scene.scene.as_str()), scene))
-}
-
-fn list(names: &[String]) -> String {
-    let shown: Vec<_> = names.iter().take(NAMED).map(|name| one_line(name)).collect();
-    let more = if names.len() > NAMED { format!(" and {} more", names.len() - NAMED) } else { String::new() };
-    shown.join(", ") + &more
 }

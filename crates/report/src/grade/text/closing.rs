@@ -1,13 +1,13 @@
 //! The result of a submission's grading: short enough for a small terminal, and last, so that it stays in sight.
 use super::{Text, look};
 use crate::{
-    grade::{likely_mistakes, one_line, plain, points, reached, speed_words},
+    grade::{likely_mistakes, one_line, plain, points, reached, speed_words, wrong_scenes},
     number::counted,
     style::Look,
     table::{Align, Cell, Table},
     words,
 };
-use fosssim_findings::{Grade, GroupGrade, SceneGrade, Verdict};
+use fosssim_findings::{Grade, GroupGrade, Verdict};
 use std::fmt::Write;
 
 /// The greatest number of groups that are listed; with more of them, those that are not accepted come first.
@@ -27,15 +27,15 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
     }
     // A fault of the submission itself says it all.
     let mistakes = if grade.unfit().is_some() { Vec::new() } else { likely_mistakes(grade) };
-    let wrong = grade.scenes().filter(|scene| is_wrong(scene)).count() as u64;
+    let wrong = wrong_scenes(grade);
     for (number, (mistake, explained)) in mistakes.iter().enumerate() {
         if number == 0 {
             let heading = if mistakes.len() == 1 { "Likely mistake" } else { "Likely mistakes" };
             let _ = writeln!(text, "{}", style.paint(Look::Strong, heading));
         }
         let verb = if mistake.is_not_finite() { "in" } else { "explains" };
-        let share = format!("({verb} {explained} of {})", counted(wrong, "wrong scene"));
-        let _ = writeln!(text, "  - {} {share}", plain(&words::explanation::what_or(mistake)));
+        let what = plain(&words::explanation::what_or(mistake));
+        let _ = writeln!(text, "  - {what} ({verb} {explained} of {wrong})");
     }
     if grade.unfit().is_some() {
         return text;
@@ -50,11 +50,6 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
         }
     }
     text
-}
-
-/// Whether an explanation of what is wrong is to be looked for.
-fn is_wrong(scene: &SceneGrade) -> bool {
-    scene.verdict.is_wrong_trace()
 }
 
 /// A row per group: points, and how many scenes are accepted.

@@ -104,7 +104,7 @@ impl Text<'_> {
         for warning in &grade.warnings {
             let _ = writeln!(text, "{}: {}", self.style.paint(Look::Notice, "warning"), plain(warning));
         }
-        let build = grade.build.as_ref().filter(|build| !build.end.is_success());
+        let build = grade.failed_build();
         if let (Some(unfit), None) = (words::unfit(grade), build) {
             let _ = writeln!(text, "{}", one_line(&unfit));
         }
@@ -135,6 +135,13 @@ fn rules(grade: &Grade) -> String {
             format!(", by the original's rules (the fair rules differ in {})", counted(differing, "scene"))
         }
     }
+}
+
+/// The first of some names: `a, b, c and 2 more`.
+fn some(names: &[impl AsRef<str>], most: usize) -> String {
+    let shown: Vec<_> = names.iter().take(most).map(|name| one_line(name.as_ref())).collect();
+    let more = if names.len() > most { format!(" and {} more", names.len() - most) } else { String::new() };
+    shown.join(", ") + &more
 }
 
 /// The look of a scene's verdict.

@@ -1,6 +1,6 @@
 //! The scenes of a submission, group by group: what is accepted is counted, what is not is told, and what is told of
 //! many scenes in the same words is told once.
-use super::{Text, TextDetail, look, output};
+use super::{Text, TextDetail, look, output, some};
 use crate::{
     explain,
     grade::{difference, one_line, points, reached, text::SHOWN_LINES},
@@ -27,8 +27,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
     let shown = |scene: &SceneGrade| options.shown == TextDetail::All || !scene.verdict.is_accepted();
     let names = grade.scenes().filter(|scene| shown(scene)).map(|scene| columns(&one_line(&scene.scene)));
     let width = names.max().unwrap_or(0);
-    let mut scenes =
-        Scenes { options, grade, width, told: BTreeMap::new(), mistakes: BTreeSet::new(), alike: alike(grade) };
+    let mut scenes = Scenes { options, grade, width, mistakes: BTreeSet::new(), alike: alike(grade) };
     let groups = grade.groups.iter().filter(|group| group.scenes.iter().any(shown));
     groups.map(|group| scenes.group(group)).collect()
 }
@@ -60,8 +59,6 @@ struct Scenes<'a, 'b> {
     grade: &'a Grade,
     /// Columns of the longest name.
     width: usize,
-    /// How often a scene's words have been told.
-    told: BTreeMap<Words, usize>,
     /// Sentences of mistakes that have been told in full.
     mistakes: BTreeSet<String>,
     alike: BTreeMap<Words, Vec<&'a str>>,
@@ -87,16 +84,14 @@ impl<'a> Scenes<'a, '_> {
     }
 
     fn scene(&mut self, scene: &'a SceneGrade, folds: bool) -> String {
-        let seen = told(scene).map_or(0, |words| {
-            let times = self.told.entry(words).or_default();
-            *times += 1;
-            *times - 1
-        });
+        // The first one tells it for all that are alike.
+        let first = told(scene).and_then(|words| self.alike.get(&words)?.first().copied());
+        let is_first = first.is_none_or(|first| std::ptr::eq(first, scene.scene.as_str()));
         let mut text = String::new();
-        if seen == 0 || !folds {
+        if is_first || !folds {
             text += &self.row(scene);
         }
-        if seen == 0 {
+        if is_first {
             text += &self.details(scene);
         }
         text
@@ -121,7 +116,8 @@ impl<'a> Scenes<'a, '_> {
         lines.extend(explain::lines_once(&scene.settled, &mut self.mistakes).iter().map(|line| one_line(line)));
         let alike = told(scene).and_then(|words| self.alike.get(&words)).map_or(&[][..], |names| &names[1..]);
         if !alike.is_empty() {
-            lines.push(the_same(alike));
+            let (many, names) = (counted(alike.len() as u64, "more scene"), some(alike, NAMED));
+            lines.push(format!("the same in {many}: {names}"));
         }
         if !matches!(scene.verdict, Verdict::Accepted | Verdict::NotRun)
             && let Some(again) = self.options.again
@@ -134,11 +130,4 @@ impl<'a> Scenes<'a, '_> {
         }
         text
     }
-}
-
-/// `the same in 5 more scenes: a, b, c and 2 more`.
-fn the_same(names: &[&str]) -> String {
-    let shown: Vec<_> = names.iter().take(NAMED).map(|name| one_line(name)).collect();
-    let more = if names.len() > NAMED { format!(" and {} more", names.len() - NAMED) } else { String::new() };
-    format!("the same in {}: {}{more}", counted(names.len() as u64, "more scene"), shown.join(", "))
 }

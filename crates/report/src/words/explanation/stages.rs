@@ -1,5 +1,6 @@
 //! Sentences about stages of a step that no known mistake explains.
 use super::capitalised;
+use crate::view::key;
 use fosssim_mistakes::{
     diagnose::{
         Amount, Changed, LoopEnd, Quantity, Ratios, StageDetail, StageFault, WrongDecisions, WrongGeometric,
@@ -16,7 +17,7 @@ pub(super) fn what(fault: &StageFault) -> String {
 
 /// The parts of the assignment in which it may lie, with the kind of pair that alone it concerns.
 fn place(fault: &StageFault) -> String {
-    let areas: Vec<&str> = fault.areas().iter().map(|area| area_name(*area)).collect();
+    let areas: Vec<String> = fault.areas().iter().map(|area| area_name(*area)).collect();
     let areas = match areas.split_last() {
         Some((last, others)) if !others.is_empty() => format!("{} or {last}", others.join(", ")),
         _ => areas.concat(),
@@ -28,8 +29,8 @@ fn place(fault: &StageFault) -> String {
     }
 }
 
-const fn area_name(area: Area) -> &'static str {
-    match area {
+fn area_name(area: Area) -> String {
+    let name = match area {
         Area::Decision => "detection",
         Area::ContactVector => "contact vector",
         Area::Response => "collision response",
@@ -37,8 +38,9 @@ const fn area_name(area: Area) -> &'static str {
         Area::ImpactZones => "impact zones",
         Area::Failsafe => "rigid failsafe",
         // No stage lies in the others; their names are good enough.
-        _ => area.name(),
-    }
+        _ => return key(&area),
+    };
+    name.to_owned()
 }
 
 fn of_fault(fault: &StageFault) -> String {
@@ -163,7 +165,8 @@ fn of_responses(wrong: &WrongResponses) -> String {
     match wrong {
         WrongResponses::Nothing => "contacts change nothing".to_owned(),
         WrongResponses::Unchanged(all) => {
-            let list: Vec<String> = all.iter().map(|one| format!("the {} of {}", quantity(one), body(one))).collect();
+            let list: Vec<String> =
+                all.iter().map(|one| format!("the {} of {}", singular(one.quantity), body(one))).collect();
             format!("unchanged by contacts: {}", list.join(", "))
         }
         WrongResponses::Across(all) => format!("{} also across the contact vector", who_changes(all)),
@@ -193,10 +196,6 @@ const fn body(changed: &Changed) -> &'static str {
         (PairKind::ParticleEdge, 2) => "the second endpoint",
         _ => "the particle",
     }
-}
-
-const fn quantity(changed: &Changed) -> &'static str {
-    singular(changed.quantity)
 }
 
 const fn singular(quantity: Quantity) -> &'static str {
@@ -242,7 +241,8 @@ pub(super) fn detail(detail: &StageDetail) -> String {
                 Amount::Ratio(ratios) => format!("by {} what it should", times(*ratios)),
             };
             let across = if *across { ", and across the contact vector, too" } else { "" };
-            let (place, quantity, body) = (capitalised(changed.kind.name()), quantity(changed), body(changed));
+            let (place, quantity) = (capitalised(changed.kind.name()), singular(changed.quantity));
+            let body = body(changed);
             format!("{place}: the {quantity} of {body} changes {amount}{across} (in {wrong} of {of} isolated contacts)")
         }
         StageDetail::OfZones { count, of } => format!("so it is with {count} of {of} zones of first rounds"),
