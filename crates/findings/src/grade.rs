@@ -12,6 +12,7 @@ use std::{ops::Deref, time::Duration};
 
 /// The visibility of a group's results, in Gradescope's words.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Visibility {
     /// Everybody, at once.
