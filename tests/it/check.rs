@@ -1,7 +1,10 @@
 //! `check`: reports on right, wrong and damaged traces.
 mod streams;
 
-use super::workspace::{BEAM, BOUNCE, DRIFT, Run, Workspace, finish, trace_of};
+use super::{
+    schemas,
+    workspace::{BEAM, BOUNCE, DRIFT, Run, Workspace, finish, trace_of},
+};
 use fosssim_oracle::{
     judge::{Rules, replay},
     report::{
@@ -20,13 +23,7 @@ fn reports(scene: &str, trace: &[u8]) -> (Run, Value) {
     let text = workspace.run(["check", "scene.xml", "trace.bin"]);
     let json = workspace.run(["check", "scene.xml", "trace.bin", "--format", "json"]);
     assert_eq!(text.code, json.code);
-    let value: Value = serde_json::from_slice(&json.stdout).unwrap();
-    let schema: Value = serde_json::from_str(include_str!("../../schemas/check.schema.json")).unwrap();
-    let validator = jsonschema::validator_for(&schema).unwrap();
-    let errors: Vec<_> =
-        validator.iter_errors(&value).map(|error| format!("{}: {error}", error.instance_path())).collect();
-    assert!(errors.is_empty(), "{errors:#?}\n{value:#}");
-    (text, value)
+    (text, schemas::valid("check", &json.stdout))
 }
 
 /// The reference trace of a scene with changed frames.
@@ -404,12 +401,7 @@ fn single_steps_are_shown_alone() {
 
 fn checked_json(workspace: &Workspace, options: &[&str]) -> Value {
     let run = workspace.run(["check", "scene.xml", "trace.bin", "--format", "json"].iter().chain(options));
-    let value: Value = serde_json::from_slice(&run.stdout).unwrap();
-    let schema: Value = serde_json::from_str(include_str!("../../schemas/check.schema.json")).unwrap();
-    let validator = jsonschema::validator_for(&schema).unwrap();
-    let errors: Vec<_> = validator.iter_errors(&value).map(|error| error.to_string()).collect();
-    assert!(errors.is_empty(), "{errors:#?}\n{value:#}");
-    value
+    schemas::valid("check", &run.stdout)
 }
 
 #[test]

@@ -1,5 +1,8 @@
 //! `detect`: the calculator for one pair.
-use super::workspace::{BEAM, BOUNCE, DRIFT, Run, Workspace};
+use super::{
+    schemas,
+    workspace::{BEAM, BOUNCE, DRIFT, Run, Workspace},
+};
 use serde_json::Value;
 
 fn detect(workspace: &Workspace, words: &str) -> Run {
@@ -10,12 +13,7 @@ fn detect(workspace: &Workspace, words: &str) -> Run {
 fn answer(workspace: &Workspace, words: &str) -> Value {
     let run = detect(workspace, &format!("{words} --format json"));
     assert_eq!((run.code, run.err().as_str()), (Some(0), ""), "{words}");
-    let json: Value = serde_json::from_slice(&run.stdout).unwrap();
-    let schema: Value = serde_json::from_str(include_str!("../../schemas/detect.schema.json")).unwrap();
-    let validator = jsonschema::validator_for(&schema).unwrap();
-    let errors: Vec<String> = validator.iter_errors(&json).map(|error| error.to_string()).collect();
-    assert!(errors.is_empty(), "{words}: {errors:#?}");
-    json
+    schemas::valid("detect", &run.stdout)
 }
 
 fn coefficients(json: &Value, number: usize) -> Vec<f64> {

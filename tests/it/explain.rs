@@ -2,7 +2,7 @@
 use super::{
     corpus,
     fair::{assets, rows, simulated},
-    grading,
+    grading, schemas,
     workspace::Workspace,
 };
 use fosssim_oracle::{
@@ -159,15 +159,6 @@ fn correct_variants_are_not_accused() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-fn validated(report: &str) -> Value {
-    let schema: Value = serde_json::from_str(include_str!("../../schemas/explain.schema.json")).unwrap();
-    let report: Value = serde_json::from_str(report).unwrap();
-    let errors: Vec<String> =
-        jsonschema::validator_for(&schema).unwrap().iter_errors(&report).map(|error| error.to_string()).collect();
-    assert!(errors.is_empty(), "{errors:?}");
-    report
-}
-
 const SPINNING: &str = "asset:ContinuousTimeTests/spinning-edge-sweeps-balls";
 
 fn write_trace(workspace: &Workspace, id: &str) {
@@ -190,7 +181,7 @@ fn a_dropped_term_is_named_with_an_example() {
     assert!(text.contains("t^2 lacks -4 e h, with e = d21.x21") && text.contains("d21 is dx2 - dx1"), "{text}");
     assert!(text.contains("expected") && text.contains("actual"), "{text}");
     let run = workspace.run(["explain", SPINNING, "submission.bin", "--format", "json"]);
-    let report = validated(&run.out());
+    let report = schemas::valid("explain", &run.stdout);
     assert_eq!(report["traces"][0]["explanations"][0]["key"], "pe-square-no-eh");
     let run = workspace.run(["explain", SPINNING, "submission.bin", "--hints", "what"]);
     let text = run.out();
@@ -243,7 +234,7 @@ fn nothing_is_explained_where_nothing_is_wrong() {
     assert_eq!(run.code, Some(0));
     assert!(run.out().contains("nothing to explain"), "{}", run.out());
     let report = workspace.run(["explain", SPINNING, "submission.bin", "--format", "json"]);
-    assert_eq!(validated(&report.out())["accepted"], true);
+    assert_eq!(schemas::valid("explain", &report.stdout)["accepted"], true);
 }
 
 #[test]
@@ -259,7 +250,7 @@ fn a_program_at_hand_is_asked_on_probe_scenes() {
             skip(Need::Sandbox, run.err());
             return;
         }
-        let report = validated(&run.out());
+        let report = schemas::valid("explain", &run.stdout);
         assert_eq!(report["accepted"], accepted, "{name}: {}", run.err());
         let common = report["common"]["key"].as_str().unwrap_or_default();
         assert_eq!(common, id, "{name}");

@@ -41,6 +41,7 @@ mod samples;
 mod sandbox;
 mod scenes_corpus;
 mod scenes_props;
+mod schemas;
 mod serve;
 mod shards;
 mod simulate;

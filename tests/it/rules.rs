@@ -1,5 +1,8 @@
 //! The two rule books side by side, as users meet them: what each says about correct variants and about garbage.
-use super::workspace::{BOUNCE, DRIFT, Run, Workspace};
+use super::{
+    schemas,
+    workspace::{BOUNCE, DRIFT, Run, Workspace},
+};
 use fosssim_oracle::suite::library;
 use serde_json::Value;
 use std::path::Path;
@@ -22,11 +25,7 @@ fn sample(scene: &Path, trace: &Path, mistake: &str) {
 /// The report as JSON, checked against its schema, and the run.
 fn report(workspace: &Workspace, rules: &str) -> (Run, Value) {
     let run = workspace.run(["check", "scene.xml", "trace.bin", "--format", "json", "--rules", rules]);
-    let value: Value = serde_json::from_slice(&run.stdout).unwrap_or_else(|_| panic!("{}", run.shown()));
-    let schema: Value = serde_json::from_str(include_str!("../../schemas/check.schema.json")).unwrap();
-    if let Err(error) = jsonschema::validate(&schema, &value) {
-        panic!("{error}\n{value:#}");
-    }
+    let value = schemas::valid("check", &run.stdout);
     (run, value)
 }
 
@@ -103,11 +102,7 @@ fn scenes_that_the_original_can_not_grade_fairly_are_named() {
     assert_eq!(run.code, Some(1), "{}", run.shown());
     insta::assert_snapshot!("headroom", run.shown());
     let json = workspace.run(["check", "--format", "json", "--self", "bounce.xml", "large.xml"]);
-    let value: Value = serde_json::from_slice(&json.stdout).unwrap_or_else(|_| panic!("{}", json.shown()));
-    let schema: Value = serde_json::from_str(include_str!("../../schemas/headroom.schema.json")).unwrap();
-    if let Err(error) = jsonschema::validate(&schema, &value) {
-        panic!("{error}\n{value:#}");
-    }
+    let value = schemas::valid("headroom", &json.stdout);
     assert_eq!((&value["scenes"][0]["fair"], &value["scenes"][1]["fair"]), (&true.into(), &false.into()));
     let run = workspace.run(["check", "--self", "drift.xml"]);
     assert_eq!(run.code, Some(0), "{}", run.shown());

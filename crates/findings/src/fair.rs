@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// The verdict of the fair rules.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum FairVerdict {
     /// Nothing is wrong.
@@ -18,6 +19,7 @@ pub enum FairVerdict {
 
 /// Why a trace is refused as a whole.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum FairRefusal {
     /// It can't be read to its end, or a step of its states has no result.
@@ -32,6 +34,7 @@ pub enum FairRefusal {
 
 /// Which of the two accepted forms of the particle-edge approach polynomial a trace uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Form {
     /// Nothing tells them apart.
@@ -45,6 +48,7 @@ pub enum Form {
 
 /// A decision that round-off may flip, and that the trace has the other way.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Borderline {
     /// The step, from 1.
     pub step: u32,
@@ -58,18 +62,23 @@ pub struct Borderline {
 
 /// The largest shares of their tolerances that were used by what is right, 0 to 1; 0 where nothing differed.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Shares {
     /// Polynomial coefficients.
     #[serde(rename = "coefficients", with = "fosssim_num::written")]
+    #[cfg_attr(feature = "schema", schemars(with = "fosssim_num::written::Number"))]
     pub coefficient: f64,
     /// Contact normals.
     #[serde(rename = "normals", with = "fosssim_num::written")]
+    #[cfg_attr(feature = "schema", schemars(with = "fosssim_num::written::Number"))]
     pub normal: f64,
     /// Positions.
     #[serde(rename = "positions", with = "fosssim_num::written")]
+    #[cfg_attr(feature = "schema", schemars(with = "fosssim_num::written::Number"))]
     pub position: f64,
     /// Velocities.
     #[serde(rename = "velocities", with = "fosssim_num::written")]
+    #[cfg_attr(feature = "schema", schemars(with = "fosssim_num::written::Number"))]
     pub velocity: f64,
 }
 

@@ -12,6 +12,7 @@ use std::{ops::Deref, time::Duration};
 
 /// The visibility of a group's results, in Gradescope's words.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Visibility {
     /// Everybody, at once.
@@ -135,6 +136,7 @@ impl Grade {
 
 /// An entry of a class's folder that is no submission, and why: nobody is left out in silence.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 pub struct PassedOver {
     /// Its name, as that of a submission.
     pub name: String,

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// A rule book.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Book {
     /// The original's rules (oracle-behaviour.md 4 to 6).
@@ -17,6 +18,7 @@ pub enum Book {
 
 /// Which rule books are asked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Rules {
     /// The original's alone.
@@ -67,6 +69,9 @@ pub enum Ruling {
 }
 
 impl Ruling {
+    /// All verdicts.
+    pub const ALL: [Self; 3] = [Self::Accepted, Self::WrongAnswer, Self::BadTrace];
+
     /// The words: `accepted`, `wrong answer`, `bad trace`.
     #[must_use]
     pub const fn words(self) -> &'static str {

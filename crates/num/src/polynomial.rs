@@ -6,12 +6,12 @@ use serde::{Deserialize, Serialize};
 pub const MAX_COEFFICIENTS: usize = 6;
 
 /// A real polynomial, **highest power first**, after removal of the small leading coefficients.
-///
-/// The coefficients stand at the end of the storage, behind zeros.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(into = "Vec<Number>", try_from = "Vec<Number>")]
 pub struct Polynomial {
     length: u8,
+    /// The coefficients stand at the end, behind zeros.
     storage: [f64; MAX_COEFFICIENTS],
 }
 

@@ -4,6 +4,8 @@
 //! of numbers say `#[serde(with = "fosssim_num::written")]`.
 use super::{printed::general, vector::Vec2};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::DeserializeOwned, de::Error};
+#[cfg(feature = "schema")]
+use std::borrow::Cow;
 
 /// A number in its serialised form: `nan`, `-nan`, `inf` and `-inf` are texts.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,6 +32,20 @@ impl<'de> Deserialize<'de> for Number {
             Either::Number(number) => Ok(Self(number)),
             Either::Text(text) => text.parse().map(Self).map_err(D::Error::custom),
         }
+    }
+}
+
+#[cfg(feature = "schema")]
+impl schemars::JsonSchema for Number {
+    fn schema_name() -> Cow<'static, str> {
+        "Number".into()
+    }
+
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        schemars::json_schema!({
+            "description": "A number; a text where it is not finite.",
+            "anyOf": [{ "type": "number" }, { "enum": ["nan", "-nan", "inf", "-inf"] }],
+        })
     }
 }
 

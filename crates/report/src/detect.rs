@@ -4,16 +4,17 @@ use super::{
     number::exact,
     style::{Look, Style},
     table::{Align, Cell, Table},
-    view::{Number, numbers},
+    view::{Number, document, numbers},
 };
 use fosssim_evidence::Logged;
+use fosssim_findings::Role;
 use fosssim_judge::{
     PairWords, PassWords, differing, factor,
     study::{Answer, Curve, Study},
 };
-use fosssim_model::sim::{Decision, Pair, PairMotion, Pass, PointMotion};
-use fosssim_num::{interval::Interval, written::Written};
-use serde_json::{Value, json};
+use fosssim_model::sim::{Decision, Pair, PairKind, PairMotion, Pass, PointMotion};
+use fosssim_num::{interval::Interval, polynomial::Polynomial, written::Written};
+use serde::Serialize;
 
 /// The version of the report's shape.
 pub const DETECT_SCHEMA: u32 = 1;
@@ -31,7 +32,7 @@ pub struct Place<'a> {
     pub pair: Pair,
     /// The detection pass; `None` where the scene has no continuous-time detection.
     pub pass: Option<Pass>,
-    /// How many passes the reference makes in this step.
+    /// The number of passes that the reference makes in this step.
     pub passes: usize,
     /// The trace's log of this call.
     pub logged: &'a Logged,
@@ -149,32 +150,20 @@ impl Detect<'_> {
     #[must_use]
     pub fn json(&self) -> String {
         let study = self.study;
-        let value = json!({
-            "schema": DETECT_SCHEMA,
-            "place": self.place.map(|place| json!({
-                "scene": place.scene,
-                "trace": place.trace,
-                "step": place.step,
-                "pair": place.pair,
-                "pass": place.pass,
-                "passes": place.passes,
-                "logged": match place.logged {
-                    Logged::These(logged) => Some(logged.iter().map(|list| numbers(list)).collect::<Vec<_>>()),
-                    Logged::Nothing if place.trace.is_some() && place.pass.is_some() => Some(Vec::new()),
-                    Logged::Nothing | Logged::Unknown => None,
-                },
-            })),
-            "kind": study.motion.kind().name(),
-            "motion": motion_view(&study.motion),
-            "polynomials": study.curves.iter().map(curve_view).collect::<Vec<_>>(),
-            "answer": answer_view(&study.answer),
-            "certain": study.certain,
-            "right_approach": study.right_approach.as_ref().map(|right| json!({
-                "polynomial": curve_view(&right.curve),
-                "answer": answer_view(&right.answer),
-            })),
-        });
-        format!("{value:#}\n")
+        let view = DetectView {
+            schema: DETECT_SCHEMA,
+            place: self.place.as_ref().map(PlaceView::from),
+            kind: study.motion.kind(),
+            motion: (&study.motion).into(),
+            polynomials: study.curves.iter().map(CurveView::from).collect(),
+            answer: (&study.answer).into(),
+            certain: study.certain,
+            right_approach: study
+                .right_approach
+                .as_ref()
+                .map(|right| RightApproachView { polynomial: (&right.curve).into(), answer: (&right.answer).into() }),
+        };
+        document(&view)
     }
 }
 
@@ -315,49 +304,178 @@ pub(crate) fn polynomial(coefficients: &[f64]) -> String {
     text
 }
 
-fn motion_view(motion: &PairMotion) -> Value {
-    let point = |point: PointMotion| json!({ "start": point.start.write(), "displacement": point.shift.write() });
-    match *motion {
-        PairMotion::Particles { centres, radii } => {
-            json!({ "points": centres.map(point), "radii": numbers(&radii) })
-        }
-        PairMotion::Edge { centre, ends, radii } => {
-            let points = [centre, ends[0], ends[1]].map(point);
-            json!({ "points": points, "radii": numbers(&radii) })
-        }
-        PairMotion::HalfPlane { centre, radius, point: at, normal } => json!({
-            "points": [point(centre)],
-            "radii": numbers(&[radius]),
-            "half_plane": { "point": at.write(), "normal": normal.write() },
-        }),
-    }
+/// One detection call: what the reference computes from the motion of a pair within a step. Times are fractions of the
+/// step.
+#[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+pub(crate) struct DetectView<'a> {
+    /// The version of this shape.
+    #[cfg_attr(feature = "schema", schemars(extend("const" = DETECT_SCHEMA)))]
+    schema: u32,
+    /// Where in a scene's run the pair was looked at; null when its numbers were typed.
+    place: Option<PlaceView<'a>>,
+    /// The kind of the pair.
+    kind: PairKind,
+    /// How its bodies move.
+    motion: MotionView,
+    /// In the order of the trace.
+    polynomials: Vec<CurveView>,
+    /// The reference's decision.
+    answer: AnswerView,
+    /// Whether the pair collides whatever rounding does to a correct program; null where round-off may flip it.
+    certain: Option<bool>,
+    /// The mathematically right approach polynomial of a particle and an edge, and what follows from it; null where the
+    /// course's is the same.
+    right_approach: Option<RightApproachView>,
 }
 
-fn curve_view(curve: &Curve) -> Value {
-    json!({
-        "role": curve.role,
-        "coefficients": numbers(curve.logged.coefficients()),
-        "untrimmed": numbers(curve.untrimmed.coefficients()),
-        "zeros": curve.zeros.iter().map(|&(real, imaginary)| [Number(real), Number(imaginary)]).collect::<Vec<_>>(),
-        "positive": sets(&curve.positive),
-    })
+/// A place in a scene's run.
+#[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+struct PlaceView<'a> {
+    /// The scene as typed.
+    scene: &'a str,
+    /// The trace as typed; null for the reference's own run.
+    trace: Option<&'a str>,
+    /// From 1.
+    step: u32,
+    /// The pair.
+    pair: Pair,
+    /// The detection pass; null where the scene has no continuous-time detection.
+    pass: Option<Pass>,
+    /// The number of passes that the reference makes in this step.
+    passes: usize,
+    /// The lists that the trace logged for this call, in the order of `polynomials`: empty where it logged nothing for
+    /// it, with an empty list for one that is missing. Null for the reference's run, and where it logged another number
+    /// of polynomials in which this call's can't be told.
+    logged: Option<Vec<Vec<Number>>>,
+}
+
+/// The motion of a pair.
+#[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+struct MotionView {
+    /// The centres of both particles; the particle's centre and the edge's ends; or the particle's centre.
+    points: Vec<PointView>,
+    /// The radii of the bodies that have one, in their order.
+    radii: Vec<Number>,
+    /// Of a half-plane, where it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    half_plane: Option<HalfPlaneView>,
+}
+
+/// A point that moves.
+#[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+struct PointView {
+    /// Where it is at the start of the step.
+    start: [Number; 2],
+    /// How far it goes within the step.
+    displacement: [Number; 2],
+}
+
+/// A half-plane.
+#[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+struct HalfPlaneView {
+    /// A point on its boundary.
+    point: [Number; 2],
+    /// Its normal.
+    normal: [Number; 2],
+}
+
+/// A polynomial, its zeros, and where it is positive.
+#[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+struct CurveView {
+    /// Its meaning when it is positive.
+    role: Role,
+    /// As logged and searched, highest power first: leading ones below 1e-12 are dropped.
+    coefficients: Polynomial,
+    /// Nothing dropped.
+    untrimmed: Polynomial,
+    /// Real and imaginary parts, in the order in which the reference's root finder gives them.
+    zeros: Vec<[Number; 2]>,
+    /// Intervals of time over the whole line, sorted and apart; an interval may be a single time.
+    positive: Vec<[Number; 2]>,
+}
+
+/// The decision that follows from the polynomials of a pair.
+#[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+struct AnswerView {
+    /// Where all polynomials are positive: intervals of time, sorted and apart.
+    positive: Vec<[Number; 2]>,
+    /// Whether the pair collides within the step.
+    collides: bool,
+    /// The first time from which all are positive; inf if there is none.
+    time: Number,
+    /// From the first object to the second, not normalised; null without a collision.
+    normal: Option<[Number; 2]>,
+}
+
+/// The right approach polynomial and its answer.
+#[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+struct RightApproachView {
+    /// The polynomial.
+    polynomial: CurveView,
+    /// The answer.
+    answer: AnswerView,
 }
 
 fn sets(list: &[Interval]) -> Vec<[Number; 2]> {
     list.iter().map(|interval| [interval.lo, interval.hi].write()).collect()
 }
 
-fn answer_view(answer: &Answer) -> Value {
-    let normal = match answer.decision {
-        Decision::Hit { normal, .. } => Some(normal.write()),
-        Decision::Miss { .. } => None,
-    };
-    json!({
-        "positive": sets(&answer.positive),
-        "collides": answer.decision.collides(),
-        "time": Number(answer.decision.time()),
-        "normal": normal,
-    })
+impl<'a> From<&Place<'a>> for PlaceView<'a> {
+    fn from(place: &Place<'a>) -> Self {
+        let Place { scene, trace, step, pair, pass, passes, logged } = *place;
+        let logged = match logged {
+            Logged::These(logged) => Some(logged.iter().map(|list| numbers(list)).collect()),
+            Logged::Nothing if trace.is_some() && pass.is_some() => Some(Vec::new()),
+            Logged::Nothing | Logged::Unknown => None,
+        };
+        Self { scene, trace, step, pair, pass, passes, logged }
+    }
+}
+
+impl From<&PairMotion> for MotionView {
+    fn from(motion: &PairMotion) -> Self {
+        let (moving, radii, half_plane) = match *motion {
+            PairMotion::Particles { centres, radii } => (centres.to_vec(), radii.to_vec(), None),
+            PairMotion::Edge { centre, ends, radii } => (vec![centre, ends[0], ends[1]], radii.to_vec(), None),
+            PairMotion::HalfPlane { centre, radius, point, normal } => {
+                let half_plane = HalfPlaneView { point: point.write(), normal: normal.write() };
+                (vec![centre], vec![radius], Some(half_plane))
+            }
+        };
+        let point = |point: PointMotion| PointView { start: point.start.write(), displacement: point.shift.write() };
+        Self { points: moving.into_iter().map(point).collect(), radii: numbers(&radii), half_plane }
+    }
+}
+
+impl From<&Curve> for CurveView {
+    fn from(curve: &Curve) -> Self {
+        Self {
+            role: curve.role,
+            coefficients: curve.logged,
+            untrimmed: curve.untrimmed,
+            zeros: curve.zeros.iter().map(|&(real, imaginary)| [Number(real), Number(imaginary)]).collect(),
+            positive: sets(&curve.positive),
+        }
+    }
+}
+
+impl From<&Answer> for AnswerView {
+    fn from(answer: &Answer) -> Self {
+        let normal = match answer.decision {
+            Decision::Hit { normal, .. } => Some(normal.write()),
+            Decision::Miss { .. } => None,
+        };
+        let (positive, collides) = (sets(&answer.positive), answer.decision.collides());
+        Self { positive, collides, time: Number(answer.decision.time()), normal }
+    }
 }
 
 #[cfg(test)]

@@ -163,22 +163,40 @@ fn indented(explanations: &[Explanation]) -> String {
     lines(explanations).iter().map(|line| format!("  {line}\n")).collect()
 }
 
+/// The likely mistakes of the program that left one or several traces.
 #[derive(Serialize)]
-struct DiagnosisView<'a> {
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+pub(crate) struct DiagnosisView<'a> {
+    /// The version of this shape.
+    #[cfg_attr(feature = "schema", schemars(extend("const" = SCHEMA)))]
     schema: u32,
+    /// Whether the fair rules accept every trace.
     accepted: bool,
+    /// The contents that the scenes have in common in which the program crashes or runs into a limit, in words; null
+    /// where nothing is known.
     located: Option<String>,
+    /// With several traces, the mistake that explains most of the wrong ones.
     common: Option<ExplanationView>,
+    /// With several traces, up to three mistakes that explain the wrong ones together; the first is `common`.
     likely: Vec<ExplanationView>,
+    /// The traces, in the order in which they were asked about.
     traces: Vec<CaseView<'a>>,
 }
 
+/// A trace.
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 struct CaseView<'a> {
+    /// Its scene.
     scene: &'a str,
+    /// The trace, or the program that left it.
     trace: &'a str,
+    /// Whether the fair rules accept it.
     accepted: bool,
+    /// How the program ended, where it did not end well.
     note: Option<&'a str>,
+    /// The first thing that is wrong; null where nothing is, and where it may not be told.
     first_divergence: Option<FindingView>,
+    /// Likely mistakes, the likeliest first.
     explanations: Vec<ExplanationView>,
 }

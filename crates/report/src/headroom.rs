@@ -83,24 +83,43 @@ pub fn json(measured: &[Measured]) -> String {
     })
 }
 
+/// The room that the original's rules leave in scenes: parity judges the reference's own traces while all lengths are
+/// doubled again and again.
 #[derive(Serialize)]
-struct HeadroomView {
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+pub(crate) struct HeadroomView {
+    /// The version of this shape.
+    #[cfg_attr(feature = "schema", schemars(extend("const" = SCHEMA)))]
     schema: u32,
+    /// Lengths were multiplied by powers of two up to this.
     largest_factor: u64,
+    /// A scene that fails at this factor or a smaller one can't be graded fairly by the original's rules.
     fair_factor: u64,
+    /// A scene with less room can't be graded fairly by the original's rules.
     fair_room: f64,
+    /// The scenes.
     scenes: Vec<SceneView>,
 }
 
+/// The room in a scene.
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 struct SceneView {
+    /// The scene as typed.
     scene: String,
+    /// The largest modulus of a coefficient at the scene's own size; null where its traces hold no polynomials, so that
+    /// nothing can fail.
     largest_coefficient: Option<Number>,
+    /// How many units in the last place of it the original's bound holds.
     room: Option<Number>,
     /// Whether the original's rules can grade it at its own size.
     fair: bool,
+    /// The first factor of lengths at which the original's rules fail the reference's own trace; null where none up to
+    /// the largest does.
     fails_at_factor: Option<u64>,
+    /// The number of findings at that factor.
     findings: u64,
+    /// The first one; null where only residuals fail or nothing does.
     first: Option<FindingView>,
 }
 

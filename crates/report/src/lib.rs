@@ -24,6 +24,8 @@ pub mod number;
 pub mod page;
 pub mod problems;
 pub mod scene;
+#[cfg(feature = "schema")]
+pub mod schemas;
 pub mod simulate;
 pub mod style;
 pub mod table;

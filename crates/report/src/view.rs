@@ -39,6 +39,7 @@ pub fn numbers(values: &[f64]) -> Vec<Number> {
 
 /// A polynomial of a step.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PolynomialView {
     /// Its number in the frame's list, from 0.
     pub index: usize,
@@ -54,6 +55,7 @@ pub struct PolynomialView {
 
 /// A value that a finding compares.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(untagged)]
 pub enum Value {
     /// A number.
@@ -61,7 +63,11 @@ pub enum Value {
     /// A count.
     Count(usize),
     /// A vector.
-    Point(#[serde(with = "fosssim_num::written")] [f64; 2]),
+    Point(
+        #[serde(with = "fosssim_num::written")]
+        #[cfg_attr(feature = "schema", schemars(with = "[Number; 2]"))]
+        [f64; 2],
+    ),
     /// The coefficients of a polynomial.
     Polynomial(Polynomial),
     /// A collision.
@@ -70,8 +76,9 @@ pub enum Value {
 
 /// A finding in a row of its own: the same fields for every kind.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FindingView {
-    /// The step, from 1.
+    /// The step, from 1; 0 is the first record (fair rules).
     pub step: u32,
     /// The frame of the trace, from 0.
     pub frame: u64,
@@ -83,15 +90,17 @@ pub struct FindingView {
     pub particle: Option<usize>,
     /// The polynomial; null for what is not about one.
     pub polynomial: Option<PolynomialView>,
-    /// The power of t whose coefficient differs.
+    /// The highest power of t whose coefficient differs once the factor on which most coefficients agree is taken out.
     pub coefficient: Option<usize>,
-    /// The reference's value.
+    /// The reference's value: a collision, a count of polynomials or coefficients, the coefficients, one coefficient
+    /// times the factor of the trace's polynomial, or a vector.
     pub expected: Option<Value>,
-    /// The trace's value.
+    /// The same of the trace.
     pub actual: Option<Value>,
     /// Their distance, where there is one.
     pub residual: Option<Number>,
-    /// The bound of the distance; for coefficients, of the distance after rescaling.
+    /// The bound of the distance; for coefficients, of the distance after rescaling. Null where it depends on the
+    /// values (fair rules).
     pub tolerance: Option<Number>,
     /// A coefficient as the original compares it.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -169,6 +169,7 @@ pub enum Resume {
 
 /// One detection pass over all pairs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(from = "PassForm", into = "PassForm")]
 pub struct Pass {
     /// Which part of the handling asks.
@@ -198,13 +199,18 @@ pub enum Stage {
 
 /// A pass in its serialised form: the round is 0 in stages that have one pass.
 #[derive(Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct PassForm {
+    /// Number of the pass within the step, from 0.
     index: u32,
+    /// The part of collision handling that asks.
     stage: StageName,
+    /// Round within the stage, from 0.
     round: u32,
 }
 
 #[derive(Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 enum StageName {
     Simple,

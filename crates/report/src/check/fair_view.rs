@@ -5,26 +5,39 @@ use fosssim_findings::{
     fair::{Borderline, FairRefusal, FairVerdict, Form, Judgement, Shares},
 };
 use serde::Serialize;
-use serde_json::{Value, json};
 
 /// The fair rules' judgement.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 pub(super) struct FairView<'a> {
+    /// The verdict; none where judging was cut short, and nothing was wrong so far.
     verdict: FairVerdict,
+    /// The reason why the trace is refused as a whole.
     refusal: Option<FairRefusal>,
+    /// Steps with at least one finding; the first record is not a step.
     wrong_steps: u64,
+    /// The first finding; null when there is none.
     first_divergence: Option<FindingView>,
+    /// As at the top. Tolerances depend on the values, so they are null.
     findings: Vec<CountedView>,
+    /// Least and greatest factor of the polynomials; null where it is 1.
     #[serde(with = "fosssim_num::written")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<[crate::view::Number; 2]>"))]
     factor: Option<[f64; 2]>,
+    /// Which accepted form the approach polynomial of a particle and an edge has.
     approach_form: Form,
+    /// Decisions that round-off may flip and that the trace has the other way; they are not charged.
     borderline: BorderlineView<'a>,
+    /// The largest share of its tolerances that something right uses, 0 to 1.
     used_tolerance: &'a Shares,
 }
 
 /// All findings of one kind: how many, and the first.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 pub(super) struct CountedView {
+    /// Their number.
+    #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
     count: u64,
     #[serde(flatten)]
     first: FindingView,
@@ -37,15 +50,30 @@ impl CountedView {
     }
 }
 
+/// Borderline decisions.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 struct BorderlineView<'a> {
+    /// Their number.
     count: u64,
+    /// The first ones.
     examples: &'a [Borderline],
 }
 
 /// The reason why the two rule books differ.
-pub(crate) fn cause_view(cause: Cause) -> Value {
-    json!({ "key": cause, "text": cause.to_string() })
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+pub(crate) struct CauseView {
+    /// The rule of the original that is the cause.
+    key: Cause,
+    /// In words.
+    text: String,
+}
+
+impl From<Cause> for CauseView {
+    fn from(cause: Cause) -> Self {
+        Self { key: cause, text: cause.to_string() }
+    }
 }
 
 impl<'a> From<&'a Judgement> for FairView<'a> {

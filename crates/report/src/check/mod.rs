@@ -31,7 +31,7 @@ use super::{
     style::Style,
     view::{CHECK_SCHEMA, FindingView, document},
 };
-pub(crate) use fair_view::cause_view;
+pub(crate) use fair_view::CauseView;
 use fair_view::{CountedView, FairView};
 use fosssim_findings::{Book, Damage, FindingKind, Outcome, Overall, Residuals, Rules, Ruling, Stop};
 use fosssim_judge::{Unreadable, fair::cause};
@@ -138,7 +138,7 @@ impl Check<'_> {
                 messages: messages(outcome),
             },
             fair: outcome.fair.as_deref().map(FairView::from),
-            difference: cause(outcome).map(cause_view),
+            difference: cause(outcome).map(CauseView::from),
             first_divergence: account.first_divergence.as_ref().map(|first| FindingView::by(book, first)),
             findings: CountedView::all(book, &account.examples, |kind| account.counts.get(kind)),
             advice: advice::lines(self),
@@ -180,58 +180,123 @@ fn messages(outcome: &Outcome) -> BTreeMap<&'static str, u64> {
     messages
 }
 
+/// The report on one trace. Fields may be added within a version of the shape; their meanings do not change. Numbers
+/// that are not finite are the texts nan, -nan, inf and -inf.
 #[derive(Serialize)]
-struct CheckView<'a> {
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+pub(crate) struct CheckView<'a> {
+    /// The version of this shape.
+    #[cfg_attr(feature = "schema", schemars(extend("const" = CHECK_SCHEMA)))]
     schema: u32,
+    /// The scene as typed.
     scene: &'a str,
+    /// The trace as typed.
     trace: &'a str,
+    /// The rule books that were asked.
     rules: Rules,
+    /// The book that gives the verdict, the first divergence, findings and wrong steps.
     official: Book,
+    /// By the official book. Bad trace: it could not be followed to the scene's last step; by the fair rules also: it
+    /// is damaged, or goes on after its last record.
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = Ruling::ALL.map(Ruling::words))))]
     verdict: &'static str,
+    /// The reason for the verdict, in one line.
     summary: String,
+    /// The original's judgement.
     parity: Parity,
+    /// The fair rules' judgement; null when they were not asked.
     fair: Option<FairView<'a>>,
-    difference: Option<serde_json::Value>,
+    /// The reason why the two rule books differ; null where they do not.
+    difference: Option<CauseView>,
+    /// The official book's first finding; null when there is none.
     first_divergence: Option<FindingView>,
+    /// Per kind of finding of the official book the first one, and how many there are.
     findings: Vec<CountedView>,
+    /// Advice by the kind of the first finding.
     advice: Vec<&'static str>,
+    /// Commands that look closer at the first finding.
     commands: Vec<String>,
+    /// Other facts worth knowing: damage, bytes behind the end.
     notes: Vec<String>,
+    /// Likely mistakes, the likeliest first; empty where nothing is wrong, and with --no-explain.
     explanations: Vec<ExplanationView>,
+    /// Steps of the scene.
     steps: u32,
+    /// Steps that were judged.
     steps_judged: u32,
+    /// Steps with at least one finding of the official book.
     wrong_steps: u64,
+    /// The numbers of these steps, from 1; the first 1000.
+    #[cfg_attr(feature = "schema", schemars(length(max = LISTED), inner(range(min = 1))))]
     wrong_step_numbers: Vec<u32>,
+    /// With --all the wrong steps, the first 1000, with --step those asked for; null without both. By the official
+    /// book, or by the fair rules where the official book has found nothing.
     shown_steps: Option<Vec<WrongStepView>>,
+    /// The reason why judging stopped before the scene's last step; null when it did not.
     problem: Option<StopView>,
+    /// The first damage that the original reads over in silence.
     damage: Option<DamageView>,
+    /// Whether bytes follow the last record.
     trailing_bytes: bool,
+    /// Counts of root searches, with --audit only.
     #[serde(skip_serializing_if = "Option::is_none")]
     root_searches: Option<SearchCounts>,
 }
 
+/// The original's judgement.
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 struct Parity {
+    /// Its verdict; none where grading did not come to its end.
     overall: Overall,
     #[serde(flatten)]
     residuals: Residuals,
+    /// Whether collisions and polynomials are right; null without a verdict.
     collisions_passed: Option<bool>,
+    /// How often the original prints each of its messages; one that it does not print is left out.
     messages: BTreeMap<&'static str, u64>,
 }
 
 /// Why judging stopped early.
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 struct StopView {
-    kind: &'static str,
+    /// The reason.
+    kind: StopKind,
     #[serde(flatten)]
     place: DamageView,
 }
 
+/// The reason why judging stopped early.
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+enum StopKind {
+    /// A record's state can't be read to its end.
+    StateUnreadable,
+    /// Its impulses or polynomials can't.
+    ImpulsesUnreadable,
+    /// It claims more than fits into memory.
+    ImpossibleCount,
+    /// It claims more than the limits allow.
+    BeyondLimit,
+    /// The file itself can't be read on.
+    ReadError,
+    /// The step that begins with these values has no result.
+    StepWithoutResult,
+}
+
+/// A place in a trace where it can't be read as it should.
+#[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct DamageView {
+    /// From 1; 0 is the initial record.
     step: u32,
+    /// The record, from 0.
     frame: Option<u64>,
+    /// Byte offset.
     offset: Option<u64>,
+    /// In words.
     message: String,
 }
 
@@ -247,18 +312,21 @@ impl From<&Stop> for StopView {
         match stop {
             Stop::Trace { frame, step, cause, offset, what } => {
                 let kind = match cause {
-                    Unreadable::State => "state_unreadable",
-                    Unreadable::Impulses => "impulses_unreadable",
-                    Unreadable::Memory => "impossible_count",
-                    Unreadable::Limit => "beyond_limit",
-                    Unreadable::Io => "read_error",
+                    Unreadable::State => StopKind::StateUnreadable,
+                    Unreadable::Impulses => StopKind::ImpulsesUnreadable,
+                    Unreadable::Memory => StopKind::ImpossibleCount,
+                    Unreadable::Limit => StopKind::BeyondLimit,
+                    Unreadable::Io => StopKind::ReadError,
                 };
                 let (frame, offset, message) = (Some(*frame), Some(*offset), what.to_string());
                 Self { kind, place: DamageView { step: *step, frame, offset, message } }
             }
             Stop::Step(error) => {
                 let (step, message) = step_error(error);
-                Self { kind: "step_without_result", place: DamageView { step, frame: None, offset: None, message } }
+                Self {
+                    kind: StopKind::StepWithoutResult,
+                    place: DamageView { step, frame: None, offset: None, message },
+                }
             }
         }
     }

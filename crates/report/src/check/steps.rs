@@ -197,10 +197,14 @@ fn block(check: &Check<'_>, step: &Step, style: Style) -> String {
     text
 }
 
-/// The findings in one step, for programs.
+/// A step with its findings.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 pub(super) struct WrongStepView {
+    /// From 1; 0 is the first record.
     step: u32,
+    /// Per kind of finding the first one of the step, and how many the step has. Empty: nothing is wrong there, or the
+    /// trace can't be judged so far.
     findings: Vec<CountedView>,
 }
 

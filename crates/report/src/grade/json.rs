@@ -1,6 +1,8 @@
 //! Our own JSON (`schemas/grade.schema.json`): everything a grade holds.
 use super::{super::explain::ExplanationView, phrases::NOT_GRADED, plain, printed, speed_words};
-use crate::{check::cause_view, view::document, words};
+use crate::{check::CauseView, view::document, words};
+#[cfg(feature = "schema")]
+use fosssim_findings::Verdict;
 use fosssim_findings::{
     Book, Grade, GroupGrade, PassedOver, Rules, SceneGrade, Visibility,
     speed::{SpeedGrade, SpeedSource},
@@ -11,99 +13,190 @@ use serde::Serialize;
 /// The version of the schema; it rises when a reader of the old one would misunderstand the new one.
 const SCHEMA: u32 = 4;
 
+/// The document of `grade --format json`. The number in `schema` rises when a reader of the old one would misunderstand
+/// the new one.
 #[derive(Serialize)]
-struct GradeDocument {
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+pub(crate) struct GradeDocument {
+    /// The version of this shape.
+    #[cfg_attr(feature = "schema", schemars(extend("const" = SCHEMA)))]
     schema: u32,
+    /// The version of the program.
     version: &'static str,
+    /// The submissions.
     grades: Vec<GradeView>,
-    /// Entries of the class that are no submissions; left out where there are none.
+    /// Entries of the class's folder that are no submissions; left out where there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     passed_over: Vec<PassedOver>,
 }
 
+/// The grade of a submission.
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 struct GradeView {
+    /// The submission's name.
     submission: String,
+    /// The suite's name.
     suite: String,
+    /// The rule books that were asked.
     rules: Rules,
     /// The book that gives verdicts and points.
     official: Book,
+    /// The worst verdict of all scenes.
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = Verdict::ALL.map(Verdict::words))))]
     verdict: &'static str,
+    /// The same in short.
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = Verdict::ALL.map(Verdict::code))))]
     code: &'static str,
-    /// `null` when the grader failed or was stopped: that is nobody's zero.
+    /// Null when the grader failed or was stopped: that is nobody's zero.
+    #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
     points: Option<f64>,
+    /// Points that can be reached.
+    #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
     max_points: f64,
+    /// The wall time of all runs together.
+    #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
     wall_seconds: f64,
+    /// Layers of the sandbox that were active.
     sandbox: Vec<String>,
+    /// Weaknesses of the sandbox.
     warnings: Vec<String>,
+    /// How the build ended; null where the suite builds nothing.
     build: Option<BuildView>,
-    /// The contents that the scenes have in common in which the program crashes or runs into a limit.
+    /// The contents that the scenes have in common in which the program crashes or runs into a limit; null where
+    /// nothing is known.
     located: Option<LocatedView>,
     /// The mistake that explains most wrong scenes, where several have explanations.
     likely_mistake: Option<ExplanationView>,
-    /// Up to three mistakes that explain the wrong scenes together.
+    /// Up to three mistakes that explain the wrong scenes together, the one that explains most first.
+    #[cfg_attr(feature = "schema", schemars(length(max = 3)))]
     likely_mistakes: Vec<ExplanationView>,
+    /// The groups in the suite's order.
     groups: Vec<GroupView>,
 }
 
+/// The scenes in which a program fails.
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 struct LocatedView {
+    /// The whole in words.
     text: String,
+    /// Scenes in which the program fails.
     failed: usize,
+    /// Of these, scenes that have the contents.
     with: usize,
+    /// Scenes that have the contents, and in which it does not fail.
     without: usize,
+    /// The first scene in which it fails.
     first_scene: String,
+    /// The last step of that scene that its trace holds whole.
     last_complete_step: u32,
 }
 
+/// The build step's end.
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 struct BuildView {
+    /// Whether there is a program.
     succeeded: bool,
+    /// How it ended, in words.
     end: String,
+    /// The compiler's output, cut where it is long.
     output: String,
 }
 
+/// A group of scenes.
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 struct GroupView {
+    /// Its name.
     name: String,
+    /// The readers who see it.
     visibility: Visibility,
+    /// The worst verdict of its scenes.
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = Verdict::ALL.map(Verdict::words))))]
     verdict: &'static str,
+    /// Points reached, those for speed included; null where a scene has none.
+    #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
     points: Option<f64>,
+    /// Points that can be reached.
+    #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
     max_points: f64,
+    /// Points for speed, which are part of the group's points; left out where the suite gives none.
     #[serde(skip_serializing_if = "Option::is_none")]
     speed: Option<SpeedView>,
+    /// Its scenes.
     scenes: Vec<SceneView>,
 }
 
+/// Points for speed.
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 struct SpeedView {
+    /// Points reached; null when the grader could not measure.
+    #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
     points: Option<f64>,
+    /// Points that can be reached.
+    #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
     max_points: f64,
+    /// The measurement in words.
     text: String,
+    /// The submission's processor time, divided by the reference's: of the least times.
+    #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
     ratio: Option<f64>,
+    /// The least ratio of a round of runs.
+    #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
     least_ratio: Option<f64>,
+    /// The greatest ratio of a round of runs.
+    #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
     greatest_ratio: Option<f64>,
+    /// Rounds of runs.
     runs: u32,
 }
 
+/// A scene of a grade.
 #[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
 struct SceneView {
+    /// Its name.
     scene: String,
+    /// Its verdict.
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = Verdict::ALL.map(Verdict::words))))]
     verdict: &'static str,
+    /// The same in short.
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = Verdict::ALL.map(Verdict::code))))]
     code: &'static str,
+    /// The reason for the verdict, in one line.
     summary: String,
-    difference: Option<serde_json::Value>,
+    /// The reason why the two rule books judge the scene differently; null where they do not.
+    difference: Option<CauseView>,
+    /// Where the trace diverges first, and how many findings there are of each kind, as far as hints allow.
     details: Vec<String>,
+    /// Likely mistakes, the likeliest first, as far as hints allow.
     explanations: Vec<ExplanationView>,
+    /// Points reached; null when the grader failed, or did not come to run it.
+    #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
     points: Option<f64>,
+    /// Points that can be reached.
+    #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
     max_points: f64,
+    /// Steps that are right.
     right_steps: u32,
+    /// Steps of the scene.
     steps: u32,
+    /// The processor time of the run.
+    #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
     cpu_seconds: f64,
+    /// The wall time of the run.
+    #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
     wall_seconds: f64,
+    /// The most memory that it had; null where that is not known.
     memory_bytes: Option<u64>,
+    /// The program's output, cut where it is long.
     stdout: String,
+    /// Its standard error, likewise.
     stderr: String,
+    /// Whether the result was taken from an earlier run.
     cached: bool,
 }
 
@@ -195,7 +288,7 @@ fn scene(scene: &SceneGrade) -> SceneView {
         verdict: scene.verdict.words(),
         code: scene.verdict.code(),
         summary: plain(&words::summary(scene)),
-        difference: scene.differs.map(cause_view),
+        difference: scene.differs.map(CauseView::from),
         details: words::details(scene).iter().map(|detail| plain(detail)).collect(),
         explanations: scene.settled.iter().map(ExplanationView::from).collect(),
         points: scene.points,

@@ -9,6 +9,7 @@ mod csv_table;
 mod github;
 mod gradescope;
 mod json;
+pub(crate) use json::GradeDocument;
 mod junit;
 mod passed_over;
 mod phrases;

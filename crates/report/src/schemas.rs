@@ -1,0 +1,33 @@
+//! The schemas of the JSON documents that reports write, made from the types of these documents.
+use super::{
+    check::CheckView, detect::DetectView, diagnosis::DiagnosisView, grade::GradeDocument, headroom::HeadroomView,
+};
+use schemars::{JsonSchema, Schema, generate::SchemaSettings, transform::RecursiveTransform};
+use serde_json::Value;
+
+/// The schemas with the commands that write such documents. Each is `<command>.schema.json` in the folder `schemas`.
+#[must_use]
+pub fn all() -> [(&'static str, Schema); 5] {
+    [
+        ("check", of::<CheckView<'_>>("check --format json")),
+        ("detect", of::<DetectView<'_>>("detect --format json")),
+        ("explain", of::<DiagnosisView<'_>>("explain --format json")),
+        ("grade", of::<GradeDocument>("grade --format json")),
+        ("headroom", of::<HeadroomView>("check --self --format json")),
+    ]
+}
+
+fn of<Document: JsonSchema>(command: &str) -> Schema {
+    let settings = SchemaSettings::draft2020_12().for_serialize().with_transform(RecursiveTransform(join_lines));
+    let generator = settings.into_generator();
+    let mut schema = generator.into_root_schema_for::<Document>();
+    schema.insert("title".to_owned(), format!("fosssim-oracle {command}").into());
+    schema
+}
+
+/// A comment's lines end where the source is full.
+fn join_lines(schema: &mut Schema) {
+    if let Some(Value::String(description)) = schema.get_mut("description") {
+        *description = description.replace('\n', " ");
+    }
+}
