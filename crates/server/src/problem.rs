@@ -96,7 +96,7 @@ problems! {
     conflict(detail: impl Into<String>, remedy: &str): 409, "conflict", "Not possible now",
         detail,
         remedy;
-    /// One's own account is not one's own to shut or to change so.
+    /// Administrators neither shut, remove nor demote themselves.
     own_account(): 409, "conflict", "Not possible now",
         "this is your own account",
         "ask another administrator";
