@@ -2,6 +2,7 @@
 //!
 //! One type for all readers: the strict [`Reader`](super::Reader) stops at it, the [`Lenient`](super::Lenient) one
 //! notes it and goes on as the original does.
+use super::layout::Layout;
 use serde::{Deserialize, Serialize};
 use std::{borrow::Cow, fmt, io};
 
@@ -17,6 +18,12 @@ pub struct TraceError {
     pub offset: u64,
     /// The fault, in words without position.
     pub what: Malformation,
+}
+
+impl TraceError {
+    pub(super) fn new(layout: Layout, frame: u64, offset: u64, what: Malformation) -> Self {
+        Self { frame, step: layout.step_of(frame), offset, what }
+    }
 }
 
 /// A record and its step in words.
@@ -220,6 +227,18 @@ pub enum Malformation {
         /// Its text.
         message: String,
     },
+}
+
+impl Malformation {
+    /// Positions and velocities that are cut, or not there at all, behind `records` records, of which `whole` were whole.
+    /// `left` bytes are left.
+    pub(super) fn no_state(layout: Layout, records: u64, whole: u64, left: u64) -> Self {
+        match (left, records) {
+            (0, 0) => Self::Empty,
+            (0, _) => Self::TooFewRecords { records: whole, expected: layout.records() },
+            _ => Self::State { needs: layout.state_bytes() as u64, left },
+        }
+    }
 }
 
 /// The kind of an error that was kept: its text says the rest.
