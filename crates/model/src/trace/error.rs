@@ -4,7 +4,7 @@
 //! notes it and goes on as the original does.
 use super::layout::Layout;
 use serde::{Deserialize, Serialize};
-use std::{borrow::Cow, fmt, io};
+use std::{borrow::Cow, fmt};
 
 /// Something wrong with a trace, and its place.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, thiserror::Error)]
@@ -221,9 +221,6 @@ pub enum Malformation {
     /// The stream reported an error.
     #[error("reading failed: {message}")]
     Io {
-        /// The kind of the error.
-        #[serde(skip, default = "other")]
-        kind: io::ErrorKind,
         /// Its text.
         message: String,
     },
@@ -239,11 +236,6 @@ impl Malformation {
             _ => Self::State { needs: layout.state_bytes() as u64, left },
         }
     }
-}
-
-/// The kind of an error that was kept: its text says the rest.
-const fn other() -> io::ErrorKind {
-    io::ErrorKind::Other
 }
 
 #[cfg(test)]
