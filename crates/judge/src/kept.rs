@@ -62,7 +62,7 @@ impl<'a> Keeper<'a> {
     pub fn read_on<R: Read>(&self, trace: R) {
         let mut reader = self.reader(trace);
         let mut piece = vec![0; PIECE];
-        while self.store().wants_more() {
+        while lock(&self.store).wants_more() {
             match reader.read(&mut piece) {
                 Ok(0) => return,
                 Err(error) if error.kind() != io::ErrorKind::Interrupted => return,
@@ -75,10 +75,6 @@ impl<'a> Keeper<'a> {
     #[must_use]
     pub fn into_kept(self) -> KeptTrace<'a> {
         KeptTrace { scene: self.scene, store: self.store.into_inner().unwrap_or_else(PoisonError::into_inner) }
-    }
-
-    fn store(&self) -> MutexGuard<'_, KeptBytes> {
-        lock(&self.store)
     }
 }
 
@@ -112,11 +108,11 @@ struct KeepingProgress<'k, 'a>(&'k Keeper<'a>);
 
 impl Progress for KeepingProgress<'_, '_> {
     fn step_wrong(&mut self, wrong: &WrongStep<'_>) {
-        self.0.store().wrong = wrong.step;
+        lock(&self.0.store).wrong = wrong.step;
     }
 
     fn step_passed(&mut self, place: &StepPlace) {
-        self.0.store().pass(place);
+        lock(&self.0.store).pass(place);
     }
 }
 

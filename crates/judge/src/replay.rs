@@ -145,11 +145,9 @@ impl<'a, R: Read + Send> Replay<'a, R> {
     /// Judges the trace from its beginning.
     fn judge(mut self, options: &Options, progress: &mut dyn Progress) -> Outcome {
         if let Err(stop) = self.read_initial() {
-            self.outcome.damage = self.damage.take();
             self.outcome.stop = Some(stop);
             return self.conclude();
         }
-        self.outcome.damage = self.damage.take();
         progress.begins();
         let (mut current, mut next) = (Batch::default(), Batch::default());
         let mut stop = self.read_batch(&mut current);
@@ -228,16 +226,14 @@ impl<'a, R: Read + Send> Replay<'a, R> {
     fn read_initial(&mut self) -> Result<(), Stop> {
         let mut frame = LenientFrame::default();
         let mut damage = None;
-        let read = self.read_frame(&mut frame, &mut damage);
+        self.read_frame(&mut frame, &mut damage)?;
         self.damaged = damage.is_some();
-        self.damage = damage;
-        if let (Ok(()), false, Some(context), Some(judgement)) =
-            (&read, self.damaged, self.shape.fair, &mut self.judging)
-        {
+        self.outcome.damage = damage;
+        if let (false, Some(context), Some(judgement)) = (self.damaged, self.shape.fair, &mut self.judging) {
             judgement.add_initial(&fair::judge_initial(&context, &frame));
         }
         self.state = frame.state;
-        read
+        Ok(())
     }
 
     /// Reads one record; the first damage of a slot is kept.

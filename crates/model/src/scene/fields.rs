@@ -99,15 +99,15 @@ impl<'d, 't, 'r> Fields<'d, 't, 'r> {
 
     /// One of some names.
     pub(super) fn choice<T: Copy>(&mut self, name: &str, choices: &[(&str, T)]) -> Option<T> {
-        let attribute = self.required(name, &list(&choices.iter().map(|(name, _)| *name).collect::<Vec<_>>()))?;
+        let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
+        let attribute = self.required(name, &list(&names))?;
         let text = self.decoded(attribute)?;
         if let Some((_, value)) = choices.iter().find(|(name, _)| *name == text) {
             return Some(*value);
         }
-        let names = || choices.iter().map(|(name, _)| *name);
-        let help = match grammar::closest(&text, names()) {
+        let help = match grammar::closest(&text, names.iter().copied()) {
             Some(meant) => format!("did you mean `{meant}`?"),
-            None => format!("allowed are {}", list(&names().collect::<Vec<_>>())),
+            None => format!("allowed are {}", list(&names)),
         };
         self.bad(name, help);
         None

@@ -80,7 +80,7 @@ impl fmt::Display for Problems {
 
 impl std::error::Error for Problems {}
 
-/// Problems in the making: as an error at the start of the text, until [`Report`] knows better.
+// In the making: an error at the start of the text, until the report knows better.
 impl Problem {
     pub(super) fn new(span: Range<usize>, message: impl Into<String>) -> Self {
         let (severity, message) = (Severity::Error, message.into());

@@ -20,6 +20,7 @@ pub struct Simulation {
     handler: Handler,
     q_start: Vec<f64>,
     state: State,
+    /// The next step is this plus 1.
     steps_done: u32,
     most_work: u64,
 }
@@ -54,12 +55,6 @@ impl Simulation {
     /// keep their length 2N.
     pub fn state_mut(&mut self) -> &mut State {
         &mut self.state
-    }
-
-    /// Number of steps done; the next one is this plus 1.
-    #[must_use]
-    pub fn steps_done(&self) -> u32 {
-        self.steps_done
     }
 
     /// Declares that `steps` steps lie behind (for judging steps out of order).
@@ -210,7 +205,7 @@ mod tests {
         let expected =
             ["step 1", "pass 0 ContinuousTime", "hit at 0.5", "impulse -0 -0.25", "1 hits", "synchronise", "end 1"];
         assert_eq!(log.lines, expected);
-        assert_eq!(simulation.steps_done(), 1);
+        assert_eq!(simulation.steps_done, 1);
     }
 
     #[test]

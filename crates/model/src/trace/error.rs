@@ -2,8 +2,9 @@
 //!
 //! One type for all readers: the strict [`Reader`](super::Reader) stops at it, the [`Lenient`](super::Lenient) one
 //! notes it and goes on as the original does.
+use super::layout::Layout;
 use serde::{Deserialize, Serialize};
-use std::{borrow::Cow, fmt, io};
+use std::{borrow::Cow, fmt};
 
 /// Something wrong with a trace, and its place.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, thiserror::Error)]
@@ -17,6 +18,12 @@ pub struct TraceError {
     pub offset: u64,
     /// The fault, in words without position.
     pub what: Malformation,
+}
+
+impl TraceError {
+    pub(super) fn new(layout: Layout, frame: u64, offset: u64, what: Malformation) -> Self {
+        Self { frame, step: layout.step_of(frame), offset, what }
+    }
 }
 
 /// A record and its step in words.
@@ -214,17 +221,21 @@ pub enum Malformation {
     /// The stream reported an error.
     #[error("reading failed: {message}")]
     Io {
-        /// The kind of the error.
-        #[serde(skip, default = "other")]
-        kind: io::ErrorKind,
         /// Its text.
         message: String,
     },
 }
 
-/// The kind of an error that was kept: its text says the rest.
-const fn other() -> io::ErrorKind {
-    io::ErrorKind::Other
+impl Malformation {
+    /// Positions and velocities that are cut, or not there at all, behind `records` records, of which `whole` were whole.
+    /// `left` bytes are left.
+    pub(super) fn no_state(layout: Layout, records: u64, whole: u64, left: u64) -> Self {
+        match (left, records) {
+            (0, 0) => Self::Empty,
+            (0, _) => Self::TooFewRecords { records: whole, expected: layout.records() },
+            _ => Self::State { needs: layout.state_bytes() as u64, left },
+        }
+    }
 }
 
 #[cfg(test)]

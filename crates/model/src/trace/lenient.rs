@@ -242,7 +242,7 @@ impl<R: Read> Lenient<R> {
     }
 
     fn error(&self, offset: u64, what: Malformation) -> TraceError {
-        TraceError { offset, frame: self.record, step: self.layout.step_of(self.record), what }
+        TraceError::new(self.layout, self.record, offset, what)
     }
 
     fn stop(&self, cause: Unreadable, offset: u64, what: Malformation) -> ReadStop {
@@ -290,11 +290,7 @@ impl<R: Read> Lenient<R> {
             return Ok(());
         }
         let left = self.source.offset() - self.begin + self.source.ensure(1) as u64;
-        let what = match (left, self.record) {
-            (0, 0) => Malformation::Empty,
-            (0, _) => Malformation::TooFewRecords { records: whole, expected: self.layout.records() },
-            _ => Malformation::State { needs: self.layout.state_bytes() as u64, left },
-        };
+        let what = Malformation::no_state(self.layout, self.record, whole, left);
         Err(self.stop(Unreadable::State, self.begin, what))
     }
 

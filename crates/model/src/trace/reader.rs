@@ -200,14 +200,14 @@ impl<R: Read> Reader<R> {
                 // The place is the end of the last record: there may be none that could come next.
                 let frame = self.record.saturating_sub(1);
                 let what = Malformation::Endless { limit: TRAILING_LIMIT };
-                Err(TraceError { offset, frame, step: self.layout.step_of(frame), what })
+                Err(TraceError::new(self.layout, frame, offset, what))
             }
             (None, Some(trailing)) => Ok(trailing),
         }
     }
 
     fn error(&self, offset: u64, what: Malformation) -> TraceError {
-        TraceError { offset, frame: self.record, step: self.layout.step_of(self.record), what }
+        TraceError::new(self.layout, self.record, offset, what)
     }
 
     fn note(&mut self, offset: u64, what: Malformation) {
@@ -230,7 +230,8 @@ impl<R: Read> Reader<R> {
         let begin = self.begin;
         if !decode::state(&mut self.source, self.layout.particles, &mut frame.state) {
             let left = self.source.offset() - begin + self.source.ensure(1) as u64;
-            return Err(self.missing(begin, self.no_state(left)));
+            let what = Malformation::no_state(self.layout, self.record, self.record, left);
+            return Err(self.missing(begin, what));
         }
         frame.impulses.clear();
         frame.polynomials.clear();
@@ -241,14 +242,6 @@ impl<R: Read> Reader<R> {
             self.polynomials(frame)?;
         }
         Ok(())
-    }
-
-    fn no_state(&self, left: u64) -> Malformation {
-        match (left, self.record) {
-            (0, 0) => Malformation::Empty,
-            (0, records) => Malformation::TooFewRecords { records, expected: self.layout.records() },
-            _ => Malformation::State { needs: self.layout.state_bytes() as u64, left },
-        }
     }
 
     /// A list's count, which may not be negative, nor larger than the bytes left or the frame's memory allow.

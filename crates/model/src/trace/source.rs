@@ -191,7 +191,7 @@ impl<R: Read> Source<R> {
                 Ok(count) => self.end += count,
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
                 Err(error) => {
-                    self.error = Some(Malformation::Io { kind: error.kind(), message: error.to_string() });
+                    self.error = Some(Malformation::Io { message: error.to_string() });
                     self.ended = true;
                 }
             }

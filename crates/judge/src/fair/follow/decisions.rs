@@ -123,9 +123,7 @@ impl Follower<'_> {
                 let own = Impulse { pair, normal, time };
                 let known = self.expected();
                 let finding = contact::hit(self.records.before, known.as_ref(), own, &actual, &mut self.judged);
-                if let Some(detail) = finding {
-                    self.charge(detail);
-                }
+                finding.into_iter().for_each(|detail| self.charge(detail));
                 contact::followed(actual).unwrap_or(Decision::Hit { time, normal })
             }
             (Decision::Hit { time, normal }, None) => {
@@ -140,9 +138,7 @@ impl Follower<'_> {
                     let (known, judged) = (self.expected(), &mut self.judged);
                     let finding =
                         contact::possible_hit(self.context, &self.records, known.as_ref(), pair, &actual, judged);
-                    if let Some(detail) = finding {
-                        self.charge(detail);
-                    }
+                    finding.into_iter().for_each(|detail| self.charge(detail));
                 } else {
                     self.charge(FindingDetail::SuperfluousCollision { actual });
                 }

@@ -161,3 +161,38 @@ fn add_scaled_accelerations(target: &mut [f64], scale: f64, force: &[f64], masse
         target[1] += scale * (force[1] / mass);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        scene::{Force, Particle},
+        sim::samples::{fixed, particle, scene},
+    };
+    use fosssim_num::vector::Vec2;
+
+    /// The state after a step of half a second, in which a force of 4 to the right acts on all particles.
+    fn advanced(integrator: Integrator, particles: Vec<Particle>) -> State {
+        let force = Force::Constant { force: Vec2::new(4.0, 0.0) };
+        let scene = Scene { integrator, forces: vec![force], ..scene(particles) };
+        let (bodies, mut forces, mut state) = (Bodies::new(&scene), Forces::new(&scene), State::of(&scene));
+        Stepper::new(&scene).advance(1, &bodies, &mut forces, &mut state, None).unwrap();
+        state
+    }
+
+    #[test]
+    fn positions_use_the_old_velocity_and_a_fixed_particle_keeps_moving() {
+        let particles =
+            vec![particle((0.0, 0.0), (1.0, 0.0), 2.0, 0.1), fixed(particle((5.0, 0.0), (0.0, 3.0), 1.0, 0.1))];
+        let state = advanced(Integrator::ExplicitEuler, particles);
+        assert_eq!(state.positions, [0.5, 0.0, 5.0, 1.5]);
+        assert_eq!(state.velocities, [2.0, 0.0, 0.0, 3.0]);
+    }
+
+    #[test]
+    fn positions_use_the_new_velocity() {
+        let state = advanced(Integrator::SymplecticEuler, vec![particle((0.0, 0.0), (1.0, 0.0), 2.0, 0.1)]);
+        assert_eq!(state.velocities, [2.0, 0.0]);
+        assert_eq!(state.positions, [1.0, 0.0]);
+    }
+}
