@@ -58,7 +58,7 @@ pub fn told_of(student: Student) -> Vec<Explanation> {
     several(traces, &refuted)
 }
 
-/// Asks about some mutants, several at a time; each is told by its number and by itself. The answers come in the mutants'
+/// Asks about mutants that are wanted, by number or by themselves, several at a time. The answers come in the mutants'
 /// order.
 pub fn rated(wanted: impl Fn(usize, &Mutant) -> bool) -> Vec<Rated> {
     let wanted: Vec<&Mutant> =

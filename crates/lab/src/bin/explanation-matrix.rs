@@ -34,14 +34,14 @@ enum Outcome {
 }
 
 /// The explanation of a trace, and how long it took.
-type Explained = (Outcome, Duration, Vec<Explanation>);
+type ExplainedTrace = (Outcome, Duration, Vec<Explanation>);
 
 fn main() -> anyhow::Result<ExitCode> {
     let folder = std::env::args_os().nth(1).map_or_else(|| PathBuf::from("assets"), PathBuf::from);
     let part = std::env::args().nth(2).unwrap_or_default();
     let scenes = Watched::of_folder(&folder)?;
     let rows: Vec<_> = CATALOGUE.iter().filter(|row| row.kind != RowKind::Hostile && row.id.contains(&part)).collect();
-    let results: Vec<Vec<Explained>> =
+    let results: Vec<Vec<ExplainedTrace>> =
         rows.par_iter().map(|row| scenes.iter().map(|scene| explain(scene, row)).collect()).collect();
     let mut accused = false;
     for (row, outcomes) in rows.iter().zip(&results) {
@@ -81,7 +81,7 @@ fn main() -> anyhow::Result<ExitCode> {
 }
 
 /// Says how many mistakes are recognised, and how many traces.
-fn count(wrong: &[(&Row, &Vec<Explained>)]) {
+fn count(wrong: &[(&Row, &Vec<ExplainedTrace>)]) {
     let best = |is: fn(&Outcome) -> bool| wrong.iter().filter(|(_, all)| all.iter().any(|one| is(&one.0))).count();
     let all = |is: fn(&Outcome) -> bool| wrong.iter().flat_map(|(_, all)| *all).filter(|one| is(&one.0)).count();
     println!(
@@ -102,7 +102,7 @@ fn count(wrong: &[(&Row, &Vec<Explained>)]) {
 }
 
 /// The explanation that all traces of a mistake give together.
-fn together(wrong: &[(&Row, &Vec<Explained>)]) {
+fn together(wrong: &[(&Row, &Vec<ExplainedTrace>)]) {
     let mut confused = Vec::new();
     for (row, outcomes) in wrong {
         match common(outcomes.iter().map(|(.., explanations)| explanations.as_slice())) {
@@ -119,7 +119,7 @@ fn together(wrong: &[(&Row, &Vec<Explained>)]) {
     confused.iter().for_each(|line| println!("{line}"));
 }
 
-fn explain(watched: &Watched, row: &Row) -> Explained {
+fn explain(watched: &Watched, row: &Row) -> ExplainedTrace {
     let trace = trace(&watched.scene, Student::new(Some(row.mistake)));
     if trace == watched.right {
         return (Outcome::Same, Duration::ZERO, Vec::new());
