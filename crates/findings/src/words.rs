@@ -93,13 +93,7 @@ impl Display for WithoutStep<'_> {
                 "{place}: belongs to other positions than those that the response or the failsafe before it \
                  should lead to"
             ),
-            FindingDetail::RecordsDiffer { part } => f.write_str(match part {
-                RecordPart::Impulses if is_first => "the first record holds impulses, before anything has moved",
-                RecordPart::Polynomials if is_first => "the first record holds polynomials, before anything has moved",
-                RecordPart::State => "the state changes between the step's two records",
-                RecordPart::Impulses => "the step's two records hold different impulses",
-                RecordPart::Polynomials => "the mid record's polynomials are not the first ones of the end record",
-            }),
+            FindingDetail::RecordsDiffer { part } => f.write_str(difference_of_records(part, is_first)),
             FindingDetail::ImpossibleLog => f.write_str("a polynomial has more coefficients than any detection has"),
             FindingDetail::TrimmedDecision { place, collides } => {
                 let outcome = if collides { "collide" } else { "do not collide" };
@@ -119,6 +113,17 @@ impl Display for WithoutStep<'_> {
             FindingDetail::PairForce { pair, is_doubled: false } => write!(f, "{} {LEFT_OUT}", PairWords(pair)),
             FindingDetail::PairForce { pair, is_doubled: true } => write!(f, "{} {DOUBLED}", PairWords(pair)),
         }
+    }
+}
+
+/// The sentence about a part in which a step's two records differ.
+const fn difference_of_records(part: RecordPart, is_first: bool) -> &'static str {
+    match part {
+        RecordPart::Impulses if is_first => "the first record holds impulses, before anything has moved",
+        RecordPart::Polynomials if is_first => "the first record holds polynomials, before anything has moved",
+        RecordPart::State => "the state changes between the step's two records",
+        RecordPart::Impulses => "the step's two records hold different impulses",
+        RecordPart::Polynomials => "the mid record's polynomials are not the first ones of the end record",
     }
 }
 

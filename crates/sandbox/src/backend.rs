@@ -112,7 +112,7 @@ impl Supervisor {
         SandboxError::Supervisor { program: self.program.display().to_string(), source }
     }
 
-    /// What a prober outside of bubblewrap finds.
+    /// The findings of a prober outside of bubblewrap.
     fn probe_outside(&self) -> Result<Probe, SandboxError> {
         Self::answer(self.command(MODE_PROBE).spawn().map_err(|source| self.not_started(source))?)
     }

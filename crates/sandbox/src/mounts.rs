@@ -117,6 +117,27 @@ pub(super) fn change_root(root: &CStr, old: &CStr) -> io::Result<()> {
     std::env::set_current_dir("/")
 }
 
+/// The facts of the file system that the descriptor lies on.
+fn about_file_system(fd: BorrowedFd<'_>) -> io::Result<libc::statvfs> {
+    // SAFETY: an all-zero structure is valid and outlives the call, which fills it.
+    unsafe {
+        let mut about: libc::statvfs = std::mem::zeroed();
+        done(libc::fstatvfs(fd.as_raw_fd(), &raw mut about)).map(|()| about)
+    }
+}
+
+/// Whether the open file lies where nothing may be executed (a mount with `noexec`).
+pub(super) fn forbids_execution(fd: BorrowedFd<'_>) -> bool {
+    about_file_system(fd).is_ok_and(|about| about.f_flag & libc::ST_NOEXEC != 0)
+}
+
+/// Bytes and files of the file system that the descriptor lies on.
+pub(super) fn file_system_usage(fd: BorrowedFd<'_>) -> io::Result<(u64, u64)> {
+    let about = about_file_system(fd)?;
+    let bytes = about.f_blocks.saturating_sub(about.f_bfree).saturating_mul(about.f_frsize);
+    Ok((bytes, about.f_files.saturating_sub(about.f_ffree)))
+}
+
 /// Takes the mounts at and beneath the path away.
 pub(super) fn detach(path: &CStr) -> io::Result<()> {
     // SAFETY: the path outlives the call.

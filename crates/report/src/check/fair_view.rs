@@ -44,7 +44,7 @@ pub(super) struct CountedView {
 }
 
 impl CountedView {
-    /// The first findings of each kind by a book, of which there are so many.
+    /// The first findings of each kind by a book, each with the number of them all.
     pub(super) fn all(book: Book, firsts: &[Finding], count: impl Fn(FindingKind) -> u64) -> Vec<Self> {
         firsts.iter().map(|first| Self { count: count(first.kind()), first: FindingView::by(book, first) }).collect()
     }

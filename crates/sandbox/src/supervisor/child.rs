@@ -21,7 +21,7 @@ use seccompiler::BpfProgram;
 
 use super::{filter, filter::Purpose, processes, walls};
 use crate::{
-    sys,
+    mounts, sys,
     wire::{self, Failure, Raw, RunOrder, stage},
 };
 
@@ -282,7 +282,7 @@ impl OpenedFile {
         let program = File::open(path)?;
         let mode = program.metadata()?.permissions().mode();
         let fits = !for_another || mode & READ_AND_EXECUTE == READ_AND_EXECUTE;
-        if fits && !sys::forbids_execution(program.as_fd()) {
+        if fits && !mounts::forbids_execution(program.as_fd()) {
             return Ok(Self { file: program.into(), copied: false });
         }
         let mut copy = File::from(sys::memory_file()?);

@@ -17,7 +17,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::sys;
+use crate::{mounts, sys};
 
 /// Nobody nests folders deeper than this by accident.
 const DEEPEST: u32 = 32;
@@ -54,7 +54,7 @@ impl FolderUsage {
 pub(super) fn in_use(folder: BorrowedFd<'_>) -> FolderUsage {
     // The root itself, and the trace pipe, if there is one.
     const OWN_FILES: u64 = 2;
-    let (bytes, files) = sys::file_system_usage(folder).unwrap_or_default();
+    let (bytes, files) = mounts::file_system_usage(folder).unwrap_or_default();
     FolderUsage { bytes, files: files.saturating_sub(OWN_FILES), ..FolderUsage::default() }
 }
 
