@@ -41,7 +41,7 @@ impl Outside for Program {
         let size = Size::new(SIDE, SIDE).map_err(|error| error.to_string())?;
         let start: Vec<f64> = scene.particles.iter().flat_map(|p| [p.position.x, p.position.y]).collect();
         let painter = Painter::new(scene, &Extent::of(scene, &start), PictureOptions { size, label: false });
-        Ok(Box::new(Folders { painter, raster: Raster::new(size), png, svg }))
+        Ok(Box::new(PictureFolders { painter, raster: Raster::new(size), png, svg }))
     }
 
     fn step_error(&self, error: &StepError) -> (u32, String) {
@@ -50,14 +50,14 @@ impl Outside for Program {
 }
 
 /// The pictures of `-g 1` and `-m DIR`: one per step, as PNG in the folder `pngs`, as SVG in a folder of choice.
-struct Folders {
+struct PictureFolders {
     painter: Painter,
     raster: Raster,
     png: Option<Folder>,
     svg: Option<Folder>,
 }
 
-impl Folders {
+impl PictureFolders {
     fn draw(&mut self, step: u32, positions: &[f64]) -> Result<()> {
         let shapes = self.painter.picture(step, positions, None);
         let background = self.painter.background();
@@ -75,7 +75,7 @@ impl Folders {
     }
 }
 
-impl Pictures for Folders {
+impl Pictures for PictureFolders {
     fn step(&mut self, step: u32, positions: &[f64]) -> Result<(), String> {
         self.draw(step, positions).map_err(|error| format!("{error:#}\n"))
     }

@@ -114,7 +114,7 @@ pub(crate) enum WantedCalls {
 }
 
 /// A call of the reference, for the case that the trace's list has to be matched.
-struct Asked {
+struct AskedCall {
     pass: Pass,
     /// The number of the pass in the step.
     number: usize,
@@ -133,7 +133,7 @@ pub(crate) struct Inspector<'a> {
     wanted: &'a [(WantedCalls, Pair)],
     pass: Option<Pass>,
     /// The calls and their polynomials; none beyond [`CALLS`].
-    asked: Vec<Asked>,
+    asked: Vec<AskedCall>,
     right: PolynomialLog,
     /// For each call that is looked at its number in the step and its first polynomial's.
     places: Vec<(usize, usize)>,
@@ -229,7 +229,7 @@ impl<'a> Inspector<'a> {
                 place += 1;
                 continue;
             }
-            let again = |asked: &&Asked| {
+            let again = |asked: &&AskedCall| {
                 asked.count > 0
                     && place + asked.count <= log.len()
                     && (0..asked.count)
@@ -355,7 +355,7 @@ impl Observer for Inspector<'_> {
         }
         if self.asked.len() < CALLS {
             let number = self.step.expected_passes - 1;
-            self.asked.push(Asked { pass, number, pair, motion: motion(), first, count });
+            self.asked.push(AskedCall { pass, number, pair, motion: motion(), first, count });
             detection.polynomials.iter().for_each(|polynomial| self.right.push(polynomial.coefficients()));
         }
         let logged = self.log.filter(|log| first + count <= log.len());

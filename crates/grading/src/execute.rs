@@ -16,7 +16,7 @@ use fosssim_evidence::StepRulings;
 use fosssim_files::Place;
 use fosssim_judge::{
     Outcome, Rules,
-    kept::{Keeper, KeptTrace},
+    kept::{TraceKeeper, KeptTrace},
     recorded,
     replay::{Both, Options, Progress, Remark},
 };
@@ -96,7 +96,7 @@ impl Runner<'_> {
         let _registered = self.cancellation.register(running.canceller());
         let bytes = AtomicU64::new(0);
         // Not within the judging, which may panic: its trace is put aside then.
-        let keeper = Keeper::new(&task.scene, KEPT_TRACE);
+        let keeper = TraceKeeper::new(&task.scene, KEPT_TRACE);
         let mut rulings = StepRulings::default();
         let mut told = ToldSteps(on_step);
         let heard = &mut Both(&mut rulings, &mut told);
@@ -208,7 +208,7 @@ impl Runner<'_> {
         &self,
         program: &Staged,
         task: &SceneTask,
-        keeper: &Keeper<'_>,
+        keeper: &TraceKeeper<'_>,
         mut trace: impl Read + Send,
         watch: &mut dyn Progress,
     ) -> Result<Result<Outcome, String>, Fault> {
@@ -224,7 +224,7 @@ impl Runner<'_> {
     fn judge(
         &self,
         task: &SceneTask,
-        keeper: &Keeper<'_>,
+        keeper: &TraceKeeper<'_>,
         trace: impl Read + Send,
         watch: &mut dyn Progress,
     ) -> Result<Outcome, String> {

@@ -15,7 +15,7 @@ pub(super) type Problem = (Range<usize>, String);
 pub const MOST_POINTS: Range<f64> = 0.0..1e6;
 
 /// The type of a key's value.
-enum Kind {
+enum ValueKind {
     Text,
     Texts,
     /// A number in this range; where it is not, its name is told with the table's before it.
@@ -30,57 +30,57 @@ enum Kind {
 }
 
 /// A key: its name, what it takes, whether it has to be there.
-struct Key(&'static str, Kind, bool);
+struct Key(&'static str, ValueKind, bool);
 
 const BUILD: &[Key] = &[
-    Key("command", Kind::Texts, true),
-    Key("program", Kind::Text, true),
-    Key("wall_seconds", Kind::Number("build.", 0.01..86_400.0), false),
-    Key("memory_mib", Kind::Number("build.", 1.0..1e6), false),
+    Key("command", ValueKind::Texts, true),
+    Key("program", ValueKind::Text, true),
+    Key("wall_seconds", ValueKind::Number("build.", 0.01..86_400.0), false),
+    Key("memory_mib", ValueKind::Number("build.", 1.0..1e6), false),
 ];
 
 const LIMITS: &[Key] = &[
-    Key("cpu_seconds", Kind::Number("", 0.01..86_400.0), false),
-    Key("wall_seconds", Kind::Number("", 0.01..86_400.0), false),
-    Key("memory_mib", Kind::Number("", 0.001..1e6), false),
-    Key("output_mib", Kind::Number("", 0.001..1e6), false),
-    Key("trace_mib", Kind::Number("", 0.001..1e6), false),
-    Key("folder_mib", Kind::Number("", 0.001..1e6), false),
-    Key("files", Kind::Number("", 1.0..1e6), false),
-    Key("sanitizers", Kind::Flag, false),
-    Key("time_outs", Kind::Number("", 0.0..1e6), false),
-    Key("total_seconds", Kind::Number("", 0.01..86_400_000.0), false),
+    Key("cpu_seconds", ValueKind::Number("", 0.01..86_400.0), false),
+    Key("wall_seconds", ValueKind::Number("", 0.01..86_400.0), false),
+    Key("memory_mib", ValueKind::Number("", 0.001..1e6), false),
+    Key("output_mib", ValueKind::Number("", 0.001..1e6), false),
+    Key("trace_mib", ValueKind::Number("", 0.001..1e6), false),
+    Key("folder_mib", ValueKind::Number("", 0.001..1e6), false),
+    Key("files", ValueKind::Number("", 1.0..1e6), false),
+    Key("sanitizers", ValueKind::Flag, false),
+    Key("time_outs", ValueKind::Number("", 0.0..1e6), false),
+    Key("total_seconds", ValueKind::Number("", 0.01..86_400_000.0), false),
 ];
 
 const HINTS: &[&str] = &["none", "where", "what", "full"];
 
 const GROUP: &[Key] = &[
-    Key("name", Kind::Text, true),
-    Key("scenes", Kind::Texts, true),
-    Key("points", Kind::Number("", MOST_POINTS), false),
-    Key("credit", Kind::Choice(&["scenes", "steps", "all"]), false),
-    Key("visibility", Kind::Choice(&["visible", "hidden", "after_due_date", "after_published"]), false),
-    Key("hints", Kind::Choice(HINTS), false),
-    Key("speed", Kind::Table(SPEED), false),
+    Key("name", ValueKind::Text, true),
+    Key("scenes", ValueKind::Texts, true),
+    Key("points", ValueKind::Number("", MOST_POINTS), false),
+    Key("credit", ValueKind::Choice(&["scenes", "steps", "all"]), false),
+    Key("visibility", ValueKind::Choice(&["visible", "hidden", "after_due_date", "after_published"]), false),
+    Key("hints", ValueKind::Choice(HINTS), false),
+    Key("speed", ValueKind::Table(SPEED), false),
 ];
 
 const SPEED: &[Key] = &[
-    Key("points", Kind::Number("speed.", MOST_POINTS), true),
-    Key("full_at", Kind::Number("speed.", 0.001..1e6), true),
-    Key("none_at", Kind::Number("speed.", 0.001..1e6), true),
-    Key("runs", Kind::Number("speed.", 1.0..101.0), false),
+    Key("points", ValueKind::Number("speed.", MOST_POINTS), true),
+    Key("full_at", ValueKind::Number("speed.", 0.001..1e6), true),
+    Key("none_at", ValueKind::Number("speed.", 0.001..1e6), true),
+    Key("runs", ValueKind::Number("speed.", 1.0..101.0), false),
 ];
 
 const SUITE: &[Key] = &[
-    Key("schema", Kind::Whole, true),
-    Key("name", Kind::Text, true),
-    Key("rules", Kind::Choice(&["parity", "fair", "both"]), false),
-    Key("hints", Kind::Choice(HINTS), false),
-    Key("show_output", Kind::Flag, false),
-    Key("run", Kind::Texts, false),
-    Key("build", Kind::Table(BUILD), false),
-    Key("limits", Kind::Table(LIMITS), false),
-    Key("group", Kind::Tables(GROUP), false),
+    Key("schema", ValueKind::Whole, true),
+    Key("name", ValueKind::Text, true),
+    Key("rules", ValueKind::Choice(&["parity", "fair", "both"]), false),
+    Key("hints", ValueKind::Choice(HINTS), false),
+    Key("show_output", ValueKind::Flag, false),
+    Key("run", ValueKind::Texts, false),
+    Key("build", ValueKind::Table(BUILD), false),
+    Key("limits", ValueKind::Table(LIMITS), false),
+    Key("group", ValueKind::Tables(GROUP), false),
 ];
 
 /// The tables in which a key that stands elsewhere may have been meant to be.
@@ -132,7 +132,7 @@ fn clean(table: &mut DeTable<'_>, keys: &[Key], place: &str, at: Range<usize>, p
 }
 
 /// Whether a value is of its kind.
-fn fits(name: &str, kind: &Kind, value: &mut Spanned<DeValue<'_>>, problems: &mut Vec<Problem>) -> bool {
+fn fits(name: &str, kind: &ValueKind, value: &mut Spanned<DeValue<'_>>, problems: &mut Vec<Problem>) -> bool {
     let at = value.span();
     let is = value.get_ref().type_str();
     let mut wrong = |wanted: &str| {
@@ -140,8 +140,8 @@ fn fits(name: &str, kind: &Kind, value: &mut Spanned<DeValue<'_>>, problems: &mu
         false
     };
     match (kind, value.get_mut()) {
-        (Kind::Text, DeValue::String(_)) | (Kind::Flag, DeValue::Boolean(_)) => true,
-        (Kind::Number(table, range), given @ (DeValue::Float(_) | DeValue::Integer(_))) => {
+        (ValueKind::Text, DeValue::String(_)) | (ValueKind::Flag, DeValue::Boolean(_)) => true,
+        (ValueKind::Number(table, range), given @ (DeValue::Float(_) | DeValue::Integer(_))) => {
             let number = number(given).filter(|number| !range.contains(number));
             if let Some(number) = number {
                 let Range { start, end } = range;
@@ -149,15 +149,15 @@ fn fits(name: &str, kind: &Kind, value: &mut Spanned<DeValue<'_>>, problems: &mu
             }
             number.is_none()
         }
-        (Kind::Whole, DeValue::Integer(number)) if number.as_str().parse::<u32>().is_ok() => true,
-        (Kind::Choice(words), DeValue::String(word)) => {
+        (ValueKind::Whole, DeValue::Integer(number)) if number.as_str().parse::<u32>().is_ok() => true,
+        (ValueKind::Choice(words), DeValue::String(word)) => {
             let known = words.contains(&word.as_ref());
             if !known {
                 problems.push((at, not_among(name, word, words)));
             }
             known
         }
-        (Kind::Texts, DeValue::Array(list)) => {
+        (ValueKind::Texts, DeValue::Array(list)) => {
             let before = problems.len();
             for item in list.iter().filter(|item| !item.get_ref().is_str()) {
                 let is = article(item.get_ref().type_str());
@@ -165,11 +165,11 @@ fn fits(name: &str, kind: &Kind, value: &mut Spanned<DeValue<'_>>, problems: &mu
             }
             problems.len() == before
         }
-        (Kind::Table(keys), DeValue::Table(table)) => {
+        (ValueKind::Table(keys), DeValue::Table(table)) => {
             clean(table, keys, &format!("[{name}]"), at, problems);
             true
         }
-        (Kind::Tables(keys), DeValue::Array(list)) if list.iter().all(|item| item.get_ref().is_table()) => {
+        (ValueKind::Tables(keys), DeValue::Array(list)) if list.iter().all(|item| item.get_ref().is_table()) => {
             for item in list.iter_mut() {
                 let at = item.span();
                 if let DeValue::Table(table) = item.get_mut() {
@@ -178,14 +178,14 @@ fn fits(name: &str, kind: &Kind, value: &mut Spanned<DeValue<'_>>, problems: &mu
             }
             true
         }
-        (Kind::Text, _) => wrong("a text in quotes"),
-        (Kind::Texts, _) => wrong("a list of texts, [\"...\"]"),
-        (Kind::Number(..), _) => wrong("a number"),
-        (Kind::Whole, _) => wrong("a whole number that is not negative"),
-        (Kind::Flag, _) => wrong("true or false"),
-        (Kind::Choice(words), _) => wrong(&format!("one of {}", listed(words, "or"))),
-        (Kind::Table(_), _) => wrong(&format!("a table, [{name}]")),
-        (Kind::Tables(_), _) => wrong(&format!("a list of tables, [[{name}]]")),
+        (ValueKind::Text, _) => wrong("a text in quotes"),
+        (ValueKind::Texts, _) => wrong("a list of texts, [\"...\"]"),
+        (ValueKind::Number(..), _) => wrong("a number"),
+        (ValueKind::Whole, _) => wrong("a whole number that is not negative"),
+        (ValueKind::Flag, _) => wrong("true or false"),
+        (ValueKind::Choice(words), _) => wrong(&format!("one of {}", listed(words, "or"))),
+        (ValueKind::Table(_), _) => wrong(&format!("a table, [{name}]")),
+        (ValueKind::Tables(_), _) => wrong(&format!("a list of tables, [[{name}]]")),
     }
 }
 

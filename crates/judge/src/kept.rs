@@ -31,12 +31,12 @@ const PIECE: usize = 64 * 1024;
 
 /// Keeps a trace while it is read and judged. It stays whole when judging panics.
 #[derive(Debug)]
-pub struct Keeper<'a> {
+pub struct TraceKeeper<'a> {
     scene: &'a Scene,
     store: Mutex<KeptBytes>,
 }
 
-impl<'a> Keeper<'a> {
+impl<'a> TraceKeeper<'a> {
     /// For a trace of this scene; at most `most` bytes of its beginning are kept, and nothing at all with 0.
     #[must_use]
     pub fn new(scene: &'a Scene, most: usize) -> Self {
@@ -104,7 +104,7 @@ impl<R: Read> Read for KeepingReader<'_, R> {
 }
 
 /// Hears which steps are the reference's and which are wrong.
-struct KeepingProgress<'k, 'a>(&'k Keeper<'a>);
+struct KeepingProgress<'k, 'a>(&'k TraceKeeper<'a>);
 
 impl Progress for KeepingProgress<'_, '_> {
     fn step_wrong(&mut self, wrong: &WrongStep<'_>) {

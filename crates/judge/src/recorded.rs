@@ -50,7 +50,7 @@ fn compare(
     progress: &mut dyn Progress,
 ) -> Result<Outcome, RecordingError> {
     let layout = Layout::of(scene);
-    let places = Places::of(scene);
+    let places = RecordPlaces::of(scene);
     let (mut trace, mut recording) =
         (Lenient::new(trace, layout).with_limit(record_memory(scene)), Lenient::new(recording, layout));
     let (mut actual, mut expected) = (LenientFrame::default(), LenientFrame::default());
@@ -110,12 +110,12 @@ fn impulse(logged: &LoggedImpulse) -> Option<Impulse> {
 }
 
 /// Which polynomial of a step belongs to which pair.
-struct Places {
+struct RecordPlaces {
     pairs: Pairs,
     continuous: bool,
 }
 
-impl Places {
+impl RecordPlaces {
     fn of(scene: &Scene) -> Self {
         Self { pairs: pairs(scene), continuous: matches!(scene.collision, Collision::ContinuousTime { .. }) }
     }

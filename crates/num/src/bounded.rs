@@ -119,22 +119,22 @@ impl Mul<Bounded> for f64 {
 /// The most that a number's modulus can be: differences count as sums. With it a formula yields how large its results
 /// and their bounds are at most, whatever the signs.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
-pub struct Size(pub f64);
+pub struct Magnitude(pub f64);
 
-impl Modulus for Size {
+impl Modulus for Magnitude {
     fn modulus(self) -> Self {
         self
     }
 }
 
-impl Add for Size {
+impl Add for Magnitude {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         Self(self.0 + other.0)
     }
 }
 
-impl Sub for Size {
+impl Sub for Magnitude {
     type Output = Self;
     #[expect(clippy::suspicious_arithmetic_impl, reason = "whatever the signs, a difference is no larger than the sum")]
     fn sub(self, other: Self) -> Self {
@@ -142,14 +142,14 @@ impl Sub for Size {
     }
 }
 
-impl Mul for Size {
+impl Mul for Magnitude {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
         Self(self.0 * other.0)
     }
 }
 
-impl Neg for Size {
+impl Neg for Magnitude {
     type Output = Self;
     fn neg(self) -> Self {
         self
@@ -157,11 +157,11 @@ impl Neg for Size {
 }
 
 /// A factor without error.
-impl Mul<Bounded<Size>> for f64 {
-    type Output = Bounded<Size>;
-    fn mul(self, other: Bounded<Size>) -> Bounded<Size> {
-        let value = Size(self.abs() * other.value.0);
-        Bounded { value, bound: Size(self.abs() * other.bound.0) + value }
+impl Mul<Bounded<Magnitude>> for f64 {
+    type Output = Bounded<Magnitude>;
+    fn mul(self, other: Bounded<Magnitude>) -> Bounded<Magnitude> {
+        let value = Magnitude(self.abs() * other.value.0);
+        Bounded { value, bound: Magnitude(self.abs() * other.bound.0) + value }
     }
 }
 
@@ -188,7 +188,7 @@ mod tests {
         assert_eq!(a / b, number(-3.0, (5.0 + 3.0 * 3.0) / 4.0 + 3.0));
         assert_eq!(-2.0 * a, number(24.0, 2.0 * 5.0 + 24.0));
         assert_eq!(-a, number(12.0, 5.0));
-        let size = |value: f64, bound: f64| Bounded { value: Size(value), bound: Size(bound) };
+        let size = |value: f64, bound: f64| Bounded { value: Magnitude(value), bound: Magnitude(bound) };
         let (c, d) = (size(12.0, 5.0), size(4.0, 3.0));
         assert_eq!(c + d, size(16.0, 24.0));
         assert_eq!(c - d, size(16.0, 24.0));
@@ -213,7 +213,7 @@ mod tests {
     #[test]
     fn sizes_are_the_most_that_values_and_bounds_can_be() {
         let number = |value: f64| Bounded { value, bound: 2.0 * value.abs() };
-        let size = |value: f64| Bounded { value: Size(value), bound: Size(2.0 * value) };
+        let size = |value: f64| Bounded { value: Magnitude(value), bound: Magnitude(2.0 * value) };
         let (a, b, c) = (size(0.7), size(1.3), size(0.1));
         let most = -2.0 * (a * b - c * a) + b;
         for signs in 0..8 {

@@ -68,7 +68,7 @@ impl Supervisor {
     }
 
     /// Starts it for a run, with the descriptors that the run's walls need.
-    fn spawn_for(&self, order: &RunOrder) -> Result<Asked, SandboxError> {
+    fn spawn_for(&self, order: &RunOrder) -> Result<SpawnedSupervisor, SandboxError> {
         let (name, command) = match order.walls.bubblewrap {
             true => ("in bubblewrap".into(), self.wrapped(MODE_RUN, Some(&wire::path(&order.folder)))),
             false => (self.program.display().to_string(), Ok(self.command(MODE_RUN))),
@@ -76,7 +76,7 @@ impl Supervisor {
         let begin = || -> io::Result<_> {
             let (mut child, control) = connected(command?)?;
             let answers = child.stdout.take().ok_or(io::ErrorKind::BrokenPipe)?;
-            Ok(Asked { host: Host::Own(child), control, answers: OwnedFd::from(answers).into() })
+            Ok(SpawnedSupervisor { host: Host::Own(child), control, answers: OwnedFd::from(answers).into() })
         };
         let asked = begin().map_err(|source| SandboxError::Supervisor { program: name, source })?;
         // One that does not listen says why, or ends.
@@ -91,11 +91,11 @@ impl Supervisor {
         files: &[(String, Vec<u8>)],
         kind: Keeping,
         pool: &Arc<KeeperPool>,
-    ) -> Result<(Asked, bool), SandboxError> {
+    ) -> Result<(SpawnedSupervisor, bool), SandboxError> {
         if let Some(keeper) = pool.take(&kind)
             && let Ok((control, answers)) = keeper.ask(order, files)
         {
-            return Ok((Asked { host: Host::Kept(Box::new(keeper), pool.clone()), control, answers }, true));
+            return Ok((SpawnedSupervisor { host: Host::Kept(Box::new(keeper), pool.clone()), control, answers }, true));
         }
         let begin = || -> io::Result<_> {
             let mut command = self.command(MODE_KEEP);
@@ -103,7 +103,7 @@ impl Supervisor {
             let (child, socket) = connected(command)?;
             let keeper = Keeper::new(kind, child, socket);
             let (control, answers) = keeper.ask(order, files)?;
-            Ok((Asked { host: Host::Kept(Box::new(keeper), pool.clone()), control, answers }, false))
+            Ok((SpawnedSupervisor { host: Host::Kept(Box::new(keeper), pool.clone()), control, answers }, false))
         };
         begin().map_err(|source| self.not_started(source))
     }
@@ -169,13 +169,13 @@ fn connected(mut command: Command) -> io::Result<(Child, UnixStream)> {
 }
 
 /// A supervisor that has its order.
-struct Asked {
+struct SpawnedSupervisor {
     host: Host,
     control: UnixStream,
     answers: File,
 }
 
-impl Asked {
+impl SpawnedSupervisor {
     /// Its first word.
     fn first(&mut self) -> io::Result<Event> {
         wire::receive(&mut self.answers)
@@ -371,7 +371,7 @@ impl Backend {
                         Err(_) => return Err(asked.lost()),
                     }
                 }
-                let (Asked { host, control, answers }, layers) = (asked, self.layers.clone());
+                let (SpawnedSupervisor { host, control, answers }, layers) = (asked, self.layers.clone());
                 let supervised = Supervised { host, answers, session, user, order, layers };
                 Ok(Running::new(supervised, control, reader, folder))
             }

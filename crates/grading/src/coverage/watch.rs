@@ -17,7 +17,7 @@ use std::collections::BTreeSet;
 
 /// The bodies of a contact of the pass that runs, and its event: if it is their only one, and if they have several. The
 /// end of the pass tells which it is.
-type Contact = (Vec<usize>, [Happening; 2]);
+type WatchedContact = (Vec<usize>, [Happening; 2]);
 
 /// A zone as the last round had it.
 type Known = (Vec<usize>, bool);
@@ -35,7 +35,7 @@ struct StepHeard {
     /// Where bodies are at the start and at the end of the step, as the pass that runs sees them.
     q_start: Vec<f64>,
     q_end: Vec<f64>,
-    contacts: Vec<Contact>,
+    contacts: Vec<WatchedContact>,
     /// The number of hits in each pass: of the impulse rounds, or of the step's only pass.
     hits: Vec<usize>,
     /// All contacts of the step's passes for zones.
@@ -90,7 +90,7 @@ impl<'a> Watch<'a> {
     fn note_contacts(&mut self) {
         let contacts = std::mem::take(&mut self.step.contacts);
         for (index, (bodies, [alone, several])) in contacts.iter().enumerate() {
-            let shares = |other: &Contact| other.0.iter().any(|body| bodies.contains(body));
+            let shares = |other: &WatchedContact| other.0.iter().any(|body| bodies.contains(body));
             let is_alone = contacts.iter().enumerate().all(|(other, contact)| other == index || !shares(contact));
             self.coverage.note(if is_alone { alone } else { several });
         }

@@ -14,7 +14,7 @@ impl Read for Slowly<'_> {
 }
 
 fn kept<'a>(scene: &'a Scene, trace: &[u8], most: usize) -> KeptTrace<'a> {
-    let keeper = Keeper::new(scene, most);
+    let keeper = TraceKeeper::new(scene, most);
     let options = Options { fair: true, threads: 1, ..Options::default() };
     keeper.judge(Slowly(trace), &options, &mut ());
     keeper.into_kept()
@@ -46,7 +46,7 @@ fn what_was_kept_reads_as_the_trace_did() {
             let trace = changed(&scene, change);
             for cut in [0, 5, 100, trace.len() / 2] {
                 let trace = &trace[..trace.len() - cut];
-                let keeper = Keeper::new(&scene, trace.len() + 1);
+                let keeper = TraceKeeper::new(&scene, trace.len() + 1);
                 let mut reader = Slowly(trace);
                 keeper.judge(&mut reader, &Options { fair: true, ..Options::default() }, &mut ());
                 keeper.read_on(reader);
@@ -137,7 +137,7 @@ fn what_nobody_judges_is_kept_as_far_as_it_fits() {
     let scene = long(BOUNCE);
     let trace = written(&scene, &run(&scene, ()));
     let most = trace.len() / 2;
-    let keeper = Keeper::new(&scene, most);
+    let keeper = TraceKeeper::new(&scene, most);
     io::copy(&mut keeper.reader(Slowly(&trace)), &mut io::sink()).expect("read");
     let kept = keeper.into_kept();
     assert!(!kept.is_whole() && kept.bytes(usize::MAX) == trace[..most]);

@@ -46,7 +46,7 @@ fn is_permuted(step: &Step) -> bool {
 }
 
 /// A logged contact whose pair is one of the reference's.
-struct Contact {
+struct ComparedContact {
     kind: PairKind,
     time: f64,
     right_time: f64,
@@ -60,12 +60,12 @@ fn is_of(pair: Pair, logged: &fosssim_model::trace::LoggedImpulse) -> bool {
 }
 
 /// Contacts that both find, up to the first difference of the polynomials.
-fn contacts(step: &Step) -> Vec<Contact> {
+fn contacts(step: &Step) -> Vec<ComparedContact> {
     let right = step.right_lists();
     let certain = step.heard.hits.iter().filter(|hit| hit.4 < right);
     let beside = certain.filter_map(|(_, pair, time, n, _)| {
         let logged = step.end.impulses.iter().find(|logged| is_of(*pair, logged))?;
-        Some(Contact { kind: pair.kind, time: logged.time, right_time: *time, n: logged.normal, right: *n })
+        Some(ComparedContact { kind: pair.kind, time: logged.time, right_time: *time, n: logged.normal, right: *n })
     });
     beside.collect()
 }

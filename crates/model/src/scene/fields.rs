@@ -23,13 +23,13 @@ pub(super) struct Count {
 }
 
 /// The attributes of one element.
-pub(super) struct Fields<'d, 't, 'r> {
+pub(super) struct TagFields<'d, 't, 'r> {
     tag: &'d Tag<'t>,
     number: Option<usize>,
     report: &'r mut Report,
 }
 
-impl<'d, 't, 'r> Fields<'d, 't, 'r> {
+impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
     /// `number` is the element's number among its kind, when there may be several.
     pub(super) fn new(tag: &'d Tag<'t>, number: Option<usize>, report: &'r mut Report) -> Self {
         Self { tag, number, report }

@@ -2,7 +2,7 @@
 //!
 //! Errors that only several elements together can make are judged in `checks`.
 use super::document::Document;
-use super::fields::{Count, Fields};
+use super::fields::{Count, TagFields};
 use super::forces::{ForceKind, Source};
 use super::model::{
     Collision, CollisionDetection, Display, Edge, Force, HalfPlane, Integrator, Particle, ParticlePath, Scene, Viewport,
@@ -103,10 +103,10 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
     fn repeated<T>(
         &mut self,
         name: &str,
-        mut read: impl FnMut(&mut Fields<'d, 't, '_>) -> Option<T>,
+        mut read: impl FnMut(&mut TagFields<'d, 't, '_>) -> Option<T>,
     ) -> Vec<Part<'d, 't, T>> {
         let tags = self.tags(name).enumerate();
-        let read = |(number, tag)| Part { tag, value: read(&mut Fields::new(tag, Some(number), self.report)) };
+        let read = |(number, tag)| Part { tag, value: read(&mut TagFields::new(tag, Some(number), self.report)) };
         tags.map(read).collect()
     }
 
@@ -114,7 +114,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
     fn single<T>(
         &mut self,
         name: &str,
-        read: impl FnOnce(&mut Fields<'d, 't, '_>) -> Option<T>,
+        read: impl FnOnce(&mut TagFields<'d, 't, '_>) -> Option<T>,
     ) -> Option<Part<'d, 't, T>> {
         let mut tags = self.tags(name);
         let tag = tags.next()?;
@@ -124,14 +124,14 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
                     .help("the original takes the first and ignores the others; remove one")
             });
         }
-        Some(Part { tag, value: read(&mut Fields::new(tag, None, self.report)) })
+        Some(Part { tag, value: read(&mut TagFields::new(tag, None, self.report)) })
     }
 
     /// A single element that may be absent; the outer `None` means unreadable.
     fn optional<T>(
         &mut self,
         name: &str,
-        read: impl FnOnce(&mut Fields<'d, 't, '_>) -> Option<T>,
+        read: impl FnOnce(&mut TagFields<'d, 't, '_>) -> Option<T>,
     ) -> Option<Option<T>> {
         self.single(name, read).map_or(Some(None), |part| part.value.map(Some))
     }
@@ -141,7 +141,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
         &mut self,
         name: &str,
         attributes: &str,
-        read: impl FnOnce(&mut Fields<'d, 't, '_>) -> Option<T>,
+        read: impl FnOnce(&mut TagFields<'d, 't, '_>) -> Option<T>,
     ) -> Option<Part<'d, 't, T>> {
         let part = self.single(name, read);
         if let (None, Some(scene)) = (&part, &self.document.scene)
@@ -242,7 +242,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
     }
 }
 
-fn duration(fields: &mut Fields<'_, '_, '_>) -> Option<f64> {
+fn duration(fields: &mut TagFields<'_, '_, '_>) -> Option<f64> {
     let duration = fields.scalar("time")?;
     if duration < 0.0 {
         fields.bad("time", "the simulated time cannot be negative");
@@ -250,7 +250,7 @@ fn duration(fields: &mut Fields<'_, '_, '_>) -> Option<f64> {
     Some(duration)
 }
 
-fn integrator(fields: &mut Fields<'_, '_, '_>) -> Option<(Integrator, f64)> {
+fn integrator(fields: &mut TagFields<'_, '_, '_>) -> Option<(Integrator, f64)> {
     let (integrator, time_step) = (fields.choice("type", &Integrator::NAMED), fields.scalar("dt"));
     if time_step.is_some_and(|time_step| time_step <= 0.0) {
         fields.bad("dt", "the time step must be positive; the original makes no step");
@@ -258,11 +258,11 @@ fn integrator(fields: &mut Fields<'_, '_, '_>) -> Option<(Integrator, f64)> {
     Some((integrator?, time_step?))
 }
 
-fn detection(fields: &mut Fields<'_, '_, '_>) -> Option<CollisionDetection> {
+fn detection(fields: &mut TagFields<'_, '_, '_>) -> Option<CollisionDetection> {
     fields.choice("type", &[("all-pairs", CollisionDetection::AllPairs), ("contest", CollisionDetection::Contest)])
 }
 
-fn collision(fields: &mut Fields<'_, '_, '_>) -> Option<Collision> {
+fn collision(fields: &mut TagFields<'_, '_, '_>) -> Option<Collision> {
     let types = CollisionType::ALL.map(|kind| (kind.name(), kind));
     let restitution = fields.scalar_or("COR", 1.0);
     if restitution.is_some_and(|value| !(0.0..=1.0).contains(&value)) {
@@ -307,7 +307,7 @@ fn collision(fields: &mut Fields<'_, '_, '_>) -> Option<Collision> {
 }
 
 /// `maxiters`: a scalar in the original, which cuts off its fraction.
-fn max_iterations(fields: &mut Fields<'_, '_, '_>) -> Option<i32> {
+fn max_iterations(fields: &mut TagFields<'_, '_, '_>) -> Option<i32> {
     let written = fields.scalar_or("maxiters", 10.0)?;
     if written.trunc() != written || written < f64::from(i32::MIN) || written > f64::from(i32::MAX) {
         fields.bad("maxiters", "write a whole number of at most 2147483647");
@@ -321,7 +321,7 @@ fn max_iterations(fields: &mut Fields<'_, '_, '_>) -> Option<i32> {
     Some(iterations)
 }
 
-fn particle(fields: &mut Fields<'_, '_, '_>) -> Option<Particle> {
+fn particle(fields: &mut TagFields<'_, '_, '_>) -> Option<Particle> {
     let (position, velocity) = (fields.vector("px", "py"), fields.vector("vx", "vy"));
     let mass = fields.scalar("m");
     if mass.is_some_and(|mass| mass <= 0.0) {
@@ -333,7 +333,7 @@ fn particle(fields: &mut Fields<'_, '_, '_>) -> Option<Particle> {
     Some(Particle { position: position?, velocity: velocity?, mass: mass?, fixed: fixed?, radius: radius?, tag: tag? })
 }
 
-fn radius(fields: &mut Fields<'_, '_, '_>, default: f64) -> Option<f64> {
+fn radius(fields: &mut TagFields<'_, '_, '_>, default: f64) -> Option<f64> {
     let radius = fields.scalar_or("radius", default)?;
     if radius < 0.0 {
         fields.bad("radius", "a radius cannot be negative");
@@ -341,21 +341,21 @@ fn radius(fields: &mut Fields<'_, '_, '_>, default: f64) -> Option<f64> {
     Some(radius)
 }
 
-fn edge(fields: &mut Fields<'_, '_, '_>, particles: Count) -> Option<Edge> {
+fn edge(fields: &mut TagFields<'_, '_, '_>, particles: Count) -> Option<Edge> {
     let (pair, radius) = (pair(fields, particles), radius(fields, 0.015));
     let (first, second) = pair?;
     Some(Edge { first, second, radius: radius? })
 }
 
 /// Two different particles in `i` and `j`.
-fn pair(fields: &mut Fields<'_, '_, '_>, particles: Count) -> Option<(usize, usize)> {
+fn pair(fields: &mut TagFields<'_, '_, '_>, particles: Count) -> Option<(usize, usize)> {
     let first = fields.index("i", particles);
     let second = other(fields, first, particles);
     Some((first?, second?))
 }
 
 /// The particle in `j`, which is another one than that in `i`.
-fn other(fields: &mut Fields<'_, '_, '_>, first: Option<usize>, particles: Count) -> Option<usize> {
+fn other(fields: &mut TagFields<'_, '_, '_>, first: Option<usize>, particles: Count) -> Option<usize> {
     let second = fields.index("j", particles)?;
     if first == Some(second) {
         fields.error("j", "is the same particle as `i`", "two different particles are needed");
@@ -366,7 +366,7 @@ fn other(fields: &mut Fields<'_, '_, '_>, first: Option<usize>, particles: Count
 
 /// The attributes of a force.
 struct ForceFields<'d, 't, 'r, 'f> {
-    fields: &'f mut Fields<'d, 't, 'r>,
+    fields: &'f mut TagFields<'d, 't, 'r>,
     particles: Count,
     edges: Count,
     /// The particle in `i`.
@@ -401,7 +401,7 @@ impl Source for ForceFields<'_, '_, '_, '_> {
     }
 }
 
-fn path(fields: &mut Fields<'_, '_, '_>, particles: Count) -> Option<ParticlePath> {
+fn path(fields: &mut TagFields<'_, '_, '_>, particles: Count) -> Option<ParticlePath> {
     let (particle, duration, color) = (fields.index("i", particles), fields.scalar("duration"), fields.color());
     if duration.is_some_and(|duration| duration < 0.0) {
         fields.bad("duration", "a duration cannot be negative");
@@ -410,7 +410,7 @@ fn path(fields: &mut Fields<'_, '_, '_>, particles: Count) -> Option<ParticlePat
 }
 
 /// Warns of a number below zero that the original accepts.
-fn negative(fields: &mut Fields<'_, '_, '_>, name: &str, value: f64, effect: &str) {
+fn negative(fields: &mut TagFields<'_, '_, '_>, name: &str, value: f64, effect: &str) {
     if value < 0.0 {
         fields.odd(name, effect);
     }

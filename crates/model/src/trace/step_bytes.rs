@@ -9,7 +9,7 @@ pub struct StepBytes {
     layout: Layout,
     log: Log,
     /// The mid record and the end record; the former is empty where the layout has none.
-    records: [Record; 2],
+    records: [RecordBytes; 2],
     /// Whether a number of a state is not finite.
     has_odd_states: bool,
     /// The state of the mid record.
@@ -18,7 +18,7 @@ pub struct StepBytes {
 
 /// A record: what stands before the polynomials, and how many bytes of the step's polynomials belong to it.
 #[derive(Debug, Clone, Default)]
-struct Record {
+struct RecordBytes {
     head: Vec<u8>,
     polynomials: usize,
 }
@@ -95,7 +95,7 @@ impl StepBytes {
 
     fn record(&mut self, index: usize, state: &State) {
         let Self { layout, log, records, has_odd_states, .. } = self;
-        let Record { head, polynomials } = &mut records[index];
+        let RecordBytes { head, polynomials } = &mut records[index];
         head.clear();
         log.write_head(head, *layout, state);
         *polynomials = log.polynomials.bytes().len();

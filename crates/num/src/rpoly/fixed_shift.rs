@@ -1,7 +1,7 @@
 //! The fixed-shift stage, and the choice between the two variable-shift iterations (root-finder.md 11 and 12).
 use super::{
     Coefficients, Found, linear_iteration, quadratic_iteration,
-    scalars::{Division, Kind, Scalars},
+    scalars::{Division, ScalarKind, Scalars},
 };
 
 /// The convergence tests of one sequence of estimates: of the factor's `v`, or of the real zero `s`.
@@ -65,7 +65,7 @@ pub(super) fn run<const N: usize>(
         let estimate = scalars.estimate(&k, polynomial, &division);
         let zero = if k[N - 1] == 0.0 { 0.0 } else { -polynomial[N] / k[N - 1] };
         let (mut factor_change, mut real_change) = (1.0, 1.0);
-        if step > 0 && scalars.kind != Kind::Divides {
+        if step > 0 && scalars.kind != ScalarKind::Divides {
             let by_factor = factor.measure(estimate.1);
             let by_zero = real.measure(zero);
             (factor_change, real_change) = (by_factor.change, by_zero.change);

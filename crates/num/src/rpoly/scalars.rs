@@ -33,7 +33,7 @@ impl<const N: usize> Division<N> {
 
 /// Which of the remainder's entries the formulas are divided by.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum ScalarKind {
     /// By `c`, the larger.
     ByC,
     /// By `d`.
@@ -45,7 +45,7 @@ pub(super) enum Kind {
 /// The scalars of one K polynomial (degree `N - 1`) with one division of P.
 #[derive(Clone, Copy)]
 pub(super) struct Scalars<const N: usize> {
-    pub(super) kind: Kind,
+    pub(super) kind: ScalarKind,
     w: Coefficients,
     c: f64,
     d: f64,
@@ -70,7 +70,7 @@ impl<const N: usize> Scalars<N> {
             w[i] = (k[i] - w[i - 1] * u) - w[i - 2] * v;
         }
         let (c, d) = (w[N - 1], w[N - 2]);
-        let mut scalars = Self { kind: Kind::Divides, w, c, d, s: 0.0, g: 0.0, y: 0.0, phi: 0.0, delta: 0.0, psi: 0.0 };
+        let mut scalars = Self { kind: ScalarKind::Divides, w, c, d, s: 0.0, g: 0.0, y: 0.0, phi: 0.0, delta: 0.0, psi: 0.0 };
         let stands_out = c.abs() > ((k[N - 1] * 100.0) * ETA).abs() || d.abs() > ((k[N - 2] * 100.0) * ETA).abs();
         if !stands_out {
             return scalars;
@@ -81,7 +81,7 @@ impl<const N: usize> Scalars<N> {
             let r = a / c;
             let s = d / c;
             let g = u * r;
-            scalars.kind = Kind::ByC;
+            scalars.kind = ScalarKind::ByC;
             scalars.s = s;
             scalars.g = g;
             scalars.phi = a * r + (y / c + g) * b;
@@ -91,7 +91,7 @@ impl<const N: usize> Scalars<N> {
             let r = a / d;
             let s = c / d;
             let g = u * b;
-            scalars.kind = Kind::ByD;
+            scalars.kind = ScalarKind::ByD;
             scalars.s = s;
             scalars.g = g;
             scalars.phi = (a + g) * r + y * (b / d);
@@ -107,9 +107,9 @@ impl<const N: usize> Scalars<N> {
         let (q, w) = (&division.q, &self.w);
         let mut k = Coefficients::default();
         let reference = match self.kind {
-            Kind::ByC => division.b(),
-            Kind::ByD => division.a(),
-            Kind::Divides => {
+            ScalarKind::ByC => division.b(),
+            ScalarKind::ByD => division.a(),
+            ScalarKind::Divides => {
                 k[2..N].copy_from_slice(&w[..N - 2]);
                 return k;
             }
@@ -137,9 +137,9 @@ impl<const N: usize> Scalars<N> {
         let Self { c, d, s, g, y, phi, delta, psi, .. } = *self;
         let (u, v, a, b) = (division.u, division.v, division.a(), division.b());
         let (alpha, gamma) = match self.kind {
-            Kind::Divides => return (0.0, 0.0),
-            Kind::ByD => ((a + g) * s + y, (s + u) * c + v * d),
-            Kind::ByC => (a + u * b + y * s, c + (u + v * s) * d),
+            ScalarKind::Divides => return (0.0, 0.0),
+            ScalarKind::ByD => ((a + g) * s + y, (s + u) * c + v * d),
+            ScalarKind::ByC => (a + u * b + y * s, c + (u + v * s) * d),
         };
         let rho_1 = -k[N - 1] / polynomial[N];
         let rho_2 = -(k[N - 2] + rho_1 * polynomial[N - 1]) / polynomial[N];

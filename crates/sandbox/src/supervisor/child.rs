@@ -31,7 +31,7 @@ pub(super) const EXECUTE: &str = "execute the program";
 pub(super) const LISTENER: u8 = b'L';
 
 /// All that the child needs, prepared by the supervisor.
-pub(super) struct Plan {
+pub(super) struct ChildPlan {
     pub(super) order: Rc<RunOrder>,
     pub(super) supervisor: u32,
     pub(super) folder: OwnedFd,
@@ -54,7 +54,7 @@ pub(super) struct Plan {
 }
 
 /// Becomes the program.
-pub(super) fn become_program(mut plan: Plan) -> ! {
+pub(super) fn become_program(mut plan: ChildPlan) -> ! {
     // Written as a file, because the filter knows no socket calls.
     let mut status = match plan.status.as_fd().try_clone_to_owned() {
         Ok(status) => File::from(status),
@@ -72,7 +72,7 @@ pub(super) fn become_program(mut plan: Plan) -> ! {
 type Strings = Vec<CString>;
 
 /// Puts up every wall; the answer is the program's arguments and environment.
-fn prepare(plan: &mut Plan) -> Result<(Strings, Strings), Failure> {
+fn prepare(plan: &mut ChildPlan) -> Result<(Strings, Strings), Failure> {
     sys::new_session().map_err(stage("start a session"))?;
     for group in &mut plan.groups {
         group.write_all(b"0").map_err(stage("enter the control group"))?;
@@ -172,7 +172,7 @@ pub(super) fn purpose(order: &RunOrder, own_user: bool, entrance: Option<u64>, n
 }
 
 /// Installs the filters and hands the listener to the supervisor.
-fn filter_calls(plan: &Plan) -> io::Result<()> {
+fn filter_calls(plan: &ChildPlan) -> io::Result<()> {
     let walls = plan.order.walls;
     let entrance = plan.entrance.as_ref().map(|file| file.as_raw_fd() as u64);
     let purpose = purpose(&plan.order, plan.user.is_some(), entrance, std::process::id() as i32);
@@ -193,7 +193,7 @@ fn filter_calls(plan: &Plan) -> io::Result<()> {
 ///
 /// A file that was just written can be busy for a moment: another thread of the grader may have forked while the file
 /// was open for writing, and its child holds a copy of the descriptor until it executes. So this is tried again.
-fn execute(plan: &Plan, arguments: &[CString], environment: &[CString]) -> io::Error {
+fn execute(plan: &ChildPlan, arguments: &[CString], environment: &[CString]) -> io::Error {
     const TRIES: u32 = 25;
     const PAUSE: Duration = Duration::from_millis(20);
     for _ in 1..TRIES {
@@ -207,7 +207,7 @@ fn execute(plan: &Plan, arguments: &[CString], environment: &[CString]) -> io::E
 }
 
 /// Executes the program by its path, or by the open file when the path is closed to the sandbox's user.
-fn execute_once(plan: &Plan, arguments: &[CString], environment: &[CString]) -> io::Error {
+fn execute_once(plan: &ChildPlan, arguments: &[CString], environment: &[CString]) -> io::Error {
     let path = plan.order.interpreter.as_ref().unwrap_or(&plan.order.program);
     let Ok(path) = c_string(path) else { return io::Error::from_raw_os_error(libc::EINVAL) };
     let open = |opened: &OpenedFile| sys::execute_open(opened.file.as_fd(), arguments, environment);
@@ -227,7 +227,7 @@ fn execute_once(plan: &Plan, arguments: &[CString], environment: &[CString]) -> 
     }
 }
 
-fn arguments(plan: &Plan) -> io::Result<Strings> {
+fn arguments(plan: &ChildPlan) -> io::Result<Strings> {
     let order = &plan.order;
     let script = script_by_descriptor(plan).map(|script| format!("/proc/self/fd/{}", script.file.as_raw_fd()).into());
     let program = script.unwrap_or_else(|| order.program.clone());
@@ -235,7 +235,7 @@ fn arguments(plan: &Plan) -> io::Result<Strings> {
 }
 
 /// The script, if its interpreter has to read it by a descriptor, because its path is closed to the run's user.
-fn script_by_descriptor(plan: &Plan) -> Option<&OpenedFile> {
+fn script_by_descriptor(plan: &ChildPlan) -> Option<&OpenedFile> {
     let opened = plan.opened.as_ref().filter(|_| plan.order.interpreter.is_some())?;
     let readable = c_string(&plan.order.program).is_ok_and(|path| sys::accessible(&path, libc::R_OK));
     (!readable).then_some(opened)

@@ -156,7 +156,7 @@ pub(super) fn filters(purpose: Purpose) -> io::Result<Vec<BpfProgram>> {
 }
 
 /// Rules with the answer to matching calls; calls without rules always match.
-type Layer = (Rules, SeccompAction);
+type Layer = (CallRules, SeccompAction);
 
 /// The answer to each of these calls by layers; the first layer that matches decides.
 fn joined(calls: impl Iterator<Item = i64>, layers: &[Layer]) -> io::Result<BTreeMap<u32, Answer>> {
@@ -172,7 +172,7 @@ fn joined(calls: impl Iterator<Item = i64>, layers: &[Layer]) -> io::Result<BTre
                     break;
                 }
                 Some(rules) => {
-                    let program = compile(Rules::from([(call, rules.clone())]), action.clone())?;
+                    let program = compile(CallRules::from([(call, rules.clone())]), action.clone())?;
                     asked.push(search::without_number(program, &frame()?));
                 }
             }
@@ -192,7 +192,7 @@ fn joined(calls: impl Iterator<Item = i64>, layers: &[Layer]) -> io::Result<BTre
 
 /// The layers of refusals. The largest error number comes first.
 fn refusals(purpose: Purpose) -> io::Result<Vec<Layer>> {
-    let mut refusals: BTreeMap<i32, Rules> = BTreeMap::new();
+    let mut refusals: BTreeMap<i32, CallRules> = BTreeMap::new();
     let mut refuse = |errno: i32, call: i64, rules: Vec<SeccompRule>| {
         refusals.entry(errno).or_default().insert(call, rules);
     };
@@ -282,11 +282,11 @@ fn on_others(purpose: Purpose) -> io::Result<Vec<(i32, i64, Vec<SeccompRule>)>> 
     Ok(refusals)
 }
 
-type Rules = BTreeMap<i64, Vec<SeccompRule>>;
+type CallRules = BTreeMap<i64, Vec<SeccompRule>>;
 
 /// Which calls end the program, or are the supervisor's to decide.
-fn forbidden(purpose: Purpose) -> io::Result<Rules> {
-    let always = |group: &[Call]| group.iter().map(|(_, call)| (*call, Vec::new())).collect::<Rules>();
+fn forbidden(purpose: Purpose) -> io::Result<CallRules> {
+    let always = |group: &[Call]| group.iter().map(|(_, call)| (*call, Vec::new())).collect::<CallRules>();
     let mut rules = always(calls::FORBIDDEN);
     let mut clone = NAMESPACE_FLAGS.map(|flag| masked(0, flag, flag)).into_iter().collect::<io::Result<Vec<_>>>()?;
     if !purpose.tools {
@@ -328,10 +328,10 @@ fn announce() -> SeccompAction {
 
 /// A filter that looks at the architecture only.
 fn frame() -> io::Result<BpfProgram> {
-    compile(Rules::new(), SeccompAction::Log)
+    compile(CallRules::new(), SeccompAction::Log)
 }
 
-fn compile(rules: Rules, matched: SeccompAction) -> io::Result<BpfProgram> {
+fn compile(rules: CallRules, matched: SeccompAction) -> io::Result<BpfProgram> {
     let machine = std::env::consts::ARCH.try_into().map_err(io::Error::other)?;
     let filter = SeccompFilter::new(rules, SeccompAction::Allow, matched, machine);
     filter.and_then(BpfProgram::try_from).map_err(io::Error::other)

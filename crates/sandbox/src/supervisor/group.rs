@@ -150,11 +150,11 @@ impl Group {
 }
 
 /// A quantity that the kernel can limit for a group, and the file without which it does not.
-type Limit = (&'static str, &'static CStr);
+type HeldLimit = (&'static str, &'static CStr);
 
 impl Kind {
     /// The limits of such a group, if their controllers are there.
-    fn limits(self) -> &'static [Limit] {
+    fn limits(self) -> &'static [HeldLimit] {
         match self {
             Self::Unified => &[("memory", c"memory.max"), ("threads and processes", c"pids.max")],
             Self::Memory => &[("memory", c"memory.limit_in_bytes")],
@@ -207,7 +207,7 @@ impl Part {
     }
 
     fn look_for_limits(&mut self) {
-        let held = |(name, file): &Limit| self.open(file, libc::O_WRONLY).is_ok().then_some(*name);
+        let held = |(name, file): &HeldLimit| self.open(file, libc::O_WRONLY).is_ok().then_some(*name);
         self.limits = self.kind.limits().iter().filter_map(held).collect();
     }
 

@@ -16,7 +16,7 @@ use std::{
 use super::{
     answers::{self, SharedWaits},
     calls,
-    child::{self, OpenedFile, Plan},
+    child::{self, OpenedFile, ChildPlan},
     filter,
     folder::{self, FolderUsage},
     group::Group,
@@ -150,7 +150,7 @@ impl Run {
         let opened = OpenedFile::new(&wire::path(&order.program), slot.is_some()).map_err(stage("open the program"))?;
         let entrance = entrance(&order, &opened)?;
         let rules = prepared.rules(&order, folder.as_fd()).map_err(stage("prepare Landlock"))?;
-        let plan = Plan {
+        let plan = ChildPlan {
             supervisor: std::process::id(),
             folder: folder.try_clone().map_err(stage("open the working folder"))?,
             opened: Some(opened),

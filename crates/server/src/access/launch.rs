@@ -413,20 +413,20 @@ pub(super) async fn enrol(
 }
 
 /// The choice that staff has to make, and for whom it is.
-pub(super) struct Pending {
+pub(super) struct PendingLaunch {
     pub(super) platform: Platform,
     pub(super) arrival: Arrival,
 }
 
 /// The choice that an account has to make by this secret.
-pub(super) async fn pending(transaction: &mut Transaction, account: i64, secret: &str) -> Result<Pending, Problem> {
+pub(super) async fn pending(transaction: &mut Transaction, account: i64, secret: &str) -> Result<PendingLaunch, Problem> {
     let statement = "SELECT platform.id, platform.name, platform.settings, platform_choice.arrival FROM platform_choice
         JOIN platform ON platform.id = platform_choice.platform AND platform.disabled_at IS NULL
         WHERE platform_choice.digest = ? AND platform_choice.account = ? AND platform_choice.expires_at > {now}";
     let row = transaction.row(statement, values![identity::digest(secret), account]).await?;
     let row = row.ok_or_else(|| Problem::not_found("choice"))?;
     let arrival = serde_json::from_str(&row.text("arrival")?).map_err(|_| Problem::fault())?;
-    Ok(Pending { platform: Platform::from_row(&row)?, arrival })
+    Ok(PendingLaunch { platform: Platform::from_row(&row)?, arrival })
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ use std::{
 
 /// The data folder's parts.
 #[derive(Debug, Clone)]
-pub(super) struct Folders {
+pub(super) struct ServiceFolders {
     /// Database and store, for nobody else's eyes.
     pub(super) data: PathBuf,
     pub(super) incoming: PathBuf,
@@ -25,7 +25,7 @@ pub(super) struct Folders {
     pub(super) remote_workers: PathBuf,
 }
 
-impl Folders {
+impl ServiceFolders {
     /// The data folder of a server that was here; makes none.
     pub(super) fn find(place: &Place) -> Result<Self> {
         if !place.data.exists() {

@@ -1,5 +1,5 @@
 //! `replay`: grades once more by a past result's own task, and compares what the grade says, byte for byte.
-use super::{arguments::ReplayArguments, folders::Folders, until_signalled, worker::grader};
+use super::{arguments::ReplayArguments, folders::ServiceFolders, until_signalled, worker::grader};
 use crate::{
     db::{self, Row, read_row},
     store::{Digest, Store},
@@ -40,7 +40,7 @@ impl Past {
 /// Whether all results are the same.
 pub(super) async fn run(arguments: &ReplayArguments) -> Result<bool> {
     let stop = until_signalled()?;
-    let folders = Folders::find(&arguments.place)?;
+    let folders = ServiceFolders::find(&arguments.place)?;
     let (database, address) = folders.open_database(&arguments.place).await?;
     if db::version(&database).await? != db::LATEST {
         bail!("the tables of {address} are not those of this version: start the server first");
@@ -76,7 +76,7 @@ pub(super) async fn run(arguments: &ReplayArguments) -> Result<bool> {
 async fn replay(
     past: &Past,
     store: &Store,
-    folders: &Folders,
+    folders: &ServiceFolders,
     program: &Program,
     stop: &CancellationToken,
 ) -> Result<bool> {

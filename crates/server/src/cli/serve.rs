@@ -1,7 +1,7 @@
 //! `serve`: the server, with workers of its own.
 use super::{
     arguments::{AdminLink, Serve},
-    folders::Folders,
+    folders::ServiceFolders,
     heartbeat, until_signalled,
     worker::{Local, grader, policy},
 };
@@ -47,7 +47,7 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
     let listener = tokio::net::TcpListener::bind(arguments.listen).await.with_context(|| {
         format!("cannot listen on {}; name another place by --listen ADDRESS:PORT", arguments.listen)
     })?;
-    let folders = Folders::open(&arguments.place)?;
+    let folders = ServiceFolders::open(&arguments.place)?;
     let (database, address) = folders.open_database(&arguments.place).await?;
     bring_up_to_date(&database, &folders, &address).await?;
     let store = folders.store(&arguments.place)?;
@@ -207,7 +207,7 @@ async fn write_flawed_program(grader: Option<&Path>, program: &Path) -> Result<(
 }
 
 /// Brings the tables up to date; a SQLite database that holds something is copied before.
-async fn bring_up_to_date(database: &Database, folders: &Folders, address: &Address) -> Result<()> {
+async fn bring_up_to_date(database: &Database, folders: &ServiceFolders, address: &Address) -> Result<()> {
     let version = db::version(database).await?;
     if version > 0 && version < db::LATEST && matches!(address, Address::Sqlite(_)) {
         std::fs::create_dir_all(folders.backups.clone())?;
@@ -239,7 +239,7 @@ fn clear_incoming(folder: &PathBuf) -> Result<()> {
 }
 
 pub(super) async fn admin_link(arguments: &AdminLink) -> Result<()> {
-    let folders = Folders::find(&arguments.place)?;
+    let folders = ServiceFolders::find(&arguments.place)?;
     let (database, _) = folders.open_database(&arguments.place).await?;
     let store = folders.store(&arguments.place)?;
     let options = Options { public: arguments.public_url.clone(), incoming: folders.incoming, ..Options::default() };

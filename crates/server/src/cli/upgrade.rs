@@ -1,13 +1,13 @@
 //! `upgrade`: what a newer program would change in the tables, and that change with a backup before. Starting the
 //! server does the same, but for PostgreSQL's backup.
-use super::{arguments::Upgrade, backup, folders::Folders};
+use super::{arguments::Upgrade, backup, folders::ServiceFolders};
 use crate::db;
 use anyhow::{Context, Result, bail};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Whether the tables are up to date (now).
 pub(super) async fn run(arguments: &Upgrade) -> Result<bool> {
-    let folders = Folders::find_database(&arguments.place)?;
+    let folders = ServiceFolders::find_database(&arguments.place)?;
     let (database, address) = folders.open_database(&arguments.place).await?;
     let version = db::version(&database).await?;
     if version > db::LATEST {

@@ -1,7 +1,7 @@
 //! `worker`: grades what waits in the queue.
 use super::{
     arguments::{Work, WorkerArguments},
-    folders::Folders,
+    folders::ServiceFolders,
     heartbeat, until_signalled,
 };
 use crate::{
@@ -28,7 +28,7 @@ pub(super) async fn run(arguments: &WorkerArguments) -> Result<()> {
         };
         return work_for(server, file, arguments, stop).await;
     }
-    let folders = Folders::find_database(&arguments.place)?;
+    let folders = ServiceFolders::find_database(&arguments.place)?;
     let (database, address) = folders.open_database(&arguments.place).await?;
     if db::version(&database).await? != db::LATEST {
         bail!(
@@ -64,7 +64,7 @@ async fn work_for(server: &str, token_file: &Path, arguments: &WorkerArguments, 
         bail!("{} holds no worker's token (fsw_...)", token_file.display());
     }
     let grader = grader(arguments.work.grader.as_deref())?;
-    let folders = Folders::open(&arguments.place)?;
+    let folders = ServiceFolders::open(&arguments.place)?;
     let name = unique_name(arguments.name.as_deref());
     // Jobs of workers that died here; the server gives them to others when their leases run out.
     let alive = Liveness::begin(&folders.remote_workers, &name).context("cannot show that this worker is alive")?;
@@ -139,7 +139,7 @@ pub(super) fn grader(named: Option<&Path>) -> Result<PathBuf> {
 
 /// Workers that hold the database themselves.
 pub(super) struct Local {
-    pub(super) folders: Folders,
+    pub(super) folders: ServiceFolders,
     pub(super) database: Database,
     pub(super) store: Store,
     pub(super) notifier: Notifier,

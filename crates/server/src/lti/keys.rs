@@ -17,12 +17,12 @@ const BITS: usize = 2048;
 const FIRST_TOLD: i64 = 3600 * 1000;
 
 /// A key of the service.
-pub(super) struct Key {
+pub(super) struct SigningKey {
     kid: String,
     der: Vec<u8>,
 }
 
-impl Key {
+impl SigningKey {
     /// Signs claims.
     pub(super) fn sign(&self, claims: &impl Serialize) -> Result<String, DbError> {
         crypto::sign(claims, &self.kid, &self.der).map_err(|error| DbError::Other(format!("a token: {error}")))
@@ -73,14 +73,14 @@ async fn all(database: &Database) -> Result<Vec<Row>, DbError> {
 }
 
 /// The key that signs: the newest that platforms had the time to read of, or the oldest.
-pub(super) async fn signing(database: &Database) -> Result<Key, DbError> {
+pub(super) async fn signing(database: &Database) -> Result<SigningKey, DbError> {
     let rows = all(database).await?;
     let known = rows.iter().find(|row| matches!(row.flag("is_known"), Ok(true)));
     let row = known.or(rows.last()).ok_or_else(|| DbError::Other("there is no key".to_owned()))?;
     let der = URL_SAFE_NO_PAD
         .decode(row.text("private_key")?)
         .map_err(|error| DbError::Other(format!("the key is damaged: {error}")))?;
-    Ok(Key { kid: row.text("kid")?, der })
+    Ok(SigningKey { kid: row.text("kid")?, der })
 }
 
 /// The public part of the keys: a JSON Web Key Set (RFC 7517).

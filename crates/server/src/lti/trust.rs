@@ -35,7 +35,7 @@ struct KeySet {
 }
 
 #[derive(Deserialize)]
-struct Key {
+struct PublishedKey {
     kty: String,
     kid: Option<String>,
     n: String,
@@ -46,7 +46,7 @@ struct Key {
 
 /// The keys of a set that sign by RS256; others are not ours to judge.
 fn usable(set: KeySet) -> Vec<PublicKey> {
-    let keys = set.keys.into_iter().filter_map(|key| serde_json::from_value::<Key>(key).ok());
+    let keys = set.keys.into_iter().filter_map(|key| serde_json::from_value::<PublishedKey>(key).ok());
     let usable = keys.filter(|key| {
         key.kty == "RSA"
             && key.alg.as_deref().is_none_or(|alg| alg == "RS256")

@@ -7,9 +7,9 @@ use std::{
 
 /// Counts what is being done, by whom.
 #[derive(Debug)]
-pub struct Limit<K>(Arc<Mutex<HashMap<K, usize>>>);
+pub struct KeyLimit<K>(Arc<Mutex<HashMap<K, usize>>>);
 
-impl<K> Default for Limit<K> {
+impl<K> Default for KeyLimit<K> {
     fn default() -> Self {
         Self(Arc::default())
     }
@@ -22,7 +22,7 @@ pub struct Permit<K: Hash + Eq> {
     counts: Arc<Mutex<HashMap<K, usize>>>,
 }
 
-impl<K: Hash + Eq + Clone> Limit<K> {
+impl<K: Hash + Eq + Clone> KeyLimit<K> {
     /// Leave for one more, if fewer than `most` are being done.
     pub fn pass(&self, who: K, most: usize) -> Option<Permit<K>> {
         let mut counts = self.0.lock().unwrap_or_else(PoisonError::into_inner);
@@ -53,7 +53,7 @@ mod tests {
 
     #[test]
     fn passes_are_counted_and_given_back() {
-        let limit = Limit::default();
+        let limit = KeyLimit::default();
         let one = limit.pass("ada", 2);
         let two = limit.pass("ada", 2);
         assert!(one.is_some() && two.is_some() && limit.pass("ada", 2).is_none());

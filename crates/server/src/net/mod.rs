@@ -9,7 +9,7 @@ mod paced;
 mod seats;
 
 pub use address::{ClientAddress, Networks};
-pub use limit::{Limit, Permit};
+pub use limit::{KeyLimit, Permit};
 
 use crate::problem::Problem;
 use axum::{
@@ -70,7 +70,7 @@ pub struct Manners {
 pub async fn serve(listener: TcpListener, router: Router, manners: Manners, stop: CancellationToken) {
     let graceful = GracefulShutdown::new();
     let seats = Seats::new(places(manners.connections));
-    let door = Arc::new(Door { manners, router, proxied: Limit::default(), share: seats.share() });
+    let door = Arc::new(Door { manners, router, proxied: KeyLimit::default(), share: seats.share() });
     loop {
         let accepted = tokio::select! {
             () = stop.cancelled() => break,
@@ -148,7 +148,7 @@ struct Door {
     manners: Manners,
     router: Router,
     /// Requests that proxies bring, by client.
-    proxied: Limit<IpAddr>,
+    proxied: KeyLimit<IpAddr>,
     /// How many of these a client may have at one time.
     share: usize,
 }

@@ -14,12 +14,12 @@ use tokio_util::sync::CancellationToken;
 #[derive(Clone)]
 pub(super) struct Seats {
     most: usize,
-    plan: Arc<Mutex<Plan>>,
+    plan: Arc<Mutex<SeatPlan>>,
 }
 
 /// The connections by address.
 #[derive(Default)]
-struct Plan {
+struct SeatPlan {
     /// Numbers connections, and tells who waits longest.
     next: u64,
     taken: usize,
@@ -53,7 +53,7 @@ impl Seats {
         self.most / 2
     }
 
-    fn plan(&self) -> MutexGuard<'_, Plan> {
+    fn plan(&self) -> MutexGuard<'_, SeatPlan> {
         self.plan.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -88,7 +88,7 @@ impl Seats {
     }
 }
 
-impl Plan {
+impl SeatPlan {
     fn next(&mut self) -> u64 {
         self.next += 1;
         self.next

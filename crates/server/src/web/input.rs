@@ -12,7 +12,7 @@ use serde_json::Value;
 pub(super) struct Body<T>(pub(super) T);
 
 /// A body of text.
-pub(super) struct Text(pub(super) String);
+pub(super) struct PlainBody(pub(super) String);
 
 /// The fields of a form: a body, or the query of the address where a browser only asks.
 pub(super) struct Fields<T>(pub(super) T);
@@ -108,7 +108,7 @@ impl<T: DeserializeOwned> FromRequest<App> for Body<T> {
     }
 }
 
-impl FromRequest<App> for Text {
+impl FromRequest<App> for PlainBody {
     type Rejection = Problem;
 
     async fn from_request(request: Request, state: &App) -> Result<Self, Problem> {

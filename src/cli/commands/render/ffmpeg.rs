@@ -42,14 +42,14 @@ pub(super) struct Ffmpeg {
     child: Arc<Mutex<Child>>,
     pipe: Option<ChildStdin>,
     words: Option<JoinHandle<String>>,
-    watch: Arc<Watch>,
+    watch: Arc<EncoderWatch>,
     /// Until it appears under its name.
     output: Option<Output>,
 }
 
 /// The state of the thread that watches.
 #[derive(Default)]
-struct Watch {
+struct EncoderWatch {
     pictures: AtomicU64,
     over: AtomicBool,
     given_up: AtomicBool,
@@ -114,7 +114,7 @@ impl Ffmpeg {
                 String::from_utf8_lossy(&words).trim().to_owned()
             })
         });
-        let watch = Arc::new(Watch::default());
+        let watch = Arc::new(EncoderWatch::default());
         let child = Arc::new(Mutex::new(child));
         end_when_stuck(&child, &watch);
         Ok(Self { child, pipe, words, watch, output: Some(output) })
@@ -171,7 +171,7 @@ impl Drop for Ffmpeg {
 }
 
 /// A thread that ends the program when it is stuck, and goes away when it is over.
-fn end_when_stuck(child: &Arc<Mutex<Child>>, watch: &Arc<Watch>) {
+fn end_when_stuck(child: &Arc<Mutex<Child>>, watch: &Arc<EncoderWatch>) {
     let (child, watch) = (Arc::clone(child), Arc::clone(watch));
     thread::spawn(move || {
         let (mut seen, mut since) = (0, Instant::now());

@@ -79,7 +79,7 @@ impl Motion {
 }
 
 /// A motion that is being kept.
-struct Keeper<'a> {
+struct FilmKeeper<'a> {
     scene: &'a Scene,
     picks: Picks,
     file: BufWriter<SpooledTempFile>,
@@ -87,7 +87,7 @@ struct Keeper<'a> {
     extent: Extent,
 }
 
-impl<'a> Keeper<'a> {
+impl<'a> FilmKeeper<'a> {
     fn new(scene: &'a Scene, picks: Picks) -> Self {
         let file = BufWriter::new(tempfile::spooled_tempfile(KEPT));
         Self { scene, picks, file, pictures: 0, extent: Extent::default() }
@@ -118,7 +118,7 @@ impl<'a> Keeper<'a> {
 /// # Errors
 /// When it can't be kept.
 pub(super) fn reference(scene: &Scene, picks: Picks) -> Result<Motion> {
-    let mut keeper = Keeper::new(scene, picks);
+    let mut keeper = FilmKeeper::new(scene, picks);
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     keeper.step(0, &simulation.state().positions)?;
     let mut bar = console::Bar::new(picks.last);
@@ -143,7 +143,7 @@ pub(super) fn traced(scene: &Scene, name: &Path, picks: Picks) -> Result<Motion>
     let mut trace = input::trace(name)?;
     let layout = Layout::of(scene);
     let mut reader = trace.records(scene);
-    let mut keeper = Keeper::new(scene, picks);
+    let mut keeper = FilmKeeper::new(scene, picks);
     let mut frame = Frame::default();
     let mut stopped = None;
     loop {

@@ -66,11 +66,11 @@ pub(super) fn roots_within_step(polynomial: &Integer) -> Vec<Root> {
     let mut roots = Vec::new();
     // Intervals to look at, the leftmost last: the polynomial stretched so that the interval becomes (0, 1), and the
     // interval as numerator and exponent.
-    let mut pending = vec![Pending::Interval(polynomial.clone(), BigInt::ZERO, 0)];
+    let mut pending = vec![PendingPart::Interval(polynomial.clone(), BigInt::ZERO, 0)];
     while let Some(next) = pending.pop() {
         let (stretched, start, exponent) = match next {
-            Pending::Interval(stretched, start, exponent) => (stretched, start, exponent),
-            Pending::Point(time) => {
+            PendingPart::Interval(stretched, start, exponent) => (stretched, start, exponent),
+            PendingPart::Point(time) => {
                 roots.push(Root::point(time));
                 continue;
             }
@@ -83,11 +83,11 @@ pub(super) fn roots_within_step(polynomial: &Integer) -> Vec<Root> {
                 let right = left.shifted();
                 let middle: BigInt = (&start << 1) + 1;
                 let zero_between = right.coefficients().first().is_some_and(|value| value.sign() == Sign::NoSign);
-                pending.push(Pending::Interval(right, middle.clone(), exponent + 1));
+                pending.push(PendingPart::Interval(right, middle.clone(), exponent + 1));
                 if zero_between {
-                    pending.push(Pending::Point(Dyadic { numerator: middle, exponent: exponent + 1 }));
+                    pending.push(PendingPart::Point(Dyadic { numerator: middle, exponent: exponent + 1 }));
                 }
-                pending.push(Pending::Interval(left, start << 1, exponent + 1));
+                pending.push(PendingPart::Interval(left, start << 1, exponent + 1));
             }
         }
     }
@@ -95,7 +95,7 @@ pub(super) fn roots_within_step(polynomial: &Integer) -> Vec<Root> {
 }
 
 /// An interval that is not decided yet.
-enum Pending {
+enum PendingPart {
     /// From `start / 2^exponent` on, `1 / 2^exponent` wide.
     Interval(Integer, BigInt, u64),
     /// A zero.

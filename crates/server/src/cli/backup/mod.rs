@@ -6,7 +6,7 @@ mod restore;
 
 pub(super) use restore::restore;
 
-use super::{arguments::Backup, folders::Folders};
+use super::{arguments::Backup, folders::ServiceFolders};
 use crate::{
     db::{self, Address, Database},
     store::{Digest, Store, digest_of_file},
@@ -30,7 +30,7 @@ const PAGE: i64 = 5000;
 
 /// Copies everything into a new folder, while the server runs.
 pub(super) async fn backup(arguments: &Backup) -> Result<bool> {
-    let folders = Folders::find(&arguments.place)?;
+    let folders = ServiceFolders::find(&arguments.place)?;
     let address = folders.database(&arguments.place);
     let made = make(&folders.store(&arguments.place)?, &address, &arguments.output).await?;
     let Artefacts { count, bytes } = made.0.artefacts;

@@ -1,7 +1,7 @@
 //! `restore`: a backup becomes a data folder again. The database comes last: a server that is started too early finds
 //! none, and no half of one.
 use super::{
-    super::{arguments::Restore, folders::Folders},
+    super::{arguments::Restore, folders::ServiceFolders},
     manifest::{Artefacts, Manifest},
     missing, postgres, tell_missing,
 };
@@ -36,7 +36,7 @@ pub(in crate::cli) async fn restore(arguments: &Restore) -> Result<bool> {
     if place.data.exists() && fs::read_dir(&place.data)?.next().is_some() {
         bail!("{} is not empty: a backup is restored into an empty data folder", place.data.display());
     }
-    let folders = Folders::open(place)?;
+    let folders = ServiceFolders::open(place)?;
     let address = folders.database(place);
     let is_dump = manifest.database.file == super::POSTGRES;
     match (&address, is_dump) {

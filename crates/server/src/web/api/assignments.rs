@@ -38,7 +38,7 @@ pub(super) struct AssignmentWish {
 
 /// How to write an export.
 #[derive(Deserialize)]
-pub(super) struct Format {
+pub(super) struct GradesFormat {
     format: Option<String>,
 }
 
@@ -113,7 +113,7 @@ fn unpack_suite(archive: &Path, incoming: &Path) -> Result<(tempfile::TempDir, b
 pub(super) async fn export(
     staff: Staff,
     At { assignment, .. }: At,
-    Asked(asked): Asked<Format>,
+    Asked(asked): Asked<GradesFormat>,
 ) -> Result<Response, Problem> {
     let format = asked.format.as_deref().unwrap_or("csv");
     let disposition = format!("attachment; filename=\"{}-{assignment}.{format}\"", staff.slug);

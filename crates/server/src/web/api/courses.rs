@@ -1,5 +1,5 @@
 //! Courses and their members.
-use super::super::input::{Asked, At, Before, Body, Text};
+use super::super::input::{Asked, At, Before, Body, PlainBody};
 use crate::{
     access::{Admin, Course, CourseOf, Event, Link, MemberInfo, MemberLine, MemberLinks, Person, Staff},
     problem::Problem,
@@ -72,7 +72,7 @@ pub(super) struct Preview {
 pub(super) async fn import(
     staff: Staff,
     Asked(asked): Asked<Preview>,
-    Text(table): Text,
+    PlainBody(table): PlainBody,
 ) -> Result<Json<Vec<MemberLine>>, Problem> {
     Ok(Json(staff.import(&table, asked.preview).await?))
 }

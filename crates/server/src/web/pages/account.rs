@@ -4,7 +4,7 @@ use super::{
         api::{PasswordWish, TokenName},
         input::{At, Fields},
     },
-    Frame, Page, see, show, text,
+    PageFrame, Page, see, show, text,
 };
 use crate::{
     access::{CourseOf, Invitation, Person, TokenInfo},
@@ -16,7 +16,7 @@ use axum::response::Redirect;
 #[derive(Template)]
 #[template(path = "home.html")]
 struct Home {
-    frame: Frame,
+    frame: PageFrame,
     person: Person,
     courses: Vec<CourseOf>,
     invitations: Vec<Invitation>,
@@ -25,7 +25,7 @@ struct Home {
 #[derive(Template)]
 #[template(path = "invitation.html")]
 struct InvitationPage {
-    frame: Frame,
+    frame: PageFrame,
     person: Person,
     secret: String,
     invitation: Invitation,
@@ -34,14 +34,14 @@ struct InvitationPage {
 #[derive(Template)]
 #[template(path = "account.html")]
 struct AccountPage<'a> {
-    frame: Frame,
+    frame: PageFrame,
     person: &'a Person,
     tokens: Vec<TokenInfo>,
     new: Option<String>,
 }
 
 pub(super) async fn home(person: Person) -> Page {
-    let frame = Frame::of(&person.account);
+    let frame = PageFrame::of(&person.account);
     let (courses, invitations) = (person.courses().await?, person.invitations().await?);
     show(&Home { frame, courses, invitations, person })
 }
@@ -49,7 +49,7 @@ pub(super) async fn home(person: Person) -> Page {
 /// Opening the link does nothing yet.
 pub(super) async fn invitation(person: Person, At { secret, .. }: At) -> Page {
     let invitation = person.invitation(&secret).await?;
-    show(&InvitationPage { frame: Frame::of(&person.account), secret, invitation, person })
+    show(&InvitationPage { frame: PageFrame::of(&person.account), secret, invitation, person })
 }
 
 pub(super) async fn accept_by_link(person: Person, At { secret, .. }: At) -> Result<Redirect, Problem> {
@@ -58,7 +58,7 @@ pub(super) async fn accept_by_link(person: Person, At { secret, .. }: At) -> Res
 }
 
 async fn page(person: &Person, new: Option<String>) -> Page {
-    let frame = Frame::of(&person.account).then("/account".to_owned(), "Account");
+    let frame = PageFrame::of(&person.account).then("/account".to_owned(), "Account");
     show(&AccountPage { frame, person, tokens: person.tokens().await?, new })
 }
 

@@ -4,7 +4,7 @@ use super::{
         api::{CourseWish, WorkerTokenName},
         input::{At, Fields},
     },
-    Frame, Page, see, show, text,
+    PageFrame, Page, see, show, text,
 };
 use crate::{
     access::{Account, Admin, Event, Queue, TokenInfo},
@@ -18,7 +18,7 @@ use serde::Deserialize;
 #[derive(Template)]
 #[template(path = "admin.html")]
 struct AdminPage {
-    frame: Frame,
+    frame: PageFrame,
     accounts: Vec<Account>,
     workers: Vec<TokenInfo>,
     platforms: Vec<Platform>,
@@ -39,7 +39,7 @@ pub(super) struct NewAccount {
 
 async fn make(admin: &Admin, link: Option<String>, token: Option<String>) -> Page {
     show(&AdminPage {
-        frame: Frame::of(&admin.account).then("/admin".to_owned(), "Administration"),
+        frame: PageFrame::of(&admin.account).then("/admin".to_owned(), "Administration"),
         accounts: admin.accounts().await?,
         workers: admin.worker_tokens().await?,
         platforms: admin.platforms().await?,

@@ -1,7 +1,7 @@
 //! A course: its assignments, members, queue and audit log.
 use super::{
     super::input::{Asked, At, Before, Fields},
-    Frame, Page, see, show, text,
+    PageFrame, Page, see, show, text,
 };
 use crate::{
     access::{Assignment, Event, Member, MemberInfo, Overview, Queue, Settings, Staff, Submission},
@@ -15,7 +15,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 #[derive(Template)]
 #[template(path = "course.html")]
 struct CoursePage {
-    frame: Frame,
+    frame: PageFrame,
     member: Member,
     assignments: Vec<Row>,
 }
@@ -74,7 +74,7 @@ impl OwnWork {
 #[derive(Template)]
 #[template(path = "members.html")]
 struct MembersPage {
-    frame: Frame,
+    frame: PageFrame,
     slug: String,
     members: Vec<MemberInfo>,
     platforms: Vec<String>,
@@ -85,7 +85,7 @@ struct MembersPage {
 #[derive(Template)]
 #[template(path = "audit.html")]
 struct AuditPage {
-    frame: Frame,
+    frame: PageFrame,
     slug: String,
     events: Vec<Event>,
 }
@@ -93,7 +93,7 @@ struct AuditPage {
 #[derive(Template)]
 #[template(path = "queue.html")]
 struct QueuePage {
-    frame: Frame,
+    frame: PageFrame,
     queue: Queue,
 }
 
@@ -119,7 +119,7 @@ pub(super) async fn course(member: Member) -> Page {
         let (work, overview) = (OwnWork::of(&member, &assignment).await?, member.overview(&assignment).await?);
         assignments.push(Row { assignment, work, overview });
     }
-    show(&CoursePage { frame: Frame::course(&member), member, assignments })
+    show(&CoursePage { frame: PageFrame::course(&member), member, assignments })
 }
 
 pub(super) async fn new_assignment(staff: Staff, Fields(form): Fields<NewAssignment>) -> Result<Redirect, Problem> {
@@ -133,7 +133,7 @@ pub(super) async fn new_assignment(staff: Staff, Fields(form): Fields<NewAssignm
 
 async fn members_page(staff: &Staff, link: Option<(String, &'static str, String)>) -> Page {
     let slug = staff.slug.clone();
-    let frame = Frame::course(staff).then(format!("/c/{slug}/members"), "Members");
+    let frame = PageFrame::course(staff).then(format!("/c/{slug}/members"), "Members");
     show(&MembersPage { frame, slug, members: staff.members().await?, platforms: staff.platforms().await?, link })
 }
 
@@ -155,12 +155,12 @@ pub(super) async fn member_link(staff: Staff, At { login, .. }: At) -> Page {
 
 pub(super) async fn audit(staff: Staff, Asked(asked): Asked<Before>) -> Page {
     let slug = staff.slug.clone();
-    let frame = Frame::course(&staff).then(format!("/c/{slug}/audit"), "Audit log");
+    let frame = PageFrame::course(&staff).then(format!("/c/{slug}/audit"), "Audit log");
     show(&AuditPage { frame, slug, events: staff.audit(asked.before).await? })
 }
 
 pub(super) async fn queue(staff: Staff) -> Page {
-    let frame = Frame::course(&staff).then(format!("/c/{}/queue", staff.slug), "Queue");
+    let frame = PageFrame::course(&staff).then(format!("/c/{}/queue", staff.slug), "Queue");
     show(&QueuePage { frame, queue: staff.queue().await? })
 }
 

@@ -1,7 +1,7 @@
 //! The class, and regrades.
 use super::{
     super::input::{After, Asked, At, Fields},
-    Frame, Page,
+    PageFrame, Page,
     heat::Heat,
     see,
     settings::{Grading, SuiteOption, suites},
@@ -19,8 +19,8 @@ use serde::Deserialize;
 
 #[derive(Template)]
 #[template(path = "class.html")]
-struct ClassPage {
-    frame: Frame,
+struct GradesPage {
+    frame: PageFrame,
     slug: String,
     assignment: Assignment,
     standings: Vec<Standing>,
@@ -43,7 +43,7 @@ struct ClassPage {
 #[derive(Template)]
 #[template(path = "regrade.html")]
 struct RegradePage {
-    frame: Frame,
+    frame: PageFrame,
     slug: String,
     assignment: Assignment,
     regrade: Regrade,
@@ -99,8 +99,8 @@ pub(super) struct NewRegrade {
 }
 
 /// The frame of the class, and of what lies behind it.
-pub(super) fn frame(staff: &Staff, assignment: &Assignment) -> Frame {
-    let frame = Frame::assignment(staff, assignment);
+pub(super) fn frame(staff: &Staff, assignment: &Assignment) -> PageFrame {
+    let frame = PageFrame::assignment(staff, assignment);
     frame.then(format!("/c/{}/a/{}/class", staff.slug, assignment.slug), "Class")
 }
 
@@ -111,7 +111,7 @@ pub(super) async fn class(staff: Staff, At { course: slug, assignment, .. }: At,
     let (standings, found, [before, after]) = look.at(standings);
     let results: Vec<i64> =
         standings.iter().filter_map(|one| Some(one.counts.as_ref()?.grade.as_ref()?.result)).collect();
-    show(&ClassPage {
+    show(&GradesPage {
         frame: frame(&staff, &assignment),
         slug,
         look,

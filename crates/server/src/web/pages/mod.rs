@@ -161,7 +161,7 @@ fn constant(kind: &'static str, text: &'static str) -> Response {
 
 /// The frame of every page; as it is by default, nobody's.
 #[derive(Default)]
-pub(super) struct Frame {
+pub(super) struct PageFrame {
     /// The person who is signed in.
     login: Option<String>,
     is_admin: bool,
@@ -169,7 +169,7 @@ pub(super) struct Frame {
     way: Vec<(String, String)>,
 }
 
-impl Frame {
+impl PageFrame {
     fn of(account: &Account) -> Self {
         Self { login: Some(account.login.clone()), is_admin: account.is_admin, way: Vec::new() }
     }
@@ -208,7 +208,7 @@ fn see(address: &str) -> Redirect {
 #[derive(Template)]
 #[template(path = "problem.html")]
 struct ProblemPage {
-    frame: Frame,
+    frame: PageFrame,
     problem: Problem,
 }
 
@@ -247,7 +247,7 @@ fn as_page(mut response: Response, wanted: Option<&Uri>) -> Response {
         return see(&address).into_response();
     }
     let status = problem.status();
-    match show(&ProblemPage { frame: Frame::default(), problem }) {
+    match show(&ProblemPage { frame: PageFrame::default(), problem }) {
         Ok(page) => {
             let mut answer = (status, page).into_response();
             if let Some(after) = response.headers_mut().remove(header::RETRY_AFTER) {

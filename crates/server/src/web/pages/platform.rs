@@ -4,7 +4,7 @@ use super::{
         input::{At, Fields},
         who::browser_cookie,
     },
-    Frame, Page, see, show, sign_in,
+    PageFrame, Page, see, show, sign_in,
 };
 use crate::{
     access::{Admin, App, Choice, Chosen, LoginRequest, Person, Staff, Visitor},
@@ -33,14 +33,14 @@ pub(super) struct Answer {
 #[derive(Template)]
 #[template(path = "platform/window.html")]
 struct WindowPage {
-    frame: Frame,
+    frame: PageFrame,
     address: String,
 }
 
 #[derive(Template)]
 #[template(path = "platform/choice.html")]
 struct ChoicePage {
-    frame: Frame,
+    frame: PageFrame,
     secret: String,
     choice: Choice,
 }
@@ -48,7 +48,7 @@ struct ChoicePage {
 #[derive(Template)]
 #[template(path = "platform/answer.html")]
 struct AnswerPage {
-    frame: Frame,
+    frame: PageFrame,
     address: String,
     token: String,
 }
@@ -121,7 +121,7 @@ pub(super) async fn login(
         // A link and no form: where a form may lead is asked of all redirections, too, and this one goes on to the
         // platform.
         let address = format!("/lti/login?{}", query.finish());
-        let page = show(&WindowPage { frame: Frame::default(), address })?.into_response();
+        let page = show(&WindowPage { frame: PageFrame::default(), address })?.into_response();
         let origins = platform.origins(app.lti.over_http());
         let policy = format!(
             "default-src 'none'; style-src 'self'; form-action 'self'; base-uri 'none'; frame-ancestors {origins}"
@@ -181,7 +181,7 @@ pub(super) async fn configuration(State(app): State<App>) -> Json<Value> {
 
 pub(super) async fn choose(person: Person, At { secret, .. }: At) -> Page {
     let choice = person.choice(&secret).await?;
-    show(&ChoicePage { frame: Frame::of(&person.account), secret, choice })
+    show(&ChoicePage { frame: PageFrame::of(&person.account), secret, choice })
 }
 
 pub(super) async fn choose_assignment(
@@ -192,7 +192,7 @@ pub(super) async fn choose_assignment(
     match person.choose_assignment(&secret, &choice.assignment).await? {
         Chosen::Assignment(path) => Ok(see(&path).into_response()),
         Chosen::Answer { address, origins, token } => {
-            let page = show(&AnswerPage { frame: Frame::of(&person.account), address, token })?.into_response();
+            let page = show(&AnswerPage { frame: PageFrame::of(&person.account), address, token })?.into_response();
             let policy = format!(
                 "default-src 'none'; style-src 'self'; form-action 'self' {origins}; base-uri 'none'; frame-ancestors 'none'"
             );

@@ -1,7 +1,7 @@
 //! Removing for ever: a page that says what goes, and a button that means it.
 use super::{
     super::input::{At, Fields},
-    Frame, Page, see, show,
+    PageFrame, Page, see, show,
 };
 use crate::{
     access::{Admin, Staff},
@@ -14,7 +14,7 @@ use serde::Deserialize;
 #[derive(Template)]
 #[template(path = "remove.html")]
 struct RemovePage {
-    frame: Frame,
+    frame: PageFrame,
     /// The thing to be removed.
     title: String,
     /// The things that go with it.
@@ -47,7 +47,7 @@ const PERSON: &str = "All that they handed in, what it came to, their login and 
 
 pub(super) async fn submission(staff: Staff, At { course: slug, id, .. }: At) -> Page {
     let submission = staff.submission(id).await?;
-    let frame = Frame::course(&staff).then(format!("/c/{slug}/s/{id}"), &format!("Submission {}", submission.number));
+    let frame = PageFrame::course(&staff).then(format!("/c/{slug}/s/{id}"), &format!("Submission {}", submission.number));
     let title = format!("Submission {} of {} to {}", submission.number, submission.login, submission.title);
     show(&RemovePage { frame, title, words: SUBMISSION, confirm: id.to_string(), instead: None })
 }
@@ -65,7 +65,7 @@ pub(super) async fn remove_submission(
 
 pub(super) async fn assignment(staff: Staff, At { assignment, .. }: At) -> Page {
     let assignment = staff.assignment(&assignment).await?;
-    let frame = Frame::assignment(&staff, &assignment);
+    let frame = PageFrame::assignment(&staff, &assignment);
     show(&RemovePage { frame, title: assignment.title, words: ASSIGNMENT, confirm: assignment.slug, instead: None })
 }
 
@@ -75,14 +75,14 @@ pub(super) async fn course(_: Admin, staff: Staff) -> Page {
         false => ("archive", "Archive it"),
     };
     let instead = Some((format!("/c/{}/{way}", staff.slug), button));
-    let (frame, title, confirm) = (Frame::course(&staff), staff.title.clone(), staff.slug.clone());
+    let (frame, title, confirm) = (PageFrame::course(&staff), staff.title.clone(), staff.slug.clone());
     show(&RemovePage { frame, title, words: COURSE, confirm, instead })
 }
 
 pub(super) async fn person(admin: Admin, At { login, .. }: At) -> Page {
     let found = admin.accounts().await?.into_iter().find(|account| account.login == login);
     let account = found.ok_or_else(|| Problem::not_found("account"))?;
-    let frame = Frame::of(&admin.account).then("/admin".to_owned(), "Administration");
+    let frame = PageFrame::of(&admin.account).then("/admin".to_owned(), "Administration");
     let instead = Some((format!("/admin/accounts/{login}/shut"), "Only shut the account"));
     let title = format!("{} ({login})", account.name);
     show(&RemovePage { frame, title, words: PERSON, confirm: login, instead })

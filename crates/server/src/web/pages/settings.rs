@@ -4,7 +4,7 @@ use super::{
         api,
         input::{At, Fields},
     },
-    Frame, Page, see, show, text,
+    PageFrame, Page, see, show, text,
 };
 use crate::{
     access::{Assignment, Settings, Staff},
@@ -23,7 +23,7 @@ const MIB: f64 = 1_048_576.0;
 #[derive(Template)]
 #[template(path = "settings.html")]
 struct SettingsPage {
-    frame: Frame,
+    frame: PageFrame,
     slug: String,
     assignment: Assignment,
     suites: Vec<SuiteOption>,
@@ -140,7 +140,7 @@ pub(super) fn moment(field: &str, zone: &str, before: Option<i64>) -> Result<Opt
 pub(super) async fn page(staff: Staff, At { course: slug, assignment, .. }: At) -> Page {
     let assignment = staff.assignment(&assignment).await?;
     let address = format!("/c/{slug}/a/{}/settings", assignment.slug);
-    let frame = Frame::assignment(&staff, &assignment).then(address, "Settings");
+    let frame = PageFrame::assignment(&staff, &assignment).then(address, "Settings");
     let suites = suites(&assignment.settings, staff.app.suites.names());
     let megabytes = assignment.settings.max_bytes as f64 / MIB;
     show(&SettingsPage { frame, slug, assignment, suites, megabytes })

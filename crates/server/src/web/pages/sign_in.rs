@@ -4,7 +4,7 @@ use super::{
         guard::{SESSION, session_cookie},
         input::{Asked, At, Fields},
     },
-    Frame, Page, see, show,
+    PageFrame, Page, see, show,
 };
 use crate::{
     access::{App, NewSecret, Visitor},
@@ -20,7 +20,7 @@ use serde::Deserialize;
 #[derive(Template)]
 #[template(path = "sign_in.html")]
 struct SignIn {
-    frame: Frame,
+    frame: PageFrame,
     takes_passwords: bool,
     /// The page to go on to.
     to: String,
@@ -29,7 +29,7 @@ struct SignIn {
 #[derive(Template)]
 #[template(path = "welcome.html")]
 struct Welcome {
-    frame: Frame,
+    frame: PageFrame,
     is_good: bool,
 }
 
@@ -50,7 +50,7 @@ pub(super) struct Password {
 
 /// The page that somebody wanted who was not signed in.
 #[derive(Deserialize)]
-pub(super) struct Wanted {
+pub(super) struct NextPage {
     #[serde(default)]
     to: String,
 }
@@ -75,8 +75,8 @@ pub(super) fn with_cookie(cookie: &str, to: &str) -> Response {
     response
 }
 
-pub(super) async fn page(visitor: Visitor, Asked(Wanted { to }): Asked<Wanted>) -> Page {
-    show(&SignIn { frame: Frame::default(), takes_passwords: visitor.app.takes_passwords(), to })
+pub(super) async fn page(visitor: Visitor, Asked(NextPage { to }): Asked<NextPage>) -> Page {
+    show(&SignIn { frame: PageFrame::default(), takes_passwords: visitor.app.takes_passwords(), to })
 }
 
 pub(super) async fn by_password(visitor: Visitor, Fields(form): Fields<Password>) -> Result<Response, Problem> {
@@ -91,7 +91,7 @@ pub(super) async fn by_token(visitor: Visitor, Fields(form): Fields<Token>) -> R
 
 /// Opening the link does nothing yet: mail programs open links, too.
 pub(super) async fn welcome(visitor: Visitor, At { secret, .. }: At) -> Page {
-    show(&Welcome { frame: Frame::default(), is_good: visitor.is_link(&secret).await? })
+    show(&Welcome { frame: PageFrame::default(), is_good: visitor.is_link(&secret).await? })
 }
 
 pub(super) async fn by_link(visitor: Visitor, At { secret, .. }: At) -> Result<Response, Problem> {

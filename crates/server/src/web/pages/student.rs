@@ -4,7 +4,7 @@ use super::{
         api::{RequestWish, cell},
         input::{At, Fields},
     },
-    Frame, Page, grades, heat, see,
+    PageFrame, Page, grades, heat, see,
     settings::moment,
     show, text,
 };
@@ -21,7 +21,7 @@ use url::form_urlencoded::byte_serialize;
 #[derive(Template)]
 #[template(path = "student.html")]
 struct StudentPage {
-    frame: Frame,
+    frame: PageFrame,
     slug: String,
     assignment: Assignment,
     work: Work,
@@ -38,7 +38,7 @@ impl StudentPage {
 #[derive(Template)]
 #[template(path = "import.html")]
 struct ImportPage {
-    frame: Frame,
+    frame: PageFrame,
     slug: String,
     table: String,
     lines: Vec<Line>,
@@ -72,7 +72,7 @@ pub(super) struct NewMark {
 }
 
 #[derive(Deserialize)]
-pub(super) struct Table {
+pub(super) struct ImportedTable {
     table: String,
     import: Option<String>,
 }
@@ -106,7 +106,7 @@ fn points(field: &str) -> Option<String> {
 
 fn import_page(staff: &Staff, table: String, lines: Vec<Line>, is_done: bool) -> Page {
     let slug = staff.slug.clone();
-    let frame = Frame::course(staff)
+    let frame = PageFrame::course(staff)
         .then(format!("/c/{slug}/members"), "Members")
         .then(format!("/c/{slug}/members/import"), "Import");
     let is_wrong = lines.iter().any(|line| line.of.error.is_some());
@@ -136,7 +136,7 @@ pub(super) async fn import(staff: Staff) -> Page {
     import_page(&staff, String::new(), Vec::new(), false)
 }
 
-pub(super) async fn import_table(staff: Staff, Fields(form): Fields<Table>) -> Page {
+pub(super) async fn import_table(staff: Staff, Fields(form): Fields<ImportedTable>) -> Page {
     let is_meant = form.import.is_some();
     let lines = staff.import(&form.table, !is_meant).await?;
     let lines = lines.into_iter().map(|one| line(&staff.title, one)).collect();

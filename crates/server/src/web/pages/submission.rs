@@ -4,7 +4,7 @@ use super::{
         api,
         input::{Asked, At},
     },
-    Frame, Page,
+    PageFrame, Page,
     course::OwnWork,
     heat, see, show, text,
 };
@@ -28,7 +28,7 @@ const SHOWN: u64 = 200_000;
 #[derive(Template)]
 #[template(path = "assignment.html")]
 struct AssignmentPage {
-    frame: Frame,
+    frame: PageFrame,
     member: Member,
     assignment: Assignment,
     work: OwnWork,
@@ -38,7 +38,7 @@ struct AssignmentPage {
 #[derive(Template)]
 #[template(path = "submission.html")]
 struct SubmissionPage {
-    frame: Frame,
+    frame: PageFrame,
     member: Member,
     is_own: bool,
     submission: Submission,
@@ -57,7 +57,7 @@ struct SubmissionPage {
 
 pub(super) async fn assignment(member: Member, At { assignment, .. }: At) -> Page {
     let assignment = member.assignment(&assignment).await?;
-    let frame = Frame::assignment(&member, &assignment);
+    let frame = PageFrame::assignment(&member, &assignment);
     let work = OwnWork::of(&member, &assignment).await?;
     show(&AssignmentPage { frame, member, assignment, work, key: secret::random_hex() })
 }
@@ -77,8 +77,8 @@ async fn find_assignment(member: &Member, submission: &Submission) -> Result<Opt
 }
 
 /// The frame of a submission's pages.
-fn frame(member: &Member, assignment: Option<&Assignment>, submission: &Submission) -> Frame {
-    let frame = assignment.map_or_else(|| Frame::course(member), |assignment| Frame::assignment(member, assignment));
+fn frame(member: &Member, assignment: Option<&Assignment>, submission: &Submission) -> PageFrame {
+    let frame = assignment.map_or_else(|| PageFrame::course(member), |assignment| PageFrame::assignment(member, assignment));
     let address = format!("/c/{}/s/{}", member.slug, submission.id);
     frame.then(address, &format!("Submission {}", submission.number))
 }
@@ -118,7 +118,7 @@ pub(super) async fn submission(member: Member, At { id, .. }: At) -> Page {
 #[derive(Template)]
 #[template(path = "beside.html")]
 struct BesidePage {
-    frame: Frame,
+    frame: PageFrame,
     member: Member,
     /// Other attempts of the same person: their numbers of submission and attempt.
     attempts: Vec<(i64, i64)>,

@@ -52,7 +52,7 @@ pub(super) fn suspicion(state: &str) -> &'static str {
 pub(super) fn score(score: &serde_json::Value) -> String {
     match (score["scoreGiven"].as_f64(), score["scoreMaximum"].as_f64()) {
         (Some(points), Some(most)) => format!("{} / {}", rounded(&points.to_string()), rounded(&most.to_string())),
-        _ if score["gradingProgress"] == "Pending" => "being graded".to_owned(),
+        _ if score["gradingProgress"] == "PendingLaunch" => "being graded".to_owned(),
         _ => "somebody has to look".to_owned(),
     }
 }
