@@ -235,13 +235,16 @@ struct RandomMotion {
     radius: f64,
 }
 
+/// A distribution of motions.
+type Make = fn(&mut Random) -> RandomMotion;
+
 /// Draws a detection: pair type, name of the distribution, polynomials.
 fn draw(random: &mut Random) -> (usize, &'static str, Vec<Vec<Bounded>>) {
     let pair = [0, 1, 1, 2, 3][random.below(5) as usize];
     if pair == 3 {
         return (pair, "zeros on a grid", vec![product(random)]);
     }
-    let kinds: [(&str, fn(&mut Random) -> RandomMotion); 8] = [
+    let kinds: [(&str, Make); 8] = [
         ("wide", wide),
         ("grid", grid),
         ("near-rigid", near_rigid),
