@@ -24,7 +24,7 @@ pub(super) fn run(suite: &Suite) -> Result<()> {
             };
             match output {
                 Some(file) => Output::create(file, &[])?.finish_and_tell(text.as_bytes(), false),
-                None => console::print(&text),
+                None => console::print(text),
             }
         }
         Suite::Check(SuiteCheck { suite, missing, mistakes }) => {
