@@ -5,7 +5,7 @@ use crate::{
 };
 use fosssim_judge::{
     Outcome,
-    kept::{Keeper, KeptTrace, LONGEST},
+    kept::{KeptTrace, LONGEST, TraceKeeper},
     replay::{Both, Options, Progress},
 };
 use fosssim_mistakes::diagnose::{Explanation, explain_kept};
@@ -44,7 +44,7 @@ pub fn examine<'a, R: Read + Send>(
     options: &Options,
     progress: &mut dyn Progress,
 ) -> Examined<'a> {
-    let keeper = Keeper::new(scene, if keep == Keep::Nothing { 0 } else { LONGEST as usize });
+    let keeper = TraceKeeper::new(scene, if keep == Keep::Nothing { 0 } else { LONGEST as usize });
     let mut rulings = StepRulings::default();
     let outcome = keeper.judge(&mut trace, options, &mut Both(&mut rulings, progress));
     if keep == Keep::All && outcome.stop.is_some() {

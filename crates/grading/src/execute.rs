@@ -16,7 +16,7 @@ use fosssim_evidence::StepRulings;
 use fosssim_files::Place;
 use fosssim_judge::{
     Outcome, Rules,
-    kept::{TraceKeeper, KeptTrace},
+    kept::{KeptTrace, TraceKeeper},
     recorded,
     replay::{Both, Options, Progress, Remark},
 };

@@ -95,7 +95,10 @@ impl Supervisor {
         if let Some(keeper) = pool.take(&kind)
             && let Ok((control, answers)) = keeper.ask(order, files)
         {
-            return Ok((SpawnedSupervisor { host: Host::Kept(Box::new(keeper), pool.clone()), control, answers }, true));
+            return Ok((
+                SpawnedSupervisor { host: Host::Kept(Box::new(keeper), pool.clone()), control, answers },
+                true,
+            ));
         }
         let begin = || -> io::Result<_> {
             let mut command = self.command(MODE_KEEP);

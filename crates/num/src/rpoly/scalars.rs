@@ -70,7 +70,8 @@ impl<const N: usize> Scalars<N> {
             w[i] = (k[i] - w[i - 1] * u) - w[i - 2] * v;
         }
         let (c, d) = (w[N - 1], w[N - 2]);
-        let mut scalars = Self { kind: ScalarKind::Divides, w, c, d, s: 0.0, g: 0.0, y: 0.0, phi: 0.0, delta: 0.0, psi: 0.0 };
+        let mut scalars =
+            Self { kind: ScalarKind::Divides, w, c, d, s: 0.0, g: 0.0, y: 0.0, phi: 0.0, delta: 0.0, psi: 0.0 };
         let stands_out = c.abs() > ((k[N - 1] * 100.0) * ETA).abs() || d.abs() > ((k[N - 2] * 100.0) * ETA).abs();
         if !stands_out {
             return scalars;

@@ -16,7 +16,7 @@ use std::{
 use super::{
     answers::{self, SharedWaits},
     calls,
-    child::{self, OpenedFile, ChildPlan},
+    child::{self, ChildPlan, OpenedFile},
     filter,
     folder::{self, FolderUsage},
     group::Group,

@@ -419,7 +419,11 @@ pub(super) struct PendingLaunch {
 }
 
 /// The choice that an account has to make by this secret.
-pub(super) async fn pending(transaction: &mut Transaction, account: i64, secret: &str) -> Result<PendingLaunch, Problem> {
+pub(super) async fn pending(
+    transaction: &mut Transaction,
+    account: i64,
+    secret: &str,
+) -> Result<PendingLaunch, Problem> {
     let statement = "SELECT platform.id, platform.name, platform.settings, platform_choice.arrival FROM platform_choice
         JOIN platform ON platform.id = platform_choice.platform AND platform.disabled_at IS NULL
         WHERE platform_choice.digest = ? AND platform_choice.account = ? AND platform_choice.expires_at > {now}";

@@ -3,7 +3,7 @@
 use super::Member;
 use crate::{
     db::Transaction,
-    net::{Limit, Permit},
+    net::{KeyLimit, Permit},
     problem::Problem,
     values,
 };
@@ -29,8 +29,8 @@ pub struct TransferLimits {
     pub course: u64,
     /// Of the server.
     pub server: u64,
-    by_account: Limit<i64>,
-    of_all: Limit<()>,
+    by_account: KeyLimit<i64>,
+    of_all: KeyLimit<()>,
     turns: Mutex<HashMap<i64, Arc<tokio::sync::Mutex<()>>>>,
 }
 

@@ -3,7 +3,7 @@ use super::naming::is_in_other_words;
 use super::{About, Explanation, explain, explain_kept, probe_scenes, several};
 use crate::student::{self, Row, Student};
 use fosssim_judge::{
-    kept::{Keeper, LONGEST},
+    kept::{LONGEST, TraceKeeper},
     replay::Options,
 };
 use fosssim_model::assignments::Assignment;
@@ -101,7 +101,7 @@ fn mistakes_beyond_what_is_kept_are_explained() {
     let trace = student::trace(&scene, Student::new(Some(row.mistake))).expect("it comes to an end");
     let options = Options { threads: 1, fair: true, ..Options::default() };
     let kept = |most: usize| {
-        let keeper = Keeper::new(&scene, most);
+        let keeper = TraceKeeper::new(&scene, most);
         let outcome = keeper.judge(Slowly(&trace), &options, &mut ());
         assert!(outcome.stop.is_none());
         keeper.into_kept()

@@ -4,7 +4,7 @@ use super::{
         api::{PasswordWish, TokenName},
         input::{At, Fields},
     },
-    PageFrame, Page, see, show, text,
+    Page, PageFrame, see, show, text,
 };
 use crate::{
     access::{CourseOf, Invitation, Person, TokenInfo},

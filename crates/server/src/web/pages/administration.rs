@@ -4,7 +4,7 @@ use super::{
         api::{CourseWish, WorkerTokenName},
         input::{At, Fields},
     },
-    PageFrame, Page, see, show, text,
+    Page, PageFrame, see, show, text,
 };
 use crate::{
     access::{Account, Admin, Event, Queue, TokenInfo},

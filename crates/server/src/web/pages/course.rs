@@ -1,7 +1,7 @@
 //! A course: its assignments, members, queue and audit log.
 use super::{
     super::input::{Asked, At, Before, Fields},
-    PageFrame, Page, see, show, text,
+    Page, PageFrame, see, show, text,
 };
 use crate::{
     access::{Assignment, Event, Member, MemberInfo, Overview, Queue, Settings, Staff, Submission},

@@ -1,7 +1,7 @@
 //! The class, and regrades.
 use super::{
     super::input::{After, Asked, At, Fields},
-    PageFrame, Page,
+    Page, PageFrame,
     heat::Heat,
     see,
     settings::{Grading, SuiteOption, suites},

@@ -4,7 +4,7 @@ use super::{
         input::{At, Fields},
         who::browser_cookie,
     },
-    PageFrame, Page, see, show, sign_in,
+    Page, PageFrame, see, show, sign_in,
 };
 use crate::{
     access::{Admin, App, Choice, Chosen, LoginRequest, Person, Staff, Visitor},

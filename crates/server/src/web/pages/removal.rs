@@ -1,7 +1,7 @@
 //! Removing for ever: a page that says what goes, and a button that means it.
 use super::{
     super::input::{At, Fields},
-    PageFrame, Page, see, show,
+    Page, PageFrame, see, show,
 };
 use crate::{
     access::{Admin, Staff},
@@ -47,7 +47,8 @@ const PERSON: &str = "All that they handed in, what it came to, their login and 
 
 pub(super) async fn submission(staff: Staff, At { course: slug, id, .. }: At) -> Page {
     let submission = staff.submission(id).await?;
-    let frame = PageFrame::course(&staff).then(format!("/c/{slug}/s/{id}"), &format!("Submission {}", submission.number));
+    let frame =
+        PageFrame::course(&staff).then(format!("/c/{slug}/s/{id}"), &format!("Submission {}", submission.number));
     let title = format!("Submission {} of {} to {}", submission.number, submission.login, submission.title);
     show(&RemovePage { frame, title, words: SUBMISSION, confirm: id.to_string(), instead: None })
 }

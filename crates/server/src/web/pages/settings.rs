@@ -4,7 +4,7 @@ use super::{
         api,
         input::{At, Fields},
     },
-    PageFrame, Page, see, show, text,
+    Page, PageFrame, see, show, text,
 };
 use crate::{
     access::{Assignment, Settings, Staff},

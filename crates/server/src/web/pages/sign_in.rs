@@ -4,7 +4,7 @@ use super::{
         guard::{SESSION, session_cookie},
         input::{Asked, At, Fields},
     },
-    PageFrame, Page, see, show,
+    Page, PageFrame, see, show,
 };
 use crate::{
     access::{App, NewSecret, Visitor},

@@ -4,7 +4,7 @@ use super::{
         api::{RequestWish, cell},
         input::{At, Fields},
     },
-    PageFrame, Page, grades, heat, see,
+    Page, PageFrame, grades, heat, see,
     settings::moment,
     show, text,
 };

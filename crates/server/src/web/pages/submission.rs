@@ -4,7 +4,7 @@ use super::{
         api,
         input::{Asked, At},
     },
-    PageFrame, Page,
+    Page, PageFrame,
     course::OwnWork,
     heat, see, show, text,
 };
@@ -78,7 +78,8 @@ async fn find_assignment(member: &Member, submission: &Submission) -> Result<Opt
 
 /// The frame of a submission's pages.
 fn frame(member: &Member, assignment: Option<&Assignment>, submission: &Submission) -> PageFrame {
-    let frame = assignment.map_or_else(|| PageFrame::course(member), |assignment| PageFrame::assignment(member, assignment));
+    let frame =
+        assignment.map_or_else(|| PageFrame::course(member), |assignment| PageFrame::assignment(member, assignment));
     let address = format!("/c/{}/s/{}", member.slug, submission.id);
     frame.then(address, &format!("Submission {}", submission.number))
 }
