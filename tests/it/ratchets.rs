@@ -6,13 +6,13 @@ use std::{
 };
 
 /// Lines wider than rustfmt makes code, which are comments and texts.
-const MOST_WIDE_LINES: usize = 525;
+const MOST_WIDE_LINES: usize = 513;
 
 /// A line is as wide as rustfmt makes code (`rustfmt.toml`).
 const WIDTH: usize = 120;
 
 /// Types whose name stands in a second crate, too.
-const MOST_SHARED_NAMES: usize = 68;
+const MOST_SHARED_NAMES: usize = 47;
 
 /// A file that is longer holds a second noun.
 const LONGEST_FILE: usize = 600;
