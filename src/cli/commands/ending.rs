@@ -65,7 +65,7 @@ pub(super) fn text(
     closer: Option<Advice<'_>>,
 ) -> String {
     let (style, width) = (console::style(), console::width());
-    let mut text = Text { style, shown, width, closer, ..Text::default() }.render(grades);
+    let mut text = Text { style, shown, width, closer }.render(grades);
     if grades.len() > 1 && shown > TextDetail::Line {
         text += "\n";
         text += &grade::class(grades, hardest, style);

@@ -25,8 +25,15 @@ pub fn eventually<T>(mut look: impl FnMut() -> Option<T>) -> T {
     }
 }
 
+/// Whether a process runs: one that is dead has no program, though its parent may not have asked for its end yet.
+fn runs(pid: i32) -> bool {
+    Path::new(&format!("/proc/{pid}/exe")).exists()
+}
+
+/// Kills a process, and waits until it is dead: until then others may go on with it.
 pub fn kill(pid: i32) {
     assert!(std::process::Command::new("/bin/kill").args(["-KILL", &pid.to_string()]).status().unwrap().success());
+    eventually(|| (!runs(pid)).then_some(()));
 }
 
 #[test]
@@ -61,5 +68,5 @@ fn a_program_dies_with_its_grader() {
     grader.kill().unwrap();
     grader.wait().unwrap();
     eventually(|| process(&words).is_none().then_some(()));
-    eventually(|| (!Path::new(&format!("/proc/{supervisor}/exe")).exists()).then_some(()));
+    eventually(|| (!runs(supervisor)).then_some(()));
 }

@@ -43,8 +43,6 @@ pub struct Text<'a> {
     pub shown: TextDetail,
     /// The room for tables, in columns; without it there is no limit.
     pub width: Option<usize>,
-    /// The command to grade one scene again, shown with each scene that is wrong.
-    pub again: Option<Advice<'a>>,
     /// The command to look closer at the first wrong scene.
     pub closer: Option<Advice<'a>>,
 }

@@ -27,7 +27,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
     let shown = |scene: &SceneGrade| options.shown == TextDetail::All || !scene.verdict.is_accepted();
     let names = grade.scenes().filter(|scene| shown(scene)).map(|scene| columns(&one_line(&scene.scene)));
     let width = names.max().unwrap_or(0);
-    let mut scenes = Scenes { options, grade, width, mistakes: BTreeSet::new(), alike: alike(grade) };
+    let mut scenes = Scenes { options, width, mistakes: BTreeSet::new(), alike: alike(grade) };
     let groups = grade.groups.iter().filter(|group| group.scenes.iter().any(shown));
     groups.map(|group| scenes.group(group)).collect()
 }
@@ -56,7 +56,6 @@ fn alike(grade: &Grade) -> BTreeMap<Words, Vec<&str>> {
 
 struct Scenes<'a, 'b> {
     options: &'b Text<'b>,
-    grade: &'a Grade,
     /// Columns of the longest name.
     width: usize,
     /// Sentences of mistakes that have been told in full.
@@ -118,11 +117,6 @@ impl<'a> Scenes<'a, '_> {
         if !alike.is_empty() {
             let (many, names) = (counted(alike.len() as u64, "more scene"), some(alike, NAMED));
             lines.push(format!("the same in {many}: {names}"));
-        }
-        if !matches!(scene.verdict, Verdict::Accepted | Verdict::NotRun)
-            && let Some(again) = self.options.again
-        {
-            lines.extend(again(self.grade, scene));
         }
         let mut text: String = lines.iter().map(|line| format!("      {line}\n")).collect();
         if scene.verdict >= Verdict::NoOutput && !scene.stderr.trim().is_empty() {
