@@ -93,8 +93,11 @@ static void take_memory(size_t mebibytes) {
 // A file of so many mebibytes that has no name any more, open.
 static int nameless(int mebibytes) {
     signal(SIGXFSZ, SIG_IGN);
-    int fd = open("hidden", O_RDWR | O_CREAT, 0644);
-    unlink("hidden");
+    // Of its own: processes that open one name before any of them has removed it would share one file.
+    char name[32];
+    snprintf(name, sizeof name, "hidden-%d", getpid());
+    int fd = open(name, O_RDWR | O_CREAT, 0644);
+    unlink(name);
     for (int i = 0; i < 16 * mebibytes; i++) write(fd, full_block(), sizeof block);
     return fd;
 }
