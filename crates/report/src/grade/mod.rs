@@ -9,7 +9,6 @@ mod csv_table;
 mod github;
 mod gradescope;
 mod json;
-pub(crate) use json::GradeDocument;
 mod junit;
 mod passed_over;
 mod phrases;
@@ -115,6 +114,8 @@ pub use class::class;
 pub(crate) use class::hardest;
 pub use csv_table::submissions as csv_of_submissions;
 pub(crate) use github::annotation;
+#[cfg(feature = "schema")]
+pub(crate) use json::GradeDocument;
 pub use json::lines as json_lines;
 pub use passed_over::{not_graded, warn_of};
 pub use phrases::{difference, head_lines, likely_mistakes, no_points, one_line, plain, points, printed, reached};
