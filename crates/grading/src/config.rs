@@ -471,5 +471,13 @@ mod tests {
         assert!(error.problems.iter().all(|(at, _)| at.line >= 2), "{error}");
         assert!(!error.to_string().contains("no [[group]]"), "{error}");
         assert!(read("").expect_err("empty").to_string().contains("no [[group]]"));
+        // An integer that no reader takes is out of its range, and the rest of the suite is still there.
+        let large =
+            "schema = 1\nname = \"a\"\n[[group]]\nname = \"b\"\nscenes = [\"a\"]\npoints = 99999999999999999999\n";
+        let told = read(large).expect_err("too many").to_string();
+        assert!(
+            told.contains("6:10: points is 100000000000000000000: it has to lie") && !told.contains("[["),
+            "{told}"
+        );
     }
 }

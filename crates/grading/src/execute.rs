@@ -147,12 +147,12 @@ impl Runner<'_> {
             };
             let kept = guarded(|| cards.keep(&judged, self.student_hints));
             (result.card, result.card_for_students) = match kept {
-                Ok(names) => names.map_err(no_folder)?,
+                Ok(names) => names.map_err(|error| format!("a page's data can't be kept: {error}"))?,
                 Err(fault) => return Ok(failed(Activity::Reporting, &fault)),
             };
         }
         if let Some(place) = self.trace.filter(|_| !result.verdict.is_accepted()) {
-            place.write(&beginning()).map_err(no_folder)?;
+            place.write(&beginning()).map_err(|error| format!("its trace can't be kept: {error}"))?;
         }
         match guarded(|| (self.rehearse)(&result)) {
             Ok(()) => Ok(result),
@@ -189,7 +189,7 @@ impl Runner<'_> {
         identity: Option<ProgramIdentity>,
         task: &SceneTask,
     ) -> Result<(Running, Temporary), String> {
-        let folder = self.folders.take().map_err(no_folder)?;
+        let folder = self.folders.take().map_err(|error| format!("no working folder for a run: {error}"))?;
         let job = Job::new(program, folder.path())
             .arguments(self.arguments(program))
             .file(SCENE_FILE, task.xml.as_slice())
@@ -278,11 +278,6 @@ fn explained(run: &Run<'_>, kept: &KeptTrace<'_>, program: &Path) -> Result<Scen
     };
     let result = guarded(|| conclude(run, explain)).map_err(|fault| (Activity::Judging, fault))?;
     explaining.map_or(Ok(result), |fault| Err((Activity::Explaining, fault)))
-}
-
-/// The words for a folder of the grader's that can't be made or written into.
-fn no_folder(error: io::Error) -> String {
-    format!("no working folder for a run: {error}")
 }
 
 /// Tells how judging goes.

@@ -189,10 +189,11 @@ fn fits(name: &str, kind: &ValueKind, value: &mut Spanned<DeValue<'_>>, problems
     }
 }
 
-/// A number's value; none of one that no reader takes, such as an integer of a hundred digits.
+/// A number's value, rounded where it is long; none of a hexadecimal one that no reader takes.
 fn number(value: &DeValue<'_>) -> Option<f64> {
     match value {
         DeValue::Float(number) => number.as_str().parse().ok(),
+        DeValue::Integer(number) if number.radix() == 10 => number.as_str().parse().ok(),
         #[expect(clippy::cast_precision_loss, reason = "what is large is out of every range")]
         DeValue::Integer(number) => Some(i64::from_str_radix(number.as_str(), number.radix()).ok()? as f64),
         _ => None,
