@@ -20,6 +20,8 @@ pub const LIST: &str = "FOSSSIM_SKIPS";
 pub enum Need {
     /// The ground-truth corpus beside the checkout.
     Corpus,
+    /// The course's original programs beside the checkout.
+    Originals,
     /// A kernel that can run programs safely.
     Sandbox,
     /// Namespaces, control groups and other walls that only some hosts have, and the right to do without some.
@@ -59,8 +61,9 @@ pub enum Need {
 }
 
 /// All of them, each with its name in `FOSSSIM_REQUIRE`.
-const NAMES: [(Need, &str); 19] = [
+const NAMES: [(Need, &str); 20] = [
     (Need::Corpus, "corpus"),
+    (Need::Originals, "originals"),
     (Need::Sandbox, "sandbox"),
     (Need::Walls, "walls"),
     (Need::Cc, "cc"),

@@ -1,0 +1,52 @@
+//! Runs the originals, under limits of time and memory: some input makes them run for ever or take all memory.
+use fosssim_oracle::assignments::Assignment;
+use fosssim_testing::{Need, skip};
+use std::{
+    ffi::OsStr,
+    path::{Path, PathBuf},
+    process::{Command, Stdio},
+};
+
+use crate::workspace::{Run, finish};
+
+/// Seconds that a run may take.
+const SECONDS: &str = "20";
+
+/// KiB of memory that a run may take.
+const MEMORY: &str = "4000000";
+
+/// The folder of the originals: `FOSSSIM_ORIGINALS`, else `../shared/originals` beside the checkout.
+#[derive(Debug)]
+pub struct Originals(PathBuf);
+
+impl Originals {
+    /// Returns the folder, or says that the calling test is skipped.
+    pub fn find() -> Option<Self> {
+        let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/originals");
+        let folder = std::env::var_os("FOSSSIM_ORIGINALS").map_or(beside, PathBuf::from);
+        if folder.join("oracle").is_file() {
+            return Some(Self(folder.canonicalize().expect("a folder")));
+        }
+        skip(Need::Originals, format_args!("there are none at {}", folder.display()));
+        None
+    }
+
+    /// Returns the command that runs a milestone's original in a folder.
+    pub fn command(&self, milestone: Assignment, folder: &Path) -> Command {
+        let mut command = Command::new("sh");
+        let limits = format!("ulimit -v {MEMORY}; exec timeout {SECONDS} \"$@\"");
+        command.args(["-c", &limits, "sh"]).arg(self.0.join("oracle")).arg(milestone.key());
+        command.current_dir(folder).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        command
+    }
+
+    /// Runs a milestone's original in a folder.
+    pub fn run<S: AsRef<OsStr>>(
+        &self,
+        milestone: Assignment,
+        folder: &Path,
+        arguments: impl IntoIterator<Item = S>,
+    ) -> Run {
+        finish(self.command(milestone, folder).args(arguments))
+    }
+}
