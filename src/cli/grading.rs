@@ -3,7 +3,7 @@ use super::values::{TextOrJson, at_least_one, hints, reader, rules};
 use crate::{
     assignments::Assignment,
     judge::Rules,
-    report::{grade::Format, page::Audience},
+    report::{formats::Format, page::Audience},
     suite::{config::Hints, plan},
 };
 use clap::{Args, Subcommand};

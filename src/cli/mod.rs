@@ -15,7 +15,7 @@ mod screen;
 mod selection;
 mod values;
 
-use crate::report::grade::plain;
+use crate::report::foreign::plain;
 use clap::Parser;
 use std::{ffi::OsString, os::unix::ffi::OsStrExt, process::ExitCode};
 

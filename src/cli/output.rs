@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     files::{self, Identity, Place, Replacement, open_for_writing},
-    report::grade::one_line,
+    report::foreign::one_line,
 };
 use anyhow::{Context, Result, bail};
 use std::{

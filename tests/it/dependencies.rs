@@ -1,12 +1,8 @@
 //! The licences of others' packages, and which Rust they ask for: from cargo's own data.
-use crate::{
-    ratchets::modules,
-    tree::{files, root, text},
-};
+use crate::workspace::root;
 use serde_json::Value;
 use std::{
     collections::{BTreeMap, BTreeSet},
-    path::Path,
     sync::OnceLock,
 };
 
@@ -38,7 +34,7 @@ fn string(value: &'static Value) -> &'static str {
 
 /// The licences that `deny.toml` allows, from which this test and cargo-deny take them.
 fn allowed() -> BTreeSet<String> {
-    let rules = text(&root().join("deny.toml"));
+    let rules = std::fs::read_to_string(root().join("deny.toml")).expect("rules");
     let list =
         rules.split_once("\nallow = [").and_then(|(_, rest)| rest.split_once(']')).expect("a list of licences").0;
     list.split('"').skip(1).step_by(2).map(str::to_owned).collect()
@@ -111,28 +107,4 @@ fn the_promised_rust_compiles_all_dependencies() {
         }
         assert!(seen.len() > 50, "{name}: {} packages", seen.len());
     }
-}
-
-/// The packages that a manifest asks for are named by some source; optional ones may be there for their features.
-#[test]
-fn every_dependency_is_used() {
-    let mut unused = Vec::new();
-    for package in packages().values().filter(|package| package["source"].is_null()) {
-        let folder = Path::new(string(&package["manifest_path"])).parent().expect("a folder");
-        let own = ["src", "tests", "benches", "examples", "build.rs"].map(|part| folder.join(part));
-        let sources = own
-            .iter()
-            .filter(|path| path.exists())
-            .flat_map(|path| if path.is_dir() { files(path, ".rs") } else { vec![path.clone()] });
-        let sources: Vec<_> = sources.flat_map(|source| [modules(&source), vec![source]].concat()).collect();
-        let sources: String = sources.iter().filter(|source| source.exists()).map(|source| text(source)).collect();
-        let dependencies = package["dependencies"].as_array().expect("dependencies").iter();
-        for dependency in dependencies.filter(|dependency| dependency["optional"] == false) {
-            let name = string(&dependency["name"]).replace('-', "_");
-            if !sources.contains(&format!("{name}::")) && !sources.contains(&format!("use {name}")) {
-                unused.push(format!("{} asks for {name}", package["name"]));
-            }
-        }
-    }
-    assert!(unused.is_empty(), "and no source names it: {unused:#?}");
 }

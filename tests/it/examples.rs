@@ -1,5 +1,5 @@
 //! The programs in `examples`, each with the input that its first line asks for.
-use crate::{tree::root, workspace::Workspace};
+use crate::workspace::{Workspace, root};
 use fosssim_oracle::{sandbox::Supervisor, suite::library};
 use fosssim_testing::{Need, skip};
 

@@ -1,5 +1,5 @@
 //! The schemas of JSON documents: made from their types, and true of what the program writes.
-use super::tree::root;
+use super::workspace::root;
 use fosssim_oracle::report::schemas;
 use serde_json::Value;
 

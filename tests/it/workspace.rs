@@ -14,6 +14,11 @@ use std::{
     process::{Command, Output, Stdio},
 };
 
+/// Returns the top folder of the checkout.
+pub fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
 /// A temporary folder; gone at the end of the test.
 pub struct Workspace {
     folder: tempfile::TempDir,

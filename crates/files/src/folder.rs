@@ -2,7 +2,6 @@
 use super::{
     Identity,
     error::{FileError, escaped, regular},
-    replacement::Replacement,
 };
 use rustix::{
     fs::{AtFlags, CWD, Dir, FileType, Mode, OFlags, mkdirat, openat, statat, unlinkat},
@@ -200,25 +199,6 @@ impl Folder {
         Ok(file)
     }
 
-    /// A file that will take this name when it is finished, whatever has the name by then.
-    ///
-    /// # Errors
-    /// When no file can be made here.
-    pub fn replacement(&self, name: &OsStr, mode: Option<u32>) -> io::Result<Replacement> {
-        Replacement::new(self.clone(), single(name)?, mode)
-    }
-
-    /// Writes a whole file by rename: it appears with all its bytes or not at all. A file of that name is replaced, and
-    /// no link is followed.
-    ///
-    /// # Errors
-    /// When it can't be written.
-    pub fn write(&self, name: &OsStr, bytes: &[u8]) -> io::Result<()> {
-        let mut file = self.replacement(name, None)?;
-        io::Write::write_all(&mut file, bytes)?;
-        file.finish()
-    }
-
     /// Removes a file or a link; that there is none is no error.
     ///
     /// # Errors
@@ -311,7 +291,7 @@ fn step(above: BorrowedFd<'_>, name: &OsStr) -> io::Result<OwnedFd> {
 }
 
 /// A name that stays in its folder.
-fn single(name: &OsStr) -> io::Result<&OsStr> {
+pub(super) fn single(name: &OsStr) -> io::Result<&OsStr> {
     let mut components = Path::new(name).components();
     match (components.next(), components.next()) {
         (Some(Component::Normal(only)), None) if only == name => Ok(name),

@@ -1,5 +1,5 @@
 //! Files that appear whole: written beside their place under a name that nobody asks for, and renamed.
-use super::Folder;
+use super::folder::{Folder, single};
 use rustix::{
     fs::{AtFlags, Mode, OFlags, openat, renameat, unlinkat},
     io::Errno,
@@ -91,6 +91,27 @@ impl Replacement {
         let file = self.file.try_clone()?;
         self.finish()?;
         Ok(file)
+    }
+}
+
+impl Folder {
+    /// A file that will take this name when it is finished, whatever has the name by then.
+    ///
+    /// # Errors
+    /// When no file can be made here.
+    pub fn replacement(&self, name: &OsStr, mode: Option<u32>) -> io::Result<Replacement> {
+        Replacement::new(self.clone(), single(name)?, mode)
+    }
+
+    /// Writes a whole file by rename: it appears with all its bytes or not at all. A file of that name is replaced, and
+    /// no link is followed.
+    ///
+    /// # Errors
+    /// When it can't be written.
+    pub fn write(&self, name: &OsStr, bytes: &[u8]) -> io::Result<()> {
+        let mut file = self.replacement(name, None)?;
+        file.write_all(bytes)?;
+        file.finish()
     }
 }
 

@@ -4,7 +4,7 @@ use super::{
     disclosure::Disclosure,
     explanation::{About, Explanation},
     finding::FindingKind,
-    speed::Timing,
+    timing::Timing,
     verdict::Verdict,
 };
 use fosssim_model::{

@@ -1,6 +1,10 @@
 //! Points for speed: the processor time of a submission beside that of the reference program. Both run in turn, on one
 //! machine. It is never the time on the clock, which other programs change.
-use super::{grade::SceneGrade, verdict::Verdict};
+use super::{
+    result::SceneResult,
+    timing::{TimedRun, Timing},
+    verdict::Verdict,
+};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
@@ -23,26 +27,6 @@ impl SpeedMarking {
     pub fn points_at(&self, ratio: f64) -> f64 {
         self.points * ((self.none_at - ratio) / (self.none_at - self.full_at)).clamp(0.0, 1.0)
     }
-}
-
-/// The timed runs of one scene.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Timing {
-    /// The machine on which it was measured. Times of two machines are never compared.
-    pub machine: String,
-    /// The runs in their order.
-    pub runs: Vec<TimedRun>,
-    /// The verdict of a timed run that did not end as the graded one did; no further run was timed then.
-    pub failed: Option<Verdict>,
-}
-
-/// Processor times of two runs, one after the other.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct TimedRun {
-    /// The submission's.
-    pub submission: Duration,
-    /// The reference program's.
-    pub reference: Duration,
 }
 
 /// The points of a group for speed, and where they come from.
@@ -92,8 +76,8 @@ pub struct SpeedRatio {
 impl SpeedGrade {
     /// The points that the scenes of a group get for speed.
     #[must_use]
-    pub fn of(marking: SpeedMarking, scenes: &[SceneGrade]) -> Self {
-        let source = source(scenes);
+    pub fn of<'a>(marking: SpeedMarking, scenes: impl IntoIterator<Item = &'a SceneResult>) -> Self {
+        let source = source(&scenes.into_iter().collect::<Vec<_>>());
         let points = match &source {
             SpeedSource::Measured(measured) => Some(marking.points_at(measured.ratio)),
             SpeedSource::Unmeasured => None,
@@ -103,7 +87,7 @@ impl SpeedGrade {
     }
 }
 
-fn source(scenes: &[SceneGrade]) -> SpeedSource {
+fn source(scenes: &[&SceneResult]) -> SpeedSource {
     if scenes.iter().any(|scene| matches!(scene.verdict, Verdict::JudgeError | Verdict::NotRun)) {
         return SpeedSource::Unmeasured;
     }
@@ -151,21 +135,20 @@ fn ratio(scenes: &[&[TimedRun]]) -> SpeedRatio {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::result::{Reason, SceneResult};
+    use crate::result::Reason;
 
     const MARKING: SpeedMarking = SpeedMarking { points: 40.0, full_at: 2.0, none_at: 10.0, runs: 2 };
 
-    fn scene(verdict: Verdict, runs: &[(u64, u64)], failed: Option<Verdict>) -> SceneGrade {
+    fn scene(verdict: Verdict, runs: &[(u64, u64)], failed: Option<Verdict>) -> SceneResult {
         let run = |&(submission, reference): &(u64, u64)| TimedRun {
             submission: Duration::from_millis(submission),
             reference: Duration::from_millis(reference),
         };
         let timing = Timing { machine: "here".to_owned(), runs: runs.iter().map(run).collect(), failed };
-        let result = SceneResult {
+        SceneResult {
             timing: (!runs.is_empty()).then_some(timing),
             ..SceneResult::without_run("a/b", 1, verdict, Reason::Right)
-        };
-        SceneGrade { result, points: None, max_points: 0.0, cached: false, settled: Vec::new(), agreed: 0 }
+        }
     }
 
     #[test]
@@ -187,7 +170,7 @@ mod tests {
     #[test]
     fn being_right_counts_before_being_fast_and_faults_of_ours_are_nobodys_zero() {
         let (right, wrong) = (Verdict::Accepted, Verdict::WrongAnswer);
-        let of = |scenes: &[SceneGrade]| {
+        let of = |scenes: &[SceneResult]| {
             let grade = SpeedGrade::of(MARKING, scenes);
             (grade.source, grade.points)
         };

@@ -14,7 +14,8 @@ use super::{
 };
 use fosssim_findings::{
     Hints,
-    speed::{SpeedMarking, TimedRun, Timing},
+    speed::SpeedMarking,
+    timing::{TimedRun, Timing},
 };
 use std::{fs, time::Instant};
 

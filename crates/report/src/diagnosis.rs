@@ -1,12 +1,12 @@
 //! The report of `explain`: what is likely wrong with a program, trace by trace and all together.
 use super::{
     explain::{ExplanationView, lines},
-    grade::one_line,
     number::counted,
     style::{Look, Style},
     view::{FindingView, document},
     words::{first_divergence, located},
 };
+use crate::foreign::one_line;
 use fosssim_findings::{Book, disclosure::DisclosedFinding, located::Located};
 use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 use serde::Serialize;

@@ -13,11 +13,14 @@
 //! ```
 #![forbid(unsafe_code)]
 
+pub(crate) mod annotation;
 pub mod check;
 pub mod describe;
 pub mod detect;
 pub mod diagnosis;
 pub mod explain;
+pub mod foreign;
+pub mod formats;
 pub mod grade;
 pub mod headroom;
 pub mod number;

@@ -1,10 +1,10 @@
 //! Scenes as a list: a line on each.
 use super::{
-    grade::one_line,
     number::counted,
     style::{Look, Style},
     wrap,
 };
+use crate::foreign::one_line;
 use fosssim_model::scene::Scene;
 
 /// One line per scene: its name under `asset:`, how large it is, and the first sentence of its description.

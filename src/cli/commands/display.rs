@@ -2,7 +2,10 @@
 use crate::{
     cli::{console, screen},
     files::Place,
-    report::grade::{no_points, one_line, score, shortened},
+    report::{
+        foreign::one_line,
+        grade::{no_points, score, shortened},
+    },
     suite::{Submission, batch::Event, plan::Plan},
 };
 use indicatif::{MultiProgress, ProgressBar};

@@ -15,7 +15,7 @@ use crate::{
     report::{
         check::stopped,
         diagnosis::{Case, Diagnosis},
-        grade::one_line,
+        foreign::one_line,
         page::{Card, Explained},
         style::Style,
     },

@@ -22,7 +22,9 @@ use crate::{
     judge::Rules,
     report::{
         explain,
-        grade::{self, Format},
+        foreign::{plain, printed},
+        formats::{self, Format},
+        grade,
         number::counted,
         page::Audience,
         style::Style,
@@ -231,7 +233,7 @@ impl GradingSession<'_> {
             traces: if self.arguments.keep_traces { Some(&trace) } else { None },
             cards: self.pages.as_ref().map(|pages| pages.drawing(&draw)),
             reference: reference.as_deref(),
-            rehearse: &grade::rehearse,
+            rehearse: &formats::rehearse,
         };
         let mut display = LiveDisplay::new(self.plan, submissions);
         let mut counter = self.arguments.progress.as_deref().map(|file| self.counter(file, submissions)).transpose()?;
@@ -357,7 +359,7 @@ fn newest(path: &Path, budget: &mut u32) -> Option<(SystemTime, u64)> {
 fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
     let folder = Place::new(folder, format!("logs/{}", file_name(&grade.submission)));
     if let Some(build) = &grade.build {
-        let text = format!("{}\n\n{}\n", words::build(&build.end), grade::printed(&build.output));
+        let text = format!("{}\n\n{}\n", words::build(&build.end), printed(&build.output));
         output::write_at(&folder.join("build.log"), text.as_bytes())?;
     }
     for scene in grade.scenes().filter(|scene| scene.verdict != Verdict::NotRun) {
@@ -365,14 +367,14 @@ fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
             .into_iter()
             .chain(words::details(scene))
             .chain(explain::lines(&scene.settled))
-            .map(|line| format!("{}\n", grade::plain(&line)))
+            .map(|line| format!("{}\n", plain(&line)))
             .collect();
         let text = format!(
             "{}: {}\n{details}\n--- standard output ---\n{}\n--- standard error ---\n{}\n",
             scene.verdict,
-            grade::plain(&words::summary(scene)),
-            grade::printed(&scene.stdout),
-            grade::printed(&scene.stderr),
+            plain(&words::summary(scene)),
+            printed(&scene.stdout),
+            printed(&scene.stderr),
         );
         output::write_at(&folder.join(format!("{}.log", file_of_scene(&scene.scene))), text.as_bytes())?;
     }

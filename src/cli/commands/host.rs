@@ -13,7 +13,7 @@ use crate::{
     files::{self, Place},
     pin,
     report::{
-        grade::{Format, rehearse},
+        formats::{Format, rehearse},
         number::counted,
         page::Audience,
     },

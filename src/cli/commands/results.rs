@@ -3,12 +3,7 @@ use super::pages::Pages;
 use crate::{
     cli::{console, grading::Grade as Arguments, output},
     files::{Place, open_for_writing},
-    report::{
-        grade::{self, Format},
-        page::Audience,
-        style::Style,
-        wrap,
-    },
+    report::{formats::Format, grade, page::Audience, style::Style, wrap},
     suite::{Grade, PassedOver, guarded},
 };
 use anyhow::{Context, Result, bail};

@@ -4,7 +4,8 @@ use super::suite_sight::SeenPart;
 use crate::{
     judge::{PairWords, PassWords, Rules, fair::Borderline},
     report::{
-        grade::{one_line, points},
+        foreign::one_line,
+        grade::points,
         number::counted,
         style::{Look, Style},
         view::key,

@@ -9,10 +9,7 @@ use super::{
 use crate::{
     cli::{console, grading::Grade as Arguments, input::unpacked, selection::Selection},
     files::{FileError, Folder},
-    report::{
-        grade::{one_line, rehearse},
-        number::counted,
-    },
+    report::{foreign::one_line, formats::rehearse, number::counted},
     suite::{Grade, SceneResult, SceneTask, cards::Judged, guarded, plan::Plan, result::Failure, traces},
 };
 use anyhow::{Context, Result, bail};

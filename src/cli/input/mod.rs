@@ -12,7 +12,7 @@ pub(super) use trace::{TraceInput, is_scene, trace, unpacked};
 
 use crate::files::open_for_reading;
 use crate::{
-    report::grade::one_line,
+    report::foreign::one_line,
     suite::{library, near},
 };
 use anyhow::{Result, bail};

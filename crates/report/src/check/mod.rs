@@ -25,9 +25,9 @@ pub use text::stopped;
 pub(crate) use text::{headline, notes, problem};
 
 use super::{
+    annotation::annotation,
     describe::step_error,
     explain::{self, ExplanationView},
-    grade::annotation,
     style::Style,
     view::{CHECK_SCHEMA, FindingView, document},
 };

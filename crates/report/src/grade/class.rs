@@ -1,5 +1,6 @@
 //! A class in numbers: how many points, which scenes few have right, which mistakes many make.
-use super::{likely_mistakes, one_line, points};
+use super::{likely_mistakes, points};
+use crate::foreign::one_line;
 use crate::{
     number::counted,
     style::{Look, Style},

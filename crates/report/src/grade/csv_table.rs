@@ -1,10 +1,11 @@
 //! CSV for spreadsheets. A cell that a spreadsheet would take for a formula gets an apostrophe in front.
-use super::{likely_mistakes, no_points, one_line, phrases::NOT_GRADED, points};
+use super::{likely_mistakes, no_points, phrases::NOT_GRADED, points};
+use crate::foreign::one_line;
 use crate::{view::key, words};
 use fosssim_findings::{Grade, PassedOver, speed::SpeedSource};
 
 /// One row per scene.
-pub(super) fn scenes(grades: &[Grade], passed_over: &[PassedOver]) -> String {
+pub(crate) fn scenes(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     let head = "submission,group,scene,verdict,points,max_points,right_steps,steps,cpu_seconds,wall_seconds,summary,rules_differ,likely_mistake";
     let rows = grades.iter().flat_map(|grade| {
         grade.groups.iter().flat_map(move |group| {

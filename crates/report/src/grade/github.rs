@@ -1,14 +1,13 @@
 //! GitHub Actions: one annotation per scene that is not accepted, and a summary in Markdown.
-use super::{
-    super::explain, difference, head_lines, no_points, one_line, phrases::NOT_GRADED, points, printed, reached,
-    wrong_first,
-};
+use super::{super::explain, difference, head_lines, no_points, phrases::NOT_GRADED, points, reached, wrong_first};
+use crate::annotation::{annotation, annotation_of};
+use crate::foreign::{one_line, printed};
 use crate::words;
 use fosssim_findings::{Grade, PassedOver, Verdict};
 use std::fmt::Write;
 
 /// Annotations; the words are escaped as workflow commands want it.
-pub(super) fn annotations(grades: &[Grade]) -> String {
+pub(crate) fn annotations(grades: &[Grade]) -> String {
     let mut text = String::new();
     for grade in grades {
         for warning in &grade.warnings {
@@ -41,25 +40,14 @@ pub(super) fn annotations(grades: &[Grade]) -> String {
     text
 }
 
-/// One annotation: `error` or `warning`, its title and its words.
-pub(crate) fn annotation(level: &str, title: &str, words: &str) -> String {
-    annotation_of(level, title, [words])
-}
-
-/// The same with words in several lines.
-fn annotation_of<'a>(level: &str, title: &str, lines: impl IntoIterator<Item = &'a str>) -> String {
-    let lines: Vec<String> = lines.into_iter().map(data).collect();
-    format!("::{level} title={}::{}\n", property(title), lines.join("%0A"))
-}
-
 /// A warning per entry that is no submission.
-pub(super) fn passed_over(entries: &[PassedOver]) -> String {
+pub(crate) fn passed_over(entries: &[PassedOver]) -> String {
     let warning = |entry: &PassedOver| annotation("warning", &format!("{}: {NOT_GRADED}", entry.name), &entry.why);
     entries.iter().map(warning).collect()
 }
 
 /// The same as a list in Markdown.
-pub(super) fn list_of_passed_over(entries: &[PassedOver]) -> String {
+pub(crate) fn list_of_passed_over(entries: &[PassedOver]) -> String {
     if entries.is_empty() {
         return String::new();
     }
@@ -67,18 +55,8 @@ pub(super) fn list_of_passed_over(entries: &[PassedOver]) -> String {
     format!("### Not graded\n\n{}\n", entries.iter().map(item).collect::<String>())
 }
 
-/// The text behind `::` in a workflow command.
-fn data(text: &str) -> String {
-    one_line(text).replace('%', "%25")
-}
-
-/// A property's value in a workflow command.
-fn property(text: &str) -> String {
-    data(text).replace(':', "%3A").replace(',', "%2C")
-}
-
 /// A Markdown table per submission.
-pub(super) fn summary(grades: &[Grade]) -> String {
+pub(crate) fn summary(grades: &[Grade]) -> String {
     let mut text = String::new();
     for grade in grades {
         let _ = writeln!(text, "### {}: {} ({})\n", cell(&grade.submission), grade.verdict, cell(&score(grade)));

@@ -1,5 +1,6 @@
 //! Gradescope's results.json. A fault of ours has no score: the harness exits with an error instead of a zero.
-use super::{super::explain, difference, head_lines, plain, points, printed, see_above, speed_words};
+use super::{super::explain, difference, head_lines, points, see_above, speed_words};
+use crate::foreign::{plain, printed};
 use crate::{number::counted, view::document, words};
 use fosssim_findings::{
     Grade, SceneGrade, Verdict, Visibility,
@@ -46,7 +47,7 @@ struct Extra {
 }
 
 /// The results of one submission.
-pub(super) fn render(grade: &Grade) -> String {
+pub(crate) fn render(grade: &Grade) -> String {
     let mut tests = Vec::new();
     let tells_all = grade.shows_output || grade.is_visible();
     for (g, group) in grade.groups.iter().enumerate() {

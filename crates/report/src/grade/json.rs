@@ -1,5 +1,6 @@
 //! Our own JSON (`schemas/grade.schema.json`): everything a grade holds.
-use super::{super::explain::ExplanationView, phrases::NOT_GRADED, plain, printed, speed_words};
+use super::{super::explain::ExplanationView, phrases::NOT_GRADED, speed_words};
+use crate::foreign::{plain, printed};
 use crate::{check::CauseView, view::document, words};
 #[cfg(feature = "schema")]
 use fosssim_findings::Verdict;
@@ -201,7 +202,7 @@ struct SceneView {
 }
 
 /// All grades in one document.
-pub(super) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
+pub(crate) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     let (grades, passed_over) = (grades.iter().map(view).collect(), passed_over.iter().map(passed).collect());
     document(&GradeDocument { schema: SCHEMA, version: env!("CARGO_PKG_VERSION"), grades, passed_over })
 }

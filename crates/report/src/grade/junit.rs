@@ -1,11 +1,12 @@
 //! JUnit XML: a suite per group, a case per scene. Wrong programs are failures, faults of ours are errors.
-use super::{super::explain, difference, head_lines, phrases::NOT_GRADED, plain, printed, wrong_first};
+use super::{super::explain, difference, head_lines, phrases::NOT_GRADED, wrong_first};
+use crate::foreign::{plain, printed};
 use crate::words;
 use fosssim_findings::{Grade, PassedOver, SceneGrade, Verdict};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
 /// All grades in one report.
-pub(super) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
+pub(crate) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     let mut report = Report::new("fosssim-oracle");
     for grade in grades {
         if let Some(unfit) = words::unfit(grade) {

@@ -5,201 +5,37 @@
 //! format.
 
 mod class;
-mod csv_table;
-mod github;
-mod gradescope;
-mod json;
-mod junit;
+pub(crate) mod csv_table;
+pub(crate) mod github;
+pub(crate) mod gradescope;
+pub(crate) mod json;
+pub(crate) mod junit;
 mod passed_over;
 mod phrases;
-mod prairielearn;
+pub(crate) mod prairielearn;
 mod speed;
 mod text;
-mod told;
 
-use fosssim_findings::{Grade, GroupGrade, Hints, Rules, SceneGrade, SceneResult, Visibility, result::Measurements};
-use std::sync::{Mutex, PoisonError};
+use fosssim_findings::Grade;
 
-/// The formats, in the order in which help lists them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
-    /// For people.
-    Text,
-    /// Our own, versioned (`schemas/grade.schema.json`).
-    Json,
-    /// JUnit XML (`schemas/junit.xsd`).
-    Junit,
-    /// Gradescope's results.json (`schemas/gradescope.schema.json`).
-    Gradescope,
-    /// PrairieLearn's results.json (`schemas/prairielearn.schema.json`).
-    Prairielearn,
-    /// GitHub Actions annotations.
-    Github,
-    /// A Markdown summary, for GitHub's step summary.
-    Markdown,
-    /// One row per scene, for spreadsheets.
-    Csv,
-    /// One file to look at ([`page::GradePage`](crate::page::GradePage)); without cards here, because these lie on a
-    /// disk.
-    Html,
-}
-
-/// The document for programs ([`Format::Json`]), alone: without what the other formats need.
+/// Returns the JSON document alone, for programs: without what the other formats need.
 #[must_use]
 pub fn json(grades: &[Grade]) -> String {
     json::render(grades, &[])
 }
 
-impl Format {
-    /// All formats.
-    pub const ALL: &'static [Self] = &[
-        Self::Text,
-        Self::Json,
-        Self::Junit,
-        Self::Gradescope,
-        Self::Prairielearn,
-        Self::Github,
-        Self::Markdown,
-        Self::Csv,
-        Self::Html,
-    ];
-
-    /// The name under which the command line knows it.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Text => "text",
-            Self::Json => "json",
-            Self::Junit => "junit",
-            Self::Gradescope => "gradescope",
-            Self::Prairielearn => "prairielearn",
-            Self::Github => "github",
-            Self::Markdown => "markdown",
-            Self::Csv => "csv",
-            Self::Html => "html",
-        }
-    }
-
-    /// Whether one document holds the grades of several submissions.
-    #[must_use]
-    pub const fn takes_several(self) -> bool {
-        !matches!(self, Self::Gradescope | Self::Prairielearn | Self::Html)
-    }
-
-    /// The document. Formats for one submission ([`Format::takes_several`]) show the first.
-    #[must_use]
-    pub fn render(self, grades: &[Grade]) -> String {
-        self.render_class(grades, &[])
-    }
-
-    /// The format with this name.
-    #[must_use]
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.iter().copied().find(|format| format.name() == name)
-    }
-
-    /// The names of these formats, as a sentence lists them: `text, json or csv`.
-    #[must_use]
-    pub fn names(wanted: impl Fn(Self) -> bool) -> String {
-        let wanted = Self::ALL.iter().copied().filter(|format| wanted(*format));
-        let names: Vec<&str> = wanted.map(Self::name).collect();
-        match names.split_last() {
-            Some((last, others)) if !others.is_empty() => format!("{} or {last}", others.join(", ")),
-            _ => names.concat(),
-        }
-    }
-}
-
 pub use class::class;
 pub(crate) use class::hardest;
 pub use csv_table::submissions as csv_of_submissions;
-pub(crate) use github::annotation;
 #[cfg(feature = "schema")]
 pub(crate) use json::GradeDocument;
 pub use json::lines as json_lines;
 pub use passed_over::{not_graded, warn_of};
-pub use phrases::{difference, head_lines, likely_mistakes, no_points, one_line, plain, points, printed, reached};
-pub(crate) use phrases::{is_unseen, without_codes, wrong_scenes};
+pub(crate) use phrases::wrong_scenes;
+pub use phrases::{difference, head_lines, likely_mistakes, no_points, points, reached};
 use phrases::{see_above, wrong_first};
 pub(crate) use speed::speed_words;
 pub use text::{Advice, Text, TextDetail, changes, score, shortened, table as text_table};
 
-/// Renders a result in every format and throws that away: what fails here fails while the result's trace is still at
-/// hand, and not when a whole class's reports are written. One that differs from the last one in nothing that could
-/// fail is passed over: of a right submission, only the first scene is rehearsed.
-pub fn rehearse(result: &SceneResult) {
-    static LAST: Mutex<Option<SceneResult>> = Mutex::new(None);
-    let kind = without_the_harmless(result);
-    let last = || LAST.lock().unwrap_or_else(PoisonError::into_inner);
-    if last().as_ref() == Some(&kind) {
-        return;
-    }
-    render_in_every_format(result);
-    // Only what has not failed.
-    *last() = Some(kind);
-}
-
-/// The result without what no renderer can stumble over: what was measured, numbers of steps that are all right, and
-/// plain text.
-fn without_the_harmless(result: &SceneResult) -> SceneResult {
-    let mut kind = result.clone();
-    kind.measured = Measurements { memory: kind.measured.memory.map(|_| 0), ..Measurements::default() };
-    if kind.right_steps == kind.steps {
-        (kind.right_steps, kind.steps) = (kind.steps.min(1), kind.steps.min(1));
-    }
-    for text in [&mut kind.scene, &mut kind.stdout, &mut kind.stderr] {
-        let is_plain = |byte: &u8| byte.is_ascii_alphanumeric() || b" \n/-_.,:".contains(byte);
-        if text.as_bytes().iter().all(is_plain) {
-            text.truncate(1);
-            *text = text.replace(|_| true, "x");
-        }
-    }
-    kind
-}
-
-fn render_in_every_format(result: &SceneResult) {
-    let scene = SceneGrade {
-        settled: result.explanations.clone(),
-        result: result.clone(),
-        points: Some(0.0),
-        max_points: 1.0,
-        cached: false,
-        agreed: 0,
-    };
-    let group = GroupGrade {
-        hints: Hints::Full,
-        speed: None,
-        name: "group".to_owned(),
-        visibility: Visibility::Visible,
-        points: Some(0.0),
-        max_points: 1.0,
-        verdict: result.verdict,
-        scenes: vec![scene],
-    };
-    let grade = Grade {
-        submission: "submission".to_owned(),
-        suite: "suite".to_owned(),
-        rules: Rules::Both,
-        verdict: result.verdict,
-        points: group.points,
-        max_points: group.max_points,
-        groups: vec![group],
-        refuted: Vec::new(),
-        located: None,
-        shows_output: true,
-        build: None,
-        warnings: Vec::new(),
-        layers: Vec::new(),
-        wall: result.measured.wall,
-    };
-    let grades = [grade];
-    for format in Format::ALL {
-        drop(format.render(&grades));
-    }
-    drop(csv_of_submissions(&grades, &[]));
-}
-
-#[cfg(test)]
-mod formats;
 #[cfg(test)]
 pub(crate) mod samples;

@@ -1,7 +1,7 @@
 //! The entries of a class's folder that are no submissions, in every format: a list says who is missing in it.
-use super::{Format, Text, csv_table, github, gradescope, json, junit, one_line, prairielearn, shortened};
+use super::shortened;
 use crate::{
-    page::{Audience, GradePage},
+    foreign::one_line,
     style::{Look, Style},
     table::{Align, Table},
 };
@@ -26,26 +26,4 @@ pub fn not_graded(grades: &[Grade], passed_over: &[PassedOver], style: Style) ->
         table.row([shortened(&one_line(name)).into(), one_line(why).into()]);
     }
     format!("{}\n{}", style.paint(Look::Strong, "Not graded"), table.render(style))
-}
-
-impl Format {
-    /// As [`Format::render`], with the entries that are no submissions.
-    #[must_use]
-    pub fn render_class(self, grades: &[Grade], passed_over: &[PassedOver]) -> String {
-        let first = |render: &dyn Fn(&Grade) -> String| grades.first().map(render).unwrap_or_default();
-        let others = if grades.len() > 1 { passed_over } else { &[] };
-        match self {
-            Self::Text => Text::default().render(grades) + &not_graded(grades, others, Style::Plain),
-            Self::Json => json::render(grades, others),
-            Self::Junit => junit::render(grades, others),
-            Self::Gradescope => first(&gradescope::render),
-            Self::Prairielearn => first(&prairielearn::render),
-            Self::Github => github::annotations(grades) + &github::passed_over(others),
-            Self::Markdown => github::summary(grades) + &github::list_of_passed_over(others),
-            Self::Csv => csv_table::scenes(grades, passed_over),
-            Self::Html => {
-                first(&|grade| GradePage { grade, card: &|_| None, class: None, reader: Audience::Staff }.html())
-            }
-        }
-    }
 }

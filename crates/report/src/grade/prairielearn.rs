@@ -1,5 +1,6 @@
 //! PrairieLearn's results.json: a score in [0, 1]; `gradable: false` for faults of ours, which charge no attempt.
-use super::{super::explain, difference, head_lines, one_line, plain, printed, score, see_above, speed_words};
+use super::{super::explain, difference, head_lines, score, see_above, speed_words};
+use crate::foreign::{one_line, plain, printed};
 use crate::{view::document, words};
 use fosssim_findings::{Grade, SceneGrade, Verdict};
 use fosssim_mistakes::together::for_students;
@@ -42,7 +43,7 @@ struct Test {
 }
 
 /// The results of one submission.
-pub(super) fn render(grade: &Grade) -> String {
+pub(crate) fn render(grade: &Grade) -> String {
     let shown = for_students(grade);
     let mut scenes: Vec<_> =
         shown.groups.iter().flat_map(|group| group.scenes.iter().map(move |scene| (group, scene))).collect();

@@ -4,8 +4,9 @@ use super::{
     graded::key,
     markup::{data, table, text},
 };
+use crate::foreign::one_line;
 use crate::{
-    grade::{hardest, likely_mistakes, one_line, points, reached},
+    grade::{hardest, likely_mistakes, points, reached},
     number::counted,
     words,
 };

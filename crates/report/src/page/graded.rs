@@ -7,11 +7,9 @@ use super::{
     room::{self, OUTPUTS, Room},
     script,
 };
+use crate::foreign::{one_line, without_codes};
 use crate::{
-    grade::{
-        difference, likely_mistakes, no_points, one_line, points, reached, score, speed_words, without_codes,
-        wrong_scenes,
-    },
+    grade::{difference, likely_mistakes, no_points, points, reached, score, speed_words, wrong_scenes},
     number::counted,
     words,
 };

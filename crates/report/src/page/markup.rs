@@ -1,8 +1,6 @@
 //! Hostile text in HTML: it stays text.
-use crate::{
-    grade::is_unseen,
-    number::{beside, general},
-};
+use crate::foreign::is_unseen;
+use crate::number::{beside, general};
 use std::fmt::Write;
 
 /// Text in which what can't be seen, or turns the direction of writing, is written out as its code point.

@@ -1,7 +1,8 @@
 //! The result of a submission's grading: short enough for a small terminal, and last, so that it stays in sight.
 use super::{Text, look};
+use crate::foreign::{one_line, plain};
 use crate::{
-    grade::{likely_mistakes, one_line, plain, points, reached, speed_words, wrong_scenes},
+    grade::{likely_mistakes, points, reached, speed_words, wrong_scenes},
     number::counted,
     style::Look,
     table::{Align, Cell, Table},

@@ -8,7 +8,8 @@ mod table;
 pub use changes::changes;
 pub use table::{shortened, table};
 
-use super::{super::style::Style, no_points, one_line, plain, points, printed};
+use super::{super::style::Style, no_points, points};
+use crate::foreign::{one_line, plain, printed};
 use crate::{number::counted, style::Look, words};
 use fosssim_findings::{Grade, SceneGrade, Verdict};
 use fosssim_judge::Rules;

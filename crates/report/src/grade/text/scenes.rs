@@ -1,9 +1,10 @@
 //! The scenes of a submission, group by group: what is accepted is counted, what is not is told, and what is told of
 //! many scenes in the same words is told once.
 use super::{Text, TextDetail, look, output, some};
+use crate::foreign::one_line;
 use crate::{
     explain,
-    grade::{difference, one_line, points, reached, text::SHOWN_LINES},
+    grade::{difference, points, reached, text::SHOWN_LINES},
     number::counted,
     style::Look,
     words,

@@ -1,6 +1,7 @@
 //! A class at a glance: one row per submission.
+use crate::foreign::one_line;
 use crate::{
-    grade::{one_line, reached},
+    grade::reached,
     style::{Look, Style},
     wrap::columns,
 };

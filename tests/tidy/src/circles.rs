@@ -6,26 +6,10 @@ use std::{
     path::Path,
 };
 
-use crate::tree::{files, root};
-
-/// The rooms: their folders of sources.
-const ROOMS: [&str; 12] = [
-    "crates/num/src",
-    "crates/model/src",
-    "crates/judge/src",
-    "crates/mistakes/src",
-    "crates/original/src",
-    "crates/sandbox/src",
-    "crates/grading/src",
-    "crates/report/src",
-    "crates/render/src",
-    "crates/evidence/src",
-    "crates/server/src",
-    "src",
-];
-
-/// Folders of a room that use one another all the same, until somebody opens the circle.
-const KNOWN: [&[&str]; 1] = [&["crates/report/src", "check", "diagnosis", "grade", "page"]];
+use crate::{
+    manifests::packages,
+    tree::{files, name, text},
+};
 
 /// A module, as the names on the way to it.
 type Module = Vec<String>;
@@ -210,7 +194,7 @@ impl Room {
                 module.pop();
             }
             if !matches!(module.first().map(String::as_str), Some("bin" | "main")) {
-                modules.insert(module, read(&std::fs::read_to_string(&path).expect("source text")));
+                modules.insert(module, read(&text(&path)));
             }
         }
         let tests: Vec<Module> = modules
@@ -346,11 +330,16 @@ fn imports_are_followed_to_the_file_that_defines_a_name() {
     assert!(whole.circles().is_empty());
 }
 
+/// Reads the sources of every package of the workspace, each with the name of its folder.
+fn rooms() -> Vec<(String, Room)> {
+    let folders = packages().into_iter().map(|package| package.sources()).filter(|folder| folder.is_dir());
+    folders.map(|folder| (name(&folder).to_owned(), Room::read(&folder))).collect()
+}
+
 #[test]
 fn no_files_of_a_room_use_one_another_in_a_circle() {
     let (mut circles, mut uses) = (Vec::new(), 0);
-    for folder in ROOMS {
-        let room = Room::read(&root().join(folder));
+    for (folder, room) in rooms() {
         uses += room.uses().values().map(BTreeSet::len).sum::<usize>();
         circles.extend(room.circles().into_iter().map(|circle| format!("{folder}: {}", circle.join(", "))));
     }
@@ -360,15 +349,10 @@ fn no_files_of_a_room_use_one_another_in_a_circle() {
 
 #[test]
 fn no_folders_of_a_room_use_one_another_in_a_circle() {
-    let mut unknown = Vec::new();
-    for folder in ROOMS {
-        for circle in Room::read(&root().join(folder)).folder_circles() {
-            let is_in =
-                |known: &&[&str]| known[0] == folder && circle.iter().all(|name| known.contains(&name.as_str()));
-            if !KNOWN.iter().any(is_in) {
-                unknown.push(format!("{folder}: {}", circle.join(", ")));
-            }
-        }
-    }
-    assert!(unknown.is_empty(), "folders that use one another:\n{}", unknown.join("\n"));
+    let circles = |(folder, room): (String, Room)| {
+        let told = move |circle: Vec<String>| format!("{folder}: {}", circle.join(", "));
+        room.folder_circles().into_iter().map(told).collect::<Vec<_>>()
+    };
+    let found: Vec<String> = rooms().into_iter().flat_map(circles).collect();
+    assert!(found.is_empty(), "folders that use one another:\n{}", found.join("\n"));
 }

@@ -1,7 +1,8 @@
-//! The checkout as tests read it: its sources and its other files.
+//! The checkout as the rules read it: its sources, its manifests and its other files.
 use std::{
     fs,
     path::{Path, PathBuf},
+    sync::OnceLock,
 };
 
 /// The folders in which Rust sources lie.
@@ -10,9 +11,10 @@ const SOURCES: [&str; 6] = ["src", "crates", "tests", "benches", "examples", "fu
 /// Folders that tools fill.
 const FILLED_BY_TOOLS: [&str; 2] = ["target", "node_modules"];
 
-/// The checkout.
+/// Returns the top folder of the checkout.
 pub fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
+    static ROOT: OnceLock<PathBuf> = OnceLock::new();
+    ROOT.get_or_init(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().expect("a checkout"))
 }
 
 /// The content of a file.

@@ -1,5 +1,6 @@
 //! Every format: against its schema, and as a snapshot that people read.
-use super::{Format, csv_of_submissions, json_lines, samples, warn_of};
+use super::Format;
+use crate::grade::{csv_of_submissions, json_lines, samples, warn_of};
 use crate::page::{Audience, GradePage};
 use fosssim_grading::{
     Grade, PassedOver, Reason, SceneGrade, Verdict,

@@ -77,7 +77,7 @@ fn is_root(name: &str) -> bool {
         name.split('/').collect::<Vec<_>>()[..],
         ["build.rs"]
             | ["src", "lib.rs" | "main.rs"]
-            | ["tests", "it", "main.rs"]
+            | ["tests", _, "main.rs"]
             | ["benches" | "examples", _]
             | ["src", "bin", _]
             | ["src", "bin", _, "main.rs"]
@@ -87,6 +87,7 @@ fn is_root(name: &str) -> bool {
             | ["crates", _, "src", "bin", _, "main.rs"]
             | ["crates", _, "benches" | "tests" | "examples", _]
             | ["crates", _, "benches" | "tests", _, "main.rs"]
+            | ["tests", "tidy", "src", "lib.rs"]
     )
 }
 

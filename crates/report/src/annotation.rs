@@ -1,0 +1,23 @@
+//! Annotations of GitHub Actions: workflow commands that show a title and words beside a job.
+use crate::foreign::one_line;
+
+/// Returns one annotation: `error` or `warning`, its title and its words.
+pub(crate) fn annotation(level: &str, title: &str, words: &str) -> String {
+    annotation_of(level, title, [words])
+}
+
+/// Returns one annotation with words in several lines.
+pub(crate) fn annotation_of<'a>(level: &str, title: &str, lines: impl IntoIterator<Item = &'a str>) -> String {
+    let lines: Vec<String> = lines.into_iter().map(data).collect();
+    format!("::{level} title={}::{}\n", property(title), lines.join("%0A"))
+}
+
+/// The text behind `::` in a workflow command.
+fn data(text: &str) -> String {
+    one_line(text).replace('%', "%25")
+}
+
+/// A property's value in a workflow command.
+fn property(text: &str) -> String {
+    data(text).replace(':', "%3A").replace(',', "%2C")
+}

@@ -1,0 +1,103 @@
+//! Somebody else's words: names, and the output of programs. Control characters become visible, and what nobody sees is
+//! replaced, before any format escapes what its own syntax gives a meaning.
+use std::borrow::Cow;
+
+/// A terminal's codes for colours, cursors and titles are left out, as a log of FOSSSim's own holds them in every line:
+/// whole ones only, so that what is left of a broken one becomes visible.
+#[must_use]
+pub(crate) fn without_codes(text: &str) -> Cow<'_, str> {
+    const ESCAPE: char = '\u{1b}';
+    if !text.contains(ESCAPE) {
+        return Cow::Borrowed(text);
+    }
+    let mut out = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(at) = rest.find(ESCAPE) {
+        out.push_str(&rest[..at]);
+        let code = &rest[at + 1..];
+        match length_of_code(code) {
+            Some(length) => rest = &code[length..],
+            None => {
+                out.push(ESCAPE);
+                rest = code;
+            }
+        }
+    }
+    Cow::Owned(out + rest)
+}
+
+/// The bytes of the code that begins behind an escape character: `[32;1m`, or `]0;title` with its end. ECMA-48, 5.4 and
+/// 5.6.
+fn length_of_code(code: &str) -> Option<usize> {
+    let bytes = code.as_bytes();
+    match bytes.first()? {
+        b'[' => {
+            let end = 1 + bytes[1..].iter().position(|byte| !(0x20..=0x3f).contains(byte))?;
+            (0x40..=0x7e).contains(&bytes[end]).then_some(end + 1)
+        }
+        b']' => {
+            let end = 1 + bytes[1..].iter().position(|byte| *byte < 0x20)?;
+            match &bytes[end..] {
+                [0x07, ..] => Some(end + 1),
+                [0x1b, b'\\', ..] => Some(end + 2),
+                _ => None,
+            }
+        }
+        _ => None,
+    }
+}
+
+/// The output of a program, [`plain`] and without a terminal's codes. Names keep them, or two could look alike.
+#[must_use]
+pub fn printed(text: &str) -> String {
+    plain(&without_codes(text))
+}
+
+/// Returns whether a character changes the direction of the text, which could show a report's words in another order, or
+/// has no width, which makes two names look alike.
+pub(crate) const fn is_unseen(c: char) -> bool {
+    matches!(c, '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}'
+        | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}')
+}
+
+/// Somebody else's words without control characters: escape codes, bells and NULs become visible, line breaks and
+/// tabs stay, characters that XML 1.0 forbids and those that nobody sees are replaced.
+#[must_use]
+pub fn plain(text: &str) -> String {
+    let mut plain = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '\n' | '\t' => plain.push(c),
+            '\r' => {}
+            '\u{fffe}' | '\u{ffff}' => plain.push('\u{fffd}'),
+            c if is_unseen(c) => plain.push('\u{fffd}'),
+            c if c.is_control() => plain.push_str(&format!("\\x{:02x}", u32::from(c))),
+            c => plain.push(c),
+        }
+    }
+    plain
+}
+
+/// [`plain`] on one line.
+#[must_use]
+pub fn one_line(text: &str) -> String {
+    plain(text).replace(['\n', '\t'], " ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn control_characters_become_visible() {
+        assert_eq!(plain("a\u{1b}[31mb\0\u{7}\r\nc\td\u{202e}e"), "a\\x1b[31mb\\x00\\x07\nc\td\u{fffd}e");
+        let log = "\u{1b}[32;1mOverall success: \u{1b}[31;1mFailed.\u{1b}[m";
+        assert_eq!(printed(log), "Overall success: Failed.");
+        assert_eq!(printed("\u{1b}]0;title\u{7}a\u{1b}]8;;x\u{1b}\\b"), "ab");
+        assert_eq!(printed("a\u{1b}[31\u{1b}c\u{1b}"), "a\\x1b[31\\x1bc\\x1b", "what is no whole code is seen");
+        for hidden in "\u{61c}\u{2069}\u{200b}\u{feff}\u{2028}\u{ad}\u{e0041}".chars() {
+            assert_eq!(plain(&format!("a{hidden}b")), "a\u{fffd}b", "{hidden:?}");
+        }
+        assert_eq!(one_line("a\nb"), "a b");
+    }
+}
