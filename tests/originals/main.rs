@@ -2,6 +2,8 @@
 //! byte. One module per question.
 //!
 //! The originals are measuring instruments that lie beside the checkout, and no part of them is in the project.
+#![forbid(unsafe_code)]
+
 mod oracle;
 #[path = "../it/workspace.rs"]
 #[expect(dead_code, reason = "the integration tests use more of it")]
