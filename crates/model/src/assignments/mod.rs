@@ -1,4 +1,5 @@
-//! The course's assignments: what each one has programs detect, log and drop.
+//! The course's assignments: what each one has programs detect, log and drop, what its starter library knows, and what
+//! its student writes.
 //!
 //! A [`Definition`] says it as data, one file per assignment here. What else is bound to an assignment - suites, the
 //! catalogue of mistakes, formulas, probe scenes - stands in a folder `assignments/<key>` of the room that has such a
@@ -6,14 +7,20 @@
 //! ([`Assignment::of`]). It knows nothing of scenes, states and files.
 
 mod collision_type;
+mod force_kind;
+mod integrator;
 mod pair_kind;
+mod part;
 mod t2m1;
 mod t2m2;
 mod t2m3;
 mod theme1;
 
 pub use collision_type::CollisionType;
+pub use force_kind::ForceKind;
+pub use integrator::Integrator;
 pub use pair_kind::PairKind;
+pub use part::Part;
 
 /// An assignment of the course.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -95,6 +102,10 @@ pub struct Definition {
     pub verdict: &'static str,
     /// Whether the original says after each step how long it took.
     pub tells_times: bool,
+    /// The part of a scene that its starter library knows.
+    pub library: Library,
+    /// What its student writes. Nothing else is a student's mistake.
+    pub student: &'static [Part],
 }
 
 /// The rules that most assignments share.
@@ -107,6 +118,8 @@ const COMMON: Definition = Definition {
     version: "Fall 2010 v.A",
     verdict: "Collisions Passed",
     tells_times: false,
+    library: LIBRARY,
+    student: &[],
 };
 
 impl Definition {
@@ -115,7 +128,45 @@ impl Definition {
     pub fn handling(&self, collision: CollisionType) -> Option<&Handling> {
         self.handlings.iter().find(|handling| handling.collision == collision)
     }
+
+    /// Whether its student writes this part: only then a mistake there is the student's.
+    #[must_use]
+    pub fn student_writes(&self, part: Part) -> bool {
+        self.student.contains(&part)
+    }
 }
+
+/// What a starter library reads from a scene. Originals know more: those of Theme 1 are one program.
+///
+/// It refuses a scene with another integrator ("Invalid integrator"), and ignores elements of other forces.
+#[derive(Debug, Clone, Copy)]
+pub struct Library {
+    /// Its integrators.
+    pub integrators: &'static [Integrator],
+    /// Its forces.
+    pub forces: &'static [ForceKind],
+    /// The collision types that scenes of the assignment may have.
+    pub collisions: &'static [CollisionType],
+    /// Whether it refuses other collision types; else it ignores them, or does for them what no student writes.
+    pub refuses_collisions: bool,
+    /// Whether scenes ask for the contest's detection. Its penalty force has no layer then: the thickness is 0.
+    pub contest: bool,
+}
+
+/// All that a library can know; a milestone's own is a part of it.
+const LIBRARY: Library = Library {
+    integrators: &[
+        Integrator::ExplicitEuler,
+        Integrator::ForwardBackwardEuler,
+        Integrator::SymplecticEuler,
+        Integrator::ImplicitEuler,
+        Integrator::LinearizedImplicitEuler,
+    ],
+    forces: &ForceKind::ALL,
+    collisions: &CollisionType::ALL,
+    refuses_collisions: false,
+    contest: false,
+};
 
 /// The work of a program for a collision type.
 #[derive(Debug)]

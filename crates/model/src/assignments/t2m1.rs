@@ -1,5 +1,5 @@
 //! Theme 2, Milestone 1: collisions at the end of a step, and the penalty force (collisions.md 6, simulation.md 3).
-use super::{COMMON, CollisionType, Definition, Handling, ImpulseList, RecordLists};
+use super::{COMMON, CollisionType, Definition, Handling, ImpulseList, LIBRARY, Library, PairKind, Part, RecordLists};
 
 /// No detection logs polynomials; the course's root finder comes with the next milestone.
 pub(super) const DEFINITION: Definition = Definition {
@@ -16,6 +16,22 @@ pub(super) const DEFINITION: Definition = Definition {
             records: RecordLists { impulses: ImpulseList::Absent, polynomials: false },
             heading: "Collisions disabled",
         },
+    ],
+    library: Library {
+        collisions: &[CollisionType::None, CollisionType::Simple, CollisionType::Penalty],
+        refuses_collisions: true,
+        ..LIBRARY
+    },
+    student: &[
+        Part::SimpleDetection(PairKind::ParticleParticle),
+        Part::SimpleDetection(PairKind::ParticleEdge),
+        Part::SimpleDetection(PairKind::ParticleHalfPlane),
+        Part::SimpleResponse(PairKind::ParticleParticle),
+        Part::SimpleResponse(PairKind::ParticleEdge),
+        Part::SimpleResponse(PairKind::ParticleHalfPlane),
+        Part::Penalty(PairKind::ParticleParticle),
+        Part::Penalty(PairKind::ParticleEdge),
+        Part::Penalty(PairKind::ParticleHalfPlane),
     ],
     ..COMMON
 };

@@ -1,5 +1,5 @@
 //! Theme 2, Milestone 2 (trace-format.md 2, collisions.md).
-use super::{COMMON, CollisionType, Definition, Handling, ImpulseList, PairKind, RecordLists};
+use super::{COMMON, CollisionType, Definition, Handling, ImpulseList, PairKind, Part, RecordLists};
 
 pub(super) const DEFINITION: Definition = Definition {
     key: "t2m2",
@@ -17,5 +17,13 @@ pub(super) const DEFINITION: Definition = Definition {
         },
     ],
     pairs: &PairKind::ALL,
+    student: &[
+        Part::Detection(PairKind::ParticleParticle),
+        Part::Detection(PairKind::ParticleEdge),
+        Part::Detection(PairKind::ParticleHalfPlane),
+        Part::Impulses,
+        Part::Zones,
+        Part::Failsafe,
+    ],
     ..COMMON
 };

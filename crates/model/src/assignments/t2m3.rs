@@ -1,5 +1,5 @@
 //! Theme 2, Milestone 3: the contest, a penalty force between many bodies that finds its pairs fast (simulation.md 3).
-use super::{COMMON, Definition};
+use super::{COMMON, CollisionType, Definition, Integrator, LIBRARY, Library, Part};
 
 /// It brings no collision type: its scenes are `penalty` scenes with the contest's detection.
 pub(super) const DEFINITION: Definition = Definition {
@@ -7,5 +7,17 @@ pub(super) const DEFINITION: Definition = Definition {
     title: "Theme 2, Milestone 3",
     verdict: "Hybrid Collisions Passed",
     tells_times: true,
+    library: Library {
+        integrators: &[
+            Integrator::ExplicitEuler,
+            Integrator::ForwardBackwardEuler,
+            Integrator::ImplicitEuler,
+            Integrator::LinearizedImplicitEuler,
+        ],
+        collisions: &[CollisionType::Penalty],
+        contest: true,
+        ..LIBRARY
+    },
+    student: &[Part::NearPairs],
     ..COMMON
 };

@@ -4,10 +4,11 @@
 //! a particle is on an edge or a half-plane when the formula of simulation.md 3 gives the zero vector. Only the start
 //! is looked at; what happens later is the simulator's business.
 use super::document::Document;
-use super::model::{Collision, Edge, Force, HalfPlane, Integrator, Particle};
+use super::model::{Collision, Edge, Force, HalfPlane, Particle};
 use super::problem::{Problem, Report};
 use super::tag::Tag;
 use super::xml::{Part, SceneParts};
+use crate::assignments::Integrator;
 use fosssim_num::vector::Vec2;
 
 /// The most particles that an implicit integrator is given: its dense matrix of (2N)^2 numbers then takes half a

@@ -3,6 +3,7 @@
 //! Both readers, the grammar, the writer and everybody who shows a force go by it. A force that has no row does not
 //! compile.
 use super::{element::Element, model::Force, rule::Rule};
+use crate::assignments::ForceKind;
 use fosssim_num::vector::Vec2;
 
 /// The attributes of one element, as a reader takes them.
@@ -24,27 +25,29 @@ pub(super) trait Source {
 
 macro_rules! forces {
     ($($kind:ident $element:literal { $($field:ident: $part:ident($($name:literal),+ $(; $($rule:expr),+)?)),+ })+) => {
-        /// The kinds of forces, in the order in which they act.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-        pub(super) enum ForceKind { $($kind),+ }
-
         impl ForceKind {
-            /// All kinds, in the order in which they act.
-            pub const ALL: &[Self] = &[$(Self::$kind),+];
-
             /// The name of its element.
+            #[must_use]
             pub const fn element(self) -> &'static str {
                 match self { $(Self::$kind => $element),+ }
             }
 
             /// The force that an element describes. All attributes are read before the first error is returned.
-            pub fn read<S: Source>(self, source: &mut S) -> Result<Force, S::Error> {
+            pub(super) fn read<S: Source>(self, source: &mut S) -> Result<Force, S::Error> {
                 match self {
                     $(Self::$kind => {
                         $(let $field = source.$part($($name),+ $(, $($rule),+)?);)+
                         Ok(Force::$kind { $($field: $field?),+ })
                     })+
                 }
+            }
+        }
+
+        impl Force {
+            /// Its kind.
+            #[must_use]
+            pub const fn kind(&self) -> ForceKind {
+                match self { $(Self::$kind { .. } => ForceKind::$kind),+ }
             }
         }
 

@@ -13,6 +13,7 @@ mod element;
 mod fields;
 mod forces;
 mod grammar;
+mod known;
 mod model;
 mod numbers;
 pub mod original;
@@ -26,10 +27,11 @@ mod tests;
 mod write;
 mod xml;
 
+pub use crate::assignments::Integrator;
 pub use checks::LARGEST_IMPLICIT;
+pub use known::{Unknown, UnknownPart};
 pub use model::{
-    Collision, CollisionDetection, Color, Display, Edge, Force, HalfPlane, Integrator, Particle, ParticlePath, Scene,
-    Viewport,
+    Collision, CollisionDetection, Color, Display, Edge, Force, HalfPlane, Particle, ParticlePath, Scene, Viewport,
 };
 pub use problem::{MOST_PROBLEMS, Problem, Problems, Severity};
 pub use reader::{LARGEST_SCENE, Loaded, read};

@@ -1,5 +1,5 @@
 //! The scene as the simulator needs it: plain values, every index valid when it comes from the strict reader.
-use crate::assignments::{Assignment, CollisionType, Handling};
+use crate::assignments::{Assignment, CollisionType, Handling, Integrator};
 use fosssim_num::vector::Vec2;
 
 /// A scene: what is simulated, for how long, by which method, with which collision handling.
@@ -41,60 +41,6 @@ impl Scene {
             steps
         } else {
             0
-        }
-    }
-
-    /// The first assignment of the course whose programs can run it, by its collision handling, integrator and forces.
-    #[must_use]
-    pub fn assignment(&self) -> Assignment {
-        let is_first = |force: &Force| matches!(force, Force::SimpleGravity { .. });
-        match (self.collision, self.integrator) {
-            (Collision::Penalty { detection: CollisionDetection::Contest, .. }, _) => Assignment::T2M3,
-            (Collision::None, integrator) if integrator.is_implicit() => Assignment::T1M3,
-            (Collision::None, Integrator::ExplicitEuler) if self.forces.iter().all(is_first) => Assignment::T1M1,
-            (Collision::None, _) => Assignment::T1M2,
-            (collision, _) => Assignment::of(collision.kind()),
-        }
-    }
-}
-
-/// A time integrator (simulation.md 4).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Integrator {
-    /// `explicit-euler`
-    ExplicitEuler,
-    /// `forward-backward-euler`
-    ForwardBackwardEuler,
-    /// `symplectic-euler`: the same arithmetic and printed name as [`Integrator::ForwardBackwardEuler`].
-    SymplecticEuler,
-    /// `implicit-euler`, by Newton's method.
-    ImplicitEuler,
-    /// `linearized-implicit-euler`
-    LinearizedImplicitEuler,
-}
-
-impl Integrator {
-    /// All of them, in their order, with their names in scenes.
-    pub const NAMED: [(&'static str, Self); 5] = [
-        ("explicit-euler", Self::ExplicitEuler),
-        ("forward-backward-euler", Self::ForwardBackwardEuler),
-        ("symplectic-euler", Self::SymplecticEuler),
-        ("implicit-euler", Self::ImplicitEuler),
-        ("linearized-implicit-euler", Self::LinearizedImplicitEuler),
-    ];
-
-    /// Its name in scenes.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        Self::NAMED[self as usize].0
-    }
-
-    /// Whether it solves a system of equations in every step.
-    #[must_use]
-    pub const fn is_implicit(self) -> bool {
-        match self {
-            Self::ImplicitEuler | Self::LinearizedImplicitEuler => true,
-            Self::ExplicitEuler | Self::ForwardBackwardEuler | Self::SymplecticEuler => false,
         }
     }
 }

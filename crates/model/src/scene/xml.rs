@@ -3,13 +3,13 @@
 //! Errors that only several elements together can make are judged in `checks`.
 use super::document::Document;
 use super::fields::{Count, TagFields};
-use super::forces::{ForceKind, Source};
+use super::forces::Source;
 use super::model::{
-    Collision, CollisionDetection, Display, Edge, Force, HalfPlane, Integrator, Particle, ParticlePath, Scene, Viewport,
+    Collision, CollisionDetection, Display, Edge, Force, HalfPlane, Particle, ParticlePath, Scene, Viewport,
 };
 use super::problem::{Problem, Report};
 use super::tag::Tag;
-use crate::assignments::CollisionType;
+use crate::assignments::{CollisionType, ForceKind, Integrator};
 use fosssim_num::vector::Vec2;
 
 /// The elements that objects were read from, so that later checks can point to them.

@@ -3,8 +3,8 @@ use super::item::Item;
 use super::markup::{self, Element};
 use super::single::Singles;
 use super::{OriginalScene, Refusal};
-use crate::scene::forces::{ForceKind, Source};
 use crate::scene::model::{Color, Display, Edge, Force, HalfPlane, Particle, ParticlePath, Scene};
+use crate::{assignments::ForceKind, scene::forces::Source};
 
 /// Reads a scene as the original does.
 ///
@@ -143,7 +143,7 @@ impl<'e> Repeated<'e> {
         let mut forces = Vec::new();
         for kind in ForceKind::ALL {
             // The original calls simple gravity a constant force in its messages, too.
-            let called = if *kind == ForceKind::SimpleGravity { ForceKind::Constant } else { *kind };
+            let called = if kind == ForceKind::SimpleGravity { ForceKind::Constant } else { kind };
             for item in Item::all(self.elements, kind.element(), called.element()) {
                 forces.push(kind.read(&mut ForceItem { item, scene: self, particles, edges })?);
             }

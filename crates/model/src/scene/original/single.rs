@@ -1,6 +1,9 @@
 //! The elements of which only the first counts, with the original's words about them (scene-format.md 4).
 use super::{Refusal, item::Item, markup::Element, values};
-use crate::scene::model::{Collision, CollisionDetection, Color, Integrator, Viewport};
+use crate::{
+    assignments::Integrator,
+    scene::model::{Collision, CollisionDetection, Color, Viewport},
+};
 use fosssim_num::vector::Vec2;
 
 /// The children of the scene, looked up by name.

@@ -1,6 +1,7 @@
 //! The original's words about every kind of problem, and what it lets pass.
 use super::{OriginalScene, Refusal, RefusalKind, read};
-use crate::scene::model::{Collision, CollisionDetection, Force, Integrator};
+use crate::assignments::Integrator;
+use crate::scene::model::{Collision, CollisionDetection, Force};
 use fosssim_num::vector::Vec2;
 
 const BARE: &str = "<duration time='1'/><integrator type='explicit-euler' dt='0.1'/>";

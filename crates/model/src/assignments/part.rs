@@ -1,0 +1,58 @@
+//! The parts of an assignment that a student writes: whatever else a program does is the starter library's.
+use super::{ForceKind, Integrator, PairKind};
+
+/// A part of a student's work: a function, or the few that belong together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Part {
+    /// The kinetic energy, which no trace holds.
+    KineticEnergy,
+    /// The step of an integrator.
+    Integrator(Integrator),
+    /// The gradient of a force.
+    Force(ForceKind),
+    /// The second derivatives of a force, by positions and by velocities.
+    Jacobians(ForceKind),
+    /// The detection at the end of a step.
+    SimpleDetection(PairKind),
+    /// The response to what is found there.
+    SimpleResponse(PairKind),
+    /// The gradient of the penalty force.
+    Penalty(PairKind),
+    /// Continuous-time detection.
+    Detection(PairKind),
+    /// The loop of impulses.
+    Impulses,
+    /// The loop of impact zones.
+    Zones,
+    /// The rigid motion of one zone.
+    Failsafe,
+    /// The contest's search for near pairs.
+    NearPairs,
+}
+
+impl Part {
+    /// The file that the student hands in for it.
+    #[must_use]
+    pub const fn file(self) -> &'static str {
+        match self {
+            Self::KineticEnergy => "TwoDScene.cpp",
+            Self::Integrator(Integrator::ExplicitEuler) => "ExplicitEuler.cpp",
+            Self::Integrator(Integrator::SymplecticEuler | Integrator::ForwardBackwardEuler) => "SymplecticEuler.cpp",
+            Self::Integrator(Integrator::ImplicitEuler) => "ImplicitEuler.cpp",
+            Self::Integrator(Integrator::LinearizedImplicitEuler) => "LinearizedImplicitEuler.cpp",
+            Self::Force(kind) | Self::Jacobians(kind) => match kind {
+                ForceKind::Spring => "SpringForce.cpp",
+                ForceKind::SimpleGravity => "SimpleGravityForce.cpp",
+                ForceKind::Gravitation => "GravitationalForce.cpp",
+                ForceKind::Constant => "ConstantForce.cpp",
+                ForceKind::Drag => "DragDampingForce.cpp",
+                ForceKind::Vortex => "VortexForce.cpp",
+            },
+            Self::SimpleDetection(_) | Self::SimpleResponse(_) => "SimpleCollisionHandler.cpp",
+            Self::Penalty(_) => "PenaltyForce.cpp",
+            Self::Detection(_) => "ContinuousTimeCollisionHandler.cpp",
+            Self::Impulses | Self::Zones | Self::Failsafe => "HybridCollisionHandler.cpp",
+            Self::NearPairs => "ContestDetector.cpp",
+        }
+    }
+}
