@@ -104,7 +104,7 @@ pub struct Definition {
     pub tells_times: bool,
     /// The part of a scene that its starter library knows.
     pub library: Library,
-    /// What its student writes. Nothing else is a student's mistake.
+    /// The parts that its student writes. Nothing else is a student's mistake.
     pub student: &'static [Part],
 }
 
@@ -136,7 +136,7 @@ impl Definition {
     }
 }
 
-/// What a starter library reads from a scene. Originals know more: those of Theme 1 are one program.
+/// The words of a scene that a starter library reads. Originals know more: those of Theme 1 are one program.
 ///
 /// It refuses a scene with another integrator ("Invalid integrator"), and ignores elements of other forces.
 #[derive(Debug, Clone, Copy)]

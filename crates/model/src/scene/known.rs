@@ -116,7 +116,7 @@ mod tests {
         scene::read,
     };
 
-    /// What programs of this assignment do not know of a scene with these elements.
+    /// Returns everything that programs of this assignment do not know of a scene with these elements.
     fn unknown(assignment: Assignment, integrator: &str, elements: &str) -> Vec<String> {
         let text = format!(
             "<scene><duration time=\"1\"/><integrator type=\"{integrator}\" dt=\"0.5\"/>{elements}\
