@@ -13,17 +13,33 @@ const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.mi
 export const launch = () =>
   chromium.launch({
     executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-    args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],
+    args: [
+      "--no-sandbox",
+      "--disable-gpu",
+      "--disable-quic",
+      "--no-first-run",
+      "--disable-background-networking",
+      "--disable-component-update",
+      "--disable-sync",
+    ],
   });
 
 // A page, and what it complains of: errors, warnings, and every request that leaves the disk.
 export async function opened(browser, html, { scheme = "light", script = true, hash = "" } = {}) {
-  const context = await browser.newContext({ colorScheme: scheme, javaScriptEnabled: script, viewport: { width: 1200, height: 1000 }, bypassCSP: false });
+  const context = await browser.newContext({
+    colorScheme: scheme,
+    javaScriptEnabled: script,
+    viewport: { width: 1200, height: 1000 },
+    bypassCSP: false,
+  });
   const page = await context.newPage();
   const complaints = [];
   page.on("console", (message) => ["error", "warning"].includes(message.type()) && complaints.push(message.text()));
   page.on("pageerror", (error) => complaints.push(String(error)));
-  page.on("request", (request) => /^(file|blob|data):/.test(request.url()) || complaints.push(`request ${request.url()}`));
+  page.on(
+    "request",
+    (request) => /^(file|blob|data):/.test(request.url()) || complaints.push(`request ${request.url()}`),
+  );
   await page.goto(pathToFileURL(html).href + hash);
   if (script) await page.waitForSelector("html[data-ready]");
   return { page, complaints, close: () => context.close() };
@@ -34,5 +50,14 @@ export async function judgeAccessibility(page) {
   await page.evaluate(axe + ";0");
   const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations"] }));
   const serious = violations.filter(({ impact }) => impact === "serious" || impact === "critical");
-  assert.deepEqual(serious.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html).slice(0, 3).join(" ")}`), []);
+  assert.deepEqual(
+    serious.map(
+      ({ id, nodes }) =>
+        `${id}: ${nodes
+          .map((node) => node.html)
+          .slice(0, 3)
+          .join(" ")}`,
+    ),
+    [],
+  );
 }

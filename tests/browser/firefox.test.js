@@ -13,9 +13,14 @@ import puppeteer from "puppeteer-core";
 import { programs, root } from "./browser.js";
 
 const html = resolve(process.env.FOSSSIM_PAGE ?? join(root, "target/page/oracle.html"));
-const onPath = process.env.PATH.split(":").flatMap((folder) => ["firefox-esr", "firefox"].map((name) => join(folder, name)));
+const onPath = process.env.PATH.split(":").flatMap((folder) =>
+  ["firefox-esr", "firefox"].map((name) => join(folder, name)),
+);
 const executablePath = process.env.FIREFOX ?? ["/usr/bin/firefox-esr", ...onPath].find((path) => existsSync(path));
-const without = executablePath && existsSync(executablePath) ? false : `there is no ${executablePath ?? "firefox-esr or firefox on PATH"}: FIREFOX names one`;
+const without =
+  executablePath && existsSync(executablePath)
+    ? false
+    : `there is no ${executablePath ?? "firefox-esr or firefox on PATH"}: FIREFOX names one`;
 const skip = existsSync(html) ? without : `there is no ${html}: scripts/browser-page makes it`;
 const test = (name, run) => node(name, { skip }, run);
 
@@ -23,8 +28,18 @@ let browser, folder;
 before(async () => {
   if (skip) return;
   folder = mkdtempSync(join(tmpdir(), "fosssim-firefox-"));
-  const extraPrefsFirefox = { "browser.download.folderList": 2, "browser.download.dir": folder, "browser.download.useDownloadDir": true };
-  browser = await puppeteer.launch({ browser: "firefox", executablePath, headless: true, extraPrefsFirefox, protocolTimeout: 300_000 });
+  const extraPrefsFirefox = {
+    "browser.download.folderList": 2,
+    "browser.download.dir": folder,
+    "browser.download.useDownloadDir": true,
+  };
+  browser = await puppeteer.launch({
+    browser: "firefox",
+    executablePath,
+    headless: true,
+    extraPrefsFirefox,
+    protocolTimeout: 300_000,
+  });
 });
 after(async () => {
   await browser?.close();
@@ -32,7 +47,8 @@ after(async () => {
 });
 
 async function opened() {
-  const page = await browser.newPage(), complaints = [];
+  const page = await browser.newPage(),
+    complaints = [];
   page.on("console", (message) => ["error", "warn"].includes(message.type()) && complaints.push(message.text()));
   page.on("pageerror", (error) => complaints.push(String(error)));
   await page.goto(pathToFileURL(html).href);
@@ -64,13 +80,25 @@ for (const [name, mistake] of [
 ]) {
   test(`Firefox, ${mistake ?? "no mistake"}: the page's files are the program's, byte for byte`, async () => {
     const trace = `${mistake ?? "right"}.bin`;
-    execFileSync(join(programs, "fosssim-sample"), [...(mistake ? ["--mistake", mistake] : []), "-s", join(root, "assets/t2m2", `${name}.xml`), "-d", "0", "-o", join(folder, trace)]);
+    execFileSync(join(programs, "fosssim-sample"), [
+      ...(mistake ? ["--mistake", mistake] : []),
+      "-s",
+      join(root, "assets/t2m2", `${name}.xml`),
+      "-d",
+      "0",
+      "-o",
+      join(folder, trace),
+    ]);
     const { page, complaints } = await opened();
     await (await page.$("#pick")).uploadFile(join(folder, trace));
     await until(() => page.evaluate(() => document.documentElement.dataset.checked === "1"), "the trace is checked");
     assert.match(await page.$eval("#said", (said) => said.textContent), mistake ? /: wrong answer/ : /: accepted/);
     for (const format of ["html", "json"]) {
-      const own = spawnSync(join(programs, "fosssim-oracle"), ["check", `asset:${name}`, trace, "--format", format], { encoding: "utf8", cwd: folder, maxBuffer: 1 << 28 });
+      const own = spawnSync(join(programs, "fosssim-oracle"), ["check", `asset:${name}`, trace, "--format", format], {
+        encoding: "utf8",
+        cwd: folder,
+        maxBuffer: 1 << 28,
+      });
       assert.equal(own.status, mistake ? 1 : 0, own.stderr);
       const file = await saved(page, `#save-${format}`, trace.replace(".bin", `.${format}`));
       assert.ok(file === own.stdout, `${format} differs: ${file.length} and ${own.stdout.length} characters`);
@@ -82,25 +110,41 @@ for (const [name, mistake] of [
 
 test("Firefox: all scenes have the same recordings as natively", async (t) => {
   const { page } = await opened();
-  const names = ["t1m1", "t1m2", "t1m3", "t2m1", "t2m2", "t2m3"].flatMap((assignment) => readdirSync(join(root, "assets", assignment), { withFileTypes: true }).filter((one) => one.isDirectory()).flatMap(({ name: group }) => readdirSync(join(root, "assets", assignment, group)).map((file) => `${group}/${file.replace(".xml", "")}`)));
+  const names = ["t1m1", "t1m2", "t1m3", "t2m1", "t2m2", "t2m3"].flatMap((assignment) =>
+    readdirSync(join(root, "assets", assignment), { withFileTypes: true })
+      .filter((one) => one.isDirectory())
+      .flatMap(({ name: group }) =>
+        readdirSync(join(root, "assets", assignment, group)).map((file) => `${group}/${file.replace(".xml", "")}`),
+      ),
+  );
   // The page's own worker and module; its script shows nothing to others.
   await page.evaluate(async () => {
     const worker = new Worker(URL.createObjectURL(new Blob([document.getElementById("worker").textContent])));
     const packed = Uint8Array.from(atob(document.getElementById("module").textContent.trim()), (c) => c.charCodeAt(0));
-    const module = await WebAssembly.compile(await new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate-raw"))).arrayBuffer());
-    window.ask = (request, blobs = []) => new Promise((resolve, reject) => {
-      worker.onmessage = ({ data }) => { if (data.error) reject(new Error(data.error)); else if (data.value) resolve(data.parts); };
-      worker.postMessage({ id: 0, request, blobs, files: [], module });
-    });
+    const module = await WebAssembly.compile(
+      await new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate-raw"))).arrayBuffer(),
+    );
+    window.ask = (request, blobs = []) =>
+      new Promise((resolve, reject) => {
+        worker.onmessage = ({ data }) => {
+          if (data.error) reject(new Error(data.error));
+          else if (data.value) resolve(data.parts);
+        };
+        worker.postMessage({ id: 0, request, blobs, files: [], module });
+      });
   });
   const digest = async (name) => {
     const [xml] = await window.ask({ do: "scene", name });
     await window.ask({ do: "simulate", scene: name }, [xml]);
     const [trace] = await window.ask({ do: "trace" });
-    return [...new Uint8Array(await crypto.subtle.digest("SHA-256", trace))].map((byte) => byte.toString(16).padStart(2, "0")).join("");
+    return [...new Uint8Array(await crypto.subtle.digest("SHA-256", trace))]
+      .map((byte) => byte.toString(16).padStart(2, "0"))
+      .join("");
   };
   for (const name of names) {
-    const own = spawnSync(join(programs, "fosssim-oracle"), ["simulate", `asset:${name}`, "--output", "-", "--quiet"], { maxBuffer: 1 << 28 });
+    const own = spawnSync(join(programs, "fosssim-oracle"), ["simulate", `asset:${name}`, "--output", "-", "--quiet"], {
+      maxBuffer: 1 << 28,
+    });
     assert.equal(await page.evaluate(digest, name), createHash("sha256").update(own.stdout).digest("hex"), name);
   }
   t.diagnostic(`${names.length} scenes recorded`);

@@ -2,7 +2,17 @@
 // FOSSSIM_BIN names the folder with fosssim-oracle and fosssim-sample; CHROMIUM the browser.
 import { strict as assert } from "node:assert";
 import { execFileSync, spawnSync } from "node:child_process";
-import { appendFileSync, chmodSync, copyFileSync, mkdirSync, mkdtempSync, readdirSync, rmSync, statSync, writeFileSync } from "node:fs";
+import {
+  appendFileSync,
+  chmodSync,
+  copyFileSync,
+  mkdirSync,
+  mkdtempSync,
+  readdirSync,
+  rmSync,
+  statSync,
+  writeFileSync,
+} from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
@@ -14,7 +24,10 @@ const HOSTILE = "<img src=x onerror=alert(1)>'&";
 // Without a sandbox nothing can be graded here.
 const doctor = spawnSync(join(programs, "fosssim-oracle"), ["doctor"]);
 const required = (process.env.FOSSSIM_REQUIRE ?? "").split(",");
-const skip = doctor.status !== 0 && !required.includes("sandbox") && !required.includes("all") ? "programs can't be run safely here" : false;
+const skip =
+  doctor.status !== 0 && !required.includes("sandbox") && !required.includes("all")
+    ? "programs can't be run safely here"
+    : false;
 
 const SUITE = `schema = 1
 name = "Browser <b>suite</b>"
@@ -57,11 +70,17 @@ before(async () => {
   folder = mkdtempSync(join(tmpdir(), "fosssim-browser-"));
   writeFileSync(join(folder, "suite.toml"), SUITE);
   mkdirSync(join(folder, "class"));
-  for (const mistake of ["", "pe-linear-one-ab", "failsafe-angular-overwritten", "pp-contact-reversed"]) sample(join(folder, "class"), mistake);
+  for (const mistake of ["", "pe-linear-one-ab", "failsafe-angular-overwritten", "pp-contact-reversed"])
+    sample(join(folder, "class"), mistake);
   // 10 MB of markup on standard output.
-  script(join(folder, "class"), "noisy", "l='<script>alert(1)</script><b>&amp;'; i=0; while [ $i -lt 11 ]; do l=$l$l; i=$((i+1)); done\ni=0; while [ $i -lt 160 ]; do echo \"$l\"; i=$((i+1)); done; exit 3");
+  script(
+    join(folder, "class"),
+    "noisy",
+    "l='<script>alert(1)</script><b>&amp;'; i=0; while [ $i -lt 11 ]; do l=$l$l; i=$((i+1)); done\ni=0; while [ $i -lt 160 ]; do echo \"$l\"; i=$((i+1)); done; exit 3",
+  );
   script(join(folder, "class"), HOSTILE, "echo '\u202e<svg onload=alert(1)>' >&2; exit 4");
-  for (let number = readdirSync(join(folder, "class")).length; number < 300; number++) script(join(folder, "class"), `student ${number}`, `exit ${1 + (number % 7)}`);
+  for (let number = readdirSync(join(folder, "class")).length; number < 300; number++)
+    script(join(folder, "class"), `student ${number}`, `exit ${1 + (number % 7)}`);
   grade("class", "--suite", "suite.toml", "--output", "out");
   browser = await launch();
 });
@@ -70,9 +89,20 @@ after(async () => {
   if (folder) rmSync(folder, { recursive: true, force: true });
 });
 
-const report = (start) => join(folder, "out/reports", readdirSync(join(folder, "out/reports")).find((name) => name.startsWith(start)));
+const report = (start) =>
+  join(
+    folder,
+    "out/reports",
+    readdirSync(join(folder, "out/reports")).find((name) => name.startsWith(start)),
+  );
 
-for (const [name, start] of [["accepted", "fosssim-sample.html"], ["wrong polynomial", "fosssim-sample.pe-linear"], ["wrong failsafe", "fosssim-sample.failsafe"], ["10 MB of output", "noisy"], ["hostile name", "_img"]]) {
+for (const [name, start] of [
+  ["accepted", "fosssim-sample.html"],
+  ["wrong polynomial", "fosssim-sample.pe-linear"],
+  ["wrong failsafe", "fosssim-sample.failsafe"],
+  ["10 MB of output", "noisy"],
+  ["hostile name", "_img"],
+]) {
   test(`${name}: no complaint, no request, accessible in light and dark, text without script`, { skip }, async () => {
     const html = report(start);
     assert.ok(statSync(html).size < 700_000, `${statSync(html).size}`);
@@ -86,7 +116,10 @@ for (const [name, start] of [["accepted", "fosssim-sample.html"], ["wrong polyno
       await close();
     }
     const { page, close } = await opened(browser, html, { script: false });
-    assert.match(await page.locator("h1").innerText(), name === "accepted" ? /accepted/ : /wrong answer|run-time error/);
+    assert.match(
+      await page.locator("h1").innerText(),
+      name === "accepted" ? /accepted/ : /wrong answer|run-time error/,
+    );
     assert.match(await page.locator("main").innerText(), /Groups/);
     await close();
   });
@@ -172,7 +205,9 @@ test("a page of eighty scenes that fail stays small", { skip }, async (t) => {
   t.diagnostic(`suite page: ${statSync(html).size} bytes, open after ${Math.round(performance.now() - began)} ms`);
   // Scenes are searched by what is said of them.
   await page.getByLabel("Filter").fill("Head-On-Equal");
-  assert.deepEqual(await page.locator("article.case:visible h3").allInnerTexts(), ["wrong answer ContinuousTimeTests/head-on-equal-masses"]);
+  assert.deepEqual(await page.locator("article.case:visible h3").allInnerTexts(), [
+    "wrong answer ContinuousTimeTests/head-on-equal-masses",
+  ]);
   await page.getByLabel("Filter").fill("");
   assert.ok((await page.locator("article.case").count()) >= 60);
   assert.deepEqual(complaints, []);

@@ -2,7 +2,18 @@
 // the last bit. FOSSSIM_PAGE names the page (scripts/browser-page); without it, and without the target, nothing is tried.
 import { strict as assert } from "node:assert";
 import { execFileSync, spawnSync } from "node:child_process";
-import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync, truncateSync, writeFileSync } from "node:fs";
+import {
+  copyFileSync,
+  existsSync,
+  mkdirSync,
+  mkdtempSync,
+  readFileSync,
+  readdirSync,
+  rmSync,
+  statSync,
+  truncateSync,
+  writeFileSync,
+} from "node:fs";
 import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { after, before, test as node } from "node:test";
@@ -26,10 +37,19 @@ after(async () => {
 });
 
 const scene = (name) => join(root, "assets/t2m2", `${name}.xml`);
-const oracle = (...words) => spawnSync(join(programs, "fosssim-oracle"), words, { encoding: "utf8", cwd: folder, maxBuffer: 1 << 28 });
+const oracle = (...words) =>
+  spawnSync(join(programs, "fosssim-oracle"), words, { encoding: "utf8", cwd: folder, maxBuffer: 1 << 28 });
 
 function trace(name, mistake, file = "trace.bin") {
-  execFileSync(join(programs, "fosssim-sample"), [...(mistake ? ["--mistake", mistake] : []), "-s", scene(name), "-d", "0", "-o", join(folder, file)]);
+  execFileSync(join(programs, "fosssim-sample"), [
+    ...(mistake ? ["--mistake", mistake] : []),
+    "-s",
+    scene(name),
+    "-d",
+    "0",
+    "-o",
+    join(folder, file),
+  ]);
   return join(folder, file);
 }
 
@@ -37,7 +57,8 @@ function trace(name, mistake, file = "trace.bin") {
 function zstd(bytes) {
   const blocks = [];
   for (let at = 0; at < bytes.length; at += 1 << 16) {
-    const piece = bytes.subarray(at, at + (1 << 16)), head = Buffer.alloc(4);
+    const piece = bytes.subarray(at, at + (1 << 16)),
+      head = Buffer.alloc(4);
     head.writeUInt32LE((piece.length << 3) | (at + piece.length === bytes.length ? 1 : 0));
     blocks.push(head.subarray(0, 3), piece);
   }
@@ -89,7 +110,10 @@ for (const [name, mistake, words] of [
     assert.match(await said(page), /^trace\.bin: wrong answer/);
     await report(page).locator("html[data-ready]").waitFor();
     assert.match(await report(page).locator("main").innerText(), words);
-    for (const [button, format] of [["Save report", "html"], ["Save JSON", "json"]]) {
+    for (const [button, format] of [
+      ["Save report", "html"],
+      ["Save JSON", "json"],
+    ]) {
       const { bytes } = await saved(page, button);
       const own = oracle("check", `asset:${name}`, "trace.bin", "--format", format);
       assert.equal(own.status, 1, own.stderr);
@@ -112,7 +136,10 @@ test("a trace that is cut, one of another scene, a text, an empty file: each has
   await page.waitForFunction(() => document.documentElement.dataset.checked === "2");
   await drop(page, join(folder, "other.bin"));
   assert.match(await report(page).locator("main").innerText(), /Is this trace of this scene\?/);
-  for (const [content, words] of [["Dear grader", /looks like text/], ["", /is empty/]]) {
+  for (const [content, words] of [
+    ["Dear grader", /looks like text/],
+    ["", /is empty/],
+  ]) {
     writeFileSync(join(folder, "notes.bin"), content);
     await drop(page, join(folder, "notes.bin"));
     const { bytes } = await saved(page, "Save JSON");
@@ -124,7 +151,11 @@ test("a trace that is cut, one of another scene, a text, an empty file: each has
 
 test("each trace is recognised anew, and a scene that its reader chooses or drops stays", async () => {
   const { page, complaints, close } = await opened(browser, html);
-  const names = ["ContinuousTimeTests/head-on-equal-masses", "ContinuousTimeTests/spinning-edge-sweeps-balls", WRONG[0]];
+  const names = [
+    "ContinuousTimeTests/head-on-equal-masses",
+    "ContinuousTimeTests/spinning-edge-sweeps-balls",
+    WRONG[0],
+  ];
   const scenes = async () => (await report(page).locator(".names").innerText()).match(/scene (\S+)/)[1];
   for (const [number, name] of names.entries()) {
     await drop(page, trace(name, null, `trace${number}.bin`));
@@ -133,7 +164,9 @@ test("each trace is recognised anew, and a scene that its reader chooses or drop
   }
   const chosen = async (choice, name) => {
     const before = await page.evaluate(() => document.documentElement.dataset.checked);
-    await page.locator("#ask").evaluate((ask) => { ask.open = true; });
+    await page.locator("#ask").evaluate((ask) => {
+      ask.open = true;
+    });
     await page.locator("#scene").selectOption(choice);
     await page.waitForFunction((before) => document.documentElement.dataset.checked !== before, before);
     assert.equal(await scenes(), name);
@@ -156,7 +189,10 @@ test("each trace is recognised anew, and a scene that its reader chooses or drop
 
 test("what is no trace, and a broken scene, are told at once", async () => {
   const { page, complaints, close } = await opened(browser, html);
-  for (const [content, words] of [["Dear grader", /is no trace: it looks like text/], ["", /is no trace: it is empty/]]) {
+  for (const [content, words] of [
+    ["Dear grader", /is no trace: it looks like text/],
+    ["", /is no trace: it is empty/],
+  ]) {
     writeFileSync(join(folder, "notes.bin"), content);
     await drop(page, join(folder, "notes.bin"));
     assert.match(await said(page), words);
@@ -182,7 +218,14 @@ test("without a mouse one goes on from the report", async () => {
 test("a trace that may be one of several scenes is asked about by their names", async () => {
   const { page, complaints, close } = await opened(browser, html);
   const names = ["implicit-euler-stiff-chain", "linearized-implicit-chain"];
-  execFileSync(join(programs, "fosssim-sample"), ["-s", join(root, `assets/t1m3/IntegratorTests/${names[0]}.xml`), "-d", "0", "-o", join(folder, "alike.bin")]);
+  execFileSync(join(programs, "fosssim-sample"), [
+    "-s",
+    join(root, `assets/t1m3/IntegratorTests/${names[0]}.xml`),
+    "-d",
+    "0",
+    "-o",
+    join(folder, "alike.bin"),
+  ]);
   await page.locator("#pick").setInputFiles(join(folder, "alike.bin"));
   await page.getByText("The trace begins like those of").waitFor();
   for (const name of names) assert.ok((await said(page)).includes(name), await said(page));
@@ -232,7 +275,10 @@ test("a trace of 1 GiB is read piece by piece", async (t) => {
   t.diagnostic(await said(page));
   assert.match(await said(page), /huge\.bin: /);
   const { bytes } = await saved(page, "Save JSON");
-  assert.equal(bytes.toString(), oracle("check", "asset:ContinuousTimeTests/head-on-equal-masses", "huge.bin", "--format", "json").stdout);
+  assert.equal(
+    bytes.toString(),
+    oracle("check", "asset:ContinuousTimeTests/head-on-equal-masses", "huge.bin", "--format", "json").stdout,
+  );
   rmSync(file);
   assert.deepEqual(complaints, []);
   await close();
@@ -240,7 +286,11 @@ test("a trace of 1 GiB is read piece by piece", async (t) => {
 
 test("everybody can use it: light, dark, a phone's width, without a mouse", async () => {
   const file = trace(...WRONG);
-  for (const [scheme, width] of [["light", 1440], ["dark", 1440], ["dark", 390]]) {
+  for (const [scheme, width] of [
+    ["light", 1440],
+    ["dark", 1440],
+    ["dark", 390],
+  ]) {
     const { page, complaints, close } = await opened(browser, html, { scheme });
     await page.setViewportSize({ width, height: 844 });
     const looks = async () => {
@@ -265,10 +315,13 @@ test("everybody can use it: light, dark, a phone's width, without a mouse", asyn
     assert.equal(await page.evaluate(() => document.activeElement.id), "tab-check");
     // The last trace is read again with one key.
     await report(page).locator("h1").click();
-  await page.keyboard.press("r");
+    await page.keyboard.press("r");
     await page.waitForFunction(() => document.documentElement.dataset.checked === "2");
     // axe talks to frames by messages, which those of a file refuse.
-    assert.deepEqual(complaints.filter((one) => !one.includes("postMessage")), []);
+    assert.deepEqual(
+      complaints.filter((one) => !one.includes("postMessage")),
+      [],
+    );
     await close();
   }
 });
@@ -278,12 +331,15 @@ test("a folder of traces gets the points of the suite, as grade --traces gives t
   const traces = join(folder, "traces");
   for (const group of ["GeometricTests", "ImpulsesTests"]) {
     mkdirSync(join(traces, group), { recursive: true });
-    for (const file of readdirSync(join(root, "assets/t2m2", group))) trace(`${group}/${file.replace(".xml", "")}`, WRONG[1], `traces/${group}/${file.replace(".xml", ".bin")}`);
+    for (const file of readdirSync(join(root, "assets/t2m2", group)))
+      trace(`${group}/${file.replace(".xml", "")}`, WRONG[1], `traces/${group}/${file.replace(".xml", ".bin")}`);
   }
   await page.locator("#tab-submission").click();
   const marked = async (times) => {
     await page.locator("#pick-folder").setInputFiles(traces);
-    await page.waitForFunction((times) => document.documentElement.dataset.marked === times, String(times), { timeout: 60_000 });
+    await page.waitForFunction((times) => document.documentElement.dataset.marked === times, String(times), {
+      timeout: 60_000,
+    });
     const { bytes } = await saved(page, "Save JSON", page.locator("#save-marks"));
     assert.equal(bytes.toString(), oracle("grade", "--traces", "traces", "--format", "json").stdout);
   };
@@ -292,7 +348,10 @@ test("a folder of traces gets the points of the suite, as grade --traces gives t
   assert.match(await page.locator("#marks-list").innerText(), /angular momentum is overwritten.*\(\d+ scenes\)/s);
   trace(WRONG[0], null, `traces/${WRONG[0]}.bin`);
   await marked(2);
-  assert.match(await page.locator("#marks-list").innerText(), /Since the last drop became right: GeometricTests\/pair-becomes-rigid/);
+  assert.match(
+    await page.locator("#marks-list").innerText(),
+    /Since the last drop became right: GeometricTests\/pair-becomes-rigid/,
+  );
   await judgeAccessibility(page);
   // Packed traces count as others do.
   const plain = join(traces, `${WRONG[0]}.bin`);
@@ -300,14 +359,23 @@ test("a folder of traces gets the points of the suite, as grade --traces gives t
   rmSync(plain);
   trace(WRONG[0], null, "traces/GeometricTests/pair-becomes-rigit.bin");
   await marked(3);
-  assert.match(await page.locator("#marks-list").innerText(), /1 trace belongs to no scene of .*: GeometricTests\/pair-becomes-rigit\.bin/);
+  assert.match(
+    await page.locator("#marks-list").innerText(),
+    /1 trace belongs to no scene of .*: GeometricTests\/pair-becomes-rigit\.bin/,
+  );
   // What is right is folded, below what is wrong. A scene leads to its report.
   assert.ok(!(await page.getByRole("button", { name: "pair-becomes-rigid" }).isVisible()));
-  await page.locator("#marks-list > details", { hasText: "GeometricTests:" }).locator("details summary", { hasText: " right" }).click();
+  await page
+    .locator("#marks-list > details", { hasText: "GeometricTests:" })
+    .locator("details summary", { hasText: " right" })
+    .click();
   await page.getByRole("button", { name: "pair-becomes-rigid" }).click();
   await page.waitForFunction(() => document.documentElement.dataset.checked === "1");
   assert.match(await said(page), /^pair-becomes-rigid\.bin.*: accepted/);
-  assert.deepEqual(complaints.filter((one) => !one.includes("postMessage")), []);
+  assert.deepEqual(
+    complaints.filter((one) => !one.includes("postMessage")),
+    [],
+  );
   await close();
 });
 
@@ -323,7 +391,10 @@ test("a suite of one's own brings its scenes along; what is wrong with it is tol
   await page.locator("#pick-folder").setInputFiles(course);
   await page.waitForFunction(() => document.documentElement.dataset.marked === "1");
   const { bytes } = await saved(page, "Save JSON", page.locator("#save-marks"));
-  assert.equal(bytes.toString(), oracle("grade", "--traces", "course", "--suite", "course/suite.toml", "--format", "json").stdout);
+  assert.equal(
+    bytes.toString(),
+    oracle("grade", "--traces", "course", "--suite", "course/suite.toml", "--format", "json").stdout,
+  );
   writeFileSync(join(course, "suite.toml"), suite('"none*.xml"'));
   await page.locator("#pick-folder").setInputFiles(course);
   await page.waitForFunction(() => document.documentElement.dataset.marked === "2");
@@ -336,7 +407,8 @@ test("a suite of one's own brings its scenes along; what is wrong with it is tol
 async function drag(page, paths) {
   const debug = await page.context().newCDPSession(page);
   const data = { items: [], files: paths, dragOperationsMask: 1 };
-  for (const type of ["dragEnter", "dragOver", "drop"]) await debug.send("Input.dispatchDragEvent", { type, x: 300, y: 200, data });
+  for (const type of ["dragEnter", "dragOver", "drop"])
+    await debug.send("Input.dispatchDragEvent", { type, x: 300, y: 200, data });
   await debug.detach();
 }
 
@@ -363,7 +435,10 @@ test("what is dragged onto the page is taken, whichever tab is open: a trace, a 
   await drag(page, [suite]);
   await page.waitForFunction(() => document.documentElement.dataset.marked === "2", null, { timeout: 60_000 });
   assert.match(await page.locator("#marks-said").innerText(), /\b7\b/);
-  assert.deepEqual(complaints.filter((one) => !one.includes("postMessage")), []);
+  assert.deepEqual(
+    complaints.filter((one) => !one.includes("postMessage")),
+    [],
+  );
   await close();
 });
 
@@ -372,17 +447,31 @@ test("a scene is written: messages in place, its motion, and files that are the 
   await page.locator("#tab-try").click();
   await page.waitForSelector("#canvas[data-step]");
   await page.locator("#start").selectOption("ContinuousTimeTests/head-on-equal-masses");
-  await page.waitForFunction(() => document.documentElement.dataset.tried === String(document.getElementById("source").value.length));
+  await page.waitForFunction(
+    () => document.documentElement.dataset.tried === String(document.getElementById("source").value.length),
+  );
   const { bytes } = await saved(page, "reference trace");
   const own = oracle("simulate", "asset:ContinuousTimeTests/head-on-equal-masses", "--output", "own.bin");
   assert.equal(own.status, 0, own.stderr);
   assert.ok(bytes.equals(readFileSync(join(folder, "own.bin"))));
   const film = await saved(page, "film (GIF)");
-  oracle("render", "asset:ContinuousTimeTests/head-on-equal-masses", "--size", "640x400", "--fps", "25", "--output", "own.gif");
+  oracle(
+    "render",
+    "asset:ContinuousTimeTests/head-on-equal-masses",
+    "--size",
+    "640x400",
+    "--fps",
+    "25",
+    "--output",
+    "own.gif",
+  );
   assert.ok(film.bytes.equals(readFileSync(join(folder, "own.gif"))));
   await page.locator("#source").fill('<scene>\n  <duration time="x"/>\n</scene>\n');
   await page.getByRole("button", { name: "2:19" }).click();
-  assert.equal(await page.locator("#source").evaluate((area) => area.value.slice(area.selectionStart, area.selectionEnd)), "x");
+  assert.equal(
+    await page.locator("#source").evaluate((area) => area.value.slice(area.selectionStart, area.selectionEnd)),
+    "x",
+  );
   assert.match(await page.locator("#problems").innerText(), /`time` of .* is `x`, which is no number/);
   assert.equal(await page.locator("#marks mark").last().innerText(), "x");
   assert.deepEqual(complaints, []);
@@ -393,13 +482,22 @@ test("a pair is moved: its numbers are those of the command beside them", async 
   const { page, complaints, close } = await opened(browser, html);
   await page.locator("#tab-pair").click();
   await page.waitForSelector("html[data-looked]");
-  for (const [preset, words] of [["first", /-361 t\^4 - 304 t\^3 - 468 t\^2 - 288 t/], ["second", /-16 t\^4 \+ 0 t\^3 - 68 t\^2 \+ 36 t - 16/], ["plane", /half-plane/], ["balls", /they collide/]]) {
+  for (const [preset, words] of [
+    ["first", /-361 t\^4 - 304 t\^3 - 468 t\^2 - 288 t/],
+    ["second", /-16 t\^4 \+ 0 t\^3 - 68 t\^2 \+ 36 t - 16/],
+    ["plane", /half-plane/],
+    ["balls", /they collide/],
+  ]) {
     await page.locator("#preset").selectOption(preset);
-    await page.waitForFunction(() => document.documentElement.dataset.looked === document.getElementById("command").textContent);
+    await page.waitForFunction(
+      () => document.documentElement.dataset.looked === document.getElementById("command").textContent,
+    );
     assert.match(await page.locator("#words").textContent(), words);
   }
   await page.getByRole("slider", { name: "x1: dy, slider" }).press("ArrowRight");
-  await page.waitForFunction(() => document.documentElement.dataset.looked === document.getElementById("command").textContent);
+  await page.waitForFunction(
+    () => document.documentElement.dataset.looked === document.getElementById("command").textContent,
+  );
   const { bytes } = await saved(page, "Save JSON", page.locator("#save-pair"));
   const [, ...words] = (await page.locator("#command").innerText()).split(" ");
   assert.equal(bytes.toString(), oracle(...words, "--format", "json").stdout);
@@ -411,7 +509,10 @@ test("points of a pair are dragged, and the polynomials follow", async () => {
   const { page, complaints, close } = await opened(browser, html);
   await page.locator("#tab-pair").click();
   await page.locator("#preset").selectOption("balls");
-  const settled = () => page.waitForFunction(() => document.documentElement.dataset.looked === document.getElementById("command").textContent);
+  const settled = () =>
+    page.waitForFunction(
+      () => document.documentElement.dataset.looked === document.getElementById("command").textContent,
+    );
   await settled();
   assert.match(await page.locator("#decision").innerText(), /they collide|collision/);
   const before = await page.locator("#command").innerText();
@@ -437,22 +538,53 @@ test("points of a pair are dragged, and the polynomials follow", async () => {
 test("the page of a course has its suite and scenes, and gives the points of what students may see", async () => {
   const course = join(folder, "of-a-course");
   mkdirSync(join(course, "own"), { recursive: true });
-  writeFileSync(join(course, "own/mine.xml"), readFileSync(scene(WRONG[0]), "utf8").replace("<scene>", "<scene><!-- of the course -->"));
-  const groups = (hidden) => `schema = 1\nname = "The course"\n[[group]]\nname = "own"\npoints = 7\nscenes = ["own/*.xml"]\n${hidden}`;
-  writeFileSync(join(course, "suite.toml"), groups('[[group]]\nname = "secret"\nvisibility = "hidden"\nscenes = ["asset:ImpulsesTests/*"]\n'));
-  writeFileSync(join(course, "module.wasm"), inflateRawSync(Buffer.from(readFileSync(html, "utf8").match(/id="module">([^<]*)</)[1], "base64")));
-  const made = oracle("page", "--module", "of-a-course/module.wasm", "--suite", "of-a-course/suite.toml", "--output", "course.html");
+  writeFileSync(
+    join(course, "own/mine.xml"),
+    readFileSync(scene(WRONG[0]), "utf8").replace("<scene>", "<scene><!-- of the course -->"),
+  );
+  const groups = (hidden) =>
+    `schema = 1\nname = "The course"\n[[group]]\nname = "own"\npoints = 7\nscenes = ["own/*.xml"]\n${hidden}`;
+  writeFileSync(
+    join(course, "suite.toml"),
+    groups('[[group]]\nname = "secret"\nvisibility = "hidden"\nscenes = ["asset:ImpulsesTests/*"]\n'),
+  );
+  writeFileSync(
+    join(course, "module.wasm"),
+    inflateRawSync(Buffer.from(readFileSync(html, "utf8").match(/id="module">([^<]*)</)[1], "base64")),
+  );
+  const made = oracle(
+    "page",
+    "--module",
+    "of-a-course/module.wasm",
+    "--suite",
+    "of-a-course/suite.toml",
+    "--output",
+    "course.html",
+  );
   assert.equal(made.status, 0, made.stderr);
   const { page, complaints, close } = await opened(browser, join(folder, "course.html"));
   mkdirSync(join(folder, "handed/own"), { recursive: true });
-  execFileSync(join(programs, "fosssim-sample"), ["--mistake", WRONG[1], "-s", join(course, "own/mine.xml"), "-d", "0", "-o", join(folder, "handed/own/mine.bin")]);
+  execFileSync(join(programs, "fosssim-sample"), [
+    "--mistake",
+    WRONG[1],
+    "-s",
+    join(course, "own/mine.xml"),
+    "-d",
+    "0",
+    "-o",
+    join(folder, "handed/own/mine.bin"),
+  ]);
   await page.locator("#tab-submission").click();
   await page.locator("#pick-folder").setInputFiles(join(folder, "handed"));
   await page.waitForFunction(() => document.documentElement.dataset.marked === "1");
   assert.match(await page.locator("#marks-said").innerText(), /0 of 7 points by The course/);
   writeFileSync(join(course, "suite.toml"), groups(""));
   const { bytes } = await saved(page, "Save JSON", page.locator("#save-marks"));
-  assert.equal(bytes.toString(), oracle("grade", "--traces", "handed", "--suite", "of-a-course/suite.toml", "--for", "student", "--format", "json").stdout);
+  assert.equal(
+    bytes.toString(),
+    oracle("grade", "--traces", "handed", "--suite", "of-a-course/suite.toml", "--for", "student", "--format", "json")
+      .stdout,
+  );
   // The scene is found by the trace's name, too.
   await page.getByRole("button", { name: "mine", exact: true }).click();
   await page.waitForFunction(() => document.documentElement.dataset.checked === "1");
@@ -464,27 +596,43 @@ test("the page of a course has its suite and scenes, and gives the points of wha
 test("all scenes have the same recordings as natively", async (t) => {
   const { page, close } = await opened(browser, html);
   // The module in the page's own browser, one scene after the other.
-  const names = ["t2m2", "t1m1", "t1m2", "t1m3", "t2m1", "t2m3"].flatMap((assignment) => readdirSync(join(root, "assets", assignment), { withFileTypes: true }).filter((one) => one.isDirectory()).flatMap(({ name: group }) => readdirSync(join(root, "assets", assignment, group)).map((file) => `${group}/${file.replace(".xml", "")}`)));
+  const names = ["t2m2", "t1m1", "t1m2", "t1m3", "t2m1", "t2m3"].flatMap((assignment) =>
+    readdirSync(join(root, "assets", assignment), { withFileTypes: true })
+      .filter((one) => one.isDirectory())
+      .flatMap(({ name: group }) =>
+        readdirSync(join(root, "assets", assignment, group)).map((file) => `${group}/${file.replace(".xml", "")}`),
+      ),
+  );
   const digests = await page.evaluate(async (names) => {
     const worker = new Worker(URL.createObjectURL(new Blob([document.getElementById("worker").textContent])));
     const packed = Uint8Array.from(atob(document.getElementById("module").textContent.trim()), (c) => c.charCodeAt(0));
-    const module = await WebAssembly.compile(await new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate-raw"))).arrayBuffer());
-    const ask = (request, blobs = []) => new Promise((resolve, reject) => {
-      worker.onmessage = ({ data }) => { if (data.error) reject(new Error(data.error)); else if (data.value) resolve(data.parts); };
-      worker.postMessage({ id: 0, request, blobs, files: [], module });
-    });
+    const module = await WebAssembly.compile(
+      await new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate-raw"))).arrayBuffer(),
+    );
+    const ask = (request, blobs = []) =>
+      new Promise((resolve, reject) => {
+        worker.onmessage = ({ data }) => {
+          if (data.error) reject(new Error(data.error));
+          else if (data.value) resolve(data.parts);
+        };
+        worker.postMessage({ id: 0, request, blobs, files: [], module });
+      });
     const found = {};
     for (const name of names) {
       const [xml] = await ask({ do: "scene", name });
       await ask({ do: "simulate", scene: name }, [xml]);
       const [trace] = await ask({ do: "trace" });
-      found[name] = [...new Uint8Array(await crypto.subtle.digest("SHA-256", trace))].map((byte) => byte.toString(16).padStart(2, "0")).join("");
+      found[name] = [...new Uint8Array(await crypto.subtle.digest("SHA-256", trace))]
+        .map((byte) => byte.toString(16).padStart(2, "0"))
+        .join("");
     }
     return found;
   }, names);
   const { createHash } = await import("node:crypto");
   for (const name of names) {
-    const own = spawnSync(join(programs, "fosssim-oracle"), ["simulate", `asset:${name}`, "--output", "-", "--quiet"], { maxBuffer: 1 << 28 });
+    const own = spawnSync(join(programs, "fosssim-oracle"), ["simulate", `asset:${name}`, "--output", "-", "--quiet"], {
+      maxBuffer: 1 << 28,
+    });
     assert.equal(digests[name], createHash("sha256").update(own.stdout).digest("hex"), name);
   }
   t.diagnostic(`${names.length} scenes recorded`);
@@ -492,14 +640,26 @@ test("all scenes have the same recordings as natively", async (t) => {
 });
 
 const corpus = process.env.FOSSSIM_CORPUS ?? join(root, "../shared/corpus");
-const without = skip || (existsSync(join(corpus, "submissions")) ? false : `there is no corpus at ${corpus}`) || (spawnSync("zstd", ["--version"]).status === 0 ? false : "there is no zstd");
+const without =
+  skip ||
+  (existsSync(join(corpus, "submissions")) ? false : `there is no corpus at ${corpus}`) ||
+  (spawnSync("zstd", ["--version"]).status === 0 ? false : "there is no zstd");
 node("all traces of the corpus have the same reports as natively", { skip: without }, async (t) => {
   // The page's module, with its own glue, in this process: for the time that it takes.
   const engine = new Function(`${readFileSync(join(root, "crates/browser/page/engine.js"), "utf8")}; return engine;`)();
   const packed = readFileSync(html, "utf8").match(/id="module">([^<]*)</)[1];
   const module = new WebAssembly.Module(inflateRawSync(Buffer.from(packed, "base64")));
-  let bytes, count = 0, took = 0;
-  const ask = engine(module, { progress() {}, read: (_, offset, into) => { const piece = bytes.subarray(offset, offset + into.length); into.set(piece); return piece.length; } });
+  let bytes,
+    count = 0,
+    took = 0;
+  const ask = engine(module, {
+    progress() {},
+    read: (_, offset, into) => {
+      const piece = bytes.subarray(offset, offset + into.length);
+      into.set(piece);
+      return piece.length;
+    },
+  });
   for (const submission of readdirSync(join(corpus, "submissions"))) {
     for (const file of readdirSync(join(corpus, "submissions", submission))) {
       const [, group, name] = file.match(/^(.*)_([^_]*)\.bin\.zst$/) ?? [];
@@ -510,7 +670,11 @@ node("all traces of the corpus have the same reports as natively", { skip: witho
       const begin = performance.now();
       const { parts } = ask({ do: "check", scene: xml, trace: "trace.bin" }, readFileSync(xml));
       took += performance.now() - begin;
-      assert.equal(Buffer.from(parts[0]).toString(), oracle("check", xml, "trace.bin", "--format", "json").stdout, `${submission}/${file}`);
+      assert.equal(
+        Buffer.from(parts[0]).toString(),
+        oracle("check", xml, "trace.bin", "--format", "json").stdout,
+        `${submission}/${file}`,
+      );
       count += 1;
     }
   }

@@ -10,20 +10,40 @@ import { chromium } from "playwright-core";
 const root = resolve(new URL(".", import.meta.url).pathname, "../..");
 const programs = process.env.FOSSSIM_BIN ?? join(root, "target/release");
 const folder = mkdtempSync(join(tmpdir(), "fosssim-pictures-"));
-const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox", "--disable-gpu"] });
+const browser = await chromium.launch({
+  executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+  args: ["--no-sandbox", "--disable-gpu"],
+});
 try {
   // The folder is nobody's business: paths are relative to it.
   const scene = join(root, "assets/t2m2/HolisticTests/balls-in-a-box.xml");
-  execFileSync(join(programs, "fosssim-sample"), ["--mistake", "response-halved", "-s", scene, "-d", "0", "-o", "submission.bin"], { cwd: folder });
+  execFileSync(
+    join(programs, "fosssim-sample"),
+    ["--mistake", "response-halved", "-s", scene, "-d", "0", "-o", "submission.bin"],
+    { cwd: folder },
+  );
   const html = join(folder, "report.html");
-  spawnSync(join(programs, "fosssim-oracle"), ["check", "asset:HolisticTests/balls-in-a-box", "submission.bin", "--format", "html", "--output", html], { cwd: folder });
+  spawnSync(
+    join(programs, "fosssim-oracle"),
+    ["check", "asset:HolisticTests/balls-in-a-box", "submission.bin", "--format", "html", "--output", html],
+    { cwd: folder },
+  );
   const page = await browser.newPage({ viewport: { width: 1180, height: 1456 } });
   await page.goto(pathToFileURL(html).href);
   await page.waitForSelector("html[data-ready]");
   await page.screenshot({ path: join(root, "docs/report.png") });
 
   // A class of samples. The grader refuses its own programs: one byte more makes it another one.
-  const students = ["ada", "bob.response-halved", "eve.pe-linear-one-ab", "grace.failsafe-angular-overwritten", "kim.pe-linear-one-ab", "liu", "max.pe-square-no-eh", "zoe.response-halved"];
+  const students = [
+    "ada",
+    "bob.response-halved",
+    "eve.pe-linear-one-ab",
+    "grace.failsafe-angular-overwritten",
+    "kim.pe-linear-one-ab",
+    "liu",
+    "max.pe-square-no-eh",
+    "zoe.response-halved",
+  ];
   const sources = students.map((student) => {
     const [name, mistake] = student.split(/\.(.*)/);
     const program = join(folder, name, mistake ? `fosssim-sample.${mistake}` : "fosssim-sample");
@@ -40,7 +60,10 @@ try {
   await page.locator("a").evaluateAll((links, students) => {
     for (const link of links) {
       const [, name, mistake] = link.textContent.match(/^(?:.*?([a-z]+)\/)?fosssim-sample\.?(.*)$/) ?? [];
-      link.textContent = name ?? students.find((student) => mistake && student.endsWith(`.${mistake}`))?.split(".")[0] ?? link.textContent;
+      link.textContent =
+        name ??
+        students.find((student) => mistake && student.endsWith(`.${mistake}`))?.split(".")[0] ??
+        link.textContent;
     }
   }, students);
   await page.screenshot({ path: join(root, "docs/class.png") });

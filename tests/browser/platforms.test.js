@@ -29,8 +29,16 @@ const escape = (text) => text.replaceAll("&", "&amp;").replaceAll('"', "&quot;")
 function message(nonce) {
   const now = Math.floor(Date.now() / 1000);
   const claims = {
-    iss: place, aud: "client", sub: visit.subject, name: visit.name, nonce, iat: now, exp: now + 300,
-    [`${CLAIM}/version`]: "1.3.0", [`${CLAIM}/deployment_id`]: "1", [`${CLAIM}/message_type`]: "LtiResourceLinkRequest",
+    iss: place,
+    aud: "client",
+    sub: visit.subject,
+    name: visit.name,
+    nonce,
+    iat: now,
+    exp: now + 300,
+    [`${CLAIM}/version`]: "1.3.0",
+    [`${CLAIM}/deployment_id`]: "1",
+    [`${CLAIM}/message_type`]: "LtiResourceLinkRequest",
     [`${CLAIM}/roles`]: [`http://purl.imsglobal.org/vocab/lis/v2/membership#${visit.role}`],
     [`${CLAIM}/context`]: { id: "c", label: "PHYS 1", title: "Physics" },
     [`${CLAIM}/resource_link`]: { id: "link", title: "First milestone" },
@@ -43,19 +51,31 @@ function message(nonce) {
 
 async function answer(request, response) {
   const url = new URL(request.url, place);
-  const html = (text) => response.writeHead(200, { "content-type": "text/html" }).end(`<!doctype html><html lang="en"><title>Platform</title>${text}`);
+  const html = (text) =>
+    response
+      .writeHead(200, { "content-type": "text/html" })
+      .end(`<!doctype html><html lang="en"><title>Platform</title>${text}`);
   if (url.pathname === "/keys") {
-    return response.writeHead(200, { "content-type": "application/json" }).end(JSON.stringify({ keys: [{ ...publicKey.export({ format: "jwk" }), kid: "key", alg: "RS256", use: "sig" }] }));
+    return response
+      .writeHead(200, { "content-type": "application/json" })
+      .end(
+        JSON.stringify({ keys: [{ ...publicKey.export({ format: "jwk" }), kid: "key", alg: "RS256", use: "sig" }] }),
+      );
   }
   const begin = `${address}/lti/login?${new URLSearchParams({ iss: place, login_hint: "somebody", lti_message_hint: "a message", target_link_uri: `${address}/lti/launch`, client_id: "client" })}`;
-  if (url.pathname === "/course") return html(`<iframe title="The tool" width="900" height="600" src="${escape(begin)}"></iframe>`);
+  if (url.pathname === "/course")
+    return html(`<iframe title="The tool" width="900" height="600" src="${escape(begin)}"></iframe>`);
   if (url.pathname === "/open") return response.writeHead(302, { location: begin }).end();
   if (url.pathname === "/auth") {
     const asked = url.searchParams;
     assert.deepEqual([asked.get("login_hint"), asked.get("lti_message_hint")], ["somebody", "a message"]);
     const fields = { state: asked.get("state"), id_token: message(asked.get("nonce")) };
-    const inputs = Object.entries(fields).map(([name, value]) => `<input type="hidden" name="${name}" value="${escape(value)}">`);
-    return html(`<form method="post" action="${escape(asked.get("redirect_uri"))}">${inputs.join("")}</form><script>document.forms[0].submit()</script>`);
+    const inputs = Object.entries(fields).map(
+      ([name, value]) => `<input type="hidden" name="${name}" value="${escape(value)}">`,
+    );
+    return html(
+      `<form method="post" action="${escape(asked.get("redirect_uri"))}">${inputs.join("")}</form><script>document.forms[0].submit()</script>`,
+    );
   }
   if (url.pathname === "/return") {
     let body = "";
@@ -68,16 +88,30 @@ async function answer(request, response) {
 
 before(async () => {
   folder = mkdtempSync(join(tmpdir(), "fosssim-platforms-"));
-  server = spawn(join(programs, "fosssim-server"), ["serve", "--data", join(folder, "data"), "--listen", "127.0.0.1:0", "--workers", "0", "--lti-over-http"], { stdio: ["ignore", "pipe", "inherit"] });
+  server = spawn(
+    join(programs, "fosssim-server"),
+    ["serve", "--data", join(folder, "data"), "--listen", "127.0.0.1:0", "--workers", "0", "--lti-over-http"],
+    { stdio: ["ignore", "pipe", "inherit"] },
+  );
   const lines = createInterface({ input: server.stdout })[Symbol.asyncIterator]();
   address = (await lines.next()).value.split(" ").at(-1);
   link = (await lines.next()).value.split(" ").at(-1);
-  platform = createServer((request, response) => answer(request, response).catch((error) => response.writeHead(500).end(String(error))));
+  platform = createServer((request, response) =>
+    answer(request, response).catch((error) => response.writeHead(500).end(String(error))),
+  );
   await new Promise((listening) => platform.listen(0, "127.0.0.1", listening));
   place = `http://127.0.0.1:${platform.address().port}`;
   browser = await chromium.launch({
     executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-    args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],
+    args: [
+      "--no-sandbox",
+      "--disable-gpu",
+      "--disable-quic",
+      "--no-first-run",
+      "--disable-background-networking",
+      "--disable-component-update",
+      "--disable-sync",
+    ],
   });
 });
 after(async () => {
@@ -105,7 +139,16 @@ async function accessible(page) {
     await page.evaluate(axe + ";0");
     const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations"] }));
     const serious = violations.filter(({ impact }) => impact === "serious" || impact === "critical");
-    assert.deepEqual(serious.map(({ id, nodes }) => `${page.url()} ${id}: ${nodes.map((node) => node.html).slice(0, 3).join(" ")}`), []);
+    assert.deepEqual(
+      serious.map(
+        ({ id, nodes }) =>
+          `${page.url()} ${id}: ${nodes
+            .map((node) => node.html)
+            .slice(0, 3)
+            .join(" ")}`,
+      ),
+      [],
+    );
   }
 }
 
@@ -115,7 +158,15 @@ test("a course of a platform, from its registration to a link in it", async () =
   await admin.page.getByRole("button", { name: "Sign in" }).click();
   await admin.page.goto(`${address}/admin`);
   const form = admin.page.locator("form[action='/admin/platforms']");
-  for (const [label, value] of [["Name here", "lms"], ["Issuer", place], ["Client ID", "client"], ["Authentication request", `${place}/auth`], ["Access token", `${place}/token`], ["Public keyset", `${place}/keys`], ["Deployment", "1"]]) {
+  for (const [label, value] of [
+    ["Name here", "lms"],
+    ["Issuer", place],
+    ["Client ID", "client"],
+    ["Authentication request", `${place}/auth`],
+    ["Access token", `${place}/token`],
+    ["Public keyset", `${place}/keys`],
+    ["Deployment", "1"],
+  ]) {
     await form.getByLabel(label).fill(value);
   }
   await form.getByRole("button").click();
@@ -160,10 +211,16 @@ test("a course of a platform, from its registration to a link in it", async () =
 
   // A link that is chosen goes back as a form to the platform, signed by the server.
   visit = {
-    subject: "teacher-1", name: "Tea Cher", role: "Instructor",
+    subject: "teacher-1",
+    name: "Tea Cher",
+    role: "Instructor",
     more: {
       [`${CLAIM}/message_type`]: "LtiDeepLinkingRequest",
-      [`${LINKING}/deep_linking_settings`]: { deep_link_return_url: `${place}/return`, accept_types: ["ltiResourceLink"], data: "kept" },
+      [`${LINKING}/deep_linking_settings`]: {
+        deep_link_return_url: `${place}/return`,
+        accept_types: ["ltiResourceLink"],
+        data: "kept",
+      },
     },
   };
   await teacher.page.goto(`${place}/open`);

@@ -24,9 +24,21 @@ function report(name, { traceName = `${name}.bin`, cut = null } = {}) {
   const [scene, mistake] = CASES[name];
   const trace = join(folder, traceName);
   const html = join(folder, `${name}.html`);
-  execFileSync(join(programs, "fosssim-sample"), [...(mistake ? ["--mistake", mistake] : []), "-s", join(root, "assets/t2m2", `${scene}.xml`), "-d", "0", "-o", trace]);
+  execFileSync(join(programs, "fosssim-sample"), [
+    ...(mistake ? ["--mistake", mistake] : []),
+    "-s",
+    join(root, "assets/t2m2", `${scene}.xml`),
+    "-d",
+    "0",
+    "-o",
+    trace,
+  ]);
   if (cut) execFileSync("truncate", ["-s", String(cut), trace]);
-  const run = spawnSync(join(programs, "fosssim-oracle"), ["check", join(root, "assets/t2m2", `${scene}.xml`), trace, "--format", "html", "--output", html], { encoding: "utf8" });
+  const run = spawnSync(
+    join(programs, "fosssim-oracle"),
+    ["check", join(root, "assets/t2m2", `${scene}.xml`), trace, "--format", "html", "--output", html],
+    { encoding: "utf8" },
+  );
   assert.ok(run.status === 0 || run.status === 1, run.stderr);
   return html;
 }
@@ -59,7 +71,8 @@ for (const name of Object.keys(CASES)) {
 test("without script the essentials are there", async () => {
   const { page, close } = await open(report("polynomial"), { script: false });
   const text = await page.locator("main").innerText();
-  for (const words of [/wrong answer/, /Likely mistake/, /Where it goes wrong first/, /differs/, /needs JavaScript/]) assert.match(text, words);
+  for (const words of [/wrong answer/, /Likely mistake/, /Where it goes wrong first/, /differs/, /needs JavaScript/])
+    assert.match(text, words);
   assert.ok((await page.locator("figure svg").count()) >= 1);
   await close();
 });
@@ -95,8 +108,13 @@ test("a wrong failsafe is found by keyboard", async () => {
 
 test("the picture stands in the first screen, near the difference, and no width is too small", async () => {
   const { page, complaints, close } = await open(report("missed"));
-  const top = () => page.locator(".viewer canvas.picture").evaluate((canvas) => canvas.getBoundingClientRect().top + scrollY);
-  for (const [width, height] of [[1440, 900], [1024, 768], [390, 844]]) {
+  const top = () =>
+    page.locator(".viewer canvas.picture").evaluate((canvas) => canvas.getBoundingClientRect().top + scrollY);
+  for (const [width, height] of [
+    [1440, 900],
+    [1024, 768],
+    [390, 844],
+  ]) {
     await page.setViewportSize({ width, height });
     // So does the sentence that says what is wrong in the step.
     const said = await page.locator(".say").evaluate((say) => say.getBoundingClientRect().top + scrollY);
@@ -125,7 +143,8 @@ test("the picture stands in the first screen, near the difference, and no width 
   await page.keyboard.press("z");
   assert.ok((await picture()) === near);
   // A pointer drags along the timeline; what is shown stands under it, and keys go on from there.
-  const strip = await page.locator("canvas.strip").boundingBox(), steps = Number(await page.locator(".stepbox").getAttribute("max"));
+  const strip = await page.locator("canvas.strip").boundingBox(),
+    steps = Number(await page.locator(".stepbox").getAttribute("max"));
   const over = (step) => [strip.x + (strip.width * (step - 0.5)) / steps, strip.y + 10];
   await page.mouse.move(...over(2));
   await page.mouse.down();
@@ -161,9 +180,16 @@ test("letters of charts are no smaller on a phone", async () => {
   for (const width of [1440, 390]) {
     await page.setViewportSize({ width, height: 844 });
     // Nothing is scrolled out of sight.
-    const cut = await page.evaluate(() => [...document.querySelectorAll("figure, .scroll, .bar")].filter((box) => box.scrollWidth > box.clientWidth + 1).map((box) => box.outerHTML.slice(0, 120)));
+    const cut = await page.evaluate(() =>
+      [...document.querySelectorAll("figure, .scroll, .bar")]
+        .filter((box) => box.scrollWidth > box.clientWidth + 1)
+        .map((box) => box.outerHTML.slice(0, 120)),
+    );
     assert.deepEqual(cut, [], `${width}`);
-    const size = await page.locator("figure .fp text").first().evaluate((text) => text.getBoundingClientRect().height);
+    const size = await page
+      .locator("figure .fp text")
+      .first()
+      .evaluate((text) => text.getBoundingClientRect().height);
     assert.ok(size > 9 && size < 20, `${width}: ${size}`);
   }
   await close();
@@ -173,7 +199,10 @@ test("a step whose impulses are wrong opens after its impulses, where its end wo
   const { page, complaints, close } = await open(report("impulses"));
   const after = page.getByRole("checkbox", { name: "after the impulses" });
   assert.ok(await after.isChecked());
-  assert.match(await page.locator(".say").innerText(), /wrong by itself, and shown after its impulses\. The furthest particle is 0\.\d+ from where it should be/);
+  assert.match(
+    await page.locator(".say").innerText(),
+    /wrong by itself, and shown after its impulses\. The furthest particle is 0\.\d+ from where it should be/,
+  );
   await after.uncheck();
   assert.match(await page.locator(".say").innerText(), /Every position is the same/);
   assert.deepEqual(complaints, []);
@@ -192,7 +221,10 @@ test("the picture, its table and the plots show the same moment", async () => {
   assert.match(await page.getByText(/^Positions after step/).innerText(), /Positions after step \d+/);
   const step = Number(await page.locator(".stepbox").inputValue());
   const place = await page.locator("figure[data-plot] svg .cursor").first().getAttribute("x1");
-  const [left, right, steps] = await page.locator("figure[data-plot]").first().evaluate((figure) => [Number(figure.dataset.left), Number(figure.dataset.right), Number(figure.dataset.steps)]);
+  const [left, right, steps] = await page
+    .locator("figure[data-plot]")
+    .first()
+    .evaluate((figure) => [Number(figure.dataset.left), Number(figure.dataset.right), Number(figure.dataset.steps)]);
   assert.ok(Math.abs(Number(place) - (left + ((step - 1) / (steps - 1)) * (right - left))) < 1e-6);
   await close();
 });
@@ -205,7 +237,9 @@ test("a pair is chosen, its numbers are exact, and a command line reproduces it"
   const numbers = await page.locator(".numbers").innerText();
   assert.match(numbers, /0x[0-9a-f]{16}/);
   const command = await page.locator(".numbers code").first().innerText();
-  const run = spawnSync("sh", ["-c", command.replace(/^fosssim-oracle/, `'${join(programs, "fosssim-oracle")}'`)], { encoding: "utf8" });
+  const run = spawnSync("sh", ["-c", command.replace(/^fosssim-oracle/, `'${join(programs, "fosssim-oracle")}'`)], {
+    encoding: "utf8",
+  });
   assert.equal(run.status, 0, run.stderr);
   assert.match(run.stdout, /overlap/);
   await close();
@@ -221,7 +255,10 @@ test("a pair that is left out lights up, is selected, and is told with its calls
   await page.locator(".lights button").nth(1).click();
   assert.match(await page.locator(".numbers h4").innerText(), /particle 0 - particle 2/);
   // Its curves are on the page, with nothing beside them.
-  assert.match(await page.locator("section[data-pair]").first().innerText(), /Your trace has logged nothing for this pair/);
+  assert.match(
+    await page.locator("section[data-pair]").first().innerText(),
+    /Your trace has logged nothing for this pair/,
+  );
   assert.deepEqual(complaints, []);
   await close();
 });
@@ -249,9 +286,15 @@ test("a link leads to a moment", async () => {
 });
 
 test("a motion that is too large is rounded, and the page says so", async (t) => {
-  const bodies = [...Array(180).keys()].map((k) => `<particle m="1" px="${k % 15}.1${k}" py="${Math.floor(k / 15)}.2${k}" vx="${Math.sin(k)}" vy="${Math.cos(k)}" fixed="0" radius="0.1"/>`);
-  const scene = (gravity) => `<scene><duration time="8"/><integrator type="symplectic-euler" dt="0.01"/>${bodies.join("\n")}<simplegravity fx="0" fy="${gravity}"/></scene>`;
-  const [right, wrong, trace, html] = ["large.xml", "other.xml", "large.bin", "large.html"].map((name) => join(folder, name));
+  const bodies = [...Array(180).keys()].map(
+    (k) =>
+      `<particle m="1" px="${k % 15}.1${k}" py="${Math.floor(k / 15)}.2${k}" vx="${Math.sin(k)}" vy="${Math.cos(k)}" fixed="0" radius="0.1"/>`,
+  );
+  const scene = (gravity) =>
+    `<scene><duration time="8"/><integrator type="symplectic-euler" dt="0.01"/>${bodies.join("\n")}<simplegravity fx="0" fy="${gravity}"/></scene>`;
+  const [right, wrong, trace, html] = ["large.xml", "other.xml", "large.bin", "large.html"].map((name) =>
+    join(folder, name),
+  );
   writeFileSync(right, scene(-1));
   writeFileSync(wrong, scene(-1.001));
   execFileSync(join(programs, "fosssim-sample"), ["-s", wrong, "-d", "0", "-o", trace]);
@@ -259,13 +302,21 @@ test("a motion that is too large is rounded, and the page says so", async (t) =>
   assert.ok(statSync(html).size < 3_000_000, `${statSync(html).size}`);
   t.diagnostic(`180 bodies, 800 steps: ${statSync(html).size} bytes`);
   const { page, complaints, close } = await open(html);
-  assert.match(await page.locator(".viewer .hint").first().innerText(), /too large to be here to the last bit: positions are rounded to .* Exact are the records around these steps: 0, 1/);
+  assert.match(
+    await page.locator(".viewer .hint").first().innerText(),
+    /too large to be here to the last bit: positions are rounded to .* Exact are the records around these steps: 0, 1/,
+  );
   // What is looked at is exact, and what is far from it near enough.
-  assert.match(await page.locator(".say").innerText(), /Step 1 of 800 is wrong by itself\. The furthest particle is 1e-7 from where it should be/);
+  assert.match(
+    await page.locator(".say").innerText(),
+    /Step 1 of 800 is wrong by itself\. The furthest particle is 1e-7 from where it should be/,
+  );
   await page.locator(".stepbox").fill("800");
   await page.locator(".stepbox").press("Enter");
   // Half of 0.001 times 8 squared.
-  const furthest = Number((await page.locator(".say").innerText()).match(/furthest particle is ([\d.]+) from the reference/)[1]);
+  const furthest = Number(
+    (await page.locator(".say").innerText()).match(/furthest particle is ([\d.]+) from the reference/)[1],
+  );
   assert.ok(Math.abs(furthest - 0.032) < 0.001, `${furthest}`);
   assert.deepEqual(complaints, []);
   await close();
@@ -302,12 +353,28 @@ test("who asks for little motion gets a step a second", async () => {
 
 test("what is copied as a scene shows the same mistake when it is run", async () => {
   const { page, complaints, close } = await open(report("failsafe"));
-  await page.evaluate(() => { window.copied = ""; document.execCommand = () => { window.copied = document.activeElement.value ?? ""; return true; }; Object.defineProperty(navigator, "clipboard", { value: undefined }); });
+  await page.evaluate(() => {
+    window.copied = "";
+    document.execCommand = () => {
+      window.copied = document.activeElement.value ?? "";
+      return true;
+    };
+    Object.defineProperty(navigator, "clipboard", { value: undefined });
+  });
   await page.getByRole("button", { name: "Copy as scene" }).click();
   writeFileSync(join(folder, "case.xml"), await page.evaluate(() => window.copied));
   const commands = await page.locator(".numbers code").last().innerText();
   // The command as it stands there, with the sample in the place of the student's program.
-  const run = spawnSync("sh", ["-c", commands.replace("./FOSSSim", `'${join(programs, "fosssim-sample")}' --mistake failsafe-angular-overwritten`).replace("fosssim-oracle", `'${join(programs, "fosssim-oracle")}'`)], { encoding: "utf8", cwd: folder });
+  const run = spawnSync(
+    "sh",
+    [
+      "-c",
+      commands
+        .replace("./FOSSSim", `'${join(programs, "fosssim-sample")}' --mistake failsafe-angular-overwritten`)
+        .replace("fosssim-oracle", `'${join(programs, "fosssim-oracle")}'`),
+    ],
+    { encoding: "utf8", cwd: folder },
+  );
   assert.equal(run.status, 1, run.stdout + run.stderr);
   assert.match(run.stdout, /The angular momentum is overwritten/);
   assert.deepEqual(complaints, []);
@@ -323,7 +390,9 @@ test("a trace that is cut opens at its last step, and says why it ends", async (
 });
 
 test("hostile names are text, and a damaged trace has its page", async () => {
-  const { page, complaints, close } = await open(report("contact", { traceName: "<img src=x onerror=alert(1)>'\"\u202e.bin", cut: 1501 }));
+  const { page, complaints, close } = await open(
+    report("contact", { traceName: "<img src=x onerror=alert(1)>'\"\u202e.bin", cut: 1501 }),
+  );
   page.on("dialog", () => assert.fail("a dialog"));
   assert.equal(await page.locator("img").count(), 0);
   assert.match(await page.locator(".names").innerText(), /<img src=x onerror=alert\(1\)>/);
@@ -335,15 +404,28 @@ test("hostile names are text, and a damaged trace has its page", async () => {
 test("a picture is saved as a drawing, and bodies as a scene that has the same case", async () => {
   const { page, complaints, close } = await open(report("contact"));
   await page.locator("details.save summary").click();
-  const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "SVG" }).click()]);
+  const [download] = await Promise.all([
+    page.waitForEvent("download"),
+    page.getByRole("button", { name: "SVG" }).click(),
+  ]);
   assert.match(download.suggestedFilename(), /^step-\d+\.svg$/);
   const svg = readFileSync(await download.path(), "utf8");
   assert.match(svg, /^<svg xmlns="http:\/\/www.w3.org\/2000\/svg" viewBox="0 0 960 540"/);
   assert.ok((svg.match(/<path/g) ?? []).length > 8 && !svg.includes("NaN"), svg);
   // A contact is chosen by a click; its numbers are there, and its bodies are a scene that the program takes.
   const canvas = page.locator(".viewer canvas.picture");
-  await page.evaluate(() => { window.copied = ""; document.execCommand = () => { window.copied = document.activeElement.value ?? ""; return true; }; Object.defineProperty(navigator, "clipboard", { value: undefined }); });
-  const spot = await canvas.evaluate((canvas) => { const box = canvas.getBoundingClientRect(); return [box.width / canvas.width, box.height / canvas.height]; });
+  await page.evaluate(() => {
+    window.copied = "";
+    document.execCommand = () => {
+      window.copied = document.activeElement.value ?? "";
+      return true;
+    };
+    Object.defineProperty(navigator, "clipboard", { value: undefined });
+  });
+  const spot = await canvas.evaluate((canvas) => {
+    const box = canvas.getBoundingClientRect();
+    return [box.width / canvas.width, box.height / canvas.height];
+  });
   const contact = svg.match(/<path d="M([\d.]+) ([\d.]+)h12v12h-12Z"/);
   assert.ok(contact, svg);
   await canvas.click({ position: { x: (Number(contact[1]) + 6) * spot[0], y: (Number(contact[2]) + 6) * spot[1] } });
@@ -353,12 +435,18 @@ test("a picture is saved as a drawing, and bodies as a scene that has the same c
   const scene = await page.evaluate(() => window.copied);
   const file = join(folder, "case.xml");
   writeFileSync(file, scene);
-  const run = spawnSync(join(programs, "fosssim-oracle"), ["detect", "--scene", file, "--step", "1", "--pair", "pp:0,1", "--format", "json"], { encoding: "utf8" });
+  const run = spawnSync(
+    join(programs, "fosssim-oracle"),
+    ["detect", "--scene", file, "--step", "1", "--pair", "pp:0,1", "--format", "json"],
+    { encoding: "utf8" },
+  );
   assert.equal(run.status, 0, `${run.stderr}\n${scene}`);
   // The contact comes at the same time there.
   const { answer } = JSON.parse(run.stdout);
   await page.locator("summary", { hasText: "To the last bit" }).click();
-  const told = (await page.getByRole("region", { name: "Exact numbers" }).innerText()).match(/contact's time of impact\s+([\d.e-]+)/);
+  const told = (await page.getByRole("region", { name: "Exact numbers" }).innerText()).match(
+    /contact's time of impact\s+([\d.e-]+)/,
+  );
   assert.ok(answer.collides && Math.abs(answer.time - Number(told[1])) < 1e-9, `${run.stdout}\n${told}`);
   assert.deepEqual(complaints, []);
   await close();

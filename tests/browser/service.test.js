@@ -22,16 +22,32 @@ before(async () => {
   for (const name of ["fosssim-oracle", "fosssim-server"]) linkSync(join(programs, name), join(folder, name));
   for (const name of ["upload", "suite"]) mkdirSync(join(folder, name));
   copyFileSync(join(programs, "fosssim-sample"), join(folder, "upload/fosssim-sample.pp-contact-reversed"));
-  const suite = 'schema = 1\nname = "One"\nhints = "full"\n[[group]]\nname = "Contacts"\nscenes = ["asset:ContinuousTimeTests/head-on-equal*"]\npoints = 10\n';
+  const suite =
+    'schema = 1\nname = "One"\nhints = "full"\n[[group]]\nname = "Contacts"\nscenes = ["asset:ContinuousTimeTests/head-on-equal*"]\npoints = 10\n';
   writeFileSync(join(folder, "suite/suite.toml"), suite);
-  assert.equal(spawnSync("tar", ["-C", join(folder, "suite"), "-czf", join(folder, "suite.tar.gz"), "suite.toml"]).status, 0);
-  server = spawn(join(folder, "fosssim-oracle"), ["serve", "--data", join(folder, "data"), "--listen", "127.0.0.1:0", "--workers", "1"], { stdio: ["ignore", "pipe", "inherit"] });
+  assert.equal(
+    spawnSync("tar", ["-C", join(folder, "suite"), "-czf", join(folder, "suite.tar.gz"), "suite.toml"]).status,
+    0,
+  );
+  server = spawn(
+    join(folder, "fosssim-oracle"),
+    ["serve", "--data", join(folder, "data"), "--listen", "127.0.0.1:0", "--workers", "1"],
+    { stdio: ["ignore", "pipe", "inherit"] },
+  );
   const lines = createInterface({ input: server.stdout })[Symbol.asyncIterator]();
   address = (await lines.next()).value.split(" ").at(-1);
   link = (await lines.next()).value.split(" ").at(-1);
   browser = await chromium.launch({
     executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-    args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],
+    args: [
+      "--no-sandbox",
+      "--disable-gpu",
+      "--disable-quic",
+      "--no-first-run",
+      "--disable-background-networking",
+      "--disable-component-update",
+      "--disable-sync",
+    ],
   });
 });
 after(async () => {
@@ -46,13 +62,23 @@ after(async () => {
 
 // Somebody's browser: complains about whatever a page complains about, and about requests to others.
 async function person({ script = true } = {}) {
-  const context = await browser.newContext({ javaScriptEnabled: script, timezoneId: "America/St_Johns", viewport: { width: 1200, height: 1000 } });
+  const context = await browser.newContext({
+    javaScriptEnabled: script,
+    timezoneId: "America/St_Johns",
+    viewport: { width: 1200, height: 1000 },
+  });
   const page = await context.newPage();
   page.setDefaultTimeout(120_000);
   const complaints = [];
   page.on("console", (message) => message.type() === "error" && complaints.push(message.text()));
   page.on("pageerror", (error) => complaints.push(String(error)));
-  page.on("request", (request) => request.url().startsWith(address) || /^(data|blob):/.test(request.url()) || complaints.push(`request ${request.url()}`));
+  page.on(
+    "request",
+    (request) =>
+      request.url().startsWith(address) ||
+      /^(data|blob):/.test(request.url()) ||
+      complaints.push(`request ${request.url()}`),
+  );
   return { page, complaints, close: () => context.close() };
 }
 
@@ -69,7 +95,16 @@ async function accessible(page) {
     await page.evaluate(axe + ";0");
     const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations"] }));
     const serious = violations.filter(({ impact }) => impact === "serious" || impact === "critical");
-    assert.deepEqual(serious.map(({ id, nodes }) => `${page.url()} ${id}: ${nodes.map((node) => node.html).slice(0, 3).join(" ")}`), []);
+    assert.deepEqual(
+      serious.map(
+        ({ id, nodes }) =>
+          `${page.url()} ${id}: ${nodes
+            .map((node) => node.html)
+            .slice(0, 3)
+            .join(" ")}`,
+      ),
+      [],
+    );
   }
 }
 
@@ -136,13 +171,19 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
 
   // The course says how it stands.
   await student.page.goto(`${address}/c/physics`);
-  assert.match(await student.page.getByRole("row", { name: /Milestone one/ }).innerText(), /wrong answer\s+Hand in\s+: Milestone one\s+0 \/ 10\s+1\s+never/);
+  assert.match(
+    await student.page.getByRole("row", { name: /Milestone one/ }).innerText(),
+    /wrong answer\s+Hand in\s+: Milestone one\s+0 \/ 10\s+1\s+never/,
+  );
   await accessible(student.page);
   for (const width of [1440, 390]) {
     await student.page.setViewportSize({ width, height: 900 });
     for (const place of ["", "/a/m1", "/s/1", "/s/1/beside"]) {
       await student.page.goto(`${address}/c/physics${place}`);
-      assert.ok((await student.page.evaluate(() => document.documentElement.scrollWidth)) <= width, `${place} at ${width}`);
+      assert.ok(
+        (await student.page.evaluate(() => document.documentElement.scrollWidth)) <= width,
+        `${place} at ${width}`,
+      );
     }
   }
 
@@ -156,8 +197,17 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await page.goto(`${address}/c/physics/a/m1/class`);
   await page.getByRole("link", { name: "Submission 1 of ada" }).waitFor();
   // What is likely wrong, and in which scenes.
-  assert.match(await page.getByRole("row", { name: /Submission 1 of ada/ }).innerText(), /0 of \d+ scenes accepted; \S/);
-  assert.match(await page.getByRole("row", { name: /Submission 1 of ada/ }).getByRole("img").getAttribute("aria-label"), /scenes? (is|are) wrong/);
+  assert.match(
+    await page.getByRole("row", { name: /Submission 1 of ada/ }).innerText(),
+    /0 of \d+ scenes accepted; \S/,
+  );
+  assert.match(
+    await page
+      .getByRole("row", { name: /Submission 1 of ada/ })
+      .getByRole("img")
+      .getAttribute("aria-label"),
+    /scenes? (is|are) wrong/,
+  );
   await accessible(page);
   await page.getByLabel("Reason, as students will read it").fill("Nobody should fail this");
   await page.getByRole("button", { name: "Grade all again" }).click();
@@ -170,14 +220,33 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await student.page.goto(`${address}/c/physics/s/1`);
   await student.page.getByText("How the grade came to be").click();
   await student.page.getByText("Nobody should fail this").waitFor();
-  const further = ["members", "members/import", "a/m1/students/ada", "a/m1/settings", "a/m1/remove", "remove", "s/1", "s/1/beside?login=ada"].map((place) => `/c/physics/${place}`);
-  for (const place of ["/c/physics/queue", "/c/physics/audit", "/account", "/c/physics", "/admin/accounts/ada/remove", ...further]) {
+  const further = [
+    "members",
+    "members/import",
+    "a/m1/students/ada",
+    "a/m1/settings",
+    "a/m1/remove",
+    "remove",
+    "s/1",
+    "s/1/beside?login=ada",
+  ].map((place) => `/c/physics/${place}`);
+  for (const place of [
+    "/c/physics/queue",
+    "/c/physics/audit",
+    "/account",
+    "/c/physics",
+    "/admin/accounts/ada/remove",
+    ...further,
+  ]) {
     await page.goto(address + place);
     await accessible(page);
   }
   // A date is typed in one's own zone, and kept as a moment.
   await page.goto(`${address}/c/physics/a/m1/settings`);
-  assert.equal(await page.locator("#due-zone-name").innerText(), await page.evaluate(() => Intl.DateTimeFormat().resolvedOptions().timeZone));
+  assert.equal(
+    await page.locator("#due-zone-name").innerText(),
+    await page.evaluate(() => Intl.DateTimeFormat().resolvedOptions().timeZone),
+  );
   await page.getByLabel(/^Due \(/).fill("2096-07-01T23:59");
   await page.getByRole("button", { name: "Save" }).click();
   const due = await page.locator("time[datetime]").first().getAttribute("datetime");
@@ -191,33 +260,42 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
 });
 
 // What the README promises of two commands and an upload, with the programs in one folder as a build leaves them.
-test("the example course takes the program with a mistake that comes with it", { skip: !sandbox && "no sandbox here" }, async () => {
-  const place = mkdtempSync(join(programs, "example-"));
-  for (const name of ["fosssim-oracle", "fosssim-server", "fosssim-sample"]) linkSync(join(programs, name), join(place, name));
-  const example = spawn(join(place, "fosssim-oracle"), ["serve", "--data", join(place, "course"), "--listen", "127.0.0.1:0", "--example"], { stdio: ["ignore", "pipe", "inherit"] });
-  try {
-    const lines = createInterface({ input: example.stdout })[Symbol.asyncIterator]();
-    const word = async () => (await lines.next()).value.split(" ").at(-1);
-    const [home, , welcome, flawed] = [await word(), await word(), await word(), await word()];
-    const context = await browser.newContext();
-    const page = await context.newPage();
-    page.setDefaultTimeout(120_000);
-    assert.ok(welcome.startsWith(home), welcome);
-    await signIn(page, welcome);
-    await page.getByRole("link", { name: "Example" }).click();
-    await page.getByRole("link", { name: "Milestone one", exact: true }).click();
-    await page.locator("#file").setInputFiles(flawed);
-    await page.getByRole("button", { name: "Hand in" }).click();
-    await page.locator("iframe.report").waitFor();
-    assert.equal(await page.locator("#result").innerText(), "wrong answer");
-    await page.frameLocator("iframe.report").locator("html[data-ready]").waitFor({ state: "attached" });
-    assert.match(await page.frameLocator("iframe.report").locator("body").innerText(), /Likely mistake/i);
-    await accessible(page);
-    await context.close();
-  } finally {
-    const ended = new Promise((done) => example.once("exit", done));
-    example.kill("SIGTERM");
-    await ended;
-    rmSync(place, { recursive: true, force: true });
-  }
-});
+test(
+  "the example course takes the program with a mistake that comes with it",
+  { skip: !sandbox && "no sandbox here" },
+  async () => {
+    const place = mkdtempSync(join(programs, "example-"));
+    for (const name of ["fosssim-oracle", "fosssim-server", "fosssim-sample"])
+      linkSync(join(programs, name), join(place, name));
+    const example = spawn(
+      join(place, "fosssim-oracle"),
+      ["serve", "--data", join(place, "course"), "--listen", "127.0.0.1:0", "--example"],
+      { stdio: ["ignore", "pipe", "inherit"] },
+    );
+    try {
+      const lines = createInterface({ input: example.stdout })[Symbol.asyncIterator]();
+      const word = async () => (await lines.next()).value.split(" ").at(-1);
+      const [home, , welcome, flawed] = [await word(), await word(), await word(), await word()];
+      const context = await browser.newContext();
+      const page = await context.newPage();
+      page.setDefaultTimeout(120_000);
+      assert.ok(welcome.startsWith(home), welcome);
+      await signIn(page, welcome);
+      await page.getByRole("link", { name: "Example" }).click();
+      await page.getByRole("link", { name: "Milestone one", exact: true }).click();
+      await page.locator("#file").setInputFiles(flawed);
+      await page.getByRole("button", { name: "Hand in" }).click();
+      await page.locator("iframe.report").waitFor();
+      assert.equal(await page.locator("#result").innerText(), "wrong answer");
+      await page.frameLocator("iframe.report").locator("html[data-ready]").waitFor({ state: "attached" });
+      assert.match(await page.frameLocator("iframe.report").locator("body").innerText(), /Likely mistake/i);
+      await accessible(page);
+      await context.close();
+    } finally {
+      const ended = new Promise((done) => example.once("exit", done));
+      example.kill("SIGTERM");
+      await ended;
+      rmSync(place, { recursive: true, force: true });
+    }
+  },
+);

@@ -2,7 +2,10 @@
 // The list holds what its reader has chosen; with its first choice each trace is recognised anew. `given` comes with a trace.
 const check = { oracle: new Oracle(), trace: null, given: null, others: [], own: null, report: null, run: 0 };
 // The strict reader points at a place of its excerpt, which takes letters of one width.
-const say = (words, look = "") => { $("said").textContent = words; $("said").className = words.includes("\n") ? `${look} excerpt` : look; };
+const say = (words, look = "") => {
+  $("said").textContent = words;
+  $("said").className = words.includes("\n") ? `${look} excerpt` : look;
+};
 
 // A dropped file that may be read again later: the handle sees what was written since. Browsers unpack gzip themselves.
 async function freshFile(item) {
@@ -18,7 +21,8 @@ async function freshFile(item) {
 const bare = (name) => name.replace(/\.bin(\.(zst|gz))?$/i, "");
 
 async function takeFiles(items, scene = null) {
-  const scenes = items.filter(({ file }) => /\.xml$/i.test(file.name)), traces = items.filter((item) => !scenes.includes(item));
+  const scenes = items.filter(({ file }) => /\.xml$/i.test(file.name)),
+    traces = items.filter((item) => !scenes.includes(item));
   const last = traces.at(-1);
   if (last) {
     Object.assign(check, { trace: last, given: scene, others: traces.slice(0, -1).map(({ file }) => file.name) });
@@ -37,7 +41,7 @@ async function takeFiles(items, scene = null) {
 async function takeScene({ file }) {
   check.own = { name: file.name, xml: new Uint8Array(await file.arrayBuffer()) };
   let own = $("scene").querySelector("option.own");
-  if (!own) $("scene").options[0].after(own = el("option", { class: "own", value: "own" }));
+  if (!own) $("scene").options[0].after((own = el("option", { class: "own", value: "own" })));
   own.textContent = `your file ${file.name}`;
   own.selected = true;
   check.oracle.stop();
@@ -54,15 +58,27 @@ function sceneOf(value) {
 // The scene of a trace, where nobody has chosen it: a trace begins with the state of its scene.
 async function recognised(file) {
   const name = bare(file.name);
-  const own = course?.scenes.findIndex((scene) => scene.name.replace(/\.xml$/, "").split("/").pop() === name) ?? -1;
+  const own =
+    course?.scenes.findIndex(
+      (scene) =>
+        scene.name
+          .replace(/\.xml$/, "")
+          .split("/")
+          .pop() === name,
+    ) ?? -1;
   if (own >= 0) return sceneOf(`course:${own}`);
   const answer = await check.oracle.ask({ do: "recognise" }, { files: [file] });
   if (!answer) return null;
   const { scenes, looks_like } = answer.value;
-  const found = scenes.find((scene) => scene === name || scene.endsWith(`/${name}`)) ?? (scenes.length === 1 ? scenes[0] : null);
+  const found =
+    scenes.find((scene) => scene === name || scene.endsWith(`/${name}`)) ?? (scenes.length === 1 ? scenes[0] : null);
   if (found) return sceneOf(found);
   if (looks_like) throw new Error(`${file.name} is no trace: it ${looks_like}.`);
-  throw new Error(scenes.length ? `The trace begins like those of ${scenes.join(" and ")}: choose its scene, or drop its XML.` : "Which scene is this a trace of? Choose one, or drop its XML.");
+  throw new Error(
+    scenes.length
+      ? `The trace begins like those of ${scenes.join(" and ")}: choose its scene, or drop its XML.`
+      : "Which scene is this a trace of? Choose one, or drop its XML.",
+  );
 }
 
 // The report that was there is one of another trace.
@@ -77,20 +93,27 @@ function failed(error) {
 async function judge() {
   if (!check.trace) return say("Choose a trace first.", "bad");
   check.oracle.stop();
-  const run = ++check.run, started = performance.now(), chosen = $("scene").value;
+  const run = ++check.run,
+    started = performance.now(),
+    chosen = $("scene").value;
   $("bar").hidden = $("stop").hidden = false;
   $("bar").removeAttribute("value");
   say(`Checking ${check.trace.file.name} ...`);
   try {
     const file = await freshFile(check.trace);
-    const scene = chosen ? sceneOf(chosen) : check.given ?? await recognised(file);
+    const scene = chosen ? sceneOf(chosen) : (check.given ?? (await recognised(file)));
     const request = scene && { do: "check", scene: scene.name, trace: file.name, rules: $("rules").value, html: true };
     const progress = (done, all) => {
-      if (done < all) { $("bar").max = all; $("bar").value = done; return; }
+      if (done < all) {
+        $("bar").max = all;
+        $("bar").value = done;
+        return;
+      }
       $("bar").removeAttribute("value");
       say(`Writing the report on ${file.name} ...`);
     };
-    const answer = request && await check.oracle.ask(request, { blobs: scene.xml ? [scene.xml] : [], files: [file], progress });
+    const answer =
+      request && (await check.oracle.ask(request, { blobs: scene.xml ? [scene.xml] : [], files: [file], progress }));
     if (run !== check.run) return;
     if (!answer) return say($("frame").hidden ? "Stopped." : "Stopped. The report is that of the run before.");
     const [json, html] = answer.parts;
@@ -102,8 +125,13 @@ async function judge() {
     if (hadFocus) $("again").focus();
     document.body.classList.toggle("reads", current() === "check");
     const { verdict, accepted, difference } = answer.value;
-    const others = check.others.length ? ` Not checked: ${check.others.join(", ")}. One trace is checked at a time; a folder of them belongs under All traces.` : "";
-    say(`${file.name}: ${verdict}${difference ? ` (${difference})` : ""}, judged in ${((performance.now() - started) / 1000).toFixed(2)} s on this computer.${others}`, accepted ? (difference ? "" : "good") : "bad");
+    const others = check.others.length
+      ? ` Not checked: ${check.others.join(", ")}. One trace is checked at a time; a folder of them belongs under All traces.`
+      : "";
+    say(
+      `${file.name}: ${verdict}${difference ? ` (${difference})` : ""}, judged in ${((performance.now() - started) / 1000).toFixed(2)} s on this computer.${others}`,
+      accepted ? (difference ? "" : "good") : "bad",
+    );
   } catch (error) {
     if (run === check.run) failed(error);
   } finally {
@@ -113,18 +141,40 @@ async function judge() {
 }
 
 choices($("scene"));
-$("scene").addEventListener("change", () => { check.given = null; if (check.trace) judge(); });
-$("rules").addEventListener("change", () => { if (check.report) judge(); });
+$("scene").addEventListener("change", () => {
+  check.given = null;
+  if (check.trace) judge();
+});
+$("rules").addEventListener("change", () => {
+  if (check.report) judge();
+});
 $("judge").addEventListener("click", judge);
 $("again").addEventListener("click", judge);
 $("stop").addEventListener("click", () => check.oracle.stop());
-$("other").addEventListener("click", () => { $("ask").open = true; $("pick").focus(); });
+$("other").addEventListener("click", () => {
+  $("ask").open = true;
+  $("pick").focus();
+});
 $("save-html").addEventListener("click", () => save(`${check.report.name}.html`, check.report.html, "text/html"));
-$("save-json").addEventListener("click", () => save(`${check.report.name}.json`, check.report.json, "application/json"));
-$("pick").addEventListener("change", async ({ target }) => { await takeFiles([...target.files].map((file) => ({ file }))); target.value = ""; });
+$("save-json").addEventListener("click", () =>
+  save(`${check.report.name}.json`, check.report.json, "application/json"),
+);
+$("pick").addEventListener("change", async ({ target }) => {
+  await takeFiles([...target.files].map((file) => ({ file })));
+  target.value = "";
+});
 function readsAgain(event) {
   const writes = /^(input|select|textarea)$/i.test(event.target.tagName ?? "");
-  if (event.key === "r" && !event.ctrlKey && !event.metaKey && !event.altKey && !writes && current() === "check" && check.report) judge();
+  if (
+    event.key === "r" &&
+    !event.ctrlKey &&
+    !event.metaKey &&
+    !event.altKey &&
+    !writes &&
+    current() === "check" &&
+    check.report
+  )
+    judge();
 }
 
 async function dropped(event) {
@@ -133,7 +183,11 @@ async function dropped(event) {
   // Handles have to be asked for before anything is waited for.
   const items = [...event.dataTransfer.items].filter((item) => item.kind === "file");
   const handles = items.map((item) => item.getAsFileSystemHandle?.().catch(() => null));
-  const entries = items.map((item, number) => ({ entry: item.webkitGetAsEntry?.(), file: item.getAsFile(), handle: handles[number] }));
+  const entries = items.map((item, number) => ({
+    entry: item.webkitGetAsEntry?.(),
+    file: item.getAsFile(),
+    handle: handles[number],
+  }));
   if (current() === "try") return tryFile(entries[0]?.file);
   const folder = entries.find(({ entry }) => entry?.isDirectory);
   if (folder || entries.some(({ file }) => /\.toml$/i.test(file?.name ?? ""))) {
@@ -141,7 +195,7 @@ async function dropped(event) {
     const found = [];
     for (const { entry, handle } of entries) {
       const own = await handle;
-      await walk(entry, own, entry?.isDirectory ? "" : entry?.name ?? "", found);
+      await walk(entry, own, entry?.isDirectory ? "" : (entry?.name ?? ""), found);
     }
     return takeFolder(folder?.entry.name ?? marks.name ?? "traces", found);
   }
@@ -154,8 +208,13 @@ async function dropped(event) {
 // Files may be dropped anywhere, also on the report, which is a document of its own; so it is with the key.
 function listens(target) {
   target.addEventListener("keydown", readsAgain);
-  target.addEventListener("dragover", (event) => { event.preventDefault(); document.body.classList.add("drops"); });
-  target.addEventListener("dragleave", (event) => { if (!event.relatedTarget) document.body.classList.remove("drops"); });
+  target.addEventListener("dragover", (event) => {
+    event.preventDefault();
+    document.body.classList.add("drops");
+  });
+  target.addEventListener("dragleave", (event) => {
+    if (!event.relatedTarget) document.body.classList.remove("drops");
+  });
   target.addEventListener("drop", dropped);
 }
 listens(window);

@@ -3,14 +3,21 @@
 function engine(module, host) {
   let why = null;
   const bytes = (at, length) => new Uint8Array(exports.memory.buffer, at, length);
-  const { exports } = new WebAssembly.Instance(module, { page: {
-    read: (file, offset, into, length) => host.read(file, offset, bytes(into, length)),
-    progress: (done, all) => host.progress(done >>> 0, all >>> 0),
-    panicked: (at, length) => { why = new TextDecoder().decode(bytes(at, length).slice()); },
-  } });
+  const { exports } = new WebAssembly.Instance(module, {
+    page: {
+      read: (file, offset, into, length) => host.read(file, offset, bytes(into, length)),
+      progress: (done, all) => host.progress(done >>> 0, all >>> 0),
+      panicked: (at, length) => {
+        why = new TextDecoder().decode(bytes(at, length).slice());
+      },
+    },
+  });
   return (request, ...blobs) => {
     const parts = [new TextEncoder().encode(JSON.stringify(request)), ...blobs];
-    const room = bytes(exports.room(parts.reduce((sum, part) => sum + part.length + 4, 0)), parts.reduce((sum, part) => sum + part.length + 4, 0));
+    const room = bytes(
+      exports.room(parts.reduce((sum, part) => sum + part.length + 4, 0)),
+      parts.reduce((sum, part) => sum + part.length + 4, 0),
+    );
     let at = 0;
     for (const part of parts) {
       new DataView(room.buffer, room.byteOffset + at).setUint32(0, part.length, true);
@@ -21,7 +28,11 @@ function engine(module, host) {
     try {
       begin = exports.answer();
     } catch (error) {
-      throw new Error(why ? `the checker failed: ${why}; please report this` : `the checker failed: ${error.message}; perhaps the browser has too little memory`);
+      throw new Error(
+        why
+          ? `the checker failed: ${why}; please report this`
+          : `the checker failed: ${error.message}; perhaps the browser has too little memory`,
+      );
     }
     const answer = bytes(begin >>> 0, exports.length() >>> 0);
     const view = new DataView(answer.buffer, answer.byteOffset, answer.length);

@@ -1,38 +1,113 @@
 // One pair under the glass: what the reference computes for it, redrawn while it is changed.
 const PAIRS = {
-  pe: { points: [["x1", "the particle"], ["x2", "the edge's first end"], ["x3", "the edge's second end"]], radii: ["the particle", "the edge"] },
-  pp: { points: [["x1", "the first particle"], ["x2", "the second particle"]], radii: ["the first particle", "the second particle"] },
+  pe: {
+    points: [
+      ["x1", "the particle"],
+      ["x2", "the edge's first end"],
+      ["x3", "the edge's second end"],
+    ],
+    radii: ["the particle", "the edge"],
+  },
+  pp: {
+    points: [
+      ["x1", "the first particle"],
+      ["x2", "the second particle"],
+    ],
+    radii: ["the first particle", "the second particle"],
+  },
   ph: { points: [["x1", "the particle"]], radii: ["the particle"], plane: true },
 };
 const PRESETS = {
-  first: { kind: "pe", points: [[3, 1, 4, 1], [5, 9, 2, 6], [5, 3, 5, 8]], radii: [1, 1] },
-  second: { kind: "pe", points: [[1, 4, 1, 4], [2, 1, 3, 5], [6, 2, 3, 7]], radii: [1, 2] },
-  balls: { kind: "pp", points: [[-2, 0, 3, 0.5], [2, 0.3, -3, 0]], radii: [0.5, 0.7] },
-  edge: { kind: "pe", points: [[0, 2, 0.5, -4], [-3, 0, 0, 0.5], [3, 0, 0, -0.5]], radii: [0.4, 0.2] },
+  first: {
+    kind: "pe",
+    points: [
+      [3, 1, 4, 1],
+      [5, 9, 2, 6],
+      [5, 3, 5, 8],
+    ],
+    radii: [1, 1],
+  },
+  second: {
+    kind: "pe",
+    points: [
+      [1, 4, 1, 4],
+      [2, 1, 3, 5],
+      [6, 2, 3, 7],
+    ],
+    radii: [1, 2],
+  },
+  balls: {
+    kind: "pp",
+    points: [
+      [-2, 0, 3, 0.5],
+      [2, 0.3, -3, 0],
+    ],
+    radii: [0.5, 0.7],
+  },
+  edge: {
+    kind: "pe",
+    points: [
+      [0, 2, 0.5, -4],
+      [-3, 0, 0, 0.5],
+      [3, 0, 0, -0.5],
+    ],
+    radii: [0.4, 0.2],
+  },
   plane: { kind: "ph", points: [[0, 2, 1, -3]], radii: [0.5], plane: [0, 0, 0.2, 1] },
 };
 const pair = { oracle: new Oracle(), now: structuredClone(PRESETS.first) };
 
 function controls() {
-  const { kind, points, radii, plane } = pair.now, { points: names, radii: owners } = PAIRS[kind];
+  const { kind, points, radii, plane } = pair.now,
+    { points: names, radii: owners } = PAIRS[kind];
   // A number and a slider of the same value.
   const field = (label, list, index, least) => {
     const value = list[index];
     const number = el("input", { type: "number", step: "any", min: least ?? false, value, "aria-label": label });
-    const slider = el("input", { type: "range", min: least ?? Math.min(-10, value - 10), max: Math.max(10, value + 10), step: "0.05", "aria-label": `${label}, slider` });
+    const slider = el("input", {
+      type: "range",
+      min: least ?? Math.min(-10, value - 10),
+      max: Math.max(10, value + 10),
+      step: "0.05",
+      "aria-label": `${label}, slider`,
+    });
     slider.value = value;
-    pair.fields.push(() => { number.value = slider.value = list[index]; });
-    const change = (from, other) => () => { if (from.value === "" || !Number.isFinite(from.valueAsNumber)) return; list[index] = from.valueAsNumber; other.value = from.value; look(); };
+    pair.fields.push(() => {
+      number.value = slider.value = list[index];
+    });
+    const change = (from, other) => () => {
+      if (from.value === "" || !Number.isFinite(from.valueAsNumber)) return;
+      list[index] = from.valueAsNumber;
+      other.value = from.value;
+      look();
+    };
     number.addEventListener("input", change(number, slider));
     slider.addEventListener("input", change(slider, number));
-    return el("div", { class: "field" }, el("span", { "aria-hidden": "true" }, label.replace(/^.*: /, "")), number, slider);
+    return el(
+      "div",
+      { class: "field" },
+      el("span", { "aria-hidden": "true" }, label.replace(/^.*: /, "")),
+      number,
+      slider,
+    );
   };
   const group = (name, ...fields) => el("fieldset", {}, el("legend", {}, name), ...fields);
   const parts = ["x", "y", "dx", "dy"];
   pair.fields = [];
   $("numbers").replaceChildren(
-    ...names.map(([short, name], point) => group(`${short}: ${name}`, ...parts.map((part, index) => field(`${short}: ${part}`, points[point], index)))),
-    ...(plane ? [group("the half-plane", ...["point x", "point y", "normal x", "normal y"].map((name, index) => field(`half-plane: ${name}`, plane, index)))] : []),
+    ...names.map(([short, name], point) =>
+      group(`${short}: ${name}`, ...parts.map((part, index) => field(`${short}: ${part}`, points[point], index))),
+    ),
+    ...(plane
+      ? [
+          group(
+            "the half-plane",
+            ...["point x", "point y", "normal x", "normal y"].map((name, index) =>
+              field(`half-plane: ${name}`, plane, index),
+            ),
+          ),
+        ]
+      : []),
     group("radii", ...owners.map((owner, index) => field(`radius: ${owner}`, radii, index, 0))),
   );
 }
@@ -40,37 +115,102 @@ function controls() {
 // The pair at the start (lines) and at the end (dashes), with arrows between.
 function sketch() {
   const { kind, points, radii, plane } = pair.now;
-  const all = points.flatMap(([x, y, dx, dy], point) => { const r = kind === "pe" && point > 0 ? radii[1] : radii[Math.min(point, radii.length - 1)]; return [[x - r, y - r], [x + r, y + r], [x + dx - r, y + dy - r], [x + dx + r, y + dy + r]]; });
+  const all = points.flatMap(([x, y, dx, dy], point) => {
+    const r = kind === "pe" && point > 0 ? radii[1] : radii[Math.min(point, radii.length - 1)];
+    return [
+      [x - r, y - r],
+      [x + r, y + r],
+      [x + dx - r, y + dy - r],
+      [x + dx + r, y + dy + r],
+    ];
+  });
   if (plane) all.push([plane[0], plane[1]]);
-  const low = [0, 1].map((axis) => Math.min(...all.map((one) => one[axis]))), high = [0, 1].map((axis) => Math.max(...all.map((one) => one[axis])));
+  const low = [0, 1].map((axis) => Math.min(...all.map((one) => one[axis]))),
+    high = [0, 1].map((axis) => Math.max(...all.map((one) => one[axis])));
   // While a point is held the paper stays where it is.
-  pair.view = pair.held ? pair.view : { size: Math.max(high[0] - low[0], (high[1] - low[1]) * 1.5, 1e-9) * 1.1, middle: [0, 1].map((axis) => (low[axis] + high[axis]) / 2) };
+  pair.view = pair.held
+    ? pair.view
+    : {
+        size: Math.max(high[0] - low[0], (high[1] - low[1]) * 1.5, 1e-9) * 1.1,
+        middle: [0, 1].map((axis) => (low[axis] + high[axis]) / 2),
+      };
   const { size, middle } = pair.view;
-  const X = (x) => 300 + ((x - middle[0]) / size) * 600, Y = (y) => 200 - ((y - middle[1]) / size) * 600, R = (r) => (r / size) * 600;
-  const svg = (tag, attributes) => { const node = document.createElementNS("http://www.w3.org/2000/svg", tag); for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value); return node; };
+  const X = (x) => 300 + ((x - middle[0]) / size) * 600,
+    Y = (y) => 200 - ((y - middle[1]) / size) * 600,
+    R = (r) => (r / size) * 600;
+  const svg = (tag, attributes) => {
+    const node = document.createElementNS("http://www.w3.org/2000/svg", tag);
+    for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
+    return node;
+  };
   const shapes = [];
   if (plane) {
-    const [x, y, nx, ny] = plane, length = Math.hypot(nx, ny) || 1, [tx, ty] = [-ny / length * size, nx / length * size], [dx, dy] = [-nx / length * size, -ny / length * size];
-    shapes.push(svg("path", { class: "ground", d: `M${X(x - tx)} ${Y(y - ty)}L${X(x + tx)} ${Y(y + ty)}L${X(x + tx + dx)} ${Y(y + ty + dy)}L${X(x - tx + dx)} ${Y(y - ty + dy)}Z` }));
+    const [x, y, nx, ny] = plane,
+      length = Math.hypot(nx, ny) || 1,
+      [tx, ty] = [(-ny / length) * size, (nx / length) * size],
+      [dx, dy] = [(-nx / length) * size, (-ny / length) * size];
+    shapes.push(
+      svg("path", {
+        class: "ground",
+        d: `M${X(x - tx)} ${Y(y - ty)}L${X(x + tx)} ${Y(y + ty)}L${X(x + tx + dx)} ${Y(y + ty + dy)}L${X(x - tx + dx)} ${Y(y - ty + dy)}Z`,
+      }),
+    );
   }
   for (const t of [1, 0]) {
-    const look = t ? "then" : "now", at = points.map(([x, y, dx, dy]) => [x + t * dx, y + t * dy]);
-    if (kind === "pe") shapes.push(svg("line", { class: `edge ${look}`, x1: X(at[1][0]), y1: Y(at[1][1]), x2: X(at[2][0]), y2: Y(at[2][1]), "stroke-width": Math.max(2, 2 * R(radii[1])) }), svg("line", { class: `axis ${look}`, x1: X(at[1][0]), y1: Y(at[1][1]), x2: X(at[2][0]), y2: Y(at[2][1]) }));
+    const look = t ? "then" : "now",
+      at = points.map(([x, y, dx, dy]) => [x + t * dx, y + t * dy]);
+    if (kind === "pe")
+      shapes.push(
+        svg("line", {
+          class: `edge ${look}`,
+          x1: X(at[1][0]),
+          y1: Y(at[1][1]),
+          x2: X(at[2][0]),
+          y2: Y(at[2][1]),
+          "stroke-width": Math.max(2, 2 * R(radii[1])),
+        }),
+        svg("line", { class: `axis ${look}`, x1: X(at[1][0]), y1: Y(at[1][1]), x2: X(at[2][0]), y2: Y(at[2][1]) }),
+      );
     const discs = kind === "pp" ? at : [at[0]];
-    discs.forEach(([x, y], number) => shapes.push(svg("circle", { class: look, cx: X(x), cy: Y(y), r: Math.max(1, R(radii[number])) })));
+    discs.forEach(([x, y], number) =>
+      shapes.push(svg("circle", { class: look, cx: X(x), cy: Y(y), r: Math.max(1, R(radii[number])) })),
+    );
   }
-  for (const [x, y, dx, dy] of points) if (dx || dy) shapes.push(svg("line", { class: "way", x1: X(x), y1: Y(y), x2: X(x + dx), y2: Y(y + dy), "marker-end": "url(#tip)" }));
-  points.forEach(([x, y], point) => { const label = svg("text", { x: X(x) + 6, y: Y(y) - 6 }); label.textContent = `x${point + 1}`; shapes.push(label); });
-  handles().forEach(({ at: [x, y] }, handle) => shapes.push(svg("circle", { class: "handle", cx: X(x), cy: Y(y), r: 5 }), svg("circle", { class: "grip", cx: X(x), cy: Y(y), r: 18, "data-handle": handle })));
+  for (const [x, y, dx, dy] of points)
+    if (dx || dy)
+      shapes.push(
+        svg("line", { class: "way", x1: X(x), y1: Y(y), x2: X(x + dx), y2: Y(y + dy), "marker-end": "url(#tip)" }),
+      );
+  points.forEach(([x, y], point) => {
+    const label = svg("text", { x: X(x) + 6, y: Y(y) - 6 });
+    label.textContent = `x${point + 1}`;
+    shapes.push(label);
+  });
+  handles().forEach(({ at: [x, y] }, handle) =>
+    shapes.push(
+      svg("circle", { class: "handle", cx: X(x), cy: Y(y), r: 5 }),
+      svg("circle", { class: "grip", cx: X(x), cy: Y(y), r: 18, "data-handle": handle }),
+    ),
+  );
   $("sketch").replaceChildren(...shapes);
 }
 
 // Places that can be held: the tips of displacements, and above them, so that they are found first, points.
 function handles() {
   const { points, plane } = pair.now;
-  const of = (list, from, base) => ({ at: [base[0] + list[from], base[1] + list[from + 1]], move: (to) => [0, 1].forEach((axis) => { list[from + axis] = to[axis] - base[axis]; }) });
+  const of = (list, from, base) => ({
+    at: [base[0] + list[from], base[1] + list[from + 1]],
+    move: (to) =>
+      [0, 1].forEach((axis) => {
+        list[from + axis] = to[axis] - base[axis];
+      }),
+  });
   const zero = [0, 0];
-  return [...points.map((point) => of(point, 2, point)), ...points.map((point) => of(point, 0, zero)), ...(plane ? [of(plane, 2, plane), of(plane, 0, zero)] : [])];
+  return [
+    ...points.map((point) => of(point, 2, point)),
+    ...points.map((point) => of(point, 0, zero)),
+    ...(plane ? [of(plane, 2, plane), of(plane, 0, zero)] : []),
+  ];
 }
 
 // A point is moved with mouse, finger or pen, to places that have few digits; fields and sliders do the same by keyboard.
@@ -84,16 +224,26 @@ function drags(paper) {
   });
   paper.addEventListener("pointermove", (event) => {
     if (!pair.held) return;
-    const box = paper.getBoundingClientRect(), { size, middle } = pair.view;
+    const box = paper.getBoundingClientRect(),
+      { size, middle } = pair.view;
     const unit = 10 ** Math.floor(Math.log10(size / 100));
     const place = [(event.clientX - box.left) / box.width - 0.5, (0.5 - (event.clientY - box.top) / box.height) / 1.5];
     const to = place.map((part, axis) => Math.round((middle[axis] + part * size) / unit) * unit);
     handles()[pair.held.handle].move(to);
-    for (const list of [...pair.now.points, pair.now.plane ?? []]) list.forEach((value, index) => { list[index] = Number(value.toPrecision(12)); });
+    for (const list of [...pair.now.points, pair.now.plane ?? []])
+      list.forEach((value, index) => {
+        list[index] = Number(value.toPrecision(12));
+      });
     pair.fields.forEach((fill) => fill());
     look();
   });
-  for (const end of ["pointerup", "pointercancel"]) paper.addEventListener(end, () => { if (pair.held) { pair.held = null; sketch(); } });
+  for (const end of ["pointerup", "pointercancel"])
+    paper.addEventListener(end, () => {
+      if (pair.held) {
+        pair.held = null;
+        sketch();
+      }
+    });
 }
 drags($("sketch").ownerSVGElement);
 
@@ -116,7 +266,10 @@ function asked() {
 async function look() {
   sketch();
   $("command").textContent = command();
-  if (pair.looking) { pair.again = true; return; }
+  if (pair.looking) {
+    pair.again = true;
+    return;
+  }
   pair.looking = true;
   do {
     pair.again = false;
@@ -138,10 +291,28 @@ async function look() {
   document.documentElement.dataset.looked = command();
 }
 
-$("preset").addEventListener("change", ({ target }) => { pair.now = structuredClone(PRESETS[target.value]); controls(); look(); });
+$("preset").addEventListener("change", ({ target }) => {
+  pair.now = structuredClone(PRESETS[target.value]);
+  controls();
+  look();
+});
 $("save-curves").addEventListener("click", () => save("pair.svg", pair.svg, "image/svg+xml"));
 $("save-pair").addEventListener("click", () => save("pair.json", pair.json, "application/json"));
-shown.set("pair", () => { if (!$("numbers").children.length) { controls(); look(); } });
+shown.set("pair", () => {
+  if (!$("numbers").children.length) {
+    controls();
+    look();
+  }
+});
 
 open({ "#all": "submission", "#try": "try", "#pair": "pair" }[location.hash] ?? "check");
-unpacked.then(() => { document.documentElement.dataset.ready = ""; }, (error) => say(`This browser can't run the checker: ${error.message}. Take Chrome 103, Firefox 113, Safari 16.4 or newer.`, "bad"));
+unpacked.then(
+  () => {
+    document.documentElement.dataset.ready = "";
+  },
+  (error) =>
+    say(
+      `This browser can't run the checker: ${error.message}. Take Chrome 103, Firefox 113, Safari 16.4 or newer.`,
+      "bad",
+    ),
+);

@@ -27,7 +27,9 @@ class Oracle {
     });
   }
 
-  get isBusy() { return this.#waiting.size > 0; }
+  get isBusy() {
+    return this.#waiting.size > 0;
+  }
 
   stop() {
     this.#worker?.terminate();
@@ -44,10 +46,12 @@ class Oracle {
       if (!one) return;
       if (progress) return one.progress(...progress);
       this.#waiting.delete(id);
-      if (error) one.reject(new Error(error)); else one.resolve({ value, parts });
+      if (error) one.reject(new Error(error));
+      else one.resolve({ value, parts });
     };
     this.#worker.onerror = (event) => {
-      for (const { reject } of this.#waiting.values()) reject(new Error(`the checker could not be started: ${event.message ?? "unknown"}`));
+      for (const { reject } of this.#waiting.values())
+        reject(new Error(`the checker could not be started: ${event.message ?? "unknown"}`));
       this.#waiting.clear();
       this.#worker = null;
     };
@@ -89,17 +93,38 @@ const current = () => tabs.find((tab) => tab.getAttribute("aria-selected") === "
 const inside = (async () => {
   const { value } = await new Oracle().ask({ do: "scenes" });
   $("suite").append(...value.suites.map((name) => el("option", { value: name }, name)));
-  if (course) { $("suite").prepend(el("option", { value: "" }, course.name)); $("suite").value = ""; }
+  if (course) {
+    $("suite").prepend(el("option", { value: "" }, course.name));
+    $("suite").value = "";
+  }
   return value.assignments;
 })();
 // The suite of the course whose page this is, and its own scenes.
 const course = $("course") && JSON.parse($("course").textContent);
-const ownScene = (value) => { const [, number] = value.match(/^course:(\d+)$/) ?? []; return number && course.scenes[number]; };
+const ownScene = (value) => {
+  const [, number] = value.match(/^course:(\d+)$/) ?? [];
+  return number && course.scenes[number];
+};
 const choices = async (select) => {
-  if (course?.scenes.length) select.append(el("optgroup", { label: course.name }, ...course.scenes.map(({ name }, number) => el("option", { value: `course:${number}` }, name.replace(/\.xml$/, "")))));
+  if (course?.scenes.length)
+    select.append(
+      el(
+        "optgroup",
+        { label: course.name },
+        ...course.scenes.map(({ name }, number) =>
+          el("option", { value: `course:${number}` }, name.replace(/\.xml$/, "")),
+        ),
+      ),
+    );
   for (const { title, groups } of await inside) {
     for (const { group, names } of groups) {
-      select.append(el("optgroup", { label: `${title}: ${group}` }, ...names.map((name) => el("option", { value: `${group}/${name}` }, name))));
+      select.append(
+        el(
+          "optgroup",
+          { label: `${title}: ${group}` },
+          ...names.map((name) => el("option", { value: `${group}/${name}` }, name)),
+        ),
+      );
     }
   }
 };

@@ -1,12 +1,19 @@
 // A submission's traces: a folder with Group/name.bin, points by a suite, a row per scene, and what became right since the
 // last drop.
-const courseSuite = course && { name: "", isForStudents: course.isForStudents, text: bytesOf(course.suite), scenes: course.scenes.map(({ name }) => name), xml: course.scenes.map(({ xml }) => bytesOf(xml)) };
+const courseSuite = course && {
+  name: "",
+  isForStudents: course.isForStudents,
+  text: bytesOf(course.suite),
+  scenes: course.scenes.map(({ name }) => name),
+  xml: course.scenes.map(({ xml }) => bytesOf(xml)),
+};
 const marks = { oracle: new Oracle(), files: new Map(), suite: courseSuite, last: null, json: null };
 
 // All files below what was dropped, by their paths in it.
 async function walk(entry, handle, path, found) {
   if (handle?.kind === "directory") {
-    for await (const [name, inner] of handle.entries()) await walk(null, inner, `${path}${name}${inner.kind === "directory" ? "/" : ""}`, found);
+    for await (const [name, inner] of handle.entries())
+      await walk(null, inner, `${path}${name}${inner.kind === "directory" ? "/" : ""}`, found);
   } else if (handle) {
     found.push({ path, file: await handle.getFile() });
   } else if (entry?.isDirectory) {
@@ -28,18 +35,29 @@ async function takeFolder(name, found) {
   if (suite) {
     const beside = suite.path.replace(/[^/]*$/, "");
     const scenes = found.filter(({ path }) => path.startsWith(beside) && /\.xml$/i.test(path));
-    marks.suite = { name: suite.file.name, text: bytesOf(await suite.file.text()), scenes: scenes.map(({ path }) => path.slice(beside.length)), xml: await Promise.all(scenes.map(async ({ file }) => new Uint8Array(await file.arrayBuffer()))) };
+    marks.suite = {
+      name: suite.file.name,
+      text: bytesOf(await suite.file.text()),
+      scenes: scenes.map(({ path }) => path.slice(beside.length)),
+      xml: await Promise.all(scenes.map(async ({ file }) => new Uint8Array(await file.arrayBuffer()))),
+    };
     $("suite-name").textContent = `${suite.file.name} with ${counted(scenes.length, "scene")} of its own`;
   }
   const traces = found.filter(({ path }) => /\.bin(\.(zst|gz))?$/i.test(path));
   if (traces.length) {
     marks.name = name;
     // A trace that lies there unpacked, too, is the newer one.
-    marks.files = new Map(traces.sort((a, b) => b.path.length - a.path.length).map(({ path, file }) => [path.replace(/\.(zst|gz)$/i, ""), file]));
+    marks.files = new Map(
+      traces
+        .sort((a, b) => b.path.length - a.path.length)
+        .map(({ path, file }) => [path.replace(/\.(zst|gz)$/i, ""), file]),
+    );
     $("folder-name").textContent = `${name}, ${counted(traces.length, "trace")}`;
   }
   if (marks.files.size) return mark_all();
-  $("marks-said").textContent = suite ? "Now drop the folder of traces." : "There is no trace in that folder: they are called Group/name.bin.";
+  $("marks-said").textContent = suite
+    ? "Now drop the folder of traces."
+    : "There is no trace in that folder: they are called Group/name.bin.";
 }
 
 // The trace of a scene, under its whole name or the name behind its group; below a folder of the folder if that is where
@@ -63,10 +81,17 @@ const rounded = (points) => (points === null ? "none" : Number(points.toFixed(2)
 async function mark_all() {
   marks.oracle.stop();
   $("marks-stop").hidden = $("marks-bar").hidden = false;
-  const started = performance.now(), rows = [], taken = new Set();
+  const started = performance.now(),
+    rows = [],
+    taken = new Set();
   try {
     const { suite } = marks;
-    const begun = await marks.oracle.ask(suite ? { do: "suite", scenes: suite.scenes, is_for_students: suite.isForStudents ?? false } : { do: "suite", suite: $("suite").value }, { blobs: suite ? [suite.text, ...suite.xml] : [] });
+    const begun = await marks.oracle.ask(
+      suite
+        ? { do: "suite", scenes: suite.scenes, is_for_students: suite.isForStudents ?? false }
+        : { do: "suite", suite: $("suite").value },
+      { blobs: suite ? [suite.text, ...suite.xml] : [] },
+    );
     if (!begun) return;
     const names = begun.value.groups.flatMap(({ name, scenes }) => scenes.map((scene) => ({ group: name, scene })));
     const below = beginning(names);
@@ -74,18 +99,31 @@ async function mark_all() {
     for (const [number, { group, scene }] of names.entries()) {
       $("marks-bar").value = number;
       $("marks-said").textContent = `${number + 1} of ${names.length}: ${scene}`;
-      const path = traceOf(scene, below), file = path && marks.files.get(path);
+      const path = traceOf(scene, below),
+        file = path && marks.files.get(path);
       taken.add(path);
-      const answer = await marks.oracle.ask({ do: "judge", number, has_trace: file !== null }, { files: file ? [await freshFile({ file })] : [] });
-      if (!answer) { $("marks-said").textContent = "Stopped."; return; }
+      const answer = await marks.oracle.ask(
+        { do: "judge", number, has_trace: file !== null },
+        { files: file ? [await freshFile({ file })] : [] },
+      );
+      if (!answer) {
+        $("marks-said").textContent = "Stopped.";
+        return;
+      }
       rows.push({ group, scene, file, ...answer.value });
     }
     const answer = await marks.oracle.ask({ do: "grade", name: marks.name });
     if (!answer) return;
     answer.value.scenes.forEach((scene, number) => Object.assign(rows[number], scene));
     marks.json = answer.parts[0];
-    showMarks(begun.value, answer.value, rows, [...marks.files.keys()].filter((path) => !taken.has(path)));
-    $("marks-said").textContent = `${marks.name}: ${rounded(answer.value.points)} of ${rounded(answer.value.of)} points by ${begun.value.suite}, in ${((performance.now() - started) / 1000).toFixed(1)} s.`;
+    showMarks(
+      begun.value,
+      answer.value,
+      rows,
+      [...marks.files.keys()].filter((path) => !taken.has(path)),
+    );
+    $("marks-said").textContent =
+      `${marks.name}: ${rounded(answer.value.points)} of ${rounded(answer.value.of)} points by ${begun.value.suite}, in ${((performance.now() - started) / 1000).toFixed(1)} s.`;
   } catch (error) {
     $("marks-said").textContent = error.message;
   } finally {
@@ -97,35 +135,131 @@ async function mark_all() {
 function showMarks(suite, grade, rows, strange) {
   const right = new Set(rows.filter((row) => row.accepted).map((row) => row.scene));
   const known = marks.last?.suite === suite.suite ? marks.last : null;
-  const news = known ? [["became right", [...right].filter((scene) => !known.right.has(scene))], ["no longer right", [...known.right].filter((scene) => !right.has(scene))]] : [];
+  const news = known
+    ? [
+        ["became right", [...right].filter((scene) => !known.right.has(scene))],
+        ["no longer right", [...known.right].filter((scene) => !right.has(scene))],
+      ]
+    : [];
   marks.last = { suite: suite.suite, right };
-  const since = news.filter(([, scenes]) => scenes.length).map(([words, scenes]) => el("p", { class: words === "became right" ? "good" : "bad" }, `Since the last drop ${words}: ${scenes.join(", ")}`));
-  if (known && !since.length) since.push(el("p", { class: "hint" }, "Since the last drop nothing became right, and nothing wrong."));
+  const since = news
+    .filter(([, scenes]) => scenes.length)
+    .map(([words, scenes]) =>
+      el(
+        "p",
+        { class: words === "became right" ? "good" : "bad" },
+        `Since the last drop ${words}: ${scenes.join(", ")}`,
+      ),
+    );
+  if (known && !since.length)
+    since.push(el("p", { class: "hint" }, "Since the last drop nothing became right, and nothing wrong."));
   const names = strange.slice(0, 12).join(", ") + (strange.length > 12 ? ` and ${strange.length - 12} more` : "");
-  const other = strange.length ? [el("p", { class: "bad" }, `${counted(strange.length, "trace")} ${strange.length === 1 ? "belongs" : "belong"} to no scene of ${suite.suite}: ${names}`)] : [];
+  const other = strange.length
+    ? [
+        el(
+          "p",
+          { class: "bad" },
+          `${counted(strange.length, "trace")} ${strange.length === 1 ? "belongs" : "belong"} to no scene of ${suite.suite}: ${names}`,
+        ),
+      ]
+    : [];
   const mistakes = new Map();
-  for (const { likely, accepted } of rows) if (likely && !accepted) mistakes.set(likely, (mistakes.get(likely) ?? 0) + 1);
-  const likely = [...mistakes].sort((a, b) => b[1] - a[1]).slice(0, 5).map(([words, count]) => el("div", { class: "mistake" }, el("p", {}, words, el("span", { class: "hint" }, ` (${counted(count, "scene")})`))));
+  for (const { likely, accepted } of rows)
+    if (likely && !accepted) mistakes.set(likely, (mistakes.get(likely) ?? 0) + 1);
+  const likely = [...mistakes]
+    .sort((a, b) => b[1] - a[1])
+    .slice(0, 5)
+    .map(([words, count]) =>
+      el(
+        "div",
+        { class: "mistake" },
+        el("p", {}, words, el("span", { class: "hint" }, ` (${counted(count, "scene")})`)),
+      ),
+    );
   const groups = suite.groups.map(({ name, scenes }, number) => {
-    const own = rows.filter((row) => row.group === name), good = own.filter((row) => row.accepted).length;
-    const line = ({ scene, verdict, accepted, right, steps, likely, points, of, file, isMissing }) => el("tr", {},
-      el("th", { scope: "row" }, file ? el("button", { type: "button", class: "plain", onclick: () => lookAt(scene, file) }, scene.split("/").pop()) : scene.split("/").pop()),
-      el("td", { class: accepted ? "good" : isMissing ? "" : "bad" }, isMissing ? "no trace" : verdict),
-      el("td", { class: "num", "data-label": "steps right" }, isMissing ? "" : `${right} of ${steps}`),
-      el("td", { class: "num", "data-label": "points" }, `${rounded(points)} of ${rounded(of)}`),
-      el("td", { class: "words" }, likely && !accepted ? likely : ""));
+    const own = rows.filter((row) => row.group === name),
+      good = own.filter((row) => row.accepted).length;
+    const line = ({ scene, verdict, accepted, right, steps, likely, points, of, file, isMissing }) =>
+      el(
+        "tr",
+        {},
+        el(
+          "th",
+          { scope: "row" },
+          file
+            ? el(
+                "button",
+                { type: "button", class: "plain", onclick: () => lookAt(scene, file) },
+                scene.split("/").pop(),
+              )
+            : scene.split("/").pop(),
+        ),
+        el("td", { class: accepted ? "good" : isMissing ? "" : "bad" }, isMissing ? "no trace" : verdict),
+        el("td", { class: "num", "data-label": "steps right" }, isMissing ? "" : `${right} of ${steps}`),
+        el("td", { class: "num", "data-label": "points" }, `${rounded(points)} of ${rounded(of)}`),
+        el("td", { class: "words" }, likely && !accepted ? likely : ""),
+      );
     // What is wrong comes first, and what is right needs a look only if somebody asks.
-    const wrong = own.filter((row) => !row.accepted && !row.isMissing), missing = own.filter((row) => row.isMissing);
-    const folded = (list, words) => list.length ? el("details", { class: "table", open: list.length === own.length }, el("summary", {}, `${list.length} ${words}`), table(list)) : "";
-    const table = (list) => el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": `Scenes of ${name}` }, el("table", { class: "stack" },
-      el("thead", {}, el("tr", {}, ...["scene", "verdict", "steps right", "points", "likely mistake"].map((head) => el("th", { scope: "col", class: /steps|points/.test(head) ? "num" : "" }, head)))),
-      el("tbody", {}, ...list.map(line))));
-    return el("details", { class: "card", open: wrong.length > 0 },
-      el("summary", {}, el("h2", {}, `${name}: ${good} of ${scenes.length} right, ${rounded(grade.groups[number].points)} of ${rounded(grade.groups[number].of)} points`)),
+    const wrong = own.filter((row) => !row.accepted && !row.isMissing),
+      missing = own.filter((row) => row.isMissing);
+    const folded = (list, words) =>
+      list.length
+        ? el(
+            "details",
+            { class: "table", open: list.length === own.length },
+            el("summary", {}, `${list.length} ${words}`),
+            table(list),
+          )
+        : "";
+    const table = (list) =>
+      el(
+        "div",
+        { class: "scroll", tabindex: "0", role: "region", "aria-label": `Scenes of ${name}` },
+        el(
+          "table",
+          { class: "stack" },
+          el(
+            "thead",
+            {},
+            el(
+              "tr",
+              {},
+              ...["scene", "verdict", "steps right", "points", "likely mistake"].map((head) =>
+                el("th", { scope: "col", class: /steps|points/.test(head) ? "num" : "" }, head),
+              ),
+            ),
+          ),
+          el("tbody", {}, ...list.map(line)),
+        ),
+      );
+    return el(
+      "details",
+      { class: "card", open: wrong.length > 0 },
+      el(
+        "summary",
+        {},
+        el(
+          "h2",
+          {},
+          `${name}: ${good} of ${scenes.length} right, ${rounded(grade.groups[number].points)} of ${rounded(grade.groups[number].of)} points`,
+        ),
+      ),
       wrong.length ? table(wrong) : "",
-      folded(missing, "without a trace"), folded(own.filter((row) => row.accepted), "right"));
+      folded(missing, "without a trace"),
+      folded(
+        own.filter((row) => row.accepted),
+        "right",
+      ),
+    );
   });
-  $("marks-list").replaceChildren(el("h2", {}, `${right.size} of ${counted(rows.length, "scene")} right`), ...(grade.unfit ? [el("p", { class: "bad" }, grade.unfit)] : []), ...other, ...since, ...likely, ...groups);
+  $("marks-list").replaceChildren(
+    el("h2", {}, `${right.size} of ${counted(rows.length, "scene")} right`),
+    ...(grade.unfit ? [el("p", { class: "bad" }, grade.unfit)] : []),
+    ...other,
+    ...since,
+    ...likely,
+    ...groups,
+  );
   $("save-marks").hidden = $("marks-again").hidden = false;
   const hadFocus = $("ask-all").contains(document.activeElement);
   $("ask-all").open = false;
@@ -138,7 +272,10 @@ function lookAt(scene, file) {
   open("check");
   $("scene").value = "";
   const number = marks.suite?.scenes.findIndex((name) => name.replace(/\.xml$/i, "") === scene) ?? -1;
-  takeFiles([{ file }], number < 0 ? sceneOf(scene) : { name: marks.suite.scenes[number], xml: marks.suite.xml[number] });
+  takeFiles(
+    [{ file }],
+    number < 0 ? sceneOf(scene) : { name: marks.suite.scenes[number], xml: marks.suite.xml[number] },
+  );
 }
 
 $("pick-folder").addEventListener("change", ({ target }) => {
@@ -147,8 +284,16 @@ $("pick-folder").addEventListener("change", ({ target }) => {
   target.value = "";
   if (files.length) takeFolder(name, files);
 });
-$("pick-suite").addEventListener("change", ({ target }) => { const files = [...target.files].map((file) => ({ path: file.name, file })); target.value = ""; takeFolder(marks.name ?? "traces", files); });
-$("suite").addEventListener("change", () => { marks.suite = $("suite").value ? null : courseSuite; $("suite-name").textContent = ""; if (marks.files.size) mark_all(); });
+$("pick-suite").addEventListener("change", ({ target }) => {
+  const files = [...target.files].map((file) => ({ path: file.name, file }));
+  target.value = "";
+  takeFolder(marks.name ?? "traces", files);
+});
+$("suite").addEventListener("change", () => {
+  marks.suite = $("suite").value ? null : courseSuite;
+  $("suite-name").textContent = "";
+  if (marks.files.size) mark_all();
+});
 $("marks-stop").addEventListener("click", () => marks.oracle.stop());
 $("marks-again").addEventListener("click", mark_all);
 $("save-marks").addEventListener("click", () => save(`${marks.name}.json`, marks.json, "application/json"));

@@ -28,12 +28,16 @@ async function tryFile(file) {
 
 // Marks lie behind the text, which is transparent: the same letters at the same places.
 function mark(problems) {
-  const source = bytesOf($("source").value), nodes = [];
+  const source = bytesOf($("source").value),
+    nodes = [];
   let at = 0;
   for (const { error, from, to } of [...problems].sort((a, b) => a.from - b.from)) {
     if (from < at) continue;
     const end = Math.max(to, Math.min(from + 1, source.length));
-    nodes.push(text(source.slice(at, from)), el("mark", { class: error ? "bad" : "warn" }, text(source.slice(from, end))));
+    nodes.push(
+      text(source.slice(at, from)),
+      el("mark", { class: error ? "bad" : "warn" }, text(source.slice(from, end))),
+    );
     at = end;
   }
   $("marks").replaceChildren(...nodes, text(source.slice(at)) + "\n");
@@ -48,7 +52,9 @@ async function changed() {
   $("try-said").textContent = "Reading the scene ...";
   const source = bytesOf($("source").value);
   const request = { do: "simulate", scene: film.name ?? "scene.xml" };
-  const progress = (done, all) => { $("try-said").textContent = `Simulating: step ${done} of ${all}`; };
+  const progress = (done, all) => {
+    $("try-said").textContent = `Simulating: step ${done} of ${all}`;
+  };
   try {
     const answer = await film.oracle.ask(request, { blobs: [source], progress });
     if (!answer || round !== film.round) return;
@@ -63,9 +69,16 @@ function told(value) {
   const { problems, more, steps, of, particles, edges, halfPlanes, stopped } = value;
   mark(problems);
   const errors = problems.filter((problem) => problem.error).length;
-  $("problems").replaceChildren(...problems.map(({ error, line, column, message, help, from, to }) => el("li", {},
-    el("button", { class: error ? "bad" : "", type: "button", onclick: () => show(from, to) }, `${line}:${column}`),
-    ` ${error ? "" : "warning: "}${message}${help ? ` (${help})` : ""}`)));
+  $("problems").replaceChildren(
+    ...problems.map(({ error, line, column, message, help, from, to }) =>
+      el(
+        "li",
+        {},
+        el("button", { class: error ? "bad" : "", type: "button", onclick: () => show(from, to) }, `${line}:${column}`),
+        ` ${error ? "" : "warning: "}${message}${help ? ` (${help})` : ""}`,
+      ),
+    ),
+  );
   if (more) $("problems").append(el("li", {}, `and ${more} more`));
   const good = steps !== undefined;
   film.now = good ? value : null;
@@ -74,7 +87,9 @@ function told(value) {
     $("try-said").textContent = `${counted(errors, "error")}: the picture is that of the last scene without errors.`;
     return;
   }
-  $("try-said").textContent = `${counted(steps, "step")}, ${counted(particles, "particle")}, ${counted(edges, "edge")}, ${counted(halfPlanes, "half-plane")}.` + (stopped ? ` The motion ends after step ${steps} of ${of}: ${stopped}.` : "");
+  $("try-said").textContent =
+    `${counted(steps, "step")}, ${counted(particles, "particle")}, ${counted(edges, "edge")}, ${counted(halfPlanes, "half-plane")}.` +
+    (stopped ? ` The motion ends after step ${steps} of ${of}: ${stopped}.` : "");
   $("step").max = steps;
   film.step = Math.min(film.step, steps);
   draw();
@@ -91,17 +106,23 @@ function show(from, to) {
 // One picture at a time is asked for; the last wish counts.
 async function draw() {
   $("step").value = film.step;
-  $("at").textContent = `step ${film.step} of ${film.now?.steps ?? 0}, time ${((film.now?.dt ?? 0) * film.step).toFixed(3)}`;
+  $("at").textContent =
+    `step ${film.step} of ${film.now?.steps ?? 0}, time ${((film.now?.dt ?? 0) * film.step).toFixed(3)}`;
   $("step").setAttribute("aria-valuetext", $("at").textContent);
-  if (film.drawing) { film.again = true; return; }
+  if (film.drawing) {
+    film.again = true;
+    return;
+  }
   film.drawing = true;
   try {
     do {
       film.again = false;
-      const answer = film.now && await film.oracle.ask({ do: "picture", step: film.step, form: "pixels", ...SIZE });
+      const answer = film.now && (await film.oracle.ask({ do: "picture", step: film.step, form: "pixels", ...SIZE }));
       if (!answer) break;
       const pixels = new Uint8ClampedArray(answer.parts[0].buffer);
-      $("canvas").getContext("2d").putImageData(new ImageData(pixels, SIZE.width, SIZE.height), 0, 0);
+      $("canvas")
+        .getContext("2d")
+        .putImageData(new ImageData(pixels, SIZE.width, SIZE.height), 0, 0);
       $("canvas").dataset.step = film.step;
     } while (film.again);
   } catch (error) {
@@ -116,7 +137,8 @@ function play(on) {
   $("play").textContent = on ? "Pause" : "Play";
   if (!on || !film.now) return;
   if (film.step >= film.now.steps) film.step = 0;
-  const begin = performance.now(), from = film.step;
+  const begin = performance.now(),
+    from = film.step;
   const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
   const tick = () => {
     if (!film.plays || !film.now || current() !== "try") return play(false);
@@ -132,7 +154,9 @@ function play(on) {
 async function saved(request, name, type) {
   $("try-said").textContent = `Making ${name} ...`;
   try {
-    const progress = (done, all) => { $("try-said").textContent = `Making ${name}: ${done} of ${all}`; };
+    const progress = (done, all) => {
+      $("try-said").textContent = `Making ${name}: ${done} of ${all}`;
+    };
     const answer = await film.oracle.ask(request, { progress });
     if (!answer) return;
     save(name, answer.parts[0], type);
@@ -144,15 +168,39 @@ async function saved(request, name, type) {
 const stem = () => (film.name ?? "scene.xml").replace(/\.xml$/i, "").replace(/^.*\//, "");
 
 $("source").addEventListener("input", changed);
-$("source").addEventListener("scroll", () => { $("marks").scrollTop = $("source").scrollTop; $("marks").scrollLeft = $("source").scrollLeft; });
+$("source").addEventListener("scroll", () => {
+  $("marks").scrollTop = $("source").scrollTop;
+  $("marks").scrollLeft = $("source").scrollLeft;
+});
 $("play").addEventListener("click", () => play(!film.plays));
-$("step").addEventListener("input", () => { play(false); film.step = Number($("step").value); draw(); });
-$("save-png").addEventListener("click", () => saved({ do: "picture", step: film.step, form: "png", width: 1280, height: 800 }, `${stem()}-${film.step}.png`, "image/png"));
-$("save-svg").addEventListener("click", () => saved({ do: "picture", step: film.step, form: "svg", width: 1280, height: 800 }, `${stem()}-${film.step}.svg`, "image/svg+xml"));
-$("save-gif").addEventListener("click", () => saved({ do: "film", apng: false, width: 640, height: 400 }, `${stem()}.gif`, "image/gif"));
+$("step").addEventListener("input", () => {
+  play(false);
+  film.step = Number($("step").value);
+  draw();
+});
+$("save-png").addEventListener("click", () =>
+  saved(
+    { do: "picture", step: film.step, form: "png", width: 1280, height: 800 },
+    `${stem()}-${film.step}.png`,
+    "image/png",
+  ),
+);
+$("save-svg").addEventListener("click", () =>
+  saved(
+    { do: "picture", step: film.step, form: "svg", width: 1280, height: 800 },
+    `${stem()}-${film.step}.svg`,
+    "image/svg+xml",
+  ),
+);
+$("save-gif").addEventListener("click", () =>
+  saved({ do: "film", apng: false, width: 640, height: 400 }, `${stem()}.gif`, "image/gif"),
+);
 $("save-trace").addEventListener("click", () => saved({ do: "trace" }, `${stem()}.bin`, "application/octet-stream"));
 $("save-xml").addEventListener("click", () => save(`${stem()}.xml`, $("source").value, "application/xml"));
-$("open-xml").addEventListener("change", ({ target }) => { tryFile(target.files[0]); target.value = ""; });
+$("open-xml").addEventListener("change", ({ target }) => {
+  tryFile(target.files[0]);
+  target.value = "";
+});
 $("start").addEventListener("change", async ({ target }) => {
   if (!target.value) return tryScene(STARTER, "scene.xml");
   const own = ownScene(target.value);
@@ -161,4 +209,6 @@ $("start").addEventListener("change", async ({ target }) => {
   tryScene(text(parts[0]), `${target.value}.xml`);
 });
 choices($("start"));
-shown.set("try", () => { if (!$("source").value) tryScene(STARTER, "scene.xml"); });
+shown.set("try", () => {
+  if (!$("source").value) tryScene(STARTER, "scene.xml");
+});

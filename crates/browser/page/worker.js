@@ -1,12 +1,17 @@
 // The worker: requests come one after the other, with the files that they may read.
-let files = [], ask = null, id = 0, told = 0;
+let files = [],
+  ask = null,
+  id = 0,
+  told = 0;
 const host = {
   read(number, offset, into) {
     try {
       const piece = new FileReaderSync().readAsArrayBuffer(files[number].slice(offset, offset + into.length));
       into.set(new Uint8Array(piece));
       return piece.byteLength;
-    } catch { return -1; }
+    } catch {
+      return -1;
+    }
   },
   progress(done, all) {
     const now = performance.now();
@@ -21,7 +26,10 @@ onmessage = ({ data }) => {
     ask ??= engine(data.module, host);
     files = data.files;
     const { value, parts } = ask(data.request, ...data.blobs);
-    postMessage({ id, value, parts }, parts.map((part) => part.buffer));
+    postMessage(
+      { id, value, parts },
+      parts.map((part) => part.buffer),
+    );
   } catch (error) {
     // After a trap the module's memory is in an unknown state.
     if (!error.isAnswer) ask = null;

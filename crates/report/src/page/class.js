@@ -6,7 +6,10 @@
     if (cell.dataset.sort === undefined) return cell.textContent.trim().toLowerCase();
     return cell.dataset.sort === "" ? -Infinity : Number(cell.dataset.sort);
   };
-  const compare = (a, b) => (typeof a === "number" && typeof b === "number" ? a - b || 0 : String(a).localeCompare(String(b), undefined, { numeric: true }));
+  const compare = (a, b) =>
+    typeof a === "number" && typeof b === "number"
+      ? a - b || 0
+      : String(a).localeCompare(String(b), undefined, { numeric: true });
   for (const table of document.querySelectorAll("table.sortable")) {
     const heads = [...table.tHead.rows[0].cells];
     const rows = [...table.tBodies[0].rows];
@@ -23,7 +26,9 @@
         const up = now === null ? !numbers : now === "descending";
         heads.forEach((one) => one.removeAttribute("aria-sort"));
         head.setAttribute("aria-sort", up ? "ascending" : "descending");
-        const sorted = rows.map((row) => [value(row, column), row]).sort(([a], [b]) => (up ? compare(a, b) : compare(b, a)));
+        const sorted = rows
+          .map((row) => [value(row, column), row])
+          .sort(([a], [b]) => (up ? compare(a, b) : compare(b, a)));
         table.tBodies[0].append(...sorted.map(([, row]) => row));
       });
     });
@@ -47,12 +52,20 @@
   for (const svg of document.querySelectorAll("td.heat svg")) {
     const under = (event) => {
       const box = svg.getBoundingClientRect();
-      return scenes[Math.max(0, Math.min(scenes.length - 1, Math.floor(((event.clientX - box.left) / box.width) * scenes.length)))];
+      return scenes[
+        Math.max(0, Math.min(scenes.length - 1, Math.floor(((event.clientX - box.left) / box.width) * scenes.length)))
+      ];
     };
     const link = svg.closest("tr").querySelector("a");
-    svg.addEventListener("pointermove", (event) => { pointed.textContent = `${link.textContent}: ${under(event)}`; });
-    svg.addEventListener("pointerleave", () => { pointed.textContent = ""; });
-    svg.addEventListener("click", (event) => { location.href = `${link.href}#${new URLSearchParams({ scene: under(event) })}`; });
+    svg.addEventListener("pointermove", (event) => {
+      pointed.textContent = `${link.textContent}: ${under(event)}`;
+    });
+    svg.addEventListener("pointerleave", () => {
+      pointed.textContent = "";
+    });
+    svg.addEventListener("click", (event) => {
+      location.href = `${link.href}#${new URLSearchParams({ scene: under(event) })}`;
+    });
   }
   const filter = document.querySelector("p.filter > label");
   if (filter) {

@@ -10,8 +10,10 @@ class Drawing extends Motion {
     this.stepBox.value = this.step;
     this.inside.value = this.t;
     this.insideText.textContent = this.t.toFixed(3);
-    this.passes.replaceChildren(el("option", { value: -1 }, "as recorded"),
-      ...(close ? close.passes.map((pass, k) => el("option", { value: k }, `as detection sees it: ${pass.name}`)) : []));
+    this.passes.replaceChildren(
+      el("option", { value: -1 }, "as recorded"),
+      ...(close ? close.passes.map((pass, k) => el("option", { value: k }, `as detection sees it: ${pass.name}`)) : []),
+    );
     this.passes.value = this.pass;
     this.inside.disabled = this.step <= data.first;
     if (!this.playing) this.choose();
@@ -19,12 +21,19 @@ class Drawing extends Motion {
     this.drawStrip();
     this.drawTicks();
     this.tell();
-    if (!this.playing) { this.tellMatrix(); this.tellNumbers(); this.tellTable(); }
+    if (!this.playing) {
+      this.tellMatrix();
+      this.tellNumbers();
+      this.tellTable();
+    }
     document.dispatchEvent(new CustomEvent("moment", { detail: { key: this.key, step: this.step } }));
   }
   classWords(step = this.step) {
-    return { r: "right", w: "wrong by itself", i: "right by itself, but it starts from where a wrong step has led" }[this.data.strip[step - 1]] ||
-      (step === 0 ? "the start" : "not judged");
+    return (
+      { r: "right", w: "wrong by itself", i: "right by itself, but it starts from where a wrong step has led" }[
+        this.data.strip[step - 1]
+      ] || (step === 0 ? "the start" : "not judged")
+    );
   }
   difference() {
     const own = this.positions("submission");
@@ -70,12 +79,21 @@ class Drawing extends Motion {
     const expected = this.show.expected && this.expected();
     if (panel === "both") {
       this.zones(context);
-      if (this.show.reference) this.bodies(context, this.positions("reference"), { stroke: colour("--ref"), dash: [7, 5] });
+      if (this.show.reference)
+        this.bodies(context, this.positions("reference"), { stroke: colour("--ref"), dash: [7, 5] });
       if (expected) this.bodies(context, expected, { stroke: colour("--exp"), dash: [2, 3] });
-      if (this.show.what && this.data.whatIf) this.bodies(context, this.positions("what"), { stroke: colour("--what"), dash: [12, 4, 2, 4] });
+      if (this.show.what && this.data.whatIf)
+        this.bodies(context, this.positions("what"), { stroke: colour("--what"), dash: [12, 4, 2, 4] });
     }
-    if (panel === "expected") this.bodies(context, this.baseline(), { stroke: colour(expected ? "--exp" : "--ref"), dash: [], label: true });
-    else this.bodies(context, this.positions("submission"), { stroke: colour("--own"), fill: colour("--ownfill"), dash: [], label: true });
+    if (panel === "expected")
+      this.bodies(context, this.baseline(), { stroke: colour(expected ? "--exp" : "--ref"), dash: [], label: true });
+    else
+      this.bodies(context, this.positions("submission"), {
+        stroke: colour("--own"),
+        fill: colour("--ownfill"),
+        dash: [],
+        label: true,
+      });
     if (panel === "both" && !this.peeking) this.arrows(context);
     if (panel !== "expected" && !this.peeking) this.contacts(context);
     context.font = `${this.letters()}px system-ui, sans-serif`;
@@ -113,7 +131,10 @@ class Drawing extends Motion {
         context.lineCap = "round";
         context.lineWidth = 2 * r * scale;
         context.strokeStyle = fill;
-        context.beginPath(); context.moveTo(...a); context.lineTo(...b); context.stroke();
+        context.beginPath();
+        context.moveTo(...a);
+        context.lineTo(...b);
+        context.stroke();
         context.lineCap = "butt";
         context.setLineDash(dash);
       }
@@ -133,10 +154,14 @@ class Drawing extends Motion {
       if (!finite(x, y)) continue;
       const chosen = label && this.isSelected("particle", k);
       const size = Math.max(1.5, radii[k] * scale);
-      if (x + size < 0 || y + size < 0 || x - size > this.canvas.width || y - size > this.canvas.height || size > 1e5) continue;
+      if (x + size < 0 || y + size < 0 || x - size > this.canvas.width || y - size > this.canvas.height || size > 1e5)
+        continue;
       context.beginPath();
       context.arc(x, y, size, 0, 7);
-      if (fill) { context.fillStyle = fill; context.fill(); }
+      if (fill) {
+        context.fillStyle = fill;
+        context.fill();
+      }
       context.lineWidth = chosen ? 4 : 2;
       context.strokeStyle = chosen ? colour("--bad") : stroke;
       context.stroke();
@@ -151,7 +176,7 @@ class Drawing extends Motion {
     context.setLineDash([]);
   }
   planes(context) {
-    const far = 4 * this.extent / Math.min(1, this.zoom) + 1;
+    const far = (4 * this.extent) / Math.min(1, this.zoom) + 1;
     this.data.planes.forEach(([px, py, nx, ny], index) => {
       const length = Math.hypot(nx, ny);
       if (!(length > 0)) return;
@@ -164,9 +189,15 @@ class Drawing extends Motion {
       const b = this.to(px + uy * far, py - ux * far);
       const deep = [-ux * far * this.scale(), uy * far * this.scale()];
       context.beginPath();
-      context.moveTo(...a); context.lineTo(...b); context.lineTo(b[0] + deep[0], b[1] + deep[1]); context.lineTo(a[0] + deep[0], a[1] + deep[1]);
+      context.moveTo(...a);
+      context.lineTo(...b);
+      context.lineTo(b[0] + deep[0], b[1] + deep[1]);
+      context.lineTo(a[0] + deep[0], a[1] + deep[1]);
       context.fill();
-      context.beginPath(); context.moveTo(...a); context.lineTo(...b); context.stroke();
+      context.beginPath();
+      context.moveTo(...a);
+      context.lineTo(...b);
+      context.stroke();
     });
   }
   zones(context) {
@@ -196,7 +227,8 @@ class Drawing extends Motion {
     const apart = this.difference();
     this.magnified.hidden = !(apart && apart.most > 0);
     if (this.magnified.hidden) return;
-    const wish = (0.12 * this.extent) / this.zoom / apart.most, ten = 10 ** Math.floor(Math.log10(wish));
+    const wish = (0.12 * this.extent) / this.zoom / apart.most,
+      ten = 10 ** Math.floor(Math.log10(wish));
     const auto = Math.max(1, ten * (wish >= 5 * ten ? 5 : wish >= 2 * ten ? 2 : 1));
     const factor = this.magnify === null ? auto : this.magnify;
     this.factor.value = Math.log10(factor);
@@ -210,7 +242,11 @@ class Drawing extends Motion {
       const from = this.to(apart.base[2 * k], apart.base[2 * k + 1]);
       const to = this.to(apart.base[2 * k] + factor * dx, apart.base[2 * k + 1] + factor * dy);
       arrow(context, from, to);
-      context.beginPath(); context.arc(...from, 18, 0, 7); context.setLineDash([1, 4]); context.stroke(); context.setLineDash([]);
+      context.beginPath();
+      context.arc(...from, 18, 0, 7);
+      context.setLineDash([1, 4]);
+      context.stroke();
+      context.setLineDash([]);
     }
   }
   contacts(context) {
@@ -232,8 +268,10 @@ class Drawing extends Motion {
         arrow(context, from, to);
         context.setLineDash([]);
         context.beginPath();
-        if (filled) context.arc(...from, 5, 0, 7); else context.rect(from[0] - 6, from[1] - 6, 12, 12);
-        if (filled) context.fill(); else context.stroke();
+        if (filled) context.arc(...from, 5, 0, 7);
+        else context.rect(from[0] - 6, from[1] - 6, 12, 12);
+        if (filled) context.fill();
+        else context.stroke();
       }
     };
     const expected = this.pass >= 0 ? close.passes[this.pass].hits : close.expected;
@@ -260,7 +298,11 @@ class Drawing extends Motion {
     const columns = Math.min(steps, width);
     for (let column = 0; column < columns; column++) {
       let worst = "u";
-      for (let step = Math.floor((column * steps) / columns); step < Math.floor(((column + 1) * steps) / columns); step++) {
+      for (
+        let step = Math.floor((column * steps) / columns);
+        step < Math.floor(((column + 1) * steps) / columns);
+        step++
+      ) {
         const letter = strip[step] || "u";
         if (order[letter] > order[worst]) worst = letter;
       }
@@ -272,12 +314,16 @@ class Drawing extends Motion {
       context.fillRect(x, height - 4 - tall, w > 3 ? w - 1 : w, tall);
     }
     // The step that is shown has a frame and a tip above it.
-    const left = Math.max(0, this.step - 1) * wide, most = this.step > 0 ? Math.max(4, wide) : 2, middle = left + most / 2;
+    const left = Math.max(0, this.step - 1) * wide,
+      most = this.step > 0 ? Math.max(4, wide) : 2,
+      middle = left + most / 2;
     context.fillStyle = context.strokeStyle = colour("--ink");
     context.lineWidth = 2;
     context.strokeRect(left + 1, 8, most - 2, height - 10);
     context.beginPath();
-    context.moveTo(middle - 7, 0); context.lineTo(middle + 7, 0); context.lineTo(middle, 8);
+    context.moveTo(middle - 7, 0);
+    context.lineTo(middle + 7, 0);
+    context.lineTo(middle, 8);
     context.fill();
     if (first > 0 || last < steps) context.fillRect(first * wide, height - 2, (last - first) * wide, 2);
   }
@@ -288,22 +334,30 @@ class Drawing extends Motion {
       const hits = this.pass >= 0 ? close.passes[this.pass].hits : close.expected;
       for (const [, time] of hits) marks.push([time, "tick-exp"]);
       for (const [, time] of close.actual) marks.push([time, "tick-own"]);
-      for (const call of this.data.calls) if (call.step === this.step) for (const zero of call.zeros) marks.push([zero, "tick-zero"]);
+      for (const call of this.data.calls)
+        if (call.step === this.step) for (const zero of call.zeros) marks.push([zero, "tick-zero"]);
     }
-    this.ticks.replaceChildren(...marks.filter(([time]) => time >= 0 && time <= 1).map(([time, name]) => {
-      const line = document.createElementNS(SVG, "line");
-      for (const [key, value] of Object.entries({ x1: 1000 * time, x2: 1000 * time, y1: 0, y2: 12, class: name })) line.setAttribute(key, value);
-      return line;
-    }));
+    this.ticks.replaceChildren(
+      ...marks
+        .filter(([time]) => time >= 0 && time <= 1)
+        .map(([time, name]) => {
+          const line = document.createElementNS(SVG, "line");
+          for (const [key, value] of Object.entries({ x1: 1000 * time, x2: 1000 * time, y1: 0, y2: 12, class: name }))
+            line.setAttribute(key, value);
+          return line;
+        }),
+    );
   }
   isSelected(kind, index) {
     const { selected } = this;
     if (!selected) return false;
     if (selected.pair) {
       const { kind: which, first, second } = parse(selected.pair);
-      return (kind === "particle" && (index === first || (which === "pp" && index === second))) || (kind === PAIRS[which] && index === second && which !== "pp");
+      return (
+        (kind === "particle" && (index === first || (which === "pp" && index === second))) ||
+        (kind === PAIRS[which] && index === second && which !== "pp")
+      );
     }
     return selected.kind === kind && selected.index === index;
   }
-
 }

@@ -42,7 +42,8 @@ class Motion {
   }
   // Whether the impulses of a hybrid step already lead elsewhere: its end then starts from there and may be right.
   midIsWrong() {
-    const close = this.close(), own = this.state("submission", this.step, true);
+    const close = this.close(),
+      own = this.state("submission", this.step, true);
     if (this.data.collision !== "hybrid" || !close || !close.mid || !own) return false;
     return close.mid.some((value, k) => !(Math.abs(value - own[k]) <= 1e-10));
   }
@@ -69,7 +70,12 @@ class Motion {
     this.say.textContent = direction > 0 ? "There is no later wrong step." : "There is no earlier wrong step.";
   }
   toggle() {
-    if (this.playing) { cancelAnimationFrame(this.playing); this.playing = 0; this.play.textContent = "Play"; return this.look(); }
+    if (this.playing) {
+      cancelAnimationFrame(this.playing);
+      this.playing = 0;
+      this.play.textContent = "Play";
+      return this.look();
+    }
     this.play.textContent = "Pause";
     let last = null;
     if (this.step >= this.data.last) this.go(this.data.first);
@@ -91,15 +97,38 @@ class Motion {
     const typing = event.target.tagName === "SELECT" || event.target.type === "number";
     const ranging = event.target.type === "range";
     const act = {
-      n: () => this.finding(1), p: () => this.finding(-1), 0: () => this.whole(), z: () => { this.approach(); this.look(); },
-      s: () => this.besides(), "?": () => { this.keys.open = !this.keys.open; },
+      n: () => this.finding(1),
+      p: () => this.finding(-1),
+      0: () => this.whole(),
+      z: () => {
+        this.approach();
+        this.look();
+      },
+      s: () => this.besides(),
+      "?": () => {
+        this.keys.open = !this.keys.open;
+      },
       " ": () => this.toggle(),
       ArrowRight: () => this.go(this.step + (event.shiftKey ? 10 : 1)),
       ArrowLeft: () => this.go(this.step - (event.shiftKey ? 10 : 1)),
-      Home: () => this.go(this.data.first), End: () => this.go(this.data.last),
-      "+": () => { this.zoom *= 1.25; this.look(); }, "-": () => { this.zoom /= 1.25; this.look(); },
+      Home: () => this.go(this.data.first),
+      End: () => this.go(this.data.last),
+      "+": () => {
+        this.zoom *= 1.25;
+        this.look();
+      },
+      "-": () => {
+        this.zoom /= 1.25;
+        this.look();
+      },
     }[event.key];
-    if (!act || typing || (ranging && event.key.startsWith("Arrow")) || (event.key === " " && /^(BUTTON|SUMMARY|INPUT)$/.test(event.target.tagName))) return;
+    if (
+      !act ||
+      typing ||
+      (ranging && event.key.startsWith("Arrow")) ||
+      (event.key === " " && /^(BUTTON|SUMMARY|INPUT)$/.test(event.target.tagName))
+    )
+      return;
     event.preventDefault();
     act();
   }
@@ -107,7 +136,10 @@ class Motion {
     let [x0, y0, x1, y1] = [Infinity, Infinity, -Infinity, -Infinity];
     const reach = (x, y, r) => {
       if (!finite(x, y) || Math.abs(x) > 1e12 || Math.abs(y) > 1e12) return;
-      x0 = Math.min(x0, x - r); y0 = Math.min(y0, y - r); x1 = Math.max(x1, x + r); y1 = Math.max(y1, y + r);
+      x0 = Math.min(x0, x - r);
+      y0 = Math.min(y0, y - r);
+      x1 = Math.max(x1, x + r);
+      y1 = Math.max(y1, y + r);
     };
     const { n, per, first, last, radii } = this.data;
     const every = Math.max(1, Math.floor((last - first) / 400));
@@ -115,7 +147,13 @@ class Motion {
       for (let step = first; step <= last; step += every) {
         const state = this.state(track, step);
         if (!state) break;
-        if (track === "submission" && x1 > x0 && Math.max(...[...state.subarray(0, 2 * n)].map(Math.abs)) > 20 * (1 + Math.max(Math.abs(x0), x1, Math.abs(y0), y1))) break;
+        if (
+          track === "submission" &&
+          x1 > x0 &&
+          Math.max(...[...state.subarray(0, 2 * n)].map(Math.abs)) >
+            20 * (1 + Math.max(Math.abs(x0), x1, Math.abs(y0), y1))
+        )
+          break;
         for (let k = 0; k < n; k++) reach(state[2 * k], state[2 * k + 1], radii[k]);
       }
     }
@@ -133,17 +171,24 @@ class Motion {
   approach() {
     this.zoom = 1;
     this.pan = [0, 0];
-    const apart = this.difference(), own = this.positions("submission"), near = new Set();
-    if (apart && apart.most > 0) apart.list.forEach((d, k) => { if (Math.hypot(...d) > apart.most * 1e-3) near.add(k); });
+    const apart = this.difference(),
+      own = this.positions("submission"),
+      near = new Set();
+    if (apart && apart.most > 0)
+      apart.list.forEach((d, k) => {
+        if (Math.hypot(...d) > apart.most * 1e-3) near.add(k);
+      });
     if (this.selected && this.selected.pair) {
       const { kind, first, second } = parse(this.selected.pair);
-      for (const k of [first, ...(kind === "pp" ? [second] : kind === "pe" ? this.data.edges[second].slice(0, 2) : [])]) near.add(k);
+      for (const k of [first, ...(kind === "pp" ? [second] : kind === "pe" ? this.data.edges[second].slice(0, 2) : [])])
+        near.add(k);
     }
     let [x0, y0, x1, y1] = [Infinity, Infinity, -Infinity, -Infinity];
     for (const k of own ? near : []) {
       for (const at of apart ? [own, apart.base] : [own]) {
         const [x, y, r] = [at[2 * k], at[2 * k + 1], 2.5 * this.data.radii[k] + 0.02 * this.extent];
-        if (finite(x, y)) [x0, y0, x1, y1] = [Math.min(x0, x - r), Math.min(y0, y - r), Math.max(x1, x + r), Math.max(y1, y + r)];
+        if (finite(x, y))
+          [x0, y0, x1, y1] = [Math.min(x0, x - r), Math.min(y0, y - r), Math.max(x1, x + r), Math.max(y1, y + r)];
       }
     }
     if (!(x1 > x0)) return;
@@ -160,7 +205,9 @@ class Motion {
   to(x, y) {
     const [x0, y0, x1, y1] = this.box;
     const scale = this.scale();
-    return [this.view[0] + this.view[1] / 2 + (x - (x0 + x1) / 2) * scale + this.pan[0], this.canvas.height / 2 - (y - (y0 + y1) / 2) * scale + this.pan[1]];
+    return [
+      this.view[0] + this.view[1] / 2 + (x - (x0 + x1) / 2) * scale + this.pan[0],
+      this.canvas.height / 2 - (y - (y0 + y1) / 2) * scale + this.pan[1],
+    ];
   }
-
 }

@@ -8,9 +8,15 @@ function beside(one, other) {
   const most = Math.max(Math.abs(one), Math.abs(other));
   if (!finite(one, other) || most === 0) return [short(one), short(other)];
   const power = (value) => Math.floor(Math.log10(value));
-  const top = power(most), gap = Math.abs(one - other), digits = Math.max(6, Math.min(17, gap > 0 ? top - power(gap) + 2 : 6));
+  const top = power(most),
+    gap = Math.abs(one - other),
+    digits = Math.max(6, Math.min(17, gap > 0 ? top - power(gap) + 2 : 6));
   const far = top < -4 || top > 8;
-  const [right, own] = [one, other].map((value) => (far ? value / 10 ** top : value).toFixed(Math.max(0, Math.min(20, far ? digits - 1 : digits - 1 - top))) + (far ? `e${top}` : ""));
+  const [right, own] = [one, other].map(
+    (value) =>
+      (far ? value / 10 ** top : value).toFixed(Math.max(0, Math.min(20, far ? digits - 1 : digits - 1 - top))) +
+      (far ? `e${top}` : ""),
+  );
   let place = 0;
   if (right.length === own.length) while (place < own.length && own[place] === right[place]) place += 1;
   return [right, right === own ? own : el("span", {}, own.slice(0, place), el("mark", {}, own.slice(place)))];
@@ -34,20 +40,32 @@ async function unpack(id) {
 // Rounded motions: first the records that are exact, then the differences of positions from record to record, in units, as
 // numbers of seven bits a byte. Velocities are not kept, and what is beyond all bounds is no number.
 function unround(buffer, { unit, exact }, n) {
-  const size = 4 * n, bytes = new Uint8Array(buffer);
-  const seen = [], now = new Float64Array(2 * n);
+  const size = 4 * n,
+    bytes = new Uint8Array(buffer);
+  const seen = [],
+    now = new Float64Array(2 * n);
   const kept = new DataView(buffer).getUint32(0, true);
   let at = 8 + 8 * size * kept;
   while (at < bytes.length) {
     for (let k = 0; k < 2 * n; k++) {
-      let value = 0, factor = 1, byte;
-      do { byte = bytes[at++]; value += (byte & 127) * factor; factor *= 128; } while (byte > 127);
+      let value = 0,
+        factor = 1,
+        byte;
+      do {
+        byte = bytes[at++];
+        value += (byte & 127) * factor;
+        factor *= 128;
+      } while (byte > 127);
       now[k] += value % 2 ? -(value + 1) / 2 : value / 2;
     }
     seen.push(now.slice());
   }
   const out = new Float64Array(seen.length * size).fill(NaN);
-  seen.forEach((positions, record) => positions.forEach((value, k) => { out[record * size + k] = Math.abs(value) < 2 ** 40 ? value * unit : NaN; }));
+  seen.forEach((positions, record) =>
+    positions.forEach((value, k) => {
+      out[record * size + k] = Math.abs(value) < 2 ** 40 ? value * unit : NaN;
+    }),
+  );
   exact.slice(0, kept).forEach((record, k) => out.set(new Float64Array(buffer, 8 + 8 * size * k, size), record * size));
   return out;
 }
@@ -67,27 +85,74 @@ const words = (pair) => {
 // Takes down as SVG what is drawn: as much of a canvas's context as the viewer uses. Arcs are whole circles.
 class Sketch {
   constructor(width, height) {
-    Object.assign(this, { width, height, out: [], path: "", dash: [], fillStyle: "#000", strokeStyle: "#000", lineWidth: 1, font: "", textAlign: "start", lineCap: "butt", lineJoin: "miter" });
+    Object.assign(this, {
+      width,
+      height,
+      out: [],
+      path: "",
+      dash: [],
+      fillStyle: "#000",
+      strokeStyle: "#000",
+      lineWidth: 1,
+      font: "",
+      textAlign: "start",
+      lineCap: "butt",
+      lineJoin: "miter",
+    });
   }
-  at(...values) { return values.map((value) => Math.round(value * 100) / 100).join(" "); }
-  beginPath() { this.path = ""; }
-  moveTo(x, y) { this.path += `M${this.at(x, y)}`; }
-  lineTo(x, y) { this.path += `L${this.at(x, y)}`; }
-  closePath() { this.path += "Z"; }
-  rect(x, y, w, h) { this.path += `M${this.at(x, y)}h${this.at(w)}v${this.at(h)}h${this.at(-w)}Z`; }
-  arc(x, y, r) { this.path += `M${this.at(x + r, y)}A${this.at(r, r)} 0 1 1 ${this.at(x - r, y)}A${this.at(r, r)} 0 1 1 ${this.at(x + r, y)}Z`; }
-  setLineDash(dash) { this.dash = dash; }
+  at(...values) {
+    return values.map((value) => Math.round(value * 100) / 100).join(" ");
+  }
+  beginPath() {
+    this.path = "";
+  }
+  moveTo(x, y) {
+    this.path += `M${this.at(x, y)}`;
+  }
+  lineTo(x, y) {
+    this.path += `L${this.at(x, y)}`;
+  }
+  closePath() {
+    this.path += "Z";
+  }
+  rect(x, y, w, h) {
+    this.path += `M${this.at(x, y)}h${this.at(w)}v${this.at(h)}h${this.at(-w)}Z`;
+  }
+  arc(x, y, r) {
+    this.path += `M${this.at(x + r, y)}A${this.at(r, r)} 0 1 1 ${this.at(x - r, y)}A${this.at(r, r)} 0 1 1 ${this.at(x + r, y)}Z`;
+  }
+  setLineDash(dash) {
+    this.dash = dash;
+  }
   // Clips are nested groups.
-  save() { this.clips = (this.clips || 0) + 1; }
-  clip() { this.out.push(`<clipPath id="c${this.clips}"><path d="${this.path}"/></clipPath><g clip-path="url(#c${this.clips})">`); }
-  restore() { this.out.push("</g>"); }
-  stroke() {
-    this.out.push(`<path d="${this.path}" fill="none" stroke="${this.strokeStyle}" stroke-width="${this.at(this.lineWidth)}" stroke-dasharray="${this.dash.join(" ") || "none"}" stroke-linecap="${this.lineCap}" stroke-linejoin="${this.lineJoin}"/>`);
+  save() {
+    this.clips = (this.clips || 0) + 1;
   }
-  fill() { this.out.push(`<path d="${this.path}" fill="${this.fillStyle}"/>`); }
-  fillRect(x, y, w, h) { this.beginPath(); this.rect(x, y, w, h); this.fill(); }
+  clip() {
+    this.out.push(
+      `<clipPath id="c${this.clips}"><path d="${this.path}"/></clipPath><g clip-path="url(#c${this.clips})">`,
+    );
+  }
+  restore() {
+    this.out.push("</g>");
+  }
+  stroke() {
+    this.out.push(
+      `<path d="${this.path}" fill="none" stroke="${this.strokeStyle}" stroke-width="${this.at(this.lineWidth)}" stroke-dasharray="${this.dash.join(" ") || "none"}" stroke-linecap="${this.lineCap}" stroke-linejoin="${this.lineJoin}"/>`,
+    );
+  }
+  fill() {
+    this.out.push(`<path d="${this.path}" fill="${this.fillStyle}"/>`);
+  }
+  fillRect(x, y, w, h) {
+    this.beginPath();
+    this.rect(x, y, w, h);
+    this.fill();
+  }
   fillText(text, x, y) {
-    this.out.push(`<text x="${this.at(x)}" y="${this.at(y)}" fill="${this.fillStyle}" font-family="sans-serif" font-size="${parseFloat(this.font)}" text-anchor="${this.textAlign === "center" ? "middle" : "start"}">${text}</text>`);
+    this.out.push(
+      `<text x="${this.at(x)}" y="${this.at(y)}" fill="${this.fillStyle}" font-family="sans-serif" font-size="${parseFloat(this.font)}" text-anchor="${this.textAlign === "center" ? "middle" : "start"}">${text}</text>`,
+    );
   }
   svg() {
     return `<svg xmlns="${SVG}" viewBox="0 0 ${this.width} ${this.height}" width="${this.width}" height="${this.height}">\n${this.out.join("\n")}\n</svg>\n`;
@@ -97,11 +162,35 @@ class Sketch {
 const quoted = (text) => (/^[\w@%+=:,./-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`);
 const same = (one, other) => one.length === other.length && one.every((value, k) => Object.is(value, other[k]));
 function table(head, rows, caption) {
-  return el("table", {}, el("caption", {}, caption), el("thead", {}, el("tr", {}, ...head.map((text) => el("th", { scope: "col", class: text ? "num" : "" }, text)))),
-    el("tbody", {}, ...rows.map(([name, ...cells]) => el("tr", {}, el("th", { scope: "row" }, name), ...cells.map((cell) => el("td", { class: "n" }, cell instanceof Node ? cell : String(cell)))))));
+  return el(
+    "table",
+    {},
+    el("caption", {}, caption),
+    el("thead", {}, el("tr", {}, ...head.map((text) => el("th", { scope: "col", class: text ? "num" : "" }, text)))),
+    el(
+      "tbody",
+      {},
+      ...rows.map(([name, ...cells]) =>
+        el(
+          "tr",
+          {},
+          el("th", { scope: "row" }, name),
+          ...cells.map((cell) => el("td", { class: "n" }, cell instanceof Node ? cell : String(cell))),
+        ),
+      ),
+    ),
+  );
 }
 function copy(text, button) {
-  const done = () => { if (button) { const old = button.textContent; button.textContent = "Copied"; setTimeout(() => { button.textContent = old; }, 1200); } };
+  const done = () => {
+    if (button) {
+      const old = button.textContent;
+      button.textContent = "Copied";
+      setTimeout(() => {
+        button.textContent = old;
+      }, 1200);
+    }
+  };
   const by_hand = () => {
     const area = el("textarea", { class: "offscreen" });
     area.value = text;
@@ -111,14 +200,19 @@ function copy(text, button) {
     area.remove();
     done();
   };
-  if (navigator.clipboard && isSecureContext) navigator.clipboard.writeText(text).then(done, by_hand); else by_hand();
+  if (navigator.clipboard && isSecureContext) navigator.clipboard.writeText(text).then(done, by_hand);
+  else by_hand();
 }
 function arrow(context, from, to) {
   const angle = Math.atan2(to[1] - from[1], to[0] - from[0]);
-  context.beginPath(); context.moveTo(...from); context.lineTo(...to); context.stroke();
+  context.beginPath();
+  context.moveTo(...from);
+  context.lineTo(...to);
+  context.stroke();
   context.beginPath();
   context.moveTo(...to);
-  for (const turn of [0.4, -0.4]) context.lineTo(to[0] - 9 * Math.cos(angle + turn), to[1] - 9 * Math.sin(angle + turn));
+  for (const turn of [0.4, -0.4])
+    context.lineTo(to[0] - 9 * Math.cos(angle + turn), to[1] - 9 * Math.sin(angle + turn));
   context.fill();
 }
 // Andrew's monotone chain.

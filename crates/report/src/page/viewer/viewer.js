@@ -6,7 +6,8 @@ class Viewer extends Words {
     this.key = article.dataset.case;
     this.name = article.dataset.scene;
     // The first wrong step, or the last one that was judged before the trace ends.
-    const wrong = data.strip.indexOf("w"), end = Math.max(0, data.strip.indexOf("u"));
+    const wrong = data.strip.indexOf("w"),
+      end = Math.max(0, data.strip.indexOf("u"));
     this.step = Math.max(data.first, Math.min(data.last, wrong >= 0 ? wrong + 1 : data.focus || end || data.first));
     this.t = 1;
     this.pass = -1;
@@ -25,36 +26,96 @@ class Viewer extends Words {
     this.look();
   }
 
-
   build() {
     const { data } = this;
     const button = (text, label, act, key) =>
-      el("button", { type: "button", onclick: act, title: key ? `${label} (${key})` : label, "aria-label": /[a-z]/i.test(text) ? `${text}: ${label}` : label }, text);
+      el(
+        "button",
+        {
+          type: "button",
+          onclick: act,
+          title: key ? `${label} (${key})` : label,
+          "aria-label": /[a-z]/i.test(text) ? `${text}: ${label}` : label,
+        },
+        text,
+      );
     const check = (name, text, mark) => {
-      const box = el("input", { type: "checkbox", onchange: (event) => { this.show[name] = event.target.checked; this.look(); } });
+      const box = el("input", {
+        type: "checkbox",
+        onchange: (event) => {
+          this.show[name] = event.target.checked;
+          this.look();
+        },
+      });
       box.checked = this.show[name];
       return el("label", { class: "check" }, box, el("span", { class: `key ${mark}` }, ""), text);
     };
     this.canvas = el("canvas", {
-      width: 960, height: 540, class: "picture", tabindex: 0, role: "img", "aria-label": "Both motions, drawn on top of each other",
+      width: 960,
+      height: 540,
+      class: "picture",
+      tabindex: 0,
+      role: "img",
+      "aria-label": "Both motions, drawn on top of each other",
       "aria-describedby": `say-${this.key}`,
     });
     this.view = [0, this.canvas.width];
     this.play = button("Play", "Play or pause", () => this.toggle(), "space");
-    this.stepBox = el("input", { type: "number", min: data.first, max: data.last, class: "stepbox", "aria-label": "Step",
-      onchange: (event) => this.go(Number(event.target.value)) });
+    this.stepBox = el("input", {
+      type: "number",
+      min: data.first,
+      max: data.last,
+      class: "stepbox",
+      "aria-label": "Step",
+      onchange: (event) => this.go(Number(event.target.value)),
+    });
     // Keys and screen readers move it; a pointer moves along the strip above it.
-    this.slider = el("input", { type: "range", min: data.first, max: data.last, "aria-label": "Step",
-      oninput: (event) => this.go(Number(event.target.value)) });
-    this.inside = el("input", { type: "range", min: 0, max: 1, step: 0.001, "aria-label": "Time within the step", class: "wide",
-      oninput: (event) => { this.t = Number(event.target.value); this.look(); } });
+    this.slider = el("input", {
+      type: "range",
+      min: data.first,
+      max: data.last,
+      "aria-label": "Step",
+      oninput: (event) => this.go(Number(event.target.value)),
+    });
+    this.inside = el("input", {
+      type: "range",
+      min: 0,
+      max: 1,
+      step: 0.001,
+      "aria-label": "Time within the step",
+      class: "wide",
+      oninput: (event) => {
+        this.t = Number(event.target.value);
+        this.look();
+      },
+    });
     this.insideText = el("output", {}, "");
-    this.passes = el("select", { "aria-label": "Which motion within the step",
-      onchange: (event) => { this.pass = Number(event.target.value); this.look(); } });
-    this.midBox = el("input", { type: "checkbox", onchange: (event) => { this.mid = event.target.checked; this.look(); } });
+    this.passes = el("select", {
+      "aria-label": "Which motion within the step",
+      onchange: (event) => {
+        this.pass = Number(event.target.value);
+        this.look();
+      },
+    });
+    this.midBox = el("input", {
+      type: "checkbox",
+      onchange: (event) => {
+        this.mid = event.target.checked;
+        this.look();
+      },
+    });
     this.mid = this.midIsWrong();
-    this.factor = el("input", { type: "range", min: 0, max: 15, step: 0.1, "aria-label": "Magnification of differences, power of ten",
-      oninput: (event) => { this.magnify = 10 ** Number(event.target.value); this.look(); } });
+    this.factor = el("input", {
+      type: "range",
+      min: 0,
+      max: 15,
+      step: 0.1,
+      "aria-label": "Magnification of differences, power of ten",
+      oninput: (event) => {
+        this.magnify = 10 ** Number(event.target.value);
+        this.look();
+      },
+    });
     this.factorText = el("output", {}, "");
     this.magnified = el("label", { class: "grow within" }, el("span", {}, "magnified ", this.factorText), this.factor);
     this.ticks = document.createElementNS(SVG, "svg");
@@ -64,11 +125,27 @@ class Viewer extends Words {
     this.ticks.classList.add("ticks");
     const under = (event) => {
       const box = this.strip.getBoundingClientRect();
-      return [1 + Math.floor(((event.clientX - box.left) / box.width) * data.steps), event.clientX - box.left, box.width];
+      return [
+        1 + Math.floor(((event.clientX - box.left) / box.width) * data.steps),
+        event.clientX - box.left,
+        box.width,
+      ];
     };
-    this.strip = el("canvas", { width: 960, height: 34, class: "strip", role: "img", "aria-label": this.stripWords(),
-      onpointerdown: (event) => { this.strip.setPointerCapture(event.pointerId); this.go(under(event)[0]); this.slider.focus(); event.preventDefault(); },
-      onpointerleave: () => { this.preview.hidden = true; },
+    this.strip = el("canvas", {
+      width: 960,
+      height: 34,
+      class: "strip",
+      role: "img",
+      "aria-label": this.stripWords(),
+      onpointerdown: (event) => {
+        this.strip.setPointerCapture(event.pointerId);
+        this.go(under(event)[0]);
+        this.slider.focus();
+        event.preventDefault();
+      },
+      onpointerleave: () => {
+        this.preview.hidden = true;
+      },
       onpointermove: (event) => {
         const [step, x, width] = under(event);
         if (event.buttons) this.go(step);
@@ -76,68 +153,186 @@ class Viewer extends Words {
         if (this.preview.hidden) return;
         this.preview.style.left = `${Math.max(0, Math.min(width - 192, x - 96))}px`;
         this.peek(step);
-      } });
-    this.preview = el("div", { class: "preview", hidden: true, "aria-hidden": "true" }, el("canvas", { width: 384, height: 216 }), el("div"));
+      },
+    });
+    this.preview = el(
+      "div",
+      { class: "preview", hidden: true, "aria-hidden": "true" },
+      el("canvas", { width: 384, height: 216 }),
+      el("div"),
+    );
     this.besideButton = button("Side by side", "What is expected beside what is there", () => this.besides(), "s");
-    this.keys = el("details", { class: "table help" }, el("summary", {}, "Keys ", el("kbd", {}, "?")), el("div", { class: "keys" },
-      ...[["n", "next wrong step"], ["p", "previous wrong step"], ["space", "play, pause"], ["\u2190 \u2192", "a step"], ["shift \u2190 \u2192", "ten steps"], ["home end", "first, last step"],
-        ["z", "near the difference"], ["0", "everything"], ["+ -", "zoom"], ["s", "side by side"], ["?", "this list"]].map(([key, text]) => el("span", {}, ...key.split(" ").flatMap((one) => [el("kbd", {}, one), " "]), text))));
+    this.keys = el(
+      "details",
+      { class: "table help" },
+      el("summary", {}, "Keys ", el("kbd", {}, "?")),
+      el(
+        "div",
+        { class: "keys" },
+        ...[
+          ["n", "next wrong step"],
+          ["p", "previous wrong step"],
+          ["space", "play, pause"],
+          ["\u2190 \u2192", "a step"],
+          ["shift \u2190 \u2192", "ten steps"],
+          ["home end", "first, last step"],
+          ["z", "near the difference"],
+          ["0", "everything"],
+          ["+ -", "zoom"],
+          ["s", "side by side"],
+          ["?", "this list"],
+        ].map(([key, text]) => el("span", {}, ...key.split(" ").flatMap((one) => [el("kbd", {}, one), " "]), text)),
+      ),
+    );
     this.say = el("p", { class: "say", id: `say-${this.key}`, "aria-live": "polite" });
     this.facts = el("div", { class: "facts" });
     this.numbers = el("div", { class: "numbers" });
     this.matrix = el("div", { class: "matrix" });
-    this.table = el("details", { class: "table", ontoggle: () => this.look() }, el("summary", {}, "The picture as a table"));
+    this.table = el(
+      "details",
+      { class: "table", ontoggle: () => this.look() },
+      el("summary", {}, "The picture as a table"),
+    );
     this.tableBody = el("div");
     this.table.append(this.tableBody);
     const hybrid = data.collision === "hybrid";
     const { rounded } = data;
     const kept = rounded && [...new Set(rounded.exact.map((record) => data.first + Math.ceil(record / data.per)))];
-    const remark = rounded ? el("p", { class: "hint" }, `This motion is too large to be here to the last bit: positions are rounded to ${short(rounded.unit)}, and velocities are left out. `,
-      kept.length ? `Exact are the records around these steps: ${kept.join(", ")}.` : "") : "";
-    this.root = el("div", { class: "viewer", onkeydown: (event) => this.key_down(event) },
+    const remark = rounded
+      ? el(
+          "p",
+          { class: "hint" },
+          `This motion is too large to be here to the last bit: positions are rounded to ${short(rounded.unit)}, and velocities are left out. `,
+          kept.length ? `Exact are the records around these steps: ${kept.join(", ")}.` : "",
+        )
+      : "";
+    this.root = el(
+      "div",
+      { class: "viewer", onkeydown: (event) => this.key_down(event) },
       this.canvas,
       el("div", { class: "timeline" }, this.preview, this.strip, this.slider),
-      this.say, this.stripKey(),
-      el("div", { class: "bar" },
-        el("span", { class: "group" }, button("\u00ab wrong", "Previous wrong step", () => this.finding(-1), "p"), button("\u2039", "One step back", () => this.go(this.step - 1), "left"),
-          this.play, button("\u203a", "One step on", () => this.go(this.step + 1), "right"), button("wrong \u00bb", "Next wrong step", () => this.finding(1), "n")),
+      this.say,
+      this.stripKey(),
+      el(
+        "div",
+        { class: "bar" },
+        el(
+          "span",
+          { class: "group" },
+          button("\u00ab wrong", "Previous wrong step", () => this.finding(-1), "p"),
+          button("\u2039", "One step back", () => this.go(this.step - 1), "left"),
+          this.play,
+          button("\u203a", "One step on", () => this.go(this.step + 1), "right"),
+          button("wrong \u00bb", "Next wrong step", () => this.finding(1), "n"),
+        ),
         el("label", {}, "step ", this.stepBox, ` of ${data.steps}`),
         this.speeds(),
-        el("span", { class: "group" }, data.full ? button("Near", "Near the difference", () => { this.approach(); this.look(); }, "z") : "", button("All", "Show everything", () => this.whole(), "0"), data.full ? this.besideButton : ""),
-        el("details", { class: "save" }, el("summary", {}, "Save"), el("span", { class: "group" },
-          button("PNG", "Save this picture", () => this.picture()), button("SVG", "Save this picture as a drawing", () => this.drawing()),
-          button("Clip", "Record a film of the steps", () => this.clip()),
-          // A page within a page has no address of its own.
-          location.protocol === "about:" ? "" : button("Link", "Copy a link to this moment", () => this.link())))),
-      el("div", { class: "bar" }, el("label", { class: "grow within" }, el("span", {}, "inside the step, t = ", this.insideText), el("span", {}, this.inside, this.ticks)),
-        el("label", { class: "moving" }, "moving ", this.passes), hybrid ? el("label", { class: "check" }, this.midBox, "after the impulses") : ""),
-      data.full ? el("div", { class: "bar" }, el("span", { class: "check" }, el("span", { class: "key k-own" }), "yours"), check("reference", "reference from the start", "k-ref"), check("expected", "expected from your own state", "k-exp"),
-        data.whatIf ? check("what", "the reference with the mistake", "k-what") : "",
-        check("arrows", "differences", "k-arrow"), this.magnified) : "",
-      remark, this.keys);
+        el(
+          "span",
+          { class: "group" },
+          data.full
+            ? button(
+                "Near",
+                "Near the difference",
+                () => {
+                  this.approach();
+                  this.look();
+                },
+                "z",
+              )
+            : "",
+          button("All", "Show everything", () => this.whole(), "0"),
+          data.full ? this.besideButton : "",
+        ),
+        el(
+          "details",
+          { class: "save" },
+          el("summary", {}, "Save"),
+          el(
+            "span",
+            { class: "group" },
+            button("PNG", "Save this picture", () => this.picture()),
+            button("SVG", "Save this picture as a drawing", () => this.drawing()),
+            button("Clip", "Record a film of the steps", () => this.clip()),
+            // A page within a page has no address of its own.
+            location.protocol === "about:" ? "" : button("Link", "Copy a link to this moment", () => this.link()),
+          ),
+        ),
+      ),
+      el(
+        "div",
+        { class: "bar" },
+        el(
+          "label",
+          { class: "grow within" },
+          el("span", {}, "inside the step, t = ", this.insideText),
+          el("span", {}, this.inside, this.ticks),
+        ),
+        el("label", { class: "moving" }, "moving ", this.passes),
+        hybrid ? el("label", { class: "check" }, this.midBox, "after the impulses") : "",
+      ),
+      data.full
+        ? el(
+            "div",
+            { class: "bar" },
+            el("span", { class: "check" }, el("span", { class: "key k-own" }), "yours"),
+            check("reference", "reference from the start", "k-ref"),
+            check("expected", "expected from your own state", "k-exp"),
+            data.whatIf ? check("what", "the reference with the mistake", "k-what") : "",
+            check("arrows", "differences", "k-arrow"),
+            this.magnified,
+          )
+        : "",
+      remark,
+      this.keys,
+    );
     // Where there is room, sums stand beside the picture and bodies below it.
-    this.article.querySelector(".side").append(el("section", { class: "card step", "aria-label": "The step in numbers" }, this.facts));
-    this.article.querySelector(".seen").append(el("section", { class: "card step", "aria-label": "Pairs and bodies" }, this.matrix, this.numbers, this.table));
+    this.article
+      .querySelector(".side")
+      .append(el("section", { class: "card step", "aria-label": "The step in numbers" }, this.facts));
+    this.article
+      .querySelector(".seen")
+      .append(
+        el("section", { class: "card step", "aria-label": "Pairs and bodies" }, this.matrix, this.numbers, this.table),
+      );
     this.article.querySelector(".stage").replaceChildren(this.root);
-    this.canvas.addEventListener("wheel", (event) => {
-      if (!event.ctrlKey && !event.shiftKey && document.activeElement !== this.canvas) return;
-      event.preventDefault();
-      this.zoom = Math.max(0.2, Math.min(1e6, this.zoom * Math.exp(-event.deltaY / 400)));
-      this.look();
-    }, { passive: false });
+    this.canvas.addEventListener(
+      "wheel",
+      (event) => {
+        if (!event.ctrlKey && !event.shiftKey && document.activeElement !== this.canvas) return;
+        event.preventDefault();
+        this.zoom = Math.max(0.2, Math.min(1e6, this.zoom * Math.exp(-event.deltaY / 400)));
+        this.look();
+      },
+      { passive: false },
+    );
     let held = null;
-    this.canvas.addEventListener("pointerdown", (event) => { held = [event.clientX, event.clientY, ...this.pan, false]; this.canvas.setPointerCapture(event.pointerId); });
+    this.canvas.addEventListener("pointerdown", (event) => {
+      held = [event.clientX, event.clientY, ...this.pan, false];
+      this.canvas.setPointerCapture(event.pointerId);
+    });
     this.canvas.addEventListener("pointermove", (event) => {
       if (!held) return;
       const ratio = this.canvas.width / this.canvas.getBoundingClientRect().width;
       const move = [(event.clientX - held[0]) * ratio, (event.clientY - held[1]) * ratio];
       if (Math.hypot(...move) > 4) held[4] = true;
-      if (held[4]) { this.pan = [held[2] + move[0], held[3] + move[1]]; this.look(); }
+      if (held[4]) {
+        this.pan = [held[2] + move[0], held[3] + move[1]];
+        this.look();
+      }
     });
-    this.canvas.addEventListener("pointerup", (event) => { if (held && !held[4]) this.pick(event); held = null; });
+    this.canvas.addEventListener("pointerup", (event) => {
+      if (held && !held[4]) this.pick(event);
+      held = null;
+    });
   }
   speeds() {
-    const select = el("select", { "aria-label": "Speed", onchange: (event) => { this.speed = Number(event.target.value); } });
+    const select = el("select", {
+      "aria-label": "Speed",
+      onchange: (event) => {
+        this.speed = Number(event.target.value);
+      },
+    });
     for (const speed of [0.03125, 0.125, 0.25, 0.5, 1, 2, 4, 8]) {
       const option = el("option", { value: speed }, speed < 1 ? `1/${1 / speed} x` : `${speed} x`);
       option.selected = speed === 1;
@@ -160,11 +355,18 @@ class Viewer extends Words {
   }
   // The colours of the strip in words.
   stripKey() {
-    const names = [["r", "right"], ["w", this.count("w") === 1 ? "wrong by itself" : "wrong by themselves"], ["i", "right, but after a wrong one"]];
-    const parts = names.filter(([letter]) => this.count(letter)).map(([letter, name]) => el("span", {}, el("span", { class: `h is-${letter}` }), ` ${this.count(letter)} ${name}`));
+    const names = [
+      ["r", "right"],
+      ["w", this.count("w") === 1 ? "wrong by itself" : "wrong by themselves"],
+      ["i", "right, but after a wrong one"],
+    ];
+    const parts = names
+      .filter(([letter]) => this.count(letter))
+      .map(([letter, name]) =>
+        el("span", {}, el("span", { class: `h is-${letter}` }), ` ${this.count(letter)} ${name}`),
+      );
     return parts.length > 1 ? el("p", { class: "hint strip-key" }, "Steps: ", ...parts) : "";
   }
-
 
   file(blob, name) {
     const link = el("a", { href: URL.createObjectURL(blob), download: name });
@@ -180,17 +382,22 @@ class Viewer extends Words {
     this.file(new Blob([sketch.svg()], { type: "image/svg+xml" }), `step-${this.step}.svg`);
   }
   clip() {
-    if (typeof MediaRecorder === "undefined" || !this.canvas.captureStream) { this.say.textContent = "This browser can't record films."; return; }
+    if (typeof MediaRecorder === "undefined" || !this.canvas.captureStream) {
+      this.say.textContent = "This browser can't record films.";
+      return;
+    }
     const recorder = new MediaRecorder(this.canvas.captureStream(30));
     const parts = [];
     recorder.ondataavailable = (event) => parts.push(event.data);
     recorder.onstop = () => this.file(new Blob(parts, { type: recorder.mimeType }), "motion.webm");
-    const began = Math.max(this.data.first, this.step - 30), until = Math.min(this.data.last, this.step + 30);
+    const began = Math.max(this.data.first, this.step - 30),
+      until = Math.min(this.data.last, this.step + 30);
     let step = began;
     recorder.start();
     const turn = () => {
       this.go(step);
-      if (step++ < until) setTimeout(turn, 1000 / 15); else recorder.stop();
+      if (step++ < until) setTimeout(turn, 1000 / 15);
+      else recorder.stop();
     };
     turn();
   }
@@ -203,7 +410,8 @@ class Viewer extends Words {
   }
 }
 
-const viewers = new Map(), opening = new Map();
+const viewers = new Map(),
+  opening = new Map();
 function open(article) {
   const key = article.dataset.case;
   if (!opening.has(key)) opening.set(key, make(article, key));
@@ -225,7 +433,8 @@ async function make(article, key) {
 }
 // The cursor of the plots over the steps: their horizontal axis is given with them.
 document.addEventListener("moment", ({ detail: { key, step } }) => {
-  for (const row of document.querySelectorAll(`[data-case="${key}"] [data-step]`)) row.classList.toggle("now", Number(row.dataset.step) === step);
+  for (const row of document.querySelectorAll(`[data-case="${key}"] [data-step]`))
+    row.classList.toggle("now", Number(row.dataset.step) === step);
   for (const figure of document.querySelectorAll(`[data-plot="${key}"]`)) {
     const svg = figure.querySelector("svg");
     const [left, right, steps] = ["left", "right", "steps"].map((name) => Number(figure.dataset[name]));
@@ -264,7 +473,11 @@ function show(article, row) {
     viewer.root.scrollIntoView({ block: "start" });
     viewer.canvas.focus({ preventScroll: true });
   };
-  const button = el("button", { type: "button", onclick: act, "aria-label": `Show step ${row.dataset.step} in the motion` }, `Show step ${row.dataset.step}`);
+  const button = el(
+    "button",
+    { type: "button", onclick: act, "aria-label": `Show step ${row.dataset.step} in the motion` },
+    `Show step ${row.dataset.step}`,
+  );
   (row.cells ? row.cells[row.cells.length - 1] : row.firstElementChild).append(" ", button);
 }
 // Goes where an address leads: to a card, or to a moment of a scene.
@@ -272,8 +485,11 @@ async function visit(articles) {
   const wish = new URLSearchParams(location.hash.slice(1));
   const moment = articles.find((article) => article.dataset.scene === wish.get("scene"));
   const named = moment || articles.find((article) => article.id && `#${article.id}` === location.hash);
-  const first = named || articles.find((article) => article.querySelector("details.scene[open]")) || articles.find((article) => article.querySelector(".stage"));
-  const viewer = first && await unfold(first);
+  const first =
+    named ||
+    articles.find((article) => article.querySelector("details.scene[open]")) ||
+    articles.find((article) => article.querySelector(".stage"));
+  const viewer = first && (await unfold(first));
   if (viewer && moment) {
     if (wish.has("step")) viewer.go(Number(wish.get("step")));
     if (wish.has("t")) viewer.t = Math.max(0, Math.min(1, Number(wish.get("t")) || 0));
@@ -287,10 +503,14 @@ function search(articles) {
   const scenes = articles.filter((article) => article.querySelector("details.scene"));
   if (scenes.length < 8) return;
   const count = el("output", { class: "hint" });
-  const wish = el("input", { type: "search", oninput: () => {
-    for (const scene of scenes) scene.hidden = !scene.textContent.toLowerCase().includes(wish.value.trim().toLowerCase());
-    count.textContent = wish.value.trim() && `${scenes.filter((scene) => !scene.hidden).length} of ${scenes.length}`;
-  } });
+  const wish = el("input", {
+    type: "search",
+    oninput: () => {
+      for (const scene of scenes)
+        scene.hidden = !scene.textContent.toLowerCase().includes(wish.value.trim().toLowerCase());
+      count.textContent = wish.value.trim() && `${scenes.filter((scene) => !scene.hidden).length} of ${scenes.length}`;
+    },
+  });
   scenes[0].before(el("p", { class: "filter" }, el("label", {}, "Filter ", wish), " ", count));
 }
 async function start() {
@@ -299,7 +519,10 @@ async function start() {
   for (const article of articles) {
     if (!article.querySelector(".stage")) continue;
     const card = article.querySelector("details.scene");
-    if (card) card.addEventListener("toggle", () => { if (card.open) open(article); });
+    if (card)
+      card.addEventListener("toggle", () => {
+        if (card.open) open(article);
+      });
     for (const row of article.querySelectorAll("[data-step]")) show(article, row);
   }
   await visit(articles);
@@ -307,7 +530,12 @@ async function start() {
   document.documentElement.dataset.ready = "yes";
 }
 document.addEventListener("keydown", (event) => {
-  if (event.target === document.body) { const viewer = [...viewers.values()].find(Boolean); if (viewer) viewer.key_down(event); }
+  if (event.target === document.body) {
+    const viewer = [...viewers.values()].find(Boolean);
+    if (viewer) viewer.key_down(event);
+  }
 });
-matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => viewers.forEach((viewer) => viewer && viewer.look()));
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () =>
+  viewers.forEach((viewer) => viewer && viewer.look()),
+);
 start();

@@ -4,34 +4,61 @@ class Words extends Drawing {
     const { data } = this;
     const close = this.close();
     const apart = this.difference();
-    const parts = [`Step ${this.step} of ${data.steps} is ${this.classWords()}${this.mid ? ", and shown after its impulses" : ""}.`];
+    const parts = [
+      `Step ${this.step} of ${data.steps} is ${this.classWords()}${this.mid ? ", and shown after its impulses" : ""}.`,
+    ];
     if (apart) {
-      const what = this.show.expected && this.expected() ? "from where it should be, given your own state before the step" : "from the reference's run";
-      const none = this.isExact() ? "Every position is the same to the last bit as expected." : "No position differs by more than the rounding of this page.";
+      const what =
+        this.show.expected && this.expected()
+          ? "from where it should be, given your own state before the step"
+          : "from the reference's run";
+      const none = this.isExact()
+        ? "Every position is the same to the last bit as expected."
+        : "No position differs by more than the rounding of this page.";
       parts.push(apart.most > 0 ? `The furthest particle is ${short(apart.most)} ${what}.` : none);
     }
     if (data.whatIf && this.step >= data.first) {
-      const own = this.state("submission", this.step), what = this.state("what", this.step);
-      if (own && what && this.isExact(this.step, false)) parts.push(same(own, what) ? "The reference with the named mistake is here to the last bit." : "The reference with the named mistake is elsewhere.");
+      const own = this.state("submission", this.step),
+        what = this.state("what", this.step);
+      if (own && what && this.isExact(this.step, false))
+        parts.push(
+          same(own, what)
+            ? "The reference with the named mistake is here to the last bit."
+            : "The reference with the named mistake is elsewhere.",
+        );
     }
     this.say.textContent = parts.join(" ");
     const rows = [];
     if (close) {
-      rows.push(["polynomials", close.polynomials[0], close.polynomials[1]], ["detection passes", close.expectedPasses, close.actualPasses === null ? "no whole number" : close.actualPasses]);
-      rows.push(["collisions in the impulse list", data.collision === "hybrid" ? 0 : close.expected.length, close.actual.length]);
+      rows.push(
+        ["polynomials", close.polynomials[0], close.polynomials[1]],
+        [
+          "detection passes",
+          close.expectedPasses,
+          close.actualPasses === null ? "no whole number" : close.actualPasses,
+        ],
+      );
+      rows.push([
+        "collisions in the impulse list",
+        data.collision === "hybrid" ? 0 : close.expected.length,
+        close.actual.length,
+      ]);
     }
     const sums = (state) => {
       if (!state) return null;
       let [px, py, l] = [0, 0, 0];
       for (let k = 0; k < data.n; k++) {
         if (data.fixed[k]) continue;
-        const m = data.masses[k], v = 2 * data.n + 2 * k;
-        px += m * state[v]; py += m * state[v + 1];
+        const m = data.masses[k],
+          v = 2 * data.n + 2 * k;
+        px += m * state[v];
+        py += m * state[v + 1];
         l += m * (state[2 * k] * state[v + 1] - state[2 * k + 1] * state[v]);
       }
       return [px, py, l];
     };
-    const before = sums(this.state("submission", this.step - 1)), after = sums(this.state("submission", this.step));
+    const before = sums(this.state("submission", this.step - 1)),
+      after = sums(this.state("submission", this.step));
     const right = close && sums(close.end || close.mid);
     // What rounding alone makes of a sum is no difference.
     const near = (one, other) => Math.abs(one - other) <= 1e-9 * Math.max(1, Math.abs(one));
@@ -39,21 +66,42 @@ class Words extends Drawing {
     const both = (right, own) => {
       const known = [right, own].map((s) => s && finite(...s));
       if (known[0] && known[1]) {
-        const parts = right.map((value, k) => (near(value, own[k]) ? [short(value), short(value)] : beside(value, own[k])));
+        const parts = right.map((value, k) =>
+          near(value, own[k]) ? [short(value), short(value)] : beside(value, own[k]),
+        );
         return [0, 1].map((side) => momentum(parts.map((part) => part[side])));
       }
       return [right, own].map((s, side) => (known[side] ? momentum(s.map(short)) : "-"));
     };
     const phases = [["before the step", before, before]];
-    if (data.collision === "hybrid") phases.push(["after the impulses", close && sums(close.mid), sums(this.state("submission", this.step, true))]);
+    if (data.collision === "hybrid")
+      phases.push(["after the impulses", close && sums(close.mid), sums(this.state("submission", this.step, true))]);
     phases.push([data.collision === "hybrid" ? "after the failsafe" : "after the step", right, after]);
-    this.facts.replaceChildren(el("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "This step in numbers" }, table(data.full ? ["", "expected", "yours"] : ["", "yours"], this.cut([
-      ...rows,
-      ...phases.map(([name, expected, own]) => [`momentum ${name}: x, y, angular`, ...both(expected, own)]),
-    ]), "This step in numbers")));
+    this.facts.replaceChildren(
+      el(
+        "div",
+        { class: "scroll", tabindex: 0, role: "region", "aria-label": "This step in numbers" },
+        table(
+          data.full ? ["", "expected", "yours"] : ["", "yours"],
+          this.cut([
+            ...rows,
+            ...phases.map(([name, expected, own]) => [`momentum ${name}: x, y, angular`, ...both(expected, own)]),
+          ]),
+          "This step in numbers",
+        ),
+      ),
+    );
     if (close && close.zones.length) {
-      this.facts.append(el("p", {}, "Impact zones of the reference: " + close.zones[close.zones.length - 1].zones
-        .map((zone) => `{${zone.particles.join(", ")}${zone.halfPlane ? ", a half-plane" : ""}}`).join(" ") || "none"));
+      this.facts.append(
+        el(
+          "p",
+          {},
+          "Impact zones of the reference: " +
+            close.zones[close.zones.length - 1].zones
+              .map((zone) => `{${zone.particles.join(", ")}${zone.halfPlane ? ", a half-plane" : ""}}`)
+              .join(" ") || "none",
+        ),
+      );
     }
   }
   // Who is tested with whom, in the pass that is looked at or in the whole step: calls expected and made, contacts, what is wrong.
@@ -74,14 +122,19 @@ class Words extends Drawing {
       for (const pair of pass.missing) of(pair).made -= 1;
       for (const pair of pass.repeated) of(pair).made += 1;
       // Where the passes before lead elsewhere, other polynomials are right.
-      if (!this.data.follows || pass === close.passes[0]) for (const pair of pass.differing) if (!of(pair).wrong.length) of(pair).wrong.push("its polynomials differ");
+      if (!this.data.follows || pass === close.passes[0])
+        for (const pair of pass.differing) if (!of(pair).wrong.length) of(pair).wrong.push("its polynomials differ");
     }
     // Whole passes that are too many ask every pair once more.
     const each = close.polynomials[0] / close.expectedPasses;
-    const more = this.pass < 0 && !passes.some((pass) => pass.repeated.length) && close.surplus > 0 && close.surplus % each === 0 ? close.surplus / each : 0;
+    const more =
+      this.pass < 0 && !passes.some((pass) => pass.repeated.length) && close.surplus > 0 && close.surplus % each === 0
+        ? close.surplus / each
+        : 0;
     for (const one of pairs.values()) {
       one.made += more;
-      if (one.made < expected) one.wrong.unshift(one.made > 0 ? `tested ${times(one.made)}, expected ${times(expected)}` : "not tested");
+      if (one.made < expected)
+        one.wrong.unshift(one.made > 0 ? `tested ${times(one.made)}, expected ${times(expected)}` : "not tested");
       if (one.made > expected + more) one.wrong.unshift("tested too often");
     }
     // Impulse lists of hybrid steps are empty.
@@ -89,11 +142,22 @@ class Words extends Drawing {
       const [right, own] = [close.expected, close.actual].map((list) => new Map(list.map((one) => [one[0], one])));
       for (const [pair, contact] of right) {
         if (!own.has(pair)) of(pair).wrong.push("its contact is missing");
-        else if (contact.slice(1).some((value, k) => !(Math.abs(value - own.get(pair)[k + 1]) <= 1e-9 * (1 + Math.abs(value))))) of(pair).wrong.push("its contact differs");
+        else if (
+          contact.slice(1).some((value, k) => !(Math.abs(value - own.get(pair)[k + 1]) <= 1e-9 * (1 + Math.abs(value))))
+        )
+          of(pair).wrong.push("its contact differs");
       }
       for (const pair of own.keys()) if (!right.has(pair)) of(pair).wrong.push("its contact is one too many");
     }
-    this.asking = { key: `${this.step} ${this.pass}`, expected, more, known, pairs, name: this.pass >= 0 ? passes[0].name : "the whole step", calls: passes[0].calls };
+    this.asking = {
+      key: `${this.step} ${this.pass}`,
+      expected,
+      more,
+      known,
+      pairs,
+      name: this.pass >= 0 ? passes[0].name : "the whole step",
+      calls: passes[0].calls,
+    };
     return this.asking;
   }
   // A wrong pair selects its bodies, and so does the first wrong state, as long as nobody has selected others.
@@ -115,60 +179,125 @@ class Words extends Drawing {
     const { expected, more, known, pairs } = asked;
     const close = this.close();
     // What was not asked is told before what was answered wrongly.
-    const wrong = [...pairs].filter(([, one]) => one.wrong.length).sort(([, a], [, b]) => (a.made !== expected ? 0 : 1) - (b.made !== expected ? 0 : 1));
-    const head = el("p", {}, `Who is tested with whom, ${asked.name}: ${asked.calls} pairs, each expected ${times(expected)}. `,
+    const wrong = [...pairs]
+      .filter(([, one]) => one.wrong.length)
+      .sort(([, a], [, b]) => (a.made !== expected ? 0 : 1) - (b.made !== expected ? 0 : 1));
+    const head = el(
+      "p",
+      {},
+      `Who is tested with whom, ${asked.name}: ${asked.calls} pairs, each expected ${times(expected)}. `,
       `In the whole step ${close.polynomials[0]} polynomials are expected, and you logged ${close.polynomials[1]}. `,
       more ? `You make ${more === 1 ? "a pass" : `${more} passes`} too many. ` : "",
       close.surplus && !more ? `${close.surplus} of yours belong to no expected call. ` : "",
-      known ? "" : "Which of yours belong to which pair can't be told for all. ");
-    const list = wrong.slice(0, 12).map(([pair, one]) => this.pairButton(pair, `${words(pair)}: ${one.wrong.join(", ")}`));
-    const lights = wrong.length ? el("p", { class: "lights" }, `Wrong ${wrong.length === 1 ? "pair" : "pairs"}: `, ...list, wrong.length > 12 ? ` and ${wrong.length - 12} more` : "") : "";
-    const columns = [...Array(n).keys()].map((k) => ["pp", k, `${k}`]).concat(edges.map((_, k) => ["pe", k, `e${k}`]), planes.map((_, k) => ["ph", k, `h${k}`]));
+      known ? "" : "Which of yours belong to which pair can't be told for all. ",
+    );
+    const list = wrong
+      .slice(0, 12)
+      .map(([pair, one]) => this.pairButton(pair, `${words(pair)}: ${one.wrong.join(", ")}`));
+    const lights = wrong.length
+      ? el(
+          "p",
+          { class: "lights" },
+          `Wrong ${wrong.length === 1 ? "pair" : "pairs"}: `,
+          ...list,
+          wrong.length > 12 ? ` and ${wrong.length - 12} more` : "",
+        )
+      : "";
+    const columns = [...Array(n).keys()]
+      .map((k) => ["pp", k, `${k}`])
+      .concat(
+        edges.map((_, k) => ["pe", k, `e${k}`]),
+        planes.map((_, k) => ["ph", k, `h${k}`]),
+      );
     if (n * columns.length > 1200) return this.matrix.replaceChildren(lights, head);
-    const grid = el("table", { class: "pairs" }, el("caption", {}, "Calls made of calls expected; * collides, ! something is wrong"),
-      el("thead", {}, el("tr", {}, el("td"), ...columns.map(([, , text]) => el("th", { scope: "col" }, text)))));
+    const grid = el(
+      "table",
+      { class: "pairs" },
+      el("caption", {}, "Calls made of calls expected; * collides, ! something is wrong"),
+      el("thead", {}, el("tr", {}, el("td"), ...columns.map(([, , text]) => el("th", { scope: "col" }, text)))),
+    );
     const body = el("tbody");
     const usual = { made: expected + more, wrong: [], hit: false };
     for (let row = 0; row < n; row++) {
       const cells = columns.map(([kind, k]) => {
         const tested = kind === "pp" ? k > row : kind === "pe" ? edges[k][0] !== row && edges[k][1] !== row : true;
         if (!tested) return el("td", { class: "never" }, "");
-        const pair = `${kind}:${row},${k}`, one = pairs.get(pair) || usual;
-        const text = (one.made === expected ? `${expected}` : `${one.made}/${expected}`) + (one.hit ? "*" : "") + (one.wrong.length ? "!" : "");
-        return el("td", { class: one.wrong.length ? "differs" : one.hit ? "hits" : "" }, this.pairButton(pair, text, one));
+        const pair = `${kind}:${row},${k}`,
+          one = pairs.get(pair) || usual;
+        const text =
+          (one.made === expected ? `${expected}` : `${one.made}/${expected}`) +
+          (one.hit ? "*" : "") +
+          (one.wrong.length ? "!" : "");
+        return el(
+          "td",
+          { class: one.wrong.length ? "differs" : one.hit ? "hits" : "" },
+          this.pairButton(pair, text, one),
+        );
       });
       body.append(el("tr", {}, el("th", { scope: "row" }, `${row}`), ...cells));
     }
     grid.append(body);
-    const box = el("details", { class: "table" }, el("summary", {}, "Pairs"), head, el("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Pairs of this step" }, grid));
+    const box = el(
+      "details",
+      { class: "table" },
+      el("summary", {}, "Pairs"),
+      head,
+      el("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Pairs of this step" }, grid),
+    );
     box.open = this.matrixOpen ?? wrong.some(([, one]) => one.made !== expected);
-    box.addEventListener("toggle", () => { this.matrixOpen = box.open; });
+    box.addEventListener("toggle", () => {
+      this.matrixOpen = box.open;
+    });
     this.matrix.replaceChildren(lights, box);
   }
   pairButton(pair, text, one) {
-    const label = one && [`${text}: ${words(pair)}, ${one.made} of ${this.asking.expected} calls`, ...(one.hit ? ["collide"] : []), ...one.wrong].join(", ");
-    return el("button", { type: "button", class: "pair", "aria-label": label || null, title: label || null,
-      onclick: () => { this.selected = { pair }; this.look(); } }, text);
+    const label =
+      one &&
+      [
+        `${text}: ${words(pair)}, ${one.made} of ${this.asking.expected} calls`,
+        ...(one.hit ? ["collide"] : []),
+        ...one.wrong,
+      ].join(", ");
+    return el(
+      "button",
+      {
+        type: "button",
+        class: "pair",
+        "aria-label": label || null,
+        title: label || null,
+        onclick: () => {
+          this.selected = { pair };
+          this.look();
+        },
+      },
+      text,
+    );
   }
   pick(event) {
     const box = this.canvas.getBoundingClientRect();
-    const x = ((event.clientX - box.left) * this.canvas.width) / box.width, y = ((event.clientY - box.top) * this.canvas.height) / box.height;
+    const x = ((event.clientX - box.left) * this.canvas.width) / box.width,
+      y = ((event.clientY - box.top) * this.canvas.height) / box.height;
     const positions = this.positions("submission");
     if (!positions) return;
     let best = [Infinity, null];
-    const near = (distance, kind, index) => { if (distance < best[0]) best = [distance, { kind, index }]; };
+    const near = (distance, kind, index) => {
+      if (distance < best[0]) best = [distance, { kind, index }];
+    };
     for (let k = 0; k < this.data.n; k++) {
       const at = this.to(positions[2 * k], positions[2 * k + 1]);
       near(Math.max(0, Math.hypot(at[0] - x, at[1] - y) - this.data.radii[k] * this.scale()), "particle", k);
     }
     this.data.edges.forEach(([i, j, r], index) => {
-      const a = this.to(positions[2 * i], positions[2 * i + 1]), b = this.to(positions[2 * j], positions[2 * j + 1]);
-      const d = [b[0] - a[0], b[1] - a[1]], size = d[0] * d[0] + d[1] * d[1] || 1;
+      const a = this.to(positions[2 * i], positions[2 * i + 1]),
+        b = this.to(positions[2 * j], positions[2 * j + 1]);
+      const d = [b[0] - a[0], b[1] - a[1]],
+        size = d[0] * d[0] + d[1] * d[1] || 1;
       const s = Math.max(0, Math.min(1, ((x - a[0]) * d[0] + (y - a[1]) * d[1]) / size));
       near(Math.max(1, Math.hypot(a[0] + s * d[0] - x, a[1] + s * d[1] - y) - r * this.scale()), "edge", index);
     });
     this.data.planes.forEach(([px, py, nx, ny], index) => {
-      const a = this.to(px, py), depth = ((x - a[0]) * nx - (y - a[1]) * ny) / (Math.hypot(nx, ny) || 1);
+      const a = this.to(px, py),
+        depth = ((x - a[0]) * nx - (y - a[1]) * ny) / (Math.hypot(nx, ny) || 1);
       near(depth > 0 ? depth : 12, "half-plane", index);
     });
     const spot = this.spots.find(([, sx, sy]) => Math.hypot(sx - x, sy - y) < 9);
@@ -177,57 +306,143 @@ class Words extends Drawing {
   }
   tellNumbers() {
     const { selected, data } = this;
-    if (!selected) return this.numbers.replaceChildren(el("p", { class: "hint" }, "Click a particle, an edge, a half-plane or a contact for its numbers, or a pair in the table of pairs."));
+    if (!selected)
+      return this.numbers.replaceChildren(
+        el(
+          "p",
+          { class: "hint" },
+          "Click a particle, an edge, a half-plane or a contact for its numbers, or a pair in the table of pairs.",
+        ),
+      );
     const rows = [];
-    const list = selected.pair ? this.members(selected.pair) : selected.kind === "particle" ? [selected.index] : selected.kind === "edge" ? data.edges[selected.index].slice(0, 2) : [];
-    const plane = selected.kind === "half-plane" ? selected.index : selected.pair && selected.pair.startsWith("ph") ? parse(selected.pair).second : null;
+    const list = selected.pair
+      ? this.members(selected.pair)
+      : selected.kind === "particle"
+        ? [selected.index]
+        : selected.kind === "edge"
+          ? data.edges[selected.index].slice(0, 2)
+          : [];
+    const plane =
+      selected.kind === "half-plane"
+        ? selected.index
+        : selected.pair && selected.pair.startsWith("ph")
+          ? parse(selected.pair).second
+          : null;
     if (plane !== null && data.planes[plane]) {
-      ["point x", "point y", "normal x", "normal y"].forEach((name, k) => rows.push([`half-plane ${plane} ${name}`, ...Array(3).fill(data.planes[plane][k])]));
+      ["point x", "point y", "normal x", "normal y"].forEach((name, k) =>
+        rows.push([`half-plane ${plane} ${name}`, ...Array(3).fill(data.planes[plane][k])]),
+      );
     }
     const close = this.close();
     if (selected.pair && close) {
       const [right, own] = [close.expected, close.actual].map((all) => all.find(([pair]) => pair === selected.pair));
       ["time of impact", "normal x", "normal y"].forEach((name, k) => {
-        if (right || own) rows.push([`contact's ${name}`, ...[right, own].map((one) => (one ? one[k + 1] : "none")), "-"]);
+        if (right || own)
+          rows.push([`contact's ${name}`, ...[right, own].map((one) => (one ? one[k + 1] : "none")), "-"]);
       });
     }
     const expected = this.expected();
     for (const k of list) {
-      for (const [name, at] of [["x", 2 * k], ["y", 2 * k + 1], ["vx", 2 * data.n + 2 * k], ["vy", 2 * data.n + 2 * k + 1]]) {
-        const own = this.state("submission", this.step, this.mid), ref = this.state("reference", this.step, this.mid);
+      for (const [name, at] of [
+        ["x", 2 * k],
+        ["y", 2 * k + 1],
+        ["vx", 2 * data.n + 2 * k],
+        ["vy", 2 * data.n + 2 * k + 1],
+      ]) {
+        const own = this.state("submission", this.step, this.mid),
+          ref = this.state("reference", this.step, this.mid);
         rows.push([`particle ${k} ${name}`, ...[expected, own, ref].map((state) => (state ? state[at] : "-"))]);
       }
     }
     const number = (value) => typeof value === "number";
     const compared = ([name, right, own, ref]) => {
-      const [base, marked] = number(own) && number(right) ? beside(right, own) : number(own) && number(ref) ? beside(ref, own) : [];
+      const [base, marked] =
+        number(own) && number(right) ? beside(right, own) : number(own) && number(ref) ? beside(ref, own) : [];
       // One row has one notation.
       const digits = typeof base === "string" ? base.replace(/^.*\.|e.*$/g, "").length : 0;
-      const plain = (value) => (!number(value) ? value : /^-?\d+\.\d+$/.test(base ?? "") && finite(value) ? value.toFixed(digits) : short(value));
-      return marked === undefined ? [name, plain(right), plain(own), plain(ref)] : number(right) ? [name, base, marked, plain(ref)] : [name, plain(right), marked, base];
+      const plain = (value) =>
+        !number(value)
+          ? value
+          : /^-?\d+\.\d+$/.test(base ?? "") && finite(value)
+            ? value.toFixed(digits)
+            : short(value);
+      return marked === undefined
+        ? [name, plain(right), plain(own), plain(ref)]
+        : number(right)
+          ? [name, base, marked, plain(ref)]
+          : [name, plain(right), marked, base];
     };
     const exact = (value) => (number(value) ? `${value} (${hex(value)})` : value);
-    const bits = el("details", {}, el("summary", {}, "To the last bit"),
-      el("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Exact numbers" }, table(this.columns(), this.cut(rows.map(([name, ...values]) => [name, ...values.map(exact)])), "Decimal and hexadecimal")));
+    const bits = el(
+      "details",
+      {},
+      el("summary", {}, "To the last bit"),
+      el(
+        "div",
+        { class: "scroll", tabindex: 0, role: "region", "aria-label": "Exact numbers" },
+        table(
+          this.columns(),
+          this.cut(rows.map(([name, ...values]) => [name, ...values.map(exact)])),
+          "Decimal and hexadecimal",
+        ),
+      ),
+    );
     bits.open = this.bitsOpen;
-    bits.addEventListener("toggle", () => { this.bitsOpen = bits.open; });
-    const alike = (row) => { const values = this.cut([row])[0].slice(1).filter(number); return data.full && values.every((value) => Object.is(value, values[0])); };
+    bits.addEventListener("toggle", () => {
+      this.bitsOpen = bits.open;
+    });
+    const alike = (row) => {
+      const values = this.cut([row])[0].slice(1).filter(number);
+      return data.full && values.every((value) => Object.is(value, values[0]));
+    };
     const other = rows.filter((row) => !alike(row));
     const rest = rows.length - other.length;
     const title = selected.pair ? words(selected.pair) : `${selected.kind} ${selected.index}`;
-    const scene = quoted(data.scene), trace = quoted(data.traceName || "TRACE.bin");
-    const command = selected.pair ? `fosssim-oracle detect --scene ${scene} --trace ${trace} --step ${this.step} --pair ${selected.pair}${this.pass > 0 ? ` --pass ${this.pass + 1}` : ""}`
+    const scene = quoted(data.scene),
+      trace = quoted(data.traceName || "TRACE.bin");
+    const command = selected.pair
+      ? `fosssim-oracle detect --scene ${scene} --trace ${trace} --step ${this.step} --pair ${selected.pair}${this.pass > 0 ? ` --pass ${this.pass + 1}` : ""}`
       : `fosssim-oracle trace show ${scene} ${trace} --step ${this.step}`;
     const company = selected.pair ? list : this.company(list);
     const button = (text, act) => el("button", { type: "button", onclick: (event) => copy(act(), event.target) }, text);
     this.numbers.replaceChildren(
       el("h4", {}, title, " after step ", String(this.step)),
-      other.length ? el("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Numbers" }, table(this.columns(), this.cut(other.map(compared)), "Digits that differ are marked")) : "",
-      data.full && rest ? el("p", { class: "hint" }, `${rest} ${other.length ? "more " : ""}numbers of it are the same to the last bit.`) : "", bits,
-      el("p", {}, data.traceName ? "On the command line: " : "On the command line, with a trace that grade --keep-traces keeps: ", el("code", {}, command), " ", button("Copy", () => command)),
-      el("p", {}, selected.pair ? "The same bodies alone, moving as here: " : "It and those that it meets in this step, moving as here: ", button("Copy as scene", () => this.asScene(company, false)),
-        data.forces.length ? " or from the same state under the same forces: " : "", data.forces.length ? button("Copy with forces", () => this.asScene(company, true)) : "",
-        ". Saved as case.xml: ", el("code", {}, "./FOSSSim -s case.xml -d 0 -o case.bin; fosssim-oracle check case.xml case.bin")));
+      other.length
+        ? el(
+            "div",
+            { class: "scroll", tabindex: 0, role: "region", "aria-label": "Numbers" },
+            table(this.columns(), this.cut(other.map(compared)), "Digits that differ are marked"),
+          )
+        : "",
+      data.full && rest
+        ? el(
+            "p",
+            { class: "hint" },
+            `${rest} ${other.length ? "more " : ""}numbers of it are the same to the last bit.`,
+          )
+        : "",
+      bits,
+      el(
+        "p",
+        {},
+        data.traceName ? "On the command line: " : "On the command line, with a trace that grade --keep-traces keeps: ",
+        el("code", {}, command),
+        " ",
+        button("Copy", () => command),
+      ),
+      el(
+        "p",
+        {},
+        selected.pair
+          ? "The same bodies alone, moving as here: "
+          : "It and those that it meets in this step, moving as here: ",
+        button("Copy as scene", () => this.asScene(company, false)),
+        data.forces.length ? " or from the same state under the same forces: " : "",
+        data.forces.length ? button("Copy with forces", () => this.asScene(company, true)) : "",
+        ". Saved as case.xml: ",
+        el("code", {}, "./FOSSSim -s case.xml -d 0 -o case.bin; fosssim-oracle check case.xml case.bin"),
+      ),
+    );
   }
   // The particles of a pair.
   members(pair) {
@@ -236,8 +451,14 @@ class Words extends Drawing {
   }
   // Particles with those that they meet in this step: alone they would only fly on.
   company(list) {
-    const close = this.close(), all = new Set(list);
-    const met = close ? [...close.passes.flatMap((pass) => pass.hits.map(([pair]) => this.members(pair))), ...close.zones.flatMap((round) => round.zones.map((zone) => zone.particles))] : [];
+    const close = this.close(),
+      all = new Set(list);
+    const met = close
+      ? [
+          ...close.passes.flatMap((pass) => pass.hits.map(([pair]) => this.members(pair))),
+          ...close.zones.flatMap((round) => round.zones.map((zone) => zone.particles)),
+        ]
+      : [];
     for (const group of met) if (group.some((k) => all.has(k))) group.forEach((k) => all.add(k));
     return [...all];
   }
@@ -252,7 +473,8 @@ class Words extends Drawing {
   asScene(particles, withForces) {
     const { data } = this;
     const state = this.state("submission", Math.max(data.first, this.step - 1)).slice();
-    const close = this.close(), pass = close && close.passes[0];
+    const close = this.close(),
+      pass = close && close.passes[0];
     if (!withForces && pass && pass.q.length === 2 * data.n) {
       // Without forces velocities are such that the bodies move as the step's first detection saw them.
       for (let k = 0; k < 2 * data.n; k++) state[2 * data.n + k] = (pass.q[k] - state[k]) / data.dt;
@@ -261,11 +483,17 @@ class Words extends Drawing {
     const index = new Map(chosen.map((k, place) => [k, place]));
     const lines = [`<scene>`, `  <duration time="${data.dt}"/>`, `  ${data.integrator}`, `  ${data.collisionTag}`];
     for (const k of chosen) {
-      lines.push(`  <particle m="${data.masses[k]}" px="${state[2 * k]}" py="${state[2 * k + 1]}" vx="${state[2 * data.n + 2 * k]}" vy="${state[2 * data.n + 2 * k + 1]}" fixed="${data.fixed[k] ? 1 : 0}" radius="${data.radii[k]}"/>`);
+      lines.push(
+        `  <particle m="${data.masses[k]}" px="${state[2 * k]}" py="${state[2 * k + 1]}" vx="${state[2 * data.n + 2 * k]}" vy="${state[2 * data.n + 2 * k + 1]}" fixed="${data.fixed[k] ? 1 : 0}" radius="${data.radii[k]}"/>`,
+      );
     }
     const edges = data.edges.map(([i, j], k) => (index.has(i) && index.has(j) ? k : -1)).filter((k) => k >= 0);
-    for (const k of edges) lines.push(`  <edge i="${index.get(data.edges[k][0])}" j="${index.get(data.edges[k][1])}" radius="${data.edges[k][2]}"/>`);
-    for (const [px, py, nx, ny] of data.planes) lines.push(`  <halfplane px="${px}" py="${py}" nx="${nx}" ny="${ny}"/>`);
+    for (const k of edges)
+      lines.push(
+        `  <edge i="${index.get(data.edges[k][0])}" j="${index.get(data.edges[k][1])}" radius="${data.edges[k][2]}"/>`,
+      );
+    for (const [px, py, nx, ny] of data.planes)
+      lines.push(`  <halfplane px="${px}" py="${py}" nx="${nx}" ny="${ny}"/>`);
     for (const force of withForces ? data.forces : []) {
       // Forces between bodies that are not chosen stay behind.
       let whole = true;
@@ -280,10 +508,16 @@ class Words extends Drawing {
   }
   tellTable() {
     if (!this.table.open) return;
-    const own = this.state("submission", this.step, this.mid), ref = this.state("reference", this.step, this.mid), expected = this.expected();
+    const own = this.state("submission", this.step, this.mid),
+      ref = this.state("reference", this.step, this.mid),
+      expected = this.expected();
     const cell = (state, k) => (state ? `(${short(state[2 * k])}, ${short(state[2 * k + 1])})` : "-");
-    const rows = [...Array(this.data.n).keys()].map((k) => [`particle ${k}`, cell(expected, k), cell(own, k), cell(ref, k)]);
+    const rows = [...Array(this.data.n).keys()].map((k) => [
+      `particle ${k}`,
+      cell(expected, k),
+      cell(own, k),
+      cell(ref, k),
+    ]);
     this.tableBody.replaceChildren(table(this.columns(), this.cut(rows), `Positions after step ${this.step}`));
   }
-
 }
