@@ -1,4 +1,4 @@
-// promise: A program cannot say on which processors others run.
+// promise: A program cannot decide on which processors others run.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

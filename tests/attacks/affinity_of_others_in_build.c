@@ -1,4 +1,4 @@
-// promise: Nor can a build step.
+// promise: A build step cannot decide on which processors others run.
 // expect: exited 0
 // policy: tools
 #include "attack.h"

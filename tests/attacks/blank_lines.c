@@ -1,4 +1,4 @@
-// promise: Endless blank lines are a flood like any other.
+// promise: Endless blank lines are limited like any other output.
 // expect: output stdout
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: Ignoring the file size signal does not help: the folder as a whole is limited.
+// promise: The working folder as a whole is limited, whether or not a program ignores the file size signal.
 // expect: folder
 #include "attack.h"
 int main(int argc, char **argv) {

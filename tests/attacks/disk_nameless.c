@@ -1,4 +1,4 @@
-// promise: Files that were removed while they are open count, too.
+// promise: Files that were removed while they are open count.
 // expect: folder
 #include "attack.h"
 int main(int argc, char **argv) {

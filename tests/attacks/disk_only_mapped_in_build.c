@@ -1,4 +1,4 @@
-// promise: So do files that only a child process has mapped.
+// promise: Files that only a child process of a build step has mapped count.
 // expect: folder
 // policy: tools
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: So do files that are mapped privately.
+// promise: Files that are mapped privately count.
 // expect: folder
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: Holes do not count, what lies between them does.
+// promise: Holes of a file do not count, and the blocks between them do.
 // expect: folder
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: Nor can a thread of a build step.
+// promise: A thread of a build step cannot have descriptors of its own.
 // expect: violation clone
 // policy: tools
 #include "attack.h"

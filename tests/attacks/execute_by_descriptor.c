@@ -3,7 +3,7 @@
 #include "attack.h"
 int main(int argc, char **argv) {
     begin(argc);
-    int fd = open("/proc/self/exe", O_RDONLY);
+    int fd = open(argv[0], O_RDONLY);
     syscall(SYS_execveat, fd, "", argv, NULL, AT_EMPTY_PATH);
     breach("execveat");
 }

@@ -1,4 +1,4 @@
-// promise: A thread cannot execute a program either.
+// promise: A thread cannot execute a program.
 // expect: violation execve
 #include "attack.h"
 static void *execute(void *nothing) {

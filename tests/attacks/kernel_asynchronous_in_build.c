@@ -1,4 +1,4 @@
-// promise: The asynchronous calls are closed in a build step, too.
+// promise: The asynchronous calls are closed in a build step.
 // expect: violation io_uring_setup
 // policy: tools
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: Nor can a build step set it.
+// promise: A build step cannot set the machine's clock.
 // expect: violation adjtimex
 // policy: tools
 #include "attack.h"

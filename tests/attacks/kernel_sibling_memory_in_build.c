@@ -1,4 +1,4 @@
-// promise: Nor read their memory.
+// promise: A build step cannot read the memory of its own processes by system call.
 // expect: violation process_vm_readv
 // policy: tools
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: There is no network, and no socket of any other kind.
+// promise: A program has no network and no socket of any other kind.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

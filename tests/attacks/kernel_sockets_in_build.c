@@ -1,4 +1,4 @@
-// promise: There is no network in a build step either.
+// promise: A build step has no network.
 // expect: exited 0
 // policy: tools
 #include "attack.h"

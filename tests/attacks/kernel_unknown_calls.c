@@ -1,4 +1,4 @@
-// promise: System calls that nobody has heard of do not exist.
+// promise: System calls that are on no list do not exist.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

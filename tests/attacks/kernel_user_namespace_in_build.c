@@ -1,4 +1,4 @@
-// promise: User namespaces cannot be made in a build step either.
+// promise: A build step cannot make user namespaces.
 // expect: violation unshare
 // policy: tools
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: Page faults cannot be handled by the program (userfaultfd).
+// promise: A program cannot handle page faults itself (userfaultfd).
 // expect: violation userfaultfd
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: Walls of its own, behind which a program could listen or lie, cannot be put up.
+// promise: A program cannot put up filters of its own, behind which it could listen or lie.
 // expect: exited 0
 #include "attack.h"
 #ifndef PR_SET_SYSCALL_USER_DISPATCH

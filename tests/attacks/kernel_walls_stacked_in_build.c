@@ -1,4 +1,4 @@
-// promise: Nor can a build step put any up.
+// promise: A build step cannot put up filters of its own.
 // expect: exited 0
 // policy: tools
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: A program whose main thread has left meets its limit on the clock and is ended at once.
+// promise: A program whose main thread has left meets its limit on the clock and is ended immediately.
 // expect: wall
 // wall: 500
 #include "attack.h"

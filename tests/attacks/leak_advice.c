@@ -3,7 +3,7 @@
 #include "attack.h"
 int main(int argc, char **argv) {
     begin(argc);
-    int fd = open("/proc/self/exe", O_RDONLY);
+    int fd = open(argv[0], O_RDONLY);
     char *file = mmap(NULL, 4096, PROT_READ, MAP_PRIVATE, fd, 0);
     char *own = mmap(NULL, 4 << 20, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     memset(own, 1, 4 << 20);

@@ -1,4 +1,4 @@
-// promise: Nor can a build step.
+// promise: A build step cannot have pages of files leave memory, age, merge or move.
 // expect: exited 0
 // policy: tools
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: What the kernel counts of the whole machine is not to be read.
+// promise: A program cannot read the counters of the whole machine in /proc and /sys.
 // expect: exited 0
 // needs: hidden files
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: A program is told what memory the machine has, and not what others use, nor how many they are.
+// promise: A program is told the size of the machine's memory, not its use and not the number of processes.
 // expect: exited 0
 // needs: named violations
 #include "attack.h"

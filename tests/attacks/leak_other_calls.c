@@ -1,9 +1,9 @@
-// promise: No other call asks about, or changes, what the kernel holds for everybody.
+// promise: A program cannot ask about, or change, what the kernel holds for everybody.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {
     begin(argc);
-    int fd = open("/proc/self/exe", O_RDONLY);
+    int fd = open(argv[0], O_RDONLY);
     char *page = mmap(NULL, 4096, PROT_READ, MAP_SHARED, fd, 0);
     unsigned long words[64] = {0};
     int mode = 0;
@@ -26,7 +26,6 @@ int main(int argc, char **argv) {
     refused(syscall(461, words, words, 0), "lsm_list_modules");
     refused(syscall(SYS_ustat, 1, words), "ustat");
     refused(syscall(SYS_sysfs, 3), "sysfs");
-    for (int *command = (int[]){1, 2, 4, 0}; *command; command++) refused(syscall(SYS_membarrier, *command, 0, 0), "a barrier of everybody");
     // The size of a pipe says how many others there are.
     int ends[2];
     if (!pipe(ends)) refused(fcntl(ends[0], F_GETPIPE_SZ), "the size of a pipe");

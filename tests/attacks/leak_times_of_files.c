@@ -1,28 +1,37 @@
-// promise: To read what a program may read of the system changes no time that another run could see.
+// promise: A program that reads a file of the system changes no time that another run could read.
 // expect: exited 0
+// needs: private mounts
 #include "attack.h"
-static char path[1000][300];
+static int seen;
+// The time at which somebody read the entry last.
+static struct timespec last_read(const char *path) {
+    struct stat about;
+    if (lstat(path, &about)) return (struct timespec){0, 0};
+    return about.st_atim;
+}
+static void walk(const char *folder) {
+    DIR *entries = opendir(folder);
+    struct dirent *entry;
+    while (entries && seen < 3000 && (entry = readdir(entries))) {
+        if (!strcmp(entry->d_name, ".") || !strcmp(entry->d_name, "..")) continue;
+        char path[PATH_MAX], target[PATH_MAX];
+        snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
+        struct timespec before = last_read(path);
+        int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOFOLLOW);
+        if (fd >= 0) {
+            if (read(fd, block, 1)) {}
+            close(fd);
+        }
+        if (readlink(path, target, sizeof target)) {}
+        if (entry->d_type == DT_DIR && strlen(path) < 60) walk(path);
+        struct timespec after = last_read(path);
+        if (before.tv_sec != after.tv_sec || before.tv_nsec != after.tv_nsec) breach(path);
+        seen++;
+    }
+    if (entries) closedir(entries);
+}
 int main(int argc, char **argv) {
     begin(argc);
-    FILE *maps = fopen("/proc/self/maps", "r");
-    char line[400];
-    int count = 0;
-    while (maps && count < 1000 && fgets(line, sizeof line, maps)) {
-        char *start = strstr(line, " /");
-        if (!start || (strncmp(start, " /usr", 5) && strncmp(start, " /lib", 5))) continue;
-        start[strcspn(start, "\n")] = 0;
-        snprintf(path[count++], sizeof path[0], "%s", start + 1);
-    }
-    const char *others[] = {"/etc/ld.so.cache", "/etc/localtime", "/usr/lib/x86_64-linux-gnu/gconv/gconv-modules.cache", "/usr/lib/x86_64-linux-gnu/gconv/UTF-16.so",
-        "/usr/lib/x86_64-linux-gnu/libgcc_s.so.1", "/usr/lib/locale/C.utf8/LC_CTYPE", "/usr/lib/locale/C.utf8/LC_MESSAGES/SYS_LC_MESSAGES", NULL};
-    for (const char **other = others; *other; other++) snprintf(path[count++], sizeof path[0], "%s", *other);
-    for (int i = 0; i < count; i++) {
-        struct stat before, after;
-        int fd = open(path[i], O_RDONLY);
-        if (fd < 0 || fstat(fd, &before)) continue;
-        while (read(fd, block, sizeof block) > 0);
-        if (fstat(fd, &after) || before.st_atim.tv_sec != after.st_atim.tv_sec || before.st_atim.tv_nsec != after.st_atim.tv_nsec) breach(path[i]);
-        close(fd);
-    }
-    if (count < 6) exit(97);
+    for (const char **folder = (const char *[]){"/lib64", "/usr/lib/locale", "/usr/lib/x86_64-linux-gnu/gconv", "/usr/lib", NULL}; *folder; folder++) walk(*folder);
+    if (seen < 6) exit(97);
 }

@@ -1,4 +1,4 @@
-// promise: A build step cannot give files attributes or access lists either.
+// promise: A build step cannot give files attributes or access lists.
 // expect: exited 0
 // policy: tools
 #include "attack.h"

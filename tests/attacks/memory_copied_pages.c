@@ -4,7 +4,7 @@
 int main(int argc, char **argv) {
     begin(argc);
     void *handle = fopen("/proc/self/maps", "r");
-    int fd = open("/proc/self/exe", O_RDONLY);
+    int fd = open(argv[0], O_RDONLY);
     if (!handle || fd < 0) return 1;
     for (int i = 0; i < 100000; i++) {
         char *part = mmap(NULL, 16 << 10, PROT_READ | PROT_WRITE, MAP_PRIVATE, fd, 0);

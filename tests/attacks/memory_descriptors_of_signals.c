@@ -1,4 +1,4 @@
-// promise: Descriptors of signals, timers and events are files like all others, and limited as such.
+// promise: Descriptors of signals, timers and events count as files and are limited as such.
 // expect: exited 0
 #include "attack.h"
 #include <sys/epoll.h>

@@ -1,4 +1,4 @@
-// promise: Watches that watch each other are limited by the kernel and harm nobody.
+// promise: Watches that watch each other are limited by the kernel and do no harm.
 // expect: exited 0
 #include "attack.h"
 #include <sys/epoll.h>

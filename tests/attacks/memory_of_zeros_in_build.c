@@ -1,4 +1,4 @@
-// promise: In a build step memory behind /dev/zero counts, too.
+// promise: Memory behind /dev/zero counts in a build step.
 // expect: exited 0 or memory
 // policy: tools
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: A build step cannot have such memory either.
+// promise: A build step cannot have shared memory that is in no file.
 // expect: exited 0
 // policy: tools
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: Nor can it be had by the newer name of the same mapping.
+// promise: A program cannot have nameless shared memory by the newer name of the same mapping.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: Names with marks that turn the direction of text, with blanks of no width or without end harm nobody.
+// promise: Names with marks that turn the direction of text, with blanks of no width or without end do no harm.
 // expect: exited 0
 // leaves: honest
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: A program cannot change when others run.
+// promise: A program cannot change the priority of others.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

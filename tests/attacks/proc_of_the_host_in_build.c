@@ -1,4 +1,4 @@
-// promise: Nor can a build step read them.
+// promise: A build step cannot read sockets, mounts and groups of the host in /proc.
 // expect: exited 0
 // policy: tools
 // needs: file rules

@@ -1,4 +1,4 @@
-// promise: Its memory counts, too.
+// promise: The memory of a build process that was made a child of the supervisor counts.
 // expect: memory
 // policy: tools
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: Nor can a build step read it, or run it.
+// promise: A build step cannot read or run the grader's own program.
 // expect: exited 0
 // policy: tools
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: There is no way up and out of the working folder.
+// promise: A program cannot leave the working folder by its parent.
 // expect: exited 0
 // needs: file rules
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: Nor can a build step.
+// promise: A build step cannot have the kernel signal others for a descriptor of its own.
 // expect: exited 0
 // policy: tools
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: Nor choose which signal the kernel sends.
+// promise: A program cannot choose which signal the kernel sends for a descriptor.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

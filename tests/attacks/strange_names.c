@@ -1,4 +1,4 @@
-// promise: Strange file names harm nobody.
+// promise: Strange file names do no harm.
 // expect: exited 0
 // leaves: honest
 #include "attack.h"

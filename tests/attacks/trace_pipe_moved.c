@@ -1,4 +1,4 @@
-// promise: Moving the trace pipe away harms nobody.
+// promise: A program that moves the trace pipe away harms only itself.
 // expect: exited 0
 // pipe: 6
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: A trace pipe has no holes: only bytes that were written arrive.
+// promise: Holes do not pass a trace pipe: only bytes that were written arrive.
 // expect: exited 0
 // pipe: 4
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: Nor can a build step empty one.
+// promise: A build step cannot empty a file that it may only read.
 // expect: exited 0
 // policy: tools
 #include "attack.h"

@@ -495,6 +495,21 @@ pub(super) fn next_announcement(listener: BorrowedFd<'_>) -> io::Result<Option<A
     }
 }
 
+/// Whether the announced call still waits for its answer.
+pub(super) fn is_waiting(listener: BorrowedFd<'_>, id: u64) -> bool {
+    // SAFETY: the number outlives the call, which only reads it.
+    unsafe { libc::ioctl(listener.as_raw_fd(), libc::SECCOMP_IOCTL_NOTIF_ID_VALID, &raw const id) == 0 }
+}
+
+/// The time since the clock's beginning: the calendar's clock, or the one that always goes on.
+pub(super) fn time_by(calendar: bool) -> Duration {
+    let clock = if calendar { libc::CLOCK_REALTIME } else { libc::CLOCK_MONOTONIC };
+    let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
+    // SAFETY: the structure outlives the call, which fills it.
+    unsafe { libc::clock_gettime(clock, &raw mut time) };
+    Duration::new(time.tv_sec.unsigned_abs(), time.tv_nsec.unsigned_abs() as u32)
+}
+
 /// The answer to an announced call.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum CallAnswer {

@@ -22,10 +22,13 @@ pub(super) struct AttackNeed {
 }
 
 impl AttackNeed {
-    const ALL: [Self; 5] = [
+    const ALL: [Self; 7] = [
         Self::of("file rules", &[Layer::FileRules]),
         // Files of the host are closed to programs, or out of sight.
         Self::of("hidden files", &[Layer::FileRules, Layer::Namespaces]),
+        // Files of the host are in mounts of the run's own.
+        Self::of("private mounts", &[Layer::Namespaces, Layer::Bubblewrap]),
+        Self::of("private processes", &[Layer::Namespaces]),
         Self::of("signal scope", &[Layer::Scopes, Layer::OwnUser]),
         Self::of("named violations", &[Layer::NamedCalls]),
         Self { name: "x86_64", walls: &[], by_processor: cfg!(target_arch = "x86_64") },

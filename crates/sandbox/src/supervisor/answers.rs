@@ -3,6 +3,7 @@
 
 use std::{
     fs::File,
+    io,
     os::{fd::BorrowedFd, unix::fs::FileExt},
     time::{Duration, Instant},
 };
@@ -12,97 +13,171 @@ use crate::{
     sys::{self, Announced, CallAnswer},
 };
 
-/// Tells the thread how much memory the machine has and how long it has been up, and nothing of what is in use: the C
-/// library sorts long arrays by it. A kernel whose other walls keep us from the memory answers itself.
-pub(super) fn about_machine(announced: &Announced, user: Option<u32>) -> CallAnswer {
-    let told = machine::without_others();
+/// The memory of the thread that waits for an answer. Where other walls keep us from it, the kernel answers itself.
+fn memory(announced: &Announced, user: Option<u32>) -> io::Result<File> {
     let path = format!("/proc/{}/mem", announced.thread);
-    match sys::with_files_of(user, || File::options().write(true).open(path)) {
-        Err(_) => CallAnswer::GoOn,
-        Ok(memory) if memory.write_all_at(&told, announced.arguments[0]).is_ok() => CallAnswer::Done,
-        Ok(_) => CallAnswer::Refused(libc::EFAULT),
-    }
+    sys::with_files_of(user, || File::options().read(true).write(true).open(path))
 }
 
-/// Whether the process may wait for children with their counters, among which are page faults. The driver of clang
-/// does so; it is that driver as the system has it, with no code of anybody else's.
-pub(super) fn may_count_children(announced: &Announced, user: Option<u32>) -> bool {
-    const SYSTEMS: [&str; 4] = ["/usr/", "/lib/", "/lib64/", "/bin/"];
-    let process = |name: &str| format!("/proc/{}/{name}", announced.thread);
-    let is_systems = |path: &str| SYSTEMS.iter().any(|folder| path.starts_with(folder));
-    let look = || Some((std::fs::read_link(process("exe")).ok()?, std::fs::read_to_string(process("maps")).ok()?));
-    let Some((program, maps)) = sys::with_files_of(user, look) else { return false };
-    let is_clang = program.file_name().is_some_and(|name| name.to_string_lossy().starts_with("clang"));
-    let foreign = |line: &str| {
-        let mut words = line.split_ascii_whitespace();
-        let executable = words.nth(1).is_some_and(|rights| rights.contains('x'));
-        // The kernel's own pages have a name in brackets.
-        executable && !words.nth(3).is_some_and(|path| path.starts_with("[v") || is_systems(path))
-    };
-    is_clang && program.to_str().is_some_and(is_systems) && !maps.lines().any(foreign)
+/// Tells the thread how much memory the machine has and how long it has been up, and nothing of what is in use: the C
+/// library sorts long arrays by it.
+pub(super) fn about_machine(announced: &Announced, user: Option<u32>) -> CallAnswer {
+    match memory(announced, user) {
+        Err(_) => CallAnswer::GoOn,
+        Ok(memory) if memory.write_all_at(&machine::without_others(), announced.arguments[0]).is_ok() => {
+            CallAnswer::Done
+        }
+        Ok(_) => CallAnswer::Refused(libc::EFAULT),
+    }
 }
 
 /// Threads that wait for a word that other processes might share, as the C library waits for the end of a thread.
 ///
 /// The kernel finds such words by the file in whose pages they are, and wakes the threads that wait there when a thread
-/// ends that names the same word: in a library's pages that would be another run's. So nobody waits in the kernel.
-/// After a pause the thread is told to look at its word again, which it must do after every wait; the pauses double.
+/// ends that names the same word: in a library's pages that would be another run's. So nobody waits in the kernel. The
+/// supervisor looks at the word after pauses that double, until it has changed or the limit of time has passed.
 #[derive(Debug, Default)]
-pub(super) struct SharedWaits {
-    /// The announcements, with the time of their answer and whether they have a limit of time.
-    waiting: Vec<(u64, Instant, bool)>,
-    /// The last one's word and what it holds as long as the wait goes on, and how long it was told to wait.
-    last: Option<([u64; 2], Duration)>,
+pub(super) struct SharedWaits(Vec<SharedWait>);
+
+#[derive(Debug)]
+struct SharedWait {
+    id: u64,
+    memory: File,
+    word: u64,
+    /// What it holds as long as the wait goes on.
+    value: u32,
+    limit: Option<Instant>,
+    pause: Duration,
+    /// When to look again.
+    due: Instant,
 }
 
 impl SharedWaits {
     const SHORTEST: Duration = Duration::from_micros(50);
     const LONGEST: Duration = Duration::from_millis(2);
 
-    /// Has the thread wait.
-    pub(super) fn add(&mut self, announced: &Announced, now: Instant) {
-        let [word, _, value, limit, ..] = announced.arguments;
-        let before = self.last.filter(|(last, _)| *last == [word, value]);
-        let pause = before.map_or(Self::SHORTEST, |(_, pause)| (2 * pause).min(Self::LONGEST));
-        self.last = Some(([word, value], pause));
-        self.waiting.push((announced.id, now + pause, limit != 0));
+    /// Has the thread wait; an answer that needs no wait comes back.
+    pub(super) fn add(&mut self, announced: &Announced, user: Option<u32>, now: Instant) -> Option<CallAnswer> {
+        let Ok(memory) = memory(announced, user) else { return Some(CallAnswer::GoOn) };
+        let [word, _, value, ..] = announced.arguments;
+        let limit = match limit(announced, &memory, now) {
+            Ok(limit) => limit,
+            Err(errno) => return Some(CallAnswer::Refused(errno)),
+        };
+        let (pause, value) = (Self::SHORTEST, value as u32);
+        let wait = SharedWait { id: announced.id, memory, word, value, limit, pause, due: now + pause };
+        match wait.answer(now) {
+            Some(CallAnswer::Done) => Some(CallAnswer::Refused(libc::EAGAIN)),
+            None => {
+                self.0.push(wait);
+                None
+            }
+            answer => answer,
+        }
     }
 
-    /// When the next one is to be answered.
+    /// When the next word is to be looked at.
     pub(super) fn next(&self) -> Option<Instant> {
-        self.waiting.iter().map(|(_, due, _)| *due).min()
+        self.0.iter().map(|wait| wait.due).min()
     }
 
-    /// Answers those whose pause is over.
+    /// Answers those whose word has changed or whose time is over.
     pub(super) fn answer(&mut self, listener: BorrowedFd<'_>, now: Instant) {
-        self.waiting.retain(|(id, due, limited)| {
-            if *due > now {
+        self.0.retain_mut(|wait| {
+            if wait.due > now {
                 return true;
             }
-            // A thread that waits with a limit of time looks at its word after that, too. A thread that is gone needs
-            // no answer.
-            let answer = if *limited { CallAnswer::Refused(libc::ETIMEDOUT) } else { CallAnswer::Done };
-            let _ = sys::answer(listener, *id, answer);
-            false
+            wait.pause = (2 * wait.pause).min(Self::LONGEST);
+            wait.due = now + wait.pause;
+            match wait.answer(now) {
+                // A signal may have ended the wait.
+                None => sys::is_waiting(listener, wait.id),
+                Some(answer) => {
+                    // A thread that is gone needs no answer.
+                    let _ = sys::answer(listener, wait.id, answer);
+                    false
+                }
+            }
         });
     }
+}
+
+impl SharedWait {
+    /// The answer to the wait, if it is over.
+    fn answer(&self, now: Instant) -> Option<CallAnswer> {
+        let mut word = [0; 4];
+        match self.memory.read_exact_at(&mut word, self.word) {
+            Err(_) => Some(CallAnswer::Refused(libc::EFAULT)),
+            Ok(()) if u32::from_ne_bytes(word) != self.value => Some(CallAnswer::Done),
+            Ok(()) => self.limit.is_some_and(|limit| limit <= now).then_some(CallAnswer::Refused(libc::ETIMEDOUT)),
+        }
+    }
+}
+
+/// The time until which the thread waits: from now on (`FUTEX_WAIT`), or by a clock (`FUTEX_WAIT_BITSET`).
+fn limit(announced: &Announced, memory: &File, now: Instant) -> Result<Option<Instant>, i32> {
+    let [_, operation, _, place, ..] = announced.arguments;
+    if place == 0 {
+        return Ok(None);
+    }
+    let mut bytes = [0; 16];
+    memory.read_exact_at(&mut bytes, place).map_err(|_| libc::EFAULT)?;
+    let [seconds, nanoseconds] = [0, 8].map(|at| i64::from_ne_bytes(std::array::from_fn(|index| bytes[at + index])));
+    let (Ok(seconds), Ok(nanoseconds @ 0..1_000_000_000)) = (u64::try_from(seconds), u32::try_from(nanoseconds)) else {
+        return Err(libc::EINVAL);
+    };
+    let operation = operation as i32;
+    let passed = match operation & !libc::FUTEX_CLOCK_REALTIME {
+        libc::FUTEX_WAIT => Duration::ZERO,
+        _ => sys::time_by(operation & libc::FUTEX_CLOCK_REALTIME != 0),
+    };
+    // A time beyond all clocks is none.
+    Ok(now.checked_add(Duration::new(seconds, nanoseconds).saturating_sub(passed)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    /// A wait of this very process for the word, with the limit at this place.
+    fn announced(operation: i32, word: &u32, value: u32, limit: Option<&[i64; 2]>) -> Announced {
+        let limit = limit.map_or(0, |limit| (&raw const *limit) as u64);
+        let arguments = [(&raw const *word) as u64, operation as u64, value.into(), limit, 0, 0];
+        Announced { id: 1, thread: std::process::id(), call: libc::SYS_futex, arguments }
+    }
+
     #[test]
-    fn pauses_double_while_a_thread_waits_for_the_same() {
-        let (mut waits, now) = (SharedWaits::default(), Instant::now());
-        let mut pause = |value| {
-            let announced = Announced { id: 1, thread: 2, call: libc::SYS_futex, arguments: [8, 0, value, 0, 0, 0] };
-            waits.add(&announced, now);
-            let due = waits.next().unwrap();
-            waits.waiting.clear();
-            (due - now).as_micros()
+    fn a_wait_lasts_until_the_word_changes_or_its_time_is_over() {
+        let (mut waits, now, word) = (SharedWaits::default(), Instant::now(), 7);
+        let changed = waits.add(&announced(libc::FUTEX_WAIT, &word, 8, None), None, now);
+        assert_eq!(changed, Some(CallAnswer::Refused(libc::EAGAIN)));
+        assert_eq!(waits.add(&announced(libc::FUTEX_WAIT, &word, 7, None), None, now), None);
+        assert_eq!(waits.0[0].answer(now + Duration::from_secs(3600)), None, "it has no limit");
+        let later = announced(libc::FUTEX_WAIT, &word, 7, Some(&[5, 0]));
+        assert_eq!(waits.add(&later, None, now), None);
+        assert_eq!(waits.0[1].answer(now + Duration::from_millis(4900)), None);
+        assert_eq!(waits.0[1].answer(now + Duration::from_secs(5)), Some(CallAnswer::Refused(libc::ETIMEDOUT)));
+        let mut other = announced(libc::FUTEX_WAIT, &word, 7, None);
+        other.arguments[0] = 8;
+        assert_eq!(waits.add(&other, None, now), Some(CallAnswer::Refused(libc::EFAULT)));
+    }
+
+    #[test]
+    fn a_limit_is_by_the_clock_that_the_call_names() {
+        let (word, now) = (7, Instant::now());
+        let memory = File::open("/proc/self/mem").unwrap();
+        let limit = |operation, time: [i64; 2]| {
+            limit(&announced(operation, &word, 7, Some(&time)), &memory, now).map(|limit| limit.unwrap() - now)
         };
-        let pauses: Vec<u128> = [7, 7, 7, 7, 7, 7, 7, 7, 9, 9].map(&mut pause).into();
-        assert_eq!(pauses, [50, 100, 200, 400, 800, 1600, 2000, 2000, 50, 100]);
+        for (flag, real) in [(0, false), (libc::FUTEX_CLOCK_REALTIME, true)] {
+            let soon = sys::time_by(real).as_secs() as i64 + 100;
+            let left = limit(libc::FUTEX_WAIT_BITSET | flag, [soon, 0]).unwrap();
+            assert!(left > Duration::from_secs(98) && left <= Duration::from_secs(100), "{left:?}");
+            assert_eq!(limit(libc::FUTEX_WAIT_BITSET | flag, [1, 0]), Ok(Duration::ZERO), "it has passed");
+            assert_eq!(limit(libc::FUTEX_WAIT | flag, [1, 5]), Ok(Duration::new(1, 5)));
+        }
+        for wrong in [[-1, 0], [0, -1], [0, 1_000_000_000]] {
+            assert_eq!(limit(libc::FUTEX_WAIT, wrong), Err(libc::EINVAL));
+        }
     }
 }

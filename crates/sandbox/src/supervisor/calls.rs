@@ -36,7 +36,7 @@ pub(super) const ALLOWED: &[Call] = calls![
     SYS_getresgid SYS_getpgid SYS_getsid SYS_setpgid SYS_setsid SYS_uname SYS_sysinfo SYS_sched_yield
     SYS_sched_getaffinity SYS_sched_setaffinity SYS_sched_getparam SYS_sched_getscheduler SYS_sched_get_priority_max
     SYS_sched_get_priority_min SYS_getpriority SYS_set_tid_address SYS_set_robust_list SYS_get_robust_list SYS_futex
-    SYS_rseq SYS_getrandom SYS_getcpu SYS_exit SYS_exit_group SYS_wait4 SYS_waitid SYS_restart_syscall
+    SYS_rseq SYS_getrandom SYS_getcpu SYS_exit SYS_exit_group SYS_wait4 SYS_waitid SYS_getrusage SYS_restart_syscall
     SYS_ioctl SYS_prctl SYS_prlimit64 SYS_kill SYS_tkill SYS_tgkill SYS_clone SYS_execve SYS_execveat
     ; old:
     SYS_open SYS_creat SYS_stat SYS_lstat SYS_access SYS_readlink SYS_getdents SYS_mkdir SYS_rmdir SYS_unlink SYS_rename
@@ -64,15 +64,15 @@ pub(super) const TIMES: &[Call] = calls![SYS_utimensat];
 pub(super) const TIMES_BY_NAME: &[Call] = calls![; old: SYS_utime SYS_utimes SYS_futimesat];
 
 /// Calls that libraries try and can do without; refused with `EPERM` or `EACCES` rather than taken for an attack. The C
-/// library asks the name service by a socket, for one. Counters of page faults and of free blocks are among them:
-/// they tell what others did.
+/// library asks the name service by a socket, for one. Counters of free blocks are among them, which tell what others
+/// wrote.
 pub(super) const REFUSED: &[Call] = calls![
     SYS_socket SYS_socketpair SYS_truncate SYS_fchown SYS_fchownat SYS_setxattr SYS_lsetxattr SYS_fsetxattr SYS_removexattr
     SYS_lremovexattr SYS_fremovexattr SYS_setpriority SYS_sched_setscheduler SYS_sched_setparam SYS_sched_setattr
     SYS_setgroups SYS_setfsuid SYS_setfsgid
     SYS_personality SYS_shmget SYS_shmat SYS_shmctl SYS_semget SYS_semctl SYS_semop SYS_msgget SYS_msgsnd SYS_msgrcv
     SYS_mincore SYS_fadvise64 SYS_msgctl SYS_mq_open SYS_rt_sigqueueinfo SYS_rt_tgsigqueueinfo SYS_pidfd_send_signal SYS_mlockall SYS_ioprio_set
-    SYS_getrusage SYS_statfs SYS_fstatfs
+    SYS_statfs SYS_fstatfs
     ; old:
     SYS_chown SYS_lchown
 ];

@@ -1,10 +1,10 @@
 //! The seccomp filters: an allow list, refusals with an error number, and calls that end the program.
 //!
-//! Rules come in layers; the strictest answer counts, in the order kill, error, announce, allow. Forbidden calls are
-//! announced to the supervisor, which names the call and kills; that filter is installed first. Where the kernel cannot
-//! announce, the call kills by `SIGSYS`. All other layers make one filter, which comes last, because its allow list
-//! also takes away the calls that install filters. Every filter ends programs that use another architecture's calls
-//! (32-bit `int 0x80`); x32 numbers are on no list and so do not exist.
+//! Each answer has a filter of its own, which the compiler makes. The strictest answer counts, in the order kill, error,
+//! announce, allow, and of equal ones the last filter's. Forbidden calls are announced to the supervisor, which names
+//! the call and kills; that filter is installed first. Where the kernel cannot announce, the call kills by `SIGSYS`. The
+//! list of calls that exist comes last, because it also takes away the calls that install filters. Every filter ends
+//! programs that use another architecture's calls (32-bit `int 0x80`); x32 numbers are on no list and so do not exist.
 
 use std::{collections::BTreeMap, io};
 
@@ -12,10 +12,7 @@ use seccompiler::{
     BpfProgram, SeccompAction, SeccompCmpArgLen, SeccompCmpOp, SeccompCondition, SeccompFilter, SeccompRule,
 };
 
-use super::{
-    calls::{self, Call},
-    search::{self, Answer},
-};
+use super::calls::{self, Call};
 
 /// Stands for "announce" while a filter is compiled, because the compiler does not know that action.
 const ANNOUNCE_PLACEHOLDER: u16 = 0x5151;
@@ -68,18 +65,11 @@ const QUESTIONS: [i64; 6] = [
     libc::SYS_get_robust_list,
 ];
 
-/// Calls that name a clock in their first argument.
-const CLOCKS: [i64; 4] =
-    [libc::SYS_clock_gettime, libc::SYS_clock_getres, libc::SYS_clock_nanosleep, libc::SYS_timerfd_create];
-
 /// Advice about memory that concerns nobody but the caller, by number, because not every C library knows all: usual,
 /// random and sequential reading, needed or not, free, remove, for children, huge pages, dumps, populate, and guards.
 /// Left out are those that have pages of files or of memory leave, age, merge or move, which others would notice or no
 /// counter shows.
 const HARMLESS_ADVICE: [u64; 20] = [0, 1, 2, 3, 4, 8, 9, 10, 11, 13, 14, 15, 16, 17, 18, 19, 22, 23, 102, 103];
-
-/// Barriers among the threads of one process, and the question which there are.
-const OWN_BARRIERS: [u64; 7] = [0, 8, 16, 32, 64, 128, 256];
 
 /// Waits for a word that may be shared, which the C library needs to wait for the end of a thread: with the clocks that
 /// a limit of time may be by.
@@ -89,6 +79,9 @@ const SHARED_WAITS: [u64; 4] = [
     (libc::FUTEX_WAIT | libc::FUTEX_CLOCK_REALTIME) as u64,
     (libc::FUTEX_WAIT_BITSET | libc::FUTEX_CLOCK_REALTIME) as u64,
 ];
+
+/// Wakes for such words: the supervisor sees by itself that a word has changed, so that they need wake nobody.
+const SHARED_WAKES: [u64; 2] = [libc::FUTEX_WAKE as u64, libc::FUTEX_WAKE_BITSET as u64];
 
 /// Requests about terminals and descriptors that the C library and compilers make of any file.
 const HARMLESS_REQUESTS: [u64; 8] = [
@@ -135,63 +128,24 @@ pub(super) struct Purpose {
 
 /// The filters in the order of installation; the first is the one that announces.
 pub(super) fn filters(purpose: Purpose) -> io::Result<Vec<BpfProgram>> {
-    let (forbidden, mut layers) = (forbidden(purpose)?, refusals(purpose)?);
-    let allow: u32 = SeccompAction::Allow.into();
-    let mut filters = Vec::new();
-    if purpose.announce {
-        let announced = joined(forbidden.keys().copied(), &[(forbidden.clone(), announce())])?;
-        filters.push(search::filter(&announced, allow, frame()?)?);
-    } else {
-        layers.insert(0, (forbidden, SeccompAction::KillProcess));
-    }
-    // A call that is in some group exists, and the layers decide. All else does not.
-    let known = calls::GROUPS.into_iter().flatten().map(|(_, call)| *call);
-    filters.push(search::filter(&joined(known, &layers)?, SeccompAction::Errno(libc::ENOSYS as u32).into(), frame()?)?);
-    for instruction in filters.iter_mut().flatten() {
+    let strictest = if purpose.announce { announce() } else { SeccompAction::KillProcess };
+    let mut filters = vec![compile(forbidden(purpose)?, strictest, SeccompAction::Allow)?];
+    for instruction in &mut filters[0] {
         if instruction.code == RETURN_CONSTANT && instruction.k == u32::from(announce()) {
             instruction.k = ACTION_ANNOUNCE;
         }
     }
+    for (errno, rules) in refusals(purpose)? {
+        filters.push(compile(rules, SeccompAction::Errno(errno as u32), SeccompAction::Allow)?);
+    }
+    // A call that is in some group exists, and the filters before decide. All else does not.
+    let known = calls::GROUPS.into_iter().flatten().map(|(_, call)| (*call, Vec::new())).collect();
+    filters.push(compile(known, SeccompAction::Allow, SeccompAction::Errno(libc::ENOSYS as u32))?);
     Ok(filters)
 }
 
-/// Rules with the answer to matching calls; calls without rules always match.
-type Layer = (CallRules, SeccompAction);
-
-/// The answer to each of these calls by layers; the first layer that matches decides.
-fn joined(calls: impl Iterator<Item = i64>, layers: &[Layer]) -> io::Result<BTreeMap<u32, Answer>> {
-    let mut answers = BTreeMap::new();
-    for call in calls {
-        let mut asked = Vec::new();
-        let mut at_last = SeccompAction::Allow;
-        for (rules, action) in layers {
-            match rules.get(&call) {
-                None => {}
-                Some(always) if always.is_empty() => {
-                    at_last = action.clone();
-                    break;
-                }
-                Some(rules) => {
-                    let program = compile(CallRules::from([(call, rules.clone())]), action.clone())?;
-                    asked.push(search::without_number(program, &frame()?));
-                }
-            }
-        }
-        let at_last = u32::from(at_last);
-        let answer = match asked.is_empty() {
-            true => Answer::Constant(at_last),
-            false => {
-                asked.push(vec![search::answer(at_last)]);
-                Answer::Asked(asked)
-            }
-        };
-        answers.insert(u32::try_from(call).map_err(io::Error::other)?, answer);
-    }
-    Ok(answers)
-}
-
-/// The layers of refusals. The largest error number comes first.
-fn refusals(purpose: Purpose) -> io::Result<Vec<Layer>> {
+/// The refused calls by error number; 0 is for those that succeed without having any effect.
+fn refusals(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
     let mut refusals: BTreeMap<i32, CallRules> = BTreeMap::new();
     let mut refuse = |errno: i32, call: i64, rules: Vec<SeccompRule>| {
         refusals.entry(errno).or_default().insert(call, rules);
@@ -219,19 +173,13 @@ fn refusals(purpose: Purpose) -> io::Result<Vec<Layer>> {
     }
     // Words in a file's pages are the same words for everybody who maps it: a library's would wake other runs.
     let private = libc::FUTEX_PRIVATE_FLAG as u64;
-    let shared = std::iter::once(condition(1, SeccompCmpOp::MaskedEq(private), 0)).chain(differ(1, &SHARED_WAITS));
+    let harmless = if purpose.announce { [&SHARED_WAITS[..], &SHARED_WAKES].concat() } else { SHARED_WAITS.into() };
+    let shared = std::iter::once(condition(1, SeccompCmpOp::MaskedEq(private), 0)).chain(differ(1, &harmless));
     refuse(libc::EPERM, libc::SYS_futex, vec![rule(shared.collect::<io::Result<_>>()?)?]);
+    if purpose.announce {
+        refuse(0, libc::SYS_futex, each(1, &SHARED_WAKES)?);
+    }
     refuse(libc::EINVAL, libc::SYS_madvise, vec![all_differ(2, &HARMLESS_ADVICE)?]);
-    refuse(libc::EINVAL, libc::SYS_membarrier, vec![all_differ(0, &OWN_BARRIERS)?]);
-    let others = clocks_of_others(purpose.own_process)?;
-    for call in CLOCKS {
-        refuse(libc::EINVAL, call, vec![others.clone()]);
-    }
-    // The last argument of both asks for the counters of children.
-    refuse(libc::EPERM, libc::SYS_waitid, vec![given(4)?]);
-    if !asked {
-        refuse(libc::EPERM, libc::SYS_wait4, vec![given(3)?]);
-    }
     refuse(libc::ENOTTY, libc::SYS_ioctl, vec![all_differ(1, &HARMLESS_REQUESTS)?]);
     refuse(libc::EINVAL, libc::SYS_prctl, vec![all_differ(0, &HARMLESS_OPTIONS.map(|option| option as u64))?]);
     // Memory that is shared and in no file, and huge pages, are resident for nobody: no counter would show them.
@@ -248,15 +196,12 @@ fn refusals(purpose: Purpose) -> io::Result<Vec<Layer>> {
     refuse(libc::EPERM, libc::SYS_openat, vec![masked(2, mask, emptied)?]);
     #[cfg(target_arch = "x86_64")]
     refuse(libc::EPERM, libc::SYS_open, vec![masked(1, mask, emptied)?]);
-    // Flags ask whether bytes are in memory already.
-    refuse(libc::EOPNOTSUPP, libc::SYS_preadv2, vec![all_differ(5, &[0])?]);
-    refuse(libc::EOPNOTSUPP, libc::SYS_pwritev2, vec![all_differ(5, &[0])?]);
     // Without descriptors in common, open files could be hidden from the supervisor.
     refuse(libc::EINVAL, libc::SYS_close_range, vec![all_differ(2, &[0, u64::from(libc::CLOSE_RANGE_CLOEXEC)])?]);
     for (errno, call, rules) in on_others(purpose)? {
         refuse(errno, call, rules);
     }
-    Ok(refusals.into_iter().rev().map(|(errno, rules)| (rules, SeccompAction::Errno(errno as u32))).collect())
+    Ok(refusals)
 }
 
 /// Refusals of calls that name a process, unless it is the caller: error number, call, rules.
@@ -308,8 +253,6 @@ fn forbidden(purpose: Purpose) -> io::Result<CallRules> {
         rules.insert(libc::SYS_futex, each(1, &SHARED_WAITS)?);
     }
     if purpose.tools && purpose.announce {
-        // The supervisor looks who asks for counters.
-        rules.insert(libc::SYS_wait4, vec![given(3)?]);
         // The supervisor looks where the file lies.
         rules.extend(always(calls::LOCKS));
         rules.insert(libc::SYS_fcntl, each(1, &LOCK_COMMANDS)?);
@@ -326,14 +269,10 @@ fn announce() -> SeccompAction {
     SeccompAction::Trace(ANNOUNCE_PLACEHOLDER.into())
 }
 
-/// A filter that looks at the architecture only.
-fn frame() -> io::Result<BpfProgram> {
-    compile(CallRules::new(), SeccompAction::Log)
-}
-
-fn compile(rules: CallRules, matched: SeccompAction) -> io::Result<BpfProgram> {
+/// The filter with this answer to the calls that match, and this one to all others.
+fn compile(rules: CallRules, matched: SeccompAction, otherwise: SeccompAction) -> io::Result<BpfProgram> {
     let machine = std::env::consts::ARCH.try_into().map_err(io::Error::other)?;
-    let filter = SeccompFilter::new(rules, SeccompAction::Allow, matched, machine);
+    let filter = SeccompFilter::new(rules, otherwise, matched, machine);
     filter.and_then(BpfProgram::try_from).map_err(io::Error::other)
 }
 
@@ -357,19 +296,6 @@ fn given(argument: u8) -> io::Result<SeccompRule> {
     rule(vec![given.map_err(io::Error::other)?])
 }
 
-/// Matches clocks that count the time of another process, or are a device. Negative numbers hold a process or a thread
-/// in their upper bits, 0 for the caller, and the kind of clock in the lowest two; bit 2 says that it is a thread, and
-/// the kernel answers for those of the same process only.
-fn clocks_of_others(own: Option<i32>) -> io::Result<SeccompRule> {
-    const NEGATIVE: u64 = 1 << 31;
-    const THREAD: u64 = 4;
-    let of = |process: i32| (0..3).map(move |kind| (!process << 3 | kind) as u32 as u64);
-    let own: Vec<u64> = std::iter::once(0).chain(own).flat_map(of).collect();
-    let kind = [SeccompCmpOp::MaskedEq(NEGATIVE), SeccompCmpOp::MaskedEq(THREAD)].into_iter().zip([NEGATIVE, 0]);
-    let kind = kind.map(|(operator, value)| condition(0, operator, value));
-    rule(kind.chain(differ(0, &own)).collect::<io::Result<_>>()?)
-}
-
 /// Matches when the bits of the mask have this value.
 fn masked(argument: u8, mask: u64, value: u64) -> io::Result<SeccompRule> {
     rule(vec![condition(argument, SeccompCmpOp::MaskedEq(mask), value)?])
@@ -388,84 +314,6 @@ fn condition(argument: u8, operator: SeccompCmpOp, value: u64) -> io::Result<Sec
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// The kernel's answer for filters that are installed one after the other: the strictest one, of equals the latest.
-    fn stacked(filters: &[BpfProgram], call: u32, architecture: u32, arguments: [u64; 6]) -> u32 {
-        let answers = filters.iter().rev().map(|filter| search::tests::run(filter, call, architecture, arguments));
-        // The action is the upper half, and killing a process is negative.
-        answers.min_by_key(|answer| (answer & 0xffff_0000).cast_signed()).unwrap()
-    }
-
-    /// One filter for each layer, as the compiler makes them.
-    fn by_layers(purpose: Purpose) -> Vec<BpfProgram> {
-        let action = if purpose.announce { announce() } else { SeccompAction::KillProcess };
-        let mut filters = vec![compile(forbidden(purpose).unwrap(), action).unwrap()];
-        filters.extend(
-            refusals(purpose).unwrap().into_iter().rev().map(|(rules, action)| compile(rules, action).unwrap()),
-        );
-        let known = calls::GROUPS.into_iter().flatten().map(|(_, call)| (*call, Vec::new())).collect();
-        let mut known = compile(known, SeccompAction::Log).unwrap();
-        let (allow, log) = (u32::from(SeccompAction::Allow), u32::from(SeccompAction::Log));
-        for instruction in known.iter_mut().filter(|instruction| instruction.code == RETURN_CONSTANT) {
-            instruction.k = match instruction.k {
-                answer if answer == log => allow,
-                answer if answer == allow => SeccompAction::Errno(libc::ENOSYS as u32).into(),
-                other => other,
-            };
-        }
-        filters.push(known);
-        let placeholder = u32::from(announce());
-        for instruction in filters.iter_mut().flatten().filter(|instruction| instruction.k == placeholder) {
-            instruction.k = ACTION_ANNOUNCE;
-        }
-        filters
-    }
-
-    #[test]
-    fn the_search_answers_as_the_layers_do() {
-        let entrance = |announce: bool| (!announce).then_some(99);
-        let cases =
-            [(false, true, true), (false, false, true), (true, true, true), (true, true, false), (true, false, false)];
-        for (tools, announce, own_user) in cases {
-            let own_process = (!tools).then_some(77);
-            let purpose = Purpose { tools, announce, own_process, entrance: entrance(announce), own_user };
-            let (ours, layers) = (filters(purpose).unwrap(), by_layers(purpose));
-            assert!(ours.len() <= 2 && ours.iter().all(|filter| filter.len() < 4096));
-            let native = layers[0][1].k;
-            let mut words: Vec<u64> =
-                NAMESPACE_FLAGS.into_iter().chain(HARMLESS_COMMANDS).chain(LOCK_COMMANDS).collect();
-            words.extend(HARMLESS_REQUESTS.iter().chain(&HARMLESS_OPTIONS.map(|option| option as u64)));
-            words.extend([20, 21, 102, 128, 129, 137].into_iter().chain(SHARED_WAITS));
-            // The clocks of processes 0, 77 and 78, and of a thread.
-            words.extend(
-                [!0 << 3 | 2, !77 << 3 | 2, !78 << 3 | 2, !78 << 3 | 6]
-                    .map(|clock: i32| u64::from(clock.cast_unsigned())),
-            );
-            words.extend([0, 1, 2, 3, 77, 99, 1 << 32, u64::MAX, u64::from(u32::MAX)]);
-            words.extend([libc::CLONE_THREAD, libc::CLONE_THREAD | libc::CLONE_FILES].map(|flags| flags as u64));
-            words.extend([libc::O_TRUNC, libc::O_TRUNC | libc::O_RDWR, libc::MAP_HUGETLB].map(|flags| flags as u64));
-            words.extend(
-                [libc::MAP_ANONYMOUS | libc::MAP_SHARED, libc::MAP_SHARED, libc::O_ASYNC].map(|flags| flags as u64),
-            );
-            // x32 numbers, and the largest.
-            let strange = (0..600).map(|call| call | 0x4000_0000).chain([u32::MAX, 1 << 31]);
-            for call in (0..500).chain(strange) {
-                let agree = |architecture, arguments| {
-                    let (ours, theirs) = (
-                        stacked(&ours, call, architecture, arguments),
-                        stacked(&layers, call, architecture, arguments),
-                    );
-                    assert_eq!(ours, theirs, "call {call:#x} of {architecture:#x} with {arguments:x?}, {purpose:?}");
-                };
-                [0x4000_0003, 0].into_iter().for_each(|architecture| agree(architecture, [0; 6]));
-                let words: &[u64] = if call < 500 { &words } else { &[0] };
-                for word in words {
-                    agree(native, [*word; 6]);
-                    agree(native, [*word, libc::F_SETFL as u64, *word, *word, *word, 0]);
-                }
-            }
-        }
-    }
 
     #[test]
     fn the_announcing_filter_has_no_placeholder_left() {
@@ -489,7 +337,6 @@ mod tests {
             own_user: true,
         })
         .unwrap();
-        assert_eq!(filters.len(), 1);
         assert!(filters.iter().flatten().all(|instruction| instruction.k != ACTION_ANNOUNCE));
         assert!(
             filters[0].iter().any(|instruction| instruction.code == RETURN_CONSTANT && instruction.k == 0x8000_0000)

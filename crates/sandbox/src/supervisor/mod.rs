@@ -19,7 +19,6 @@ mod prepared;
 mod probe;
 pub(super) mod processes;
 mod run;
-mod search;
 mod slot;
 mod streams;
 mod view;

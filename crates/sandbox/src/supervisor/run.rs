@@ -390,12 +390,11 @@ impl Run {
         let unless = |allowed| if allowed { CallAnswer::GoOn } else { CallAnswer::Refused(libc::EPERM) };
         let answer = match announced.call {
             _ if executes && self.status.is_some() => Some(CallAnswer::GoOn),
-            libc::SYS_futex => {
-                self.waits.add(&announced, Instant::now());
-                return Ok(());
-            }
+            libc::SYS_futex => match self.waits.add(&announced, user, Instant::now()) {
+                None => return Ok(()),
+                answer => answer,
+            },
             libc::SYS_sysinfo => Some(answers::about_machine(&announced, user)),
-            libc::SYS_wait4 => Some(unless(answers::may_count_children(&announced, user))),
             call if locks::concerns(call) => {
                 Some(unless(sys::with_files_of(user, || locks::is_inside(&announced, &root))))
             }
