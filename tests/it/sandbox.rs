@@ -293,7 +293,7 @@ fn a_run_in_namespaces_sees_a_world_of_its_own() {
     assert!(!root.iter().any(|name| ["home", "root", "run", "boot", ".host"].contains(&name.as_str())), "{root:?}");
     assert_eq!(seen("/usr/bin"), ["ls"], "only the program itself is there");
     let processes = seen("/proc").iter().filter(|name| name.parse::<i32>().is_ok()).count();
-    assert_eq!(processes, 2, "itself and the one that watches it");
+    assert_eq!(processes, 1, "itself alone");
     let beside = tempfile::tempdir().unwrap();
     let planted = beside.path().join("planted").display().to_string();
     let script =
@@ -323,7 +323,7 @@ fn programs_that_cannot_start_are_explained() {
     };
     assert_eq!(problem(Path::new("/no/such/program")), StartProblem::NotFound);
     assert_eq!(problem(bench.folder.path()), StartProblem::IsFolder);
-    let program = bench.script("#!/no/such/interpreter\n");
+    let program = bench.script("#!/usr/bin/no-such-interpreter\n");
     assert!(matches!(problem(&program), StartProblem::MissingInterpreter { .. }));
     let copy = bench.folder.path().join("busy");
     std::fs::copy("/bin/true", &copy).unwrap();
@@ -393,6 +393,27 @@ fn a_missing_library_is_named() {
     let Some(program) = compiled(folder.path(), source, &["-L.", "-lcourse"]) else { return };
     let missing = StartProblem::MissingLibrary { library: "libcourse.so".into() };
     assert_eq!(bench.run(program, &[]).ended, Ended::CouldNotStart(missing));
+}
+
+#[test]
+fn a_loader_that_is_not_the_systems_is_the_programs_fault() {
+    let Some(bench) = Bench::new() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    // While the program is started, its process is the grader itself.
+    for loader in ["/no/such/loader", "/proc/self/exe", "/proc/self/task/2/exe", env!("CARGO_BIN_EXE_fosssim-oracle")] {
+        let option = format!("-Wl,--dynamic-linker={loader}");
+        let Some(program) = compiled(folder.path(), "int main(void) { return 0; }", &[&option]) else { return };
+        for backend in [
+            Ok(bench.backend.clone()),
+            bench.backend.without(Layer::FileRules),
+            bench.backend.without(Layer::Namespaces),
+        ] {
+            let Ok(backend) = backend else { continue };
+            let job = bench.job(&program, &["--version"]).folder_in_memory();
+            let ended = backend.start(&job).unwrap().wait().unwrap().ended;
+            assert_eq!(ended, Ended::CouldNotStart(StartProblem::MissingLoader {}), "{loader}");
+        }
+    }
 }
 
 #[test]

@@ -162,12 +162,9 @@ pub enum StartProblem {
         /// The kind of this machine.
         here: Cow<'static, str>,
     },
-    /// The program names a dynamic loader that is not here.
-    #[error("the program needs the loader {loader}, which is not on this machine; build it on the grading platform")]
-    MissingLoader {
-        /// The loader's path.
-        loader: String,
-    },
+    /// The program names a dynamic loader that is not one of this system's.
+    #[error("the program needs a dynamic loader that is not on this machine; build it on the grading platform")]
+    MissingLoader {},
     /// A shared library is missing.
     #[error("the shared library {library} is missing; install it, or link it statically")]
     MissingLibrary {
@@ -185,10 +182,10 @@ pub enum StartProblem {
         /// Advice, or nothing.
         hint: Cow<'static, str>,
     },
-    /// The loader or interpreter is not one of the system's.
+    /// The interpreter is not one of the system's.
     #[error(
-        "it asks to be run by {path}, which is not an interpreter or loader of the system; \
-         begin a script with #!/usr/bin/env NAME or #!/bin/sh, and link a program with the system's compiler"
+        "it asks to be run by {path}, which is not an interpreter of the system; \
+         begin a script with #!/usr/bin/env NAME or #!/bin/sh"
     )]
     NotTheSystems {
         /// The path that the program names.

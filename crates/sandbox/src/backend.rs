@@ -20,7 +20,6 @@ use super::{
     job::{Job, Policy, ProgramIdentity},
     keepers::{Host, Keeper, KeeperPool, Kind as Keeping},
     layers::{self, Layer, LayerReport},
-    outcome::StartProblem,
     own, program, room,
     running::{Running, Supervised},
     supervisor::{MODE_KEEP, MODE_PROBE, MODE_RUN},
@@ -330,13 +329,10 @@ impl Backend {
         {
             return Err(SandboxError::Changed { program: job.program.display().to_string() });
         }
-        let examined = match keepers.examined(job, || program::examine(&job.program, &supervisor.own_files())) {
+        let examined = match program::examine(&job.program, &supervisor.own_files()) {
             Ok(examined) => examined,
             Err(problem) => return Ok(FakeRun::could_not_start(problem).into_running(job, self.layers.clone())),
         };
-        if examined.sanitised && !job.sanitisers {
-            return Ok(FakeRun::could_not_start(StartProblem::Sanitised).into_running(job, self.layers.clone()));
-        }
         let mut order = order(job, walls, examined, &supervisor.program)?;
         if Keeping::exists_for(&order) {
             order.files =
@@ -443,8 +439,6 @@ fn order(job: &Job, walls: Walls, examined: program::Program, supervisor: &Path)
         readable,
         executable: examined.executable.iter().map(|path| wire::raw(path)).collect(),
         named: examined.named.iter().map(|path| wire::raw(path)).collect(),
-        libraries: examined.libraries.iter().map(|path| wire::raw(path)).collect(),
-        missing: examined.missing,
         own: own::known(supervisor).iter().map(|path| wire::raw(path)).collect(),
         pipe: job.trace_pipe.as_ref().map(|name| name.as_bytes().to_vec()),
         files: Vec::new(),
@@ -452,7 +446,7 @@ fn order(job: &Job, walls: Walls, examined: program::Program, supervisor: &Path)
         tools: job.policy == Policy::Tools,
         interpreter: examined.script.as_ref().map(|script| wire::raw(&script.interpreter)),
         words: examined.script.iter().flat_map(|script| &script.words).map(|word| word.as_bytes().to_vec()).collect(),
-        sanitised: examined.sanitised,
+        sanitisers: job.sanitisers,
         walls,
         limits: job.limits.clone(),
     })

@@ -44,6 +44,9 @@ pub(super) fn ended(order: &RunOrder, report: &Report, stderr: &[u8]) -> Ended {
         return Ended::FolderLimit;
     }
     let text = String::from_utf8_lossy(stderr);
+    if report.status != 0 && !order.sanitisers && wants_shadow(&text) {
+        return Ended::CouldNotStart(StartProblem::Sanitised);
+    }
     if let Some(signal) = signal {
         let refused = signal == libc::SIGABRT && wants_memory(&text);
         return if refused { Ended::MemoryLimit } else { Ended::Signalled(signal) };
@@ -53,7 +56,7 @@ pub(super) fn ended(order: &RunOrder, report: &Report, stderr: &[u8]) -> Ended {
         return Ended::MemoryLimit;
     }
     if code == LOADER_FAILED
-        && let Some(library) = missing_library(&text, &order.missing)
+        && let Some(library) = missing_library(&text)
     {
         return Ended::CouldNotStart(StartProblem::MissingLibrary { library });
     }
@@ -73,25 +76,35 @@ pub(super) fn beyond_trace(ended: Ended, is_beyond: bool) -> Ended {
     }
 }
 
-/// The meaning of the kernel's refusal to execute.
+/// The meaning of the kernel's refusal to execute a file that is there and may be executed.
 fn start_problem(errno: i32) -> StartProblem {
     match errno {
-        libc::ENOENT => StartProblem::NotFound,
-        libc::EACCES | libc::EPERM => StartProblem::NotPermitted,
+        libc::ENOENT | libc::EACCES | libc::EPERM => StartProblem::MissingLoader {},
         libc::ETXTBSY => StartProblem::Busy,
         libc::ENOEXEC => StartProblem::NotAProgram,
         _ => StartProblem::Refused(std::io::Error::from_raw_os_error(errno).to_string()),
     }
 }
 
-/// The library that the loader of glibc or musl says it did not find, if it is one of those that were `missing` before:
-/// the program itself could say so of any words.
-fn missing_library(stderr: &str, missing: &[String]) -> Option<String> {
+/// The library that the loader of glibc or musl says it did not find. The program itself could say so, of a name only.
+fn missing_library(stderr: &str) -> Option<String> {
+    const LONGEST: usize = 100;
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "._+-".contains(c);
     let (_, after) = stderr
         .split_once("error while loading shared libraries: ")
         .or_else(|| stderr.split_once("Error loading shared library "))?;
     let name = after.split([':', '\n']).next()?.trim();
-    missing.iter().any(|known| known == name).then(|| name.chars().take(200).flat_map(char::escape_default).collect())
+    (name.len() <= LONGEST && name.contains(".so") && name.chars().all(is_plain)).then(|| name.to_owned())
+}
+
+/// Whether a sanitiser's runtime says that it was refused its terabytes of address space.
+fn wants_shadow(stderr: &str) -> bool {
+    const COMPLAINTS: [&str; 3] = [
+        "ReserveShadowMemoryRange failed",
+        "Sanitizer: CHECK failed: sanitizer_allocator",
+        "Sanitizer: unexpected memory mapping",
+    ];
+    COMPLAINTS.iter().any(|complaint| stderr.contains(complaint))
 }
 
 /// Whether its last words are those of a runtime whose request for memory was refused. A single request beyond the
@@ -126,7 +139,7 @@ mod tests {
 
     fn order() -> RunOrder {
         let limits = Limits { cpu: Duration::from_secs(1), memory: 1000, ..Limits::default() };
-        RunOrder { missing: vec!["libglut.so.3".into()], limits, ..RunOrder::default() }
+        RunOrder { limits, ..RunOrder::default() }
     }
 
     fn exit(code: i32) -> Report {
@@ -165,6 +178,8 @@ mod tests {
         let missing = Ended::CouldNotStart(StartProblem::MissingLibrary { library: "libglut.so.3".into() });
         assert_eq!(ended(&order(), &exit(127), loader), missing);
         assert_eq!(ended(&order(), &exit(1), loader), Ended::Exited(1));
+        let forged = b"error while loading shared libraries: what the hidden scene holds: x";
+        assert_eq!(ended(&order(), &exit(127), forged), Ended::Exited(127), "a sentence is no name");
         let display = b"freeglut (./FOSSSim): failed to open display ''";
         assert_eq!(ended(&order(), &exit(1), display), Ended::CouldNotStart(StartProblem::NeedsDisplay));
         assert_eq!(ended(&order(), &exit(0), display), Ended::Exited(0));
@@ -189,5 +204,6 @@ mod tests {
         let refused = |errno| ended(&order(), &Report { exec_errno: Some(errno), ..Report::default() }, b"");
         assert_eq!(refused(libc::ETXTBSY), Ended::CouldNotStart(StartProblem::Busy));
         assert_eq!(refused(libc::ENOEXEC), Ended::CouldNotStart(StartProblem::NotAProgram));
+        assert_eq!(refused(libc::ENOENT), Ended::CouldNotStart(StartProblem::MissingLoader {}));
     }
 }

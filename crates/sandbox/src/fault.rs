@@ -62,16 +62,6 @@ pub enum SandboxError {
         /// The system's reason.
         source: io::Error,
     },
-    /// The system refuses to execute a program that is in order.
-    #[error(
-        "{program} could not be executed: {source}; the temporary folder may be mounted noexec: name another one by TMPDIR"
-    )]
-    NotExecuted {
-        /// The program.
-        program: String,
-        /// The system's reason.
-        source: io::Error,
-    },
     /// The program is not the one that was staged.
     #[error("{program} was changed or removed by somebody else while it was graded")]
     Changed {

@@ -8,22 +8,20 @@ use std::{
         fd::{AsFd, OwnedFd},
         unix::{fs::MetadataExt, net::UnixStream},
     },
-    path::{Path, PathBuf},
+    path::Path,
     process::Child,
     sync::{Arc, Mutex, PoisonError},
 };
 
 use super::{
     fault::{SandboxError, lost},
-    job::{Job, Limits, ProgramIdentity},
-    outcome::StartProblem,
-    program::Program,
+    job::{Limits, ProgramIdentity},
     sys,
     wire::{self, Report, RunOrder},
 };
 
-/// The properties that all runs of one keeper share: all of the order but arguments, environment, working folder with its
-/// contents and the limit of the trace, which the grader heeds; and the very files that it names.
+/// The properties that all runs of one keeper share: all of the order but arguments, environment, working folder with
+/// its contents and the limit of the trace, which the grader heeds; and the very files that it names.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Kind {
     order: RunOrder,
@@ -105,30 +103,9 @@ impl Drop for Keeper {
 #[derive(Debug, Default)]
 pub(super) struct KeeperPool {
     idle: Mutex<Vec<Keeper>>,
-    /// The last result of examining a copy of ours.
-    known: Mutex<Option<(PathBuf, ProgramIdentity, Program)>>,
 }
 
 impl KeeperPool {
-    /// The properties of the job's program, examined or remembered: a copy of ours that is still the same file needs no
-    /// second look.
-    pub(super) fn examined(
-        &self,
-        job: &Job,
-        examine: impl FnOnce() -> Result<Program, StartProblem>,
-    ) -> Result<Program, StartProblem> {
-        let known = || self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        let Some(identity) = job.staged else { return examine() };
-        if let Some((path, same, program)) = &*known()
-            && (path, *same) == (&job.program, identity)
-        {
-            return Ok(program.clone());
-        }
-        let program = examine()?;
-        *known() = Some((job.program.clone(), identity, program.clone()));
-        Ok(program)
-    }
-
     /// A keeper for runs of this kind. Without one, one of another kind makes room for it.
     pub(super) fn take(&self, kind: &Kind) -> Option<Keeper> {
         let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);

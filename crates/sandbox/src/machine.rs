@@ -2,8 +2,6 @@
 
 #![expect(unsafe_code, reason = "these calls have no safe wrapper among the dependencies")]
 
-use std::{fs::File, io::Read, os::fd::AsRawFd, path::Path};
-
 /// The kernel's answer to `sysinfo`.
 fn asked() -> libc::sysinfo {
     // SAFETY: an all-zero structure is valid and outlives the call, which fills it or leaves it.
@@ -11,22 +9,6 @@ fn asked() -> libc::sysinfo {
         let mut about: libc::sysinfo = std::mem::zeroed();
         libc::sysinfo(&raw mut about);
         about
-    }
-}
-
-/// Has the file, or every file of the folder, read into memory, if it is not there already, and its time of access set.
-pub(super) fn load(path: &Path) {
-    // A larger file would push out pages that others need.
-    const LARGEST: u64 = 64 << 20;
-    let Ok(mut file) = File::open(path) else { return };
-    let Ok(metadata) = file.metadata() else { return };
-    if metadata.is_dir() {
-        let entries = path.read_dir().into_iter().flatten().flatten();
-        entries.filter(|entry| !entry.path().is_symlink()).for_each(|entry| load(&entry.path()));
-    } else if metadata.is_file() && metadata.len() <= LARGEST {
-        // SAFETY: integers only, on an open descriptor. It is advice: what comes of it does not matter here.
-        unsafe { libc::posix_fadvise(file.as_raw_fd(), 0, 0, libc::POSIX_FADV_WILLNEED) };
-        let _ = file.read(&mut [0]);
     }
 }
 

@@ -1,11 +1,12 @@
 //! The grader's own files, which no program that it runs may read or execute.
 //!
-//! They hold the answers: the grader computes the original's traces, and the sample is a right submission. Landlock
-//! only ever allows, so that a folder with such a file in it is allowed entry by entry.
+//! They hold the answers: the grader and its module for Python compute the original's traces, and the sample is a right
+//! submission. Landlock only ever allows, so that a folder with such a file in it is allowed entry by entry.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
     ffi::OsStr,
+    fs::DirEntry,
     os::unix::{ffi::OsStrExt, fs::MetadataExt},
     path::{Path, PathBuf},
     sync::{Arc, Mutex, PoisonError},
@@ -19,6 +20,12 @@ const SAMPLE: &str = "fosssim-sample";
 const NAMES: [&str; 3] = ["fosssim-oracle", "fosssimoracle", "fosssim-sample"];
 /// Where they are usually installed.
 const FOLDERS: [&str; 4] = ["/usr/local/bin", "/usr/bin", "/bin", "/opt/fosssim"];
+/// How the names begin of the module for Python and of the folder that `pip` makes beside it.
+const MODULE: &str = "fosssim";
+/// Where the folders of Pythons are.
+const PYTHONS: [&str; 4] = ["/usr/lib", "/usr/lib64", "/usr/local/lib", "/usr/local/lib64"];
+/// Where modules are in the folder of a Python.
+const MODULES: [&str; 2] = ["dist-packages", "site-packages"];
 
 /// Whether the file's name is one of the grader's programs.
 pub(super) fn is_name(path: &Path) -> bool {
@@ -26,9 +33,26 @@ pub(super) fn is_name(path: &Path) -> bool {
 }
 
 fn is_named(name: &OsStr) -> bool {
-    let begins =
-        |own: &&str| name.as_bytes().get(..own.len()).is_some_and(|begin| begin.eq_ignore_ascii_case(own.as_bytes()));
-    NAMES.iter().any(begins)
+    NAMES.iter().any(|own| begins(name, own))
+}
+
+fn begins(name: &OsStr, own: &str) -> bool {
+    name.as_bytes().get(..own.len()).is_some_and(|begin| begin.eq_ignore_ascii_case(own.as_bytes()))
+}
+
+/// The entries of a folder; none where it can't be read.
+fn entries(folder: &Path) -> impl Iterator<Item = DirEntry> {
+    std::fs::read_dir(folder).into_iter().flatten().flatten()
+}
+
+/// The files and folders of the module for Python, wherever `pip` puts them beneath these folders.
+fn modules(pythons: &[PathBuf]) -> Vec<PathBuf> {
+    let is_python = |entry: &DirEntry| ["python", "pypy"].iter().any(|kind| begins(&entry.file_name(), kind));
+    let pythons = pythons.iter().flat_map(|folder| entries(folder).filter(is_python));
+    let places = pythons.flat_map(|python| MODULES.map(|name| python.path().join(name)));
+    let modules =
+        places.flat_map(|place| entries(&place).filter(|entry| begins(&entry.file_name(), MODULE)).collect::<Vec<_>>());
+    modules.map(|entry| entry.path()).collect()
 }
 
 /// The same as [`files`] for this program and the one that supervises its runs, looked up once for all runs: `/usr/bin`
@@ -46,8 +70,9 @@ fn files(programs: &[&Path]) -> Vec<PathBuf> {
     let installed = FOLDERS.into_iter().map(PathBuf::from).chain(beside);
     // Some of them are links to others, and large.
     let folders: BTreeSet<PathBuf> = installed.filter_map(|folder| folder.canonicalize().ok()).collect();
-    let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());
+    let entries = folders.iter().flat_map(|folder| entries(folder));
     let named = entries.filter(|entry| is_named(&entry.file_name())).map(|entry| entry.path());
+    let named = named.chain(modules(&PYTHONS.map(PathBuf::from)));
     let mut files: Vec<PathBuf> =
         named.filter_map(|path| path.canonicalize().ok()).chain(programs.iter().cloned()).collect();
     files.sort();
@@ -83,7 +108,7 @@ pub(super) enum Allowed {
     Listing(PathBuf),
 }
 
-/// The rules that allow everything at and beneath `path` except the files `own` (resolved paths).
+/// The rules that allow everything at and beneath `path` except what is `own` (resolved paths).
 ///
 /// Links beneath a folder that is split are left out: their targets are allowed in their own places, or not at all.
 pub(super) fn around(path: &Path, own: &[PathBuf]) -> Vec<Allowed> {
@@ -98,8 +123,7 @@ pub(super) fn around(path: &Path, own: &[PathBuf]) -> Vec<Allowed> {
             allowed.push(Allowed::Whole(path));
             continue;
         }
-        let entries = std::fs::read_dir(&path).into_iter().flatten().flatten();
-        let real = entries.filter(|entry| entry.file_type().is_ok_and(|kind| !kind.is_symlink()));
+        let real = entries(&path).filter(|entry| entry.file_type().is_ok_and(|kind| !kind.is_symlink()));
         left.extend(real.map(|entry| entry.path()));
         allowed.push(Allowed::Listing(path));
     }
@@ -132,6 +156,23 @@ mod tests {
         assert!(whole.contains(&root.join("lib")) && whole.contains(&root.join("local/bin/python3")));
         assert_eq!(around(&own[0], &own), []);
         assert_eq!(around(&root.join("lib"), &own), [Allowed::Whole(root.join("lib"))]);
+    }
+
+    #[test]
+    fn the_module_for_python_is_found_wherever_pip_puts_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let pythons = [folder.path().to_path_buf()];
+        for place in ["python3/dist-packages/fosssim", "python3.12/site-packages/FOSSSim_oracle-1.2.dist-info"] {
+            std::fs::create_dir_all(folder.path().join(place)).unwrap();
+        }
+        for other in ["python3/dist-packages/numpy", "perl5/site-packages/fosssim", "python3.12/fosssim"] {
+            std::fs::create_dir_all(folder.path().join(other)).unwrap();
+        }
+        let mut found = modules(&pythons);
+        found.sort();
+        let names: Vec<_> = found.iter().map(|path| path.strip_prefix(folder.path()).unwrap()).collect();
+        assert_eq!(names.len(), 2, "{names:?}");
+        assert!(names[0].ends_with("dist-packages/fosssim") && names[1].ends_with("FOSSSim_oracle-1.2.dist-info"));
     }
 
     #[test]

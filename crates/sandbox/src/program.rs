@@ -1,54 +1,36 @@
-//! The kind of a program, read from its first bytes before anything is executed.
+//! The kind of a program, told by its first bytes before anything is executed.
 //!
-//! The kernel's own answers are poor ("no such file or directory" for a missing loader, "exec format error" for a
-//! foreign processor), so the headers are read here: ELF class, machine, type, interpreter and the names in the
-//! dynamic string table. Every offset in a file is distrusted.
+//! No header of what was handed in is followed: the first bytes say for which machine it was made, and the kernel and
+//! the loader say the rest, inside the limits. Only the first line of a script is read, because the system's
+//! interpreter is executed in the script's place.
 
 use std::{
     fs::File,
+    io::Read,
     os::unix::fs::{MetadataExt, PermissionsExt},
-    path::{Path, PathBuf},
+    path::{Component, Path, PathBuf},
 };
 
-use super::{
-    elf::{self, MAGIC as ELF_MAGIC, read_at},
-    libraries::{self, Readable},
-    outcome::StartProblem,
-    own,
-};
+use super::{outcome::StartProblem, own};
 
-/// Names that the runtimes of the address, thread and memory sanitisers define.
-const SANITISER_NAMES: [&[u8]; 4] = [b"__asan_init", b"__tsan_init", b"__msan_init", b"libasan.so"];
-/// No path of a sane program is longer than this.
-const LONGEST_PATH: u64 = 4096;
+/// How an ELF file begins.
+const ELF_MAGIC: &[u8] = b"\x7fELF";
+/// Bytes that tell the kind of a file; the kernel looks at as many for the first line of a script.
+const FIRST_BYTES: u64 = 256;
 /// Where the system keeps the programs that a script may name, in the order of the sandbox's `PATH`.
 const PROGRAMS: [&str; 3] = ["/usr/local/bin", "/usr/bin", "/bin"];
-/// Where the system keeps loaders, and interpreters that are linked from the folders of programs.
-const LIBRARIES: [&str; 8] =
-    ["/lib", "/lib32", "/lib64", "/libx32", "/usr/lib", "/usr/lib32", "/usr/lib64", "/usr/libexec"];
+/// Where interpreters are kept that are linked from the folders of programs.
+const LIBRARIES: [&str; 4] = ["/lib", "/usr/lib", "/usr/lib64", "/usr/libexec"];
 
 /// The facts about a program that the sandbox needs before it starts it.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(super) struct Program {
-    /// Loaders and interpreters that the kernel executes on the way to it.
+    /// Interpreters that the kernel executes on the way to it.
     pub(super) executable: Vec<PathBuf>,
     /// The same under the names by which they are asked for, which may be links.
     pub(super) named: Vec<PathBuf>,
     /// How a script is run.
     pub(super) script: Option<Script>,
-    /// Whether it carries a sanitiser, which reserves terabytes of address space.
-    pub(super) sanitised: bool,
-    /// The system's libraries that its loader opens ([`libraries`]).
-    pub(super) libraries: Vec<PathBuf>,
-    /// Those that it asks for and the system lacks.
-    pub(super) missing: Vec<String>,
-}
-
-impl Program {
-    fn with_libraries(mut self, readable: Readable) -> Self {
-        self.named.extend(readable.named);
-        Self { libraries: readable.files, missing: readable.missing, ..self }
-    }
 }
 
 /// The program that reads a script, as the kernel and `env` would find it. It is executed in their place, so that a
@@ -87,35 +69,25 @@ pub(super) fn examine(path: &Path, own: &[PathBuf]) -> Result<Program, StartProb
         return Err(StartProblem::NotExecutable);
     }
     // A program that may be executed and not read would also be closed to the supervisor's looks.
-    let mut file = File::open(path).map_err(|_| StartProblem::NotPermitted)?;
-    let start = read_at(&mut file, 0, 256).unwrap_or_default();
-    if start.starts_with(ELF_MAGIC) {
-        let program = elf(&mut file, &start, own)?;
-        let (loader, asked) = (program.executable.first(), elf::dynamic(path).unwrap_or_default());
-        let readable = libraries::readable(asked, loader.map(PathBuf::as_path), None, own);
-        Ok(program.with_libraries(readable))
-    } else if let Some(line) = start.strip_prefix(b"#!") {
-        script(line, own)
-    } else {
-        Err(StartProblem::NotAProgram)
+    let start = first_bytes(path).ok_or(StartProblem::NotPermitted)?;
+    match start.strip_prefix(b"#!") {
+        Some(line) => interpreted(line, own, 0),
+        None => elf(&start).map(|()| Program::default()),
     }
+}
+
+/// The bytes that tell the kind of the file; `None` where it can't be read.
+fn first_bytes(path: &Path) -> Option<Vec<u8>> {
+    let mut start = Vec::new();
+    File::open(path).ok()?.take(FIRST_BYTES).read_to_end(&mut start).ok()?;
+    Some(start)
 }
 
 /// The way to a script's interpreter, given its first line without `#!`.
 ///
 /// Each program that is named here becomes executable for the submission. So it must be one of the system's own
 /// programs, after all links and `..` are resolved: a script that names the grader's program would be graded by its own
-/// answers.
-fn script(line: &[u8], own: &[PathBuf]) -> Result<Program, StartProblem> {
-    let program = interpreted(line, own, 0)?;
-    let interpreter = program.script.as_ref().and_then(|script| script.interpreter.canonicalize().ok());
-    let asked = interpreter.as_deref().and_then(elf::dynamic).unwrap_or_default();
-    // The interpreter's loader comes last.
-    let loader = program.executable.last().map(PathBuf::as_path);
-    let readable = libraries::readable(asked, loader, interpreter.as_deref(), own);
-    Ok(program.with_libraries(readable))
-}
-
+/// answers. Nothing is looked up outside the system's folders, which would tell what files there are.
 fn interpreted(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program, StartProblem> {
     /// The depth of interpreters that are scripts themselves; the kernel follows as many.
     const DEEPEST: u32 = 4;
@@ -137,9 +109,12 @@ fn interpreted(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program, Star
     if interpreter.is_empty() {
         return Err(StartProblem::NoInterpreter);
     }
-    let mut found = existing(Path::new(interpreter)).ok_or_else(|| missing(interpreter, hint))?;
-    let folders = || PROGRAMS.into_iter().chain(LIBRARIES);
-    let mut resolved = systems(&found, folders(), own)?;
+    let place = |path: &Path| path.is_file().then(|| path.to_path_buf());
+    if !is_systems(Path::new(interpreter)) {
+        return Err(StartProblem::NotTheSystems { path: interpreter.escape_default().to_string() });
+    }
+    let mut found = place(Path::new(interpreter)).ok_or_else(|| missing(interpreter, hint))?;
+    let mut resolved = systems(&found, own)?;
     let mut script = Script { words: vec![interpreter.to_owned()], ..Script::default() };
     if interpreter.ends_with("/env") {
         let (name, arguments) = by_env(rest, &mut script.environment)?;
@@ -149,15 +124,14 @@ fn interpreted(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program, Star
         if name.starts_with('-') {
             return Err(missing(&name, "; of the options of env only -S is known here"));
         }
-        let place = PROGRAMS.iter().find_map(|folder| existing(&Path::new(folder).join(&name)));
+        let place = PROGRAMS.iter().find_map(|folder| place(&Path::new(folder).join(&name)));
         found = place.ok_or_else(|| missing(&name, hint))?;
-        resolved = systems(&found, folders(), own)?;
+        resolved = systems(&found, own)?;
         script.words = [vec![name], arguments].concat();
     } else if !rest.is_empty() {
         script.words.push(rest.to_owned());
     }
-    let mut file = File::open(&resolved).map_err(|_| StartProblem::NotPermitted)?;
-    let start = read_at(&mut file, 0, 256).unwrap_or_default();
+    let start = first_bytes(&resolved).ok_or(StartProblem::NotPermitted)?;
     let mut program = match start.strip_prefix(b"#!") {
         Some(line) if depth < DEEPEST => {
             let outer = interpreted(line, own, depth + 1)?;
@@ -170,12 +144,12 @@ fn interpreted(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program, Star
         }
         _ => {
             script.interpreter.clone_from(&found);
-            if start.starts_with(ELF_MAGIC) { elf(&mut file, &start, own)? } else { Program::default() }
+            Program::default()
         }
     };
     program.executable.insert(0, resolved);
     program.named.insert(0, found);
-    Ok(Program { script: Some(script), sanitised: false, ..program })
+    Ok(Program { script: Some(script), ..program })
 }
 
 /// The command that `env` would look up, with its arguments, given what follows `env` in a script's first line.
@@ -196,30 +170,24 @@ fn by_env(rest: &str, environment: &mut Vec<(String, String)>) -> Result<(String
     Ok((name.to_owned(), words.map(str::to_owned).collect()))
 }
 
-fn existing(path: &Path) -> Option<PathBuf> {
-    path.is_file().then(|| path.to_path_buf())
+/// Whether the path names a place in one of the system's folders, by its words alone.
+fn is_systems(path: &Path) -> bool {
+    let plain = path.components().all(|part| matches!(part, Component::RootDir | Component::Normal(_)));
+    plain && PROGRAMS.iter().chain(&LIBRARIES).any(|folder| path.starts_with(folder))
 }
 
-/// The resolved path of a loader or an interpreter, which must be the system's: beneath one of `folders`, and not the
-/// grader's.
-fn systems(
-    path: &Path,
-    mut folders: impl Iterator<Item = &'static str>,
-    own: &[PathBuf],
-) -> Result<PathBuf, StartProblem> {
+/// The resolved path of an interpreter, which must be the system's: beneath one of its folders, and not the grader's.
+fn systems(path: &Path, own: &[PathBuf]) -> Result<PathBuf, StartProblem> {
     let refused = || StartProblem::NotTheSystems { path: path.to_string_lossy().escape_default().to_string() };
-    // A relative path would be looked up in the program's folder, and one in /proc depends on the process that looks.
     let resolved = path.canonicalize().map_err(|_| refused())?;
-    let beneath = |folder: &str| Path::new(folder).canonicalize().is_ok_and(|folder| resolved.starts_with(folder));
+    let beneath = |folder: &&str| Path::new(folder).canonicalize().is_ok_and(|folder| resolved.starts_with(folder));
     // The bit by which every user may execute. A file that its owner keeps to himself would be refused only when it is
     // too late.
     const EXECUTE: u32 = 0o001;
     let open = |path: &Path| path.metadata().is_ok_and(|metadata| metadata.permissions().mode() & EXECUTE != 0);
-    if !resolved.ancestors().all(open) {
-        return Err(refused());
-    }
     let named = [path, &resolved].into_iter().any(own::is_name);
-    if !path.is_absolute() || path.starts_with("/proc") || named || is_one_of(&resolved, own) || !folders.any(beneath) {
+    let beneath = PROGRAMS.iter().chain(&LIBRARIES).any(beneath);
+    if !beneath || named || is_one_of(&resolved, own) || !resolved.ancestors().all(open) {
         return Err(refused());
     }
     Ok(resolved)
@@ -232,8 +200,11 @@ fn is_one_of(path: &Path, own: &[PathBuf]) -> bool {
     here.is_some() && own.iter().any(|own| identity(own) == here)
 }
 
-/// The facts of an ELF file whose first bytes are `start`.
-fn elf(file: &mut File, start: &[u8], own: &[PathBuf]) -> Result<Program, StartProblem> {
+/// Whether a file that begins so is an ELF program for this machine.
+fn elf(start: &[u8]) -> Result<(), StartProblem> {
+    if !start.starts_with(ELF_MAGIC) {
+        return Err(StartProblem::NotAProgram);
+    }
     if start.get(4) == Some(&1) {
         return Err(StartProblem::ThirtyTwoBit);
     }
@@ -244,30 +215,11 @@ fn elf(file: &mut File, start: &[u8], own: &[PathBuf]) -> Result<Program, StartP
         return Err(StartProblem::WrongMachine { machine: machine_name(machine), here: std::env::consts::ARCH.into() });
     }
     match half(16) {
-        2 | 3 => {}
-        1 => return Err(StartProblem::NotLinked { what: "an object file".into() }),
-        4 => return Err(StartProblem::NotLinked { what: "a core dump".into() }),
-        _ => return Err(StartProblem::NotAProgram),
+        2 | 3 => Ok(()),
+        1 => Err(StartProblem::NotLinked { what: "an object file".into() }),
+        4 => Err(StartProblem::NotLinked { what: "a core dump".into() }),
+        _ => Err(StartProblem::NotAProgram),
     }
-    let mut program = Program::default();
-    let segments = elf::segments(file, start);
-    if let Some(interpreter) = segments.iter().find(|segment| segment.kind == elf::INTERPRETER) {
-        let bytes = read_at(file, interpreter.offset, interpreter.size.min(LONGEST_PATH)).unwrap_or_default();
-        let text = String::from_utf8_lossy(bytes.split(|&byte| byte == 0).next().unwrap_or_default()).into_owned();
-        let loader = PathBuf::from(&text);
-        if !loader.is_file() {
-            return Err(StartProblem::MissingLoader { loader: text.escape_default().to_string() });
-        }
-        program.executable.push(systems(&loader, LIBRARIES.into_iter(), own)?);
-        program.named.push(loader);
-    }
-    program.sanitised = elf::dynamic_names(file, &segments)
-        .is_some_and(|table| SANITISER_NAMES.iter().any(|name| contains(&table, name)));
-    Ok(program)
-}
-
-fn contains(table: &[u8], name: &[u8]) -> bool {
-    table.windows(name.len()).any(|window| window == name)
 }
 
 fn this_machine() -> u16 {
@@ -335,37 +287,22 @@ mod tests {
         let (_kept, path) = written("a", &header(2, 1, here), 0o755);
         assert_eq!(examine(&path, &[]), Err(StartProblem::NotLinked { what: "an object file".into() }));
         let (_kept, path) = written("a", &header(2, 2, here), 0o755);
-        let examined = examine(&path, &[]).unwrap();
-        let plain = Program { libraries: Vec::new(), named: Vec::new(), missing: Vec::new(), ..examined };
-        assert_eq!(plain, Program::default(), "a static program without segments is the kernel's matter");
-    }
-
-    #[test]
-    fn offsets_out_of_the_file_are_harmless() {
-        let mut bytes = header(2, 3, this_machine() as u8);
-        bytes[32..40].copy_from_slice(&u64::MAX.to_le_bytes());
-        bytes[56..58].copy_from_slice(&u16::MAX.to_le_bytes());
-        let (_kept, path) = written("a", &bytes, 0o755);
-        let examined = examine(&path, &[]).unwrap();
-        assert_eq!(
-            Program { libraries: Vec::new(), named: Vec::new(), missing: Vec::new(), ..examined },
-            Program::default()
-        );
+        assert_eq!(examine(&path, &[]), Ok(Program::default()), "all else is the kernel's matter");
     }
 
     #[test]
     fn scripts_name_their_interpreter() {
         let (_kept, path) = written("a", b"#!\n", 0o755);
         assert_eq!(examine(&path, &[]), Err(StartProblem::NoInterpreter));
-        let (_kept, path) = written("a", b"#!/no/such/shell -e\n", 0o755);
+        let (_kept, path) = written("a", b"#!/usr/bin/no-shell -e\n", 0o755);
         assert!(
-            matches!(examine(&path, &[]), Err(StartProblem::MissingInterpreter { interpreter, .. }) if interpreter == "/no/such/shell")
+            matches!(examine(&path, &[]), Err(StartProblem::MissingInterpreter { interpreter, .. }) if interpreter == "/usr/bin/no-shell")
         );
         // Whether the interpreter exists without the carriage return does not matter.
         let (_kept, path) = written("a", b"#!/bin/sh\r\nexit 0\r\n", 0o755);
         let problem = examine(&path, &[]).unwrap_err().to_string();
         assert!(problem.contains("interpreter /bin/sh\\r is not") && problem.contains("carriage return"), "{problem}");
-        let (_kept, path) = written("a", b"#!/no/such/shell\r\n", 0o755);
+        let (_kept, path) = written("a", b"#!/usr/bin/no-shell\r\n", 0o755);
         assert!(
             matches!(examine(&path, &[]), Err(StartProblem::MissingInterpreter { hint, .. }) if hint.contains("dos2unix"))
         );
@@ -396,14 +333,26 @@ mod tests {
     }
 
     #[test]
-    fn a_loader_that_nobody_may_execute_is_the_programs_fault_from_the_start() {
+    fn an_interpreter_that_nobody_may_execute_is_the_programs_fault_from_the_start() {
         let (_kept, path) = written("a", b"#!/usr/lib/os-release\n", 0o755);
         let found = examine(&path, &[]);
         assert!(matches!(found, Err(StartProblem::NotTheSystems { .. } | StartProblem::MissingInterpreter { .. })));
     }
 
     #[test]
-    fn only_the_systems_own_interpreters_and_loaders_are_executed() {
+    fn a_script_is_not_told_which_files_the_host_has() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("there"), "").unwrap();
+        let told = |name: &str| {
+            let interpreter = folder.path().join(name);
+            let (_kept, path) = written("a", format!("#!{}\n", interpreter.display()).as_bytes(), 0o755);
+            examine(&path, &[]).unwrap_err().to_string().replace(name, "NAME")
+        };
+        assert_eq!(told("there"), told("missing"));
+    }
+
+    #[test]
+    fn only_the_systems_own_interpreters_are_executed() {
         let (_kept, foreign) = written("shell", b"", 0o755);
         std::fs::copy("/bin/sh", &foreign).unwrap();
         let foreign = foreign.canonicalize().unwrap();
@@ -421,17 +370,6 @@ mod tests {
             let (_kept, script) = written("a", line.as_bytes(), 0o755);
             assert!(matches!(examine(&script, &[]), Err(StartProblem::NotTheSystems { .. })), "{line}");
         }
-        let mut program = header(2, 3, this_machine() as u8);
-        let loader = format!("{path}\0");
-        (program[32], program[56]) = (64, 1);
-        program.extend(elf::INTERPRETER.to_le_bytes());
-        program.extend([0; 4]);
-        for word in [120, 0, 0, loader.len() as u64, loader.len() as u64, 1] {
-            program.extend(word.to_le_bytes());
-        }
-        program.extend(loader.as_bytes());
-        let (_kept, program) = written("a", &program, 0o755);
-        assert_eq!(examine(&program, &[]), Err(StartProblem::NotTheSystems { path: path.to_string() }));
     }
 
     #[test]
@@ -440,12 +378,5 @@ mod tests {
         let (_kept, script) = written("a", b"#!/bin/sh\n", 0o755);
         assert!(matches!(examine(&script, &own), Err(StartProblem::NotTheSystems { .. })));
         assert_eq!(examine(Path::new("/bin/sh"), &own), Err(StartProblem::GradersOwn));
-    }
-
-    #[test]
-    fn a_dynamic_program_brings_its_loader() {
-        let program = examine(Path::new("/bin/sh"), &[]).unwrap();
-        assert!(program.script.is_none() && !program.sanitised);
-        assert!(program.executable.iter().all(|loader| loader.is_file()));
     }
 }

@@ -172,10 +172,9 @@ impl Running {
         if report.survivors > 0 {
             return Err(SandboxError::Survivors { count: report.survivors });
         }
-        if let Some(errno @ (libc::EACCES | libc::EPERM | libc::ENOENT)) = report.exec_errno {
-            // Program and loader were there and executable a moment ago.
-            let program = wire::path(&supervised.order.program).display().to_string();
-            return Err(SandboxError::NotExecuted { program, source: io::Error::from_raw_os_error(errno) });
+        let program = wire::path(&supervised.order.program);
+        if report.exec_errno.is_some() && !program.is_file() {
+            return Err(SandboxError::Changed { program: program.display().to_string() });
         }
         let traced = self.traced.load(Ordering::Relaxed);
         let ended = decide::ended(&supervised.order, &report, &stderr);

@@ -46,20 +46,12 @@ pub(super) fn single_thread() -> io::Result<SingleThread> {
     }
 }
 
-/// Forks the process.
-///
-/// # Errors
-///
-/// When the process has more than one thread, or the kernel refuses.
+/// Forks the process, which must have one thread.
 pub(super) fn fork() -> io::Result<Fork> {
     fork_alone(&single_thread()?)
 }
 
 /// Forks a process that is known to have one thread.
-///
-/// # Errors
-///
-/// When the kernel refuses.
 pub(super) fn fork_alone(_: &SingleThread) -> io::Result<Fork> {
     // SAFETY: the process has one thread, so the child's copy of memory is consistent.
     match check(i64::from(unsafe { libc::fork() }))? {

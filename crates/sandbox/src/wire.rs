@@ -78,14 +78,10 @@ pub(super) struct RunOrder {
     pub(super) arguments: Vec<Raw>,
     pub(super) environment: Vec<(Raw, Raw)>,
     pub(super) readable: Vec<Raw>,
-    /// Interpreters and loaders that the kernel executes on the way to the program.
+    /// Interpreters that the kernel executes on the way to the program.
     pub(super) executable: Vec<Raw>,
     /// Their names as the program and the kernel use them, which may be links.
     pub(super) named: Vec<Raw>,
-    /// The system's libraries that the program may read, and folders of such; tools read all.
-    pub(super) libraries: Vec<Raw>,
-    /// Libraries that the program asks for and the system lacks.
-    pub(super) missing: Vec<String>,
     /// The grader's own files, which no run may see. Looked up by the grader, once for all runs.
     pub(super) own: Vec<Raw>,
     pub(super) pipe: Option<Raw>,
@@ -99,7 +95,8 @@ pub(super) struct RunOrder {
     pub(super) interpreter: Option<Raw>,
     /// The interpreter's name for itself and its arguments before the script.
     pub(super) words: Vec<Raw>,
-    pub(super) sanitised: bool,
+    /// Whether the program may carry a sanitiser, which reserves terabytes of address space.
+    pub(super) sanitisers: bool,
     pub(super) walls: Walls,
     pub(super) limits: Limits,
 }

@@ -1,4 +1,4 @@
-//! The needs of the course's programs from the system's libraries, though they may read few of its files.
+//! The needs of the course's programs from the system's libraries.
 use super::*;
 
 /// Compiles a source that a bench holds; `None` where there is no such compiler or library.
@@ -146,38 +146,150 @@ int main() {
     }
 }
 
+/// Waits with limits of time for what processes could share, and the counters of the program itself.
+const WAITS: &str = r#"
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <fstream>
+#include <pthread.h>
+#include <semaphore.h>
+#include <string>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+static timespec in_ms(int clock, long ms) {
+    timespec t; clock_gettime(clock, &t);
+    t.tv_nsec += ms % 1000 * 1000000; t.tv_sec += ms / 1000 + t.tv_nsec / 1000000000; t.tv_nsec %= 1000000000;
+    return t;
+}
+static double now() { timespec t; clock_gettime(CLOCK_MONOTONIC, &t); return t.tv_sec + t.tv_nsec / 1e9; }
+struct Shared { pthread_mutex_t lock; pthread_cond_t ready; pthread_barrier_t barrier; sem_t count; int value; };
+static Shared *shared;
+static void *later(void *) { usleep(150000); return nullptr; }
+static void *give(void *) {
+    usleep(150000);
+    sem_post(&shared->count);
+    usleep(150000);
+    pthread_mutex_lock(&shared->lock); shared->value = 1; pthread_cond_broadcast(&shared->ready);
+    pthread_mutex_unlock(&shared->lock);
+    pthread_barrier_wait(&shared->barrier);
+    return nullptr;
+}
+int main() {
+    FILE *file = fopen("shared", "w+"); ftruncate(fileno(file), 4096);
+    shared = (Shared *)mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED, fileno(file), 0);
+    if (shared == MAP_FAILED) { puts("map"); return 1; }
+    pthread_mutexattr_t m; pthread_mutexattr_init(&m); pthread_mutexattr_setpshared(&m, 1);
+    pthread_mutex_init(&shared->lock, &m);
+    pthread_condattr_t c; pthread_condattr_init(&c); pthread_condattr_setpshared(&c, 1);
+    pthread_cond_init(&shared->ready, &c);
+    pthread_barrierattr_t b; pthread_barrierattr_init(&b); pthread_barrierattr_setpshared(&b, 1);
+    pthread_barrier_init(&shared->barrier, &b, 2);
+    sem_init(&shared->count, 1, 0);
+    pthread_t thread;
+    timespec limit;
+    pthread_create(&thread, nullptr, later, nullptr);
+    limit = in_ms(CLOCK_REALTIME, 20);
+    printf("%d ", pthread_timedjoin_np(thread, nullptr, &limit) == ETIMEDOUT);
+    limit = in_ms(CLOCK_REALTIME, 20000);
+    printf("%d ", pthread_timedjoin_np(thread, nullptr, &limit));
+    limit = in_ms(CLOCK_REALTIME, 20);
+    printf("%d ", sem_timedwait(&shared->count, &limit) == -1 && errno == ETIMEDOUT);
+    pthread_create(&thread, nullptr, give, nullptr);
+    limit = in_ms(CLOCK_REALTIME, 20000);
+    printf("%d ", sem_timedwait(&shared->count, &limit));
+    pthread_mutex_lock(&shared->lock);
+    limit = in_ms(CLOCK_REALTIME, 20);
+    double start = now();
+    printf("%d ", pthread_cond_timedwait(&shared->ready, &shared->lock, &limit) == ETIMEDOUT && now() - start > 0.019);
+    limit = in_ms(CLOCK_MONOTONIC, 20000);
+    while (!shared->value) if (pthread_cond_clockwait(&shared->ready, &shared->lock, CLOCK_MONOTONIC, &limit)) {
+        puts("cond");
+    return 1; }
+    pthread_mutex_unlock(&shared->lock);
+    pthread_barrier_wait(&shared->barrier);
+    pthread_join(thread, nullptr);
+    rusage usage;
+    printf("%d ", getrusage(RUSAGE_SELF, &usage) == 0 && usage.ru_maxrss > 0
+        && wait4(-1, nullptr, 0, &usage) == -1 && errno == ECHILD);
+    std::string word; std::ifstream status("/proc/self/status"), statm("/proc/self/statm"), stat("/proc/self/stat");
+    printf("%d\n", (status >> word) && (statm >> word) && (stat >> word) && std::stoi(word) == getpid());
+}
+"#;
+
 #[test]
-fn a_program_reads_the_libraries_that_it_loads_and_no_others() {
+fn waits_with_a_limit_of_time_last_until_it_and_end_when_they_should() {
+    let Some(bench) = Bench::new() else { return };
+    let Some(program) = built(&bench, WAITS, &["-pthread"]) else { return };
+    for backend in [bench.backend.clone(), bench.backend.without(Layer::Namespaces).unwrap()] {
+        let outcome = backend.start(&bench.job(&program, &[])).unwrap().wait().unwrap();
+        assert_eq!((outcome.ended, text(&outcome.stdout.bytes)), (Ended::Exited(0), "1 0 1 0 1 1 1\n"));
+    }
+}
+
+#[test]
+fn a_program_reads_the_systems_libraries_and_nothing_else_of_the_system() {
     let Some(bench) = Bench::new() else { return };
     let script = bench.script(
         "#!/bin/sh\nfor file; do [ -r \"$file\" ] && { read x < \"$file\"; } 2>&- && echo \"$file\"; done\n:\n",
     );
     let others = [
         "/usr/share/zoneinfo/Europe/Berlin",
+        "/usr/bin/env",
+        "/etc/passwd",
         "/proc/meminfo",
         "/proc/loadavg",
         "/sys/devices/system/cpu/vulnerabilities/l1tf",
     ];
-    let mut others = others.map(str::to_owned).to_vec();
-    let folders = ["/usr/lib/gcc", "/usr/lib/x86_64-linux-gnu"].iter().flat_map(std::fs::read_dir);
-    let needed = ["libc.so.6", "ld-linux", "libgcc_s"];
-    let is_other = |name: &str| !needed.iter().any(|needed| name.contains(needed));
-    others.extend(
-        folders
-            .flatten()
-            .flatten()
-            .map(|entry| entry.path().display().to_string())
-            .filter(|path| is_other(path))
-            .take(80),
-    );
-    let words: Vec<&str> = others.iter().map(String::as_str).collect();
+    let library = std::fs::read_dir("/usr/lib").unwrap().flatten().map(|entry| entry.path().join("libc.so.6"));
+    let library = library.into_iter().find(|path| path.exists()).map(|path| path.display().to_string());
+    let words: Vec<&str> = others.into_iter().chain(library.as_deref()).collect();
     for backend in
         [Ok(bench.backend.clone()), bench.backend.without(Layer::FileRules), bench.backend.without(Layer::Namespaces)]
     {
         let Ok(backend) = backend else { continue };
         let outcome = backend.start(&bench.job(&script, &words)).unwrap().wait().unwrap();
-        assert_eq!((outcome.ended, text(&outcome.stdout.bytes)), (Ended::Exited(0), ""), "{words:?}");
+        let read: Vec<&str> = text(&outcome.stdout.bytes).lines().collect();
+        assert_eq!(
+            (outcome.ended, read),
+            (Ended::Exited(0), library.iter().map(String::as_str).collect()),
+            "{words:?}"
+        );
     }
+}
+
+/// Lays a file system in memory over the folder of local libraries, with a module of ours in it, and grades a script.
+#[test]
+fn our_module_for_python_is_no_library_of_a_submission() {
+    let Some(_) = backend() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let script = "#!/bin/sh\ncd /usr/local/lib/python3/dist-packages\n\
+                  for file in other.py fosssim/__init__.py; do\n\
+                  read word < $file; echo \"it reads $word\" >&2; word=; done\n";
+    std::fs::write(at("program"), script).unwrap();
+    std::fs::set_permissions(at("program"), std::fs::Permissions::from_mode(0o755)).unwrap();
+    let suite =
+        "schema = 1\nname = \"t\"\n[[group]]\nname = \"g\"\nscenes = [\"asset:ImpulsesTests/o*\"]\npoints = 10\n";
+    std::fs::write(at("suite.toml"), suite).unwrap();
+    let line = "mount -t tmpfs tmpfs /usr/local/lib && cd /usr/local/lib && mkdir -p python3/dist-packages/fosssim \
+                && cd python3/dist-packages && echo answers > fosssim/__init__.py && echo others > other.py \
+                && chmod -R a+rX /usr/local/lib && cd \"$0\" && \"$1\" grade program --suite suite.toml";
+    let words = ["-m", "sh", "-c", line];
+    let command = std::process::Command::new("unshare")
+        .args(words)
+        .arg(folder.path())
+        .arg(env!("CARGO_BIN_EXE_fosssim-oracle"))
+        .output();
+    let Ok(output) = command else { return skip(Need::Walls, "there is no unshare") };
+    let (out, err) = (text(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    if out.is_empty() {
+        return skip(Need::Walls, err);
+    }
+    assert!(out.contains("it reads others") && !out.contains("answers"), "{out}{err}");
 }
 
 #[test]

@@ -44,11 +44,11 @@ struct SharedWait {
     id: u64,
     memory: File,
     word: u64,
-    /// What it holds as long as the wait goes on.
+    /// The word's value as long as the wait goes on.
     value: u32,
     limit: Option<Instant>,
     pause: Duration,
-    /// When to look again.
+    /// The time of the next look.
     due: Instant,
 }
 
@@ -76,7 +76,7 @@ impl SharedWaits {
         }
     }
 
-    /// When the next word is to be looked at.
+    /// The time of the next look at a word.
     pub(super) fn next(&self) -> Option<Instant> {
         self.0.iter().map(|wait| wait.due).min()
     }

@@ -19,7 +19,7 @@ use std::{
 use landlock::RulesetCreated;
 use seccompiler::BpfProgram;
 
-use super::{filter, filter::Purpose, processes, walls};
+use super::{filter, filter::Purpose, processes, view, walls};
 use crate::{
     mounts, sys,
     wire::{self, Failure, Raw, RunOrder, stage},
@@ -83,6 +83,10 @@ fn prepare(plan: &mut ChildPlan) -> Result<(Strings, Strings), Failure> {
     sys::default_signals(&plan.ignored);
     sys::file_mask(0o022);
     sys::enter_folder(plan.folder.as_fd()).map_err(stage("enter the working folder"))?;
+    if plan.order.walls.namespaces && !plan.order.tools {
+        // The current folder comes along.
+        view::leave_processes(&plan.order)?;
+    }
     // To be the first that the kernel ends when memory runs out. Some containers forbid it.
     let _ = std::fs::write("/proc/self/oom_score_adj", "1000");
     limits(&plan.order, plan.user.is_some()).map_err(stage("set the resource limits"))?;
@@ -128,7 +132,9 @@ fn limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
     const SPARE_MEMORY: u64 = 512 << 20;
     const SPARE_SECONDS: u64 = 2;
     const SPARE_PROCESSES: u64 = 16;
+    // The run's own user has no other processes but in another container that hands out the same numbers.
     const SPARE_FOR_OTHERS: u64 = 128;
+    const MOST_RUNS: u64 = 64;
     const PENDING_SIGNALS: u64 = 1024;
     // The address sanitiser reserves 20 TiB and what the program itself needs, others more.
     const SANITISERS_SPACE: u64 = 64 << 40;
@@ -147,12 +153,15 @@ fn limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
     sys::limit(libc::RLIMIT_SIGPENDING, PENDING_SIGNALS)?;
     // Address space is not memory: libraries reserve more than they touch. What is touched is watched.
     let space = limits.memory.saturating_mul(2).saturating_add(SPARE_MEMORY);
-    sys::limit(libc::RLIMIT_AS, if order.sanitised { space.max(SANITISERS_SPACE) } else { space })?;
-    // The count is per user: what ours does already is added, and room for other runs that begin later.
-    // The run's own user has none but in another container that hands out the same numbers.
-    let others = if own_user { 0 } else { processes::threads_of_user(sys::user()) };
-    sys::limit(libc::RLIMIT_NPROC, u64::from(limits.processes) + SPARE_PROCESSES + SPARE_FOR_OTHERS + others)?;
-    Ok(())
+    sys::limit(libc::RLIMIT_AS, if order.sanitisers { space.max(SANITISERS_SPACE) } else { space })?;
+    // The kernel counts for a user, or for a user namespace: where both are shared with other runs, the limit is only
+    // against bombs, because the supervisor counts the run's own.
+    let processes = u64::from(limits.processes) + SPARE_PROCESSES;
+    let processes = match own_user || order.walls.namespaces {
+        true => processes + SPARE_FOR_OTHERS,
+        false => MOST_RUNS * processes + processes::threads_of_user(sys::user()),
+    };
+    sys::limit(libc::RLIMIT_NPROC, processes)
 }
 
 /// Filters that were compiled before there was a child, with their purpose.
@@ -252,7 +261,7 @@ fn environment(order: &RunOrder) -> io::Result<Strings> {
         (b"HOME".to_vec(), home.clone()),
         (b"TMPDIR".to_vec(), home),
     ];
-    if order.sanitised {
+    if order.sanitisers {
         // The leak check starts a process that traces its parent, which no filter allows.
         variables.push((b"ASAN_OPTIONS".to_vec(), b"detect_leaks=0".to_vec()));
     }

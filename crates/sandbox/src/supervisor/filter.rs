@@ -1,8 +1,8 @@
 //! The seccomp filters: an allow list, refusals with an error number, and calls that end the program.
 //!
-//! Each answer has a filter of its own, which the compiler makes. The strictest answer counts, in the order kill, error,
-//! announce, allow, and of equal ones the last filter's. Forbidden calls are announced to the supervisor, which names
-//! the call and kills; that filter is installed first. Where the kernel cannot announce, the call kills by `SIGSYS`. The
+//! Each answer has a filter of its own, which the compiler makes. The strictest answer counts, in the order kill,
+//! error, announce, allow, and of equal ones the last filter's. Forbidden calls are announced to the supervisor, which
+//! names the call and kills; that filter comes first. Where the kernel cannot announce, the call kills by `SIGSYS`. The
 //! list of calls that exist comes last, because it also takes away the calls that install filters. Every filter ends
 //! programs that use another architecture's calls (32-bit `int 0x80`); x32 numbers are on no list and so do not exist.
 

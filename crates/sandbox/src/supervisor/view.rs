@@ -10,7 +10,7 @@ use std::{
     fs::File,
     io,
     os::{
-        fd::{AsFd, AsRawFd, BorrowedFd},
+        fd::{AsFd, AsRawFd, BorrowedFd, OwnedFd},
         unix::{ffi::OsStrExt, fs::symlink},
     },
     path::{Component, Path, PathBuf},
@@ -18,7 +18,6 @@ use std::{
 
 use super::{volatile, walls};
 use crate::{
-    libraries,
     mounts::{self, NO_DEVICES, NO_SET_USER, READ_ONLY},
     sys,
     wire::{self, Failure, Raw, RunOrder, stage},
@@ -121,7 +120,7 @@ fn begin(order: &RunOrder) -> Result<FileView, Failure> {
         view.place(&path, access)
             .map_err(|error| Failure::new(format!("bring {} into sight", path.display()), &error))?;
     }
-    let folders = libraries::FOLDERS.map(PathBuf::from);
+    let folders = walls::LIBRARIES.map(PathBuf::from);
     for path in folders.into_iter().chain(order.named.iter().map(wire::path)) {
         // Only the links on the way: their targets are among the executable files, or were exchanged meanwhile.
         view.resolve(&path).map_err(|error| Failure::new(format!("bring {} into sight", path.display()), &error))?;
@@ -133,7 +132,7 @@ fn begin(order: &RunOrder) -> Result<FileView, Failure> {
     Ok(view)
 }
 
-/// Lays nothing over the grader's own files beneath a folder, as far as they are in sight.
+/// Lays nothing over the grader's own files and folders beneath a folder, as far as they are in sight.
 fn hide_own(order: &RunOrder, beneath: &Path) -> Result<(), Failure> {
     let own: Vec<PathBuf> = order.own.iter().map(wire::path).filter(|path| path.starts_with(beneath)).collect();
     if own.is_empty() {
@@ -147,20 +146,50 @@ fn hide_own(order: &RunOrder, beneath: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Lays nothing over a file that is in sight.
+/// Lays nothing over a file or folder that is in sight.
 fn hide(path: &Path) -> io::Result<()> {
-    if path.symlink_metadata().is_err() {
-        return Ok(());
+    let Ok(metadata) = path.symlink_metadata() else { return Ok(()) };
+    if metadata.is_dir() {
+        return mounts::mount(c"tmpfs", &c_string(path)?, c"mode=0,size=4k,nr_inodes=1", false);
     }
     let nothing = mounts::copy_of(c"/dev/null")?;
     mounts::restrict(nothing.as_fd(), READ_ONLY | NO_SET_USER | NO_DEVICES)?;
     mounts::attach(nothing.as_fd(), &c_string(path)?)
 }
 
-/// Shows the run's processes, and to a submission nothing else: other entries of `/proc` count for the whole machine.
+/// Shows the run's processes.
 fn add_processes(order: &RunOrder) -> Result<(), Failure> {
     let shown = if order.tools { c"" } else { c"subset=pid" };
     mounts::mount(c"proc", c"/proc", shown, false).map_err(stage("mount /proc"))
+}
+
+/// Shows this process nothing of `/proc` but its own entry, in a folder that counts nobody: the root of a `/proc` has a
+/// link for every process of the machine. Where no file rules guard that entry, only some of its files are shown: the
+/// kernel would take `/proc/self/exe`, the grader, for the program's loader.
+pub(super) fn leave_processes(order: &RunOrder) -> Result<(), Failure> {
+    let own = std::process::id().to_string();
+    let place = Path::new("/proc").join(&own);
+    let leave = || -> io::Result<()> {
+        mounts::unshare(libc::CLONE_NEWNS)?;
+        let copy = |path: PathBuf| Ok((mounts::copy_of(&c_string(&path)?)?, path));
+        let parts: Vec<(OwnedFd, PathBuf)> = match order.walls.landlock {
+            true => vec![copy(place.clone())?],
+            false => walls::unguarded_entry().map(|name| copy(place.join(name))).collect::<io::Result<_>>()?,
+        };
+        mounts::mount(c"tmpfs", c"/proc", c"mode=555,size=4k,nr_inodes=20", false)?;
+        std::fs::create_dir(&place)?;
+        symlink(&own, "/proc/self")?;
+        for (part, path) in parts {
+            if path.ends_with("fd") {
+                std::fs::create_dir(&path)?;
+            } else if path != place {
+                File::create(&path)?;
+            }
+            mounts::attach(part.as_fd(), &c_string(&path)?)?;
+        }
+        mounts::restrict_at(c"/proc", READ_ONLY)
+    };
+    leave().map_err(stage("leave other processes"))
 }
 
 fn leave_host() -> Result<(), Failure> {

@@ -4,6 +4,7 @@
 //! after it has become another user.
 
 use std::{
+    collections::BTreeSet,
     ffi::CStr,
     fs::File,
     io,
@@ -20,7 +21,6 @@ use landlock::{
 };
 
 use crate::{
-    libraries::{FOLDERS, LOADERS, TIME_ZONE},
     own::{self, Allowed},
     sys,
     wire::{self, RunOrder},
@@ -31,20 +31,27 @@ use crate::{
 /// [`LayerReport`]: crate::LayerReport
 const NEWEST: ABI = ABI::V6;
 
-/// Files that runtimes ask about the machine: its processors and its time zone.
-const MACHINE: [&str; 4] = [
+/// The folders of shared libraries, loaders and the libraries of interpreters.
+pub(super) const LIBRARIES: [&str; 5] = ["/lib", "/lib64", "/usr/lib", "/usr/lib64", "/usr/local/lib"];
+/// Files that loaders and runtimes ask about the machine: its libraries, its processors and its time zone.
+const MACHINE: [&str; 6] = [
+    "/etc/ld.so.cache",
+    "/etc/ld.so.preload",
+    "/etc/localtime",
     "/sys/devices/system/cpu/online",
     "/sys/devices/system/cpu/possible",
     "/sys/devices/system/cpu/present",
-    TIME_ZONE,
 ];
-/// The folder of most of that.
-const PROCESSORS: &str = "/sys/devices/system/cpu";
-/// Files that runtimes ask about their own process. Left out are its counters (`stat`, `statm`, `status` and others):
-/// they tell which pages of a file were in memory already, because these are mapped together and need no wait.
-const OWN_FILES: [&CStr; 6] = [c"auxv", c"cmdline", c"comm", c"environ", c"limits", c"maps"];
+/// Files that runtimes ask about their own process.
+const OWN_FILES: [&CStr; 9] =
+    [c"auxv", c"cmdline", c"comm", c"environ", c"limits", c"maps", c"stat", c"statm", c"status"];
 /// Folders there that it may list: the threads' own numbers, which some runtimes count, and its descriptors.
 const OWN_FOLDERS: [&CStr; 2] = [c"task", c"fd"];
+/// The parts of a process's own entry that are shown where no file rules guard it.
+pub(super) fn unguarded_entry() -> impl Iterator<Item = &'static str> {
+    OWN_FILES.into_iter().chain([c"fd"]).filter_map(|name| name.to_str().ok())
+}
+
 /// Devices without an inside.
 pub(super) const DEVICES: [&str; 5] = ["/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom"];
 /// The system's programs, for compilers and build tools.
@@ -61,17 +68,12 @@ const SETTINGS: [&str; 8] = [
     "/etc/os-release",
 ];
 
-/// Every path outside the working folder that has to be in sight for the order's program, devices aside. Where rules
-/// decide what may be read, whole folders are: each mount costs every run a little.
+/// Every path outside the working folder that has to be in sight for the order's program, devices aside.
 pub(super) fn in_sight(order: &RunOrder) -> Vec<PathBuf> {
-    let libraries = match order.walls.landlock {
-        true => FOLDERS.iter().chain(&LOADERS).chain(&[PROCESSORS]).map(PathBuf::from).collect(),
-        false => order.libraries.iter().map(wire::path).collect::<Vec<_>>(),
-    };
     let named = order.readable.iter().chain(&order.executable).chain([&order.program]).map(wire::path);
     let tools = if order.tools { [&TOOLS[..], &SETTINGS[..]] } else { [&[][..], &[]] };
-    let fixed = MACHINE.iter().copied().chain(tools.concat()).map(PathBuf::from);
-    libraries.into_iter().chain(fixed).chain(named).collect()
+    let fixed = LIBRARIES.into_iter().chain(MACHINE).chain(tools.concat()).map(PathBuf::from);
+    fixed.chain(named).collect()
 }
 
 /// The places outside the working folder that the program may reach, open, with its rights there.
@@ -88,8 +90,11 @@ impl Places {
         for path in MACHINE {
             places.add(Path::new(path), read);
         }
-        for raw in &order.libraries {
-            places.add_around(&wire::path(raw), read, own);
+        // The kernel executes the loader, and nothing else beneath: the filter sees to that.
+        let libraries: BTreeSet<PathBuf> =
+            LIBRARIES.iter().filter_map(|folder| Path::new(folder).canonicalize().ok()).collect();
+        for folder in &libraries {
+            places.add_around(folder, execute, own);
         }
         for path in DEVICES {
             // Bytes that are written to shared mappings of /dev/zero would be memory that no counter shows.
@@ -106,7 +111,7 @@ impl Places {
             for path in TOOLS {
                 places.add_around(Path::new(path), execute, own);
             }
-            for path in SETTINGS.iter().chain(&LOADERS) {
+            for path in SETTINGS {
                 places.add(Path::new(path), read);
             }
         }
