@@ -395,7 +395,7 @@ fn suites_are_written_checked_and_explained() {
     workspace.write("course.toml", &template.stdout);
     let check = workspace.run(["suite", "check", "course.toml"]);
     assert_eq!(check.code, Some(0), "{}", check.shown());
-    assert!(check.out().contains("Continuous-time detection: 40 points"), "{}", check.out());
+    assert!(check.out().contains("ContinuousTimeTests: 35 points"), "{}", check.out());
     let list: serde_json::Value =
         serde_json::from_slice(&workspace.run(["suite", "list", "--format", "json"]).stdout).expect("JSON");
     let text = workspace.run(["suite", "list"]).out();

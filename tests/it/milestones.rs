@@ -5,6 +5,7 @@ use super::{
 };
 use fosssim_oracle::{
     assignments::Assignment::{self, T1M1, T1M2, T1M3, T2M1, T2M2, T2M3},
+    diagnose::probe_scenes,
     judge::{
         Overall,
         fair::FairVerdict,
@@ -31,10 +32,10 @@ fn scenes(assignment: Assignment) -> Vec<(String, Scene)> {
 
 #[test]
 fn every_scene_of_a_suite_can_be_run_by_programs_of_its_milestone() {
-    for assignment in [T1M1, T2M1, T2M2] {
-        let scenes = scenes(assignment);
+    for assignment in [T1M1, T1M2, T1M3, T2M1, T2M2] {
+        let (scenes, probes) = (scenes(assignment), probe_scenes(assignment));
         assert!(scenes.len() > 4, "{assignment:?}");
-        for (name, scene) in scenes {
+        for (name, scene) in scenes.into_iter().chain(probes) {
             let unknown: Vec<String> = scene.unknown_to(assignment).map(|unknown| unknown.to_string()).collect();
             assert!(unknown.is_empty(), "{name}: {unknown:?}");
         }
@@ -57,11 +58,54 @@ fn a_right_program_is_accepted_on_every_scene_of_its_milestone() {
 fn a_force_too_much_is_never_accepted() {
     for assignment in [T1M1, T1M2, T1M3, T2M1, T2M3] {
         for (name, scene) in scenes(assignment) {
+            if scene.particles.iter().all(|particle| particle.fixed) {
+                continue;
+            }
             let mut wrong = scene.clone();
             wrong.forces.push(Force::Constant { force: Vec2::new(0.0, -1e-3) });
             assert!(!accepts(&scene, &simulate(&wrong)), "{name}");
         }
     }
+}
+
+/// A teacher is told where a scene of a suite is beyond what programs of its milestone know.
+#[test]
+fn scenes_beyond_a_milestone_are_told_and_own_ones_rejected() {
+    let workspace = Workspace::new();
+    let old = workspace.run(["suite", "check", "t1m2@1"]);
+    assert!(
+        old.out().contains("note: ForcesTests/constant-force: programs of T1M2 ignore <constantforce>"),
+        "{}",
+        old.shown()
+    );
+    let newest = workspace.run(["suite", "check", "t1m2"]);
+    assert!(!newest.out().contains("programs of T1M2"), "{}", newest.shown());
+    let vortex = workspace.run(["scene", "show", "vortex-pair-and-third-body"]);
+    workspace.write("vortex.xml", vortex.out());
+    let suite = |milestone: &str| {
+        let text = format!(
+            "schema = 1\nname = \"one\"\nmilestone = \"{milestone}\"\n[[group]]\nname = \"a\"\n\
+             scenes = [\"vortex.xml\"]\n"
+        );
+        workspace.write("suite.toml", text);
+        workspace.run(["suite", "check", "suite.toml"])
+    };
+    let beyond = suite("t1m2");
+    assert_eq!(beyond.code, Some(2), "{}", beyond.shown());
+    assert!(beyond.err().contains("6:11: scene vortex: programs of T1M2 ignore <vortexforce>"), "{}", beyond.shown());
+    let inside = suite("t1m3");
+    assert!(inside.code == Some(0) && inside.out().contains("programs: Theme 1, Milestone 3\n"), "{}", inside.shown());
+}
+
+/// Implicit Euler is optional: who leaves it out has all points, and none of the extra ones.
+#[test]
+fn extra_points_are_reported_beside_the_others() {
+    let Some(workspace) = grading::workspace() else { return };
+    let path = &grading::submit(&workspace, &["implicit-positions-kept"])[0];
+    let run = workspace.run(["grade", path, "--suite", "t1m3"]);
+    assert!(run.out().contains("accepted, 100 of 100 points, 0 of 20 extra points"), "{}", run.shown());
+    assert!(run.out().contains("\nImplicitEulerTests (0 of 20 extra)\n"), "{}", run.shown());
+    assert_eq!(run.code, Some(0), "{}", run.shown());
 }
 
 /// The contest's programs may sum their forces in any order; one that leaves a pair out is refused.

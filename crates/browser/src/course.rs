@@ -65,8 +65,10 @@ fn file(task: &SceneTask) -> String {
 fn text(plan: &Plan, groups: &[&PlannedGroup]) -> String {
     // A string of JSON is one of TOML.
     let string = |text: &str| Value::from(text).to_string();
+    let milestone = plan.milestone.map(|milestone| format!("milestone = \"{}\"\n", milestone.key()));
+    let milestone = milestone.unwrap_or_default();
     let mut out = format!(
-        "schema = 1\nname = {}\nrules = {}\n\n[limits]\ntrace_mib = {}\n",
+        "schema = 1\nname = {}\n{milestone}rules = {}\n\n[limits]\ntrace_mib = {}\n",
         string(&plan.name),
         json!(plan.rules),
         (plan.limits.trace >> 20).max(1)
@@ -82,10 +84,11 @@ fn text(plan: &Plan, groups: &[&PlannedGroup]) -> String {
             .collect();
         let _ = write!(
             out,
-            "\n[[group]]\nname = {}\nscenes = [{}]\npoints = {}\ncredit = {}\nhints = \"{}\"\n",
+            "\n[[group]]\nname = {}\nscenes = [{}]\npoints = {}\nextra = {}\ncredit = {}\nhints = \"{}\"\n",
             string(&group.name),
             scenes.join(", "),
             group.marking.points,
+            group.marking.extra,
             json!(group.marking.credit),
             group.marking.hints.words().0
         );

@@ -34,11 +34,12 @@ pub struct Grade {
     pub suite: String,
     /// The rule books that were asked; verdicts and points are by the official one.
     pub rules: Rules,
-    /// The worst verdict of all scenes.
+    /// The worst verdict of the groups that count.
     pub verdict: Verdict,
-    /// Points reached; `None` when the grader failed or was stopped before the last scene, which is nobody's zero.
+    /// Points reached, without extra ones; `None` when the grader failed or was stopped before the last scene, which is
+    /// nobody's zero.
     pub points: Option<f64>,
-    /// Points that can be reached.
+    /// Points that can be reached, without extra ones.
     pub max_points: f64,
     /// Groups in the suite's order.
     pub groups: Vec<GroupGrade>,
@@ -61,6 +62,28 @@ pub struct Grade {
 }
 
 impl Grade {
+    /// Returns the verdict, the points and the maximum that follow from groups. Extra groups do not count beside
+    /// others.
+    #[must_use]
+    pub fn totals(groups: &[GroupGrade]) -> (Verdict, Option<f64>, f64) {
+        let has_others = groups.iter().any(|group| !group.extra);
+        let counted = || groups.iter().filter(move |group| !group.extra);
+        let verdicts = groups.iter().filter(|group| !group.extra || !has_others).map(|group| group.verdict);
+        (
+            verdicts.max().unwrap_or(Verdict::NotRun),
+            counted().map(|group| group.points).sum(),
+            counted().map(|group| group.max_points).sum(),
+        )
+    }
+
+    /// Returns the extra points reached and how many there are; nothing where the suite gives none.
+    #[must_use]
+    pub fn extra(&self) -> Option<(f64, f64)> {
+        let extra = || self.groups.iter().filter(|group| group.extra);
+        let reached: Option<f64> = extra().map(|group| group.points).sum();
+        extra().next().and(reached).map(|reached| (reached, extra().map(|group| group.max_points).sum()))
+    }
+
     /// Whether all groups are for students' eyes.
     #[must_use]
     pub fn is_visible(&self) -> bool {
@@ -175,6 +198,9 @@ pub struct GroupGrade {
     pub points: Option<f64>,
     /// Points that can be reached.
     pub max_points: f64,
+    /// Whether its points are extra: they count neither in the sum nor in the maximum of the grade.
+    #[serde(default)]
+    pub extra: bool,
     /// Points for speed, where the suite gives any.
     pub speed: Option<SpeedGrade>,
     /// The worst verdict of its scenes.

@@ -1,21 +1,24 @@
 //! `suite.toml`: what to grade, with what limits, points and visibility.
 //!
 //! Reading yields every problem at once, each with line and column. The file's grammar is documented by the template
-//! that `suite init` writes ([`TEMPLATE`]).
+//! that `suite init` writes ([`template`]).
 use super::shape::{self, Problem};
 pub use fosssim_findings::{Hints, Visibility, speed::SpeedMarking};
 use fosssim_judge::Rules;
+use fosssim_model::assignments::Assignment;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 use toml::Spanned;
 
-pub use super::{assignments::TEMPLATE, shape::MOST_POINTS};
+pub use super::{assignments::template, shape::MOST_POINTS};
 
 /// A validated suite: its scenes are patterns until they are looked up (see [`Plan`](super::plan::Plan)).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Suite<Scene = Pattern> {
     /// Its name, shown in reports.
     pub name: String,
+    /// The milestone whose programs it grades, where it says so.
+    pub milestone: Option<Assignment>,
     /// How the program is run; `{program}`, `{scene}` and `{trace}` are replaced.
     pub run: Vec<String>,
     /// The rule books to ask; the official one gives verdicts and points.
@@ -65,6 +68,8 @@ pub struct Marking {
     pub visibility: Visibility,
     /// How much students are told of its scenes.
     pub hints: Hints,
+    /// Whether its points are extra: reported beside the others, and not counted in the sum or the maximum.
+    pub extra: bool,
     /// Points for speed, once all scenes are accepted.
     pub speed: Option<SpeedMarking>,
 }
@@ -182,6 +187,7 @@ pub struct SuiteError {
 struct RawSuite {
     schema: Option<Spanned<u32>>,
     name: Option<Spanned<String>>,
+    milestone: Option<String>,
     rules: Option<Rules>,
     hints: Option<Hints>,
     show_output: Option<bool>,
@@ -218,6 +224,7 @@ struct RawGroup {
     name: Option<Spanned<String>>,
     scenes: Option<Spanned<Vec<Spanned<String>>>>,
     points: Option<f64>,
+    extra: Option<bool>,
     credit: Option<Credit>,
     visibility: Option<Visibility>,
     hints: Option<Hints>,
@@ -278,6 +285,7 @@ pub(super) fn read_all(text: &str) -> (Suite, Vec<(Position, String)>) {
     }
     let suite = Suite {
         name: raw.name.map(Spanned::into_inner).unwrap_or_default(),
+        milestone: raw.milestone.as_deref().and_then(Assignment::named),
         run,
         rules: raw.rules.unwrap_or(Rules::Fair),
         staff_hints: Hints::Full,
@@ -378,7 +386,8 @@ fn read_group(text: &str, problems: &mut Vec<Problem>, raw: RawGroup, hints: Hin
     };
     let (credit, visibility) = (raw.credit.unwrap_or(Credit::Scenes), raw.visibility.unwrap_or(Visibility::Visible));
     let speed = raw.speed.map(|speed| read_speed(problems, speed));
-    let marking = Marking { points, credit, visibility, hints: raw.hints.unwrap_or(hints), speed };
+    let (hints, extra) = (raw.hints.unwrap_or(hints), raw.extra.unwrap_or(false));
+    let marking = Marking { points, credit, visibility, hints, extra, speed };
     Group { name, scenes: scenes.map(pattern).collect(), marking }
 }
 
@@ -401,11 +410,12 @@ mod tests {
 
     #[test]
     fn the_template_is_a_valid_suite() {
-        let suite = read(TEMPLATE).expect("the template");
+        let template = template("t2m2").expect("a template");
+        let suite = read(&template).expect("sound");
         assert_eq!((suite.limits, suite.patience), (RunLimits::default(), Patience::default()));
         assert_eq!(suite.run, default_run());
         assert_eq!(suite.rules, Rules::Fair);
-        let without = TEMPLATE.replacen("rules = \"fair\"\n", "", 1);
+        let without = template.replacen("rules = \"fair\"\n", "", 1);
         assert_eq!(read(&without).expect("sound").rules, Rules::Fair, "the default");
         assert!(!suite.groups.is_empty());
     }
@@ -458,7 +468,7 @@ mod tests {
             "18:10: credit \"step\" is not known: there are \"scenes\", \"steps\" and \"all\"; did you mean \"steps\"?",
             "21:10: group \"b\" has no scenes",
             "22:10: points is -1: it has to lie between 0 and 1000000",
-            "23:1: unknown key `weight` in this [[group]]: there are name, scenes, points, credit, visibility",
+            "23:1: unknown key `weight` in this [[group]]: there are name, scenes, points, extra, credit",
         ] {
             assert!(told.contains(line), "{line}\n{told}");
         }

@@ -6,7 +6,7 @@ use super::{
     library,
     task::SceneTask,
 };
-use fosssim_model::scene;
+use fosssim_model::{assignments::Assignment, scene};
 use std::collections::BTreeMap;
 
 #[cfg(target_os = "linux")]
@@ -67,11 +67,24 @@ impl Plan {
         self.groups.iter_mut().for_each(|group| group.marking.hints = hints);
     }
 
-    /// Points that can be reached.
+    /// Returns the milestone whose programs it grades: the one that it names, else the first that can run most of its
+    /// scenes.
+    #[must_use]
+    pub fn assignment(&self) -> Assignment {
+        let can_run = |assignment: &Assignment| {
+            self.scenes().filter(|task| task.scene.unknown_to(*assignment).next().is_none()).count()
+        };
+        // Of several with the same number the last one is the maximum.
+        let by_scenes = || Assignment::COURSE.into_iter().rev().max_by_key(can_run);
+        self.milestone.or_else(by_scenes).unwrap_or(Assignment::DEFAULT)
+    }
+
+    /// Points that can be reached, without extra ones.
     #[must_use]
     pub fn max_points(&self) -> f64 {
         let of_speed = |marking: &Marking| marking.speed.map_or(0.0, |speed| speed.points);
-        self.groups.iter().map(|group| group.marking.points + of_speed(&group.marking)).sum()
+        let counted = self.groups.iter().map(|group| &group.marking).filter(|marking| !marking.extra);
+        counted.map(|marking| marking.points + of_speed(marking)).sum()
     }
 }
 
@@ -91,7 +104,8 @@ fn resolved(
     files: &mut dyn FnMut(&str) -> Result<Found, String>,
     problems: &mut Vec<(Position, String)>,
 ) -> Plan {
-    let Suite { name, run, rules, staff_hints, show_output, build, limits, patience, groups: patterns } = suite;
+    let Suite { name, milestone, run, rules, staff_hints, show_output, build, limits, patience, groups: patterns } =
+        suite;
     let mut seen = BTreeMap::new();
     let mut groups = Vec::new();
     for group in patterns {
@@ -115,6 +129,10 @@ fn resolved(
                         // A file of an embedded scene's name has a recording only if it is that scene.
                         let known = library::scene(&name).is_some_and(|embedded| embedded == xml);
                         let recording = known.then(|| library::recording(&name)).flatten();
+                        let beyond = milestone.filter(|_| !known).into_iter();
+                        for unknown in beyond.flat_map(|milestone| loaded.scene.unknown_to(milestone)) {
+                            problems.push((at, format!("scene {name}: {unknown}")));
+                        }
                         scenes.push(SceneTask { name, xml, scene: loaded.scene, recording });
                     }
                     Err(error) => problems.push((at, format!("scene {name} is not sound:\n{error}"))),
@@ -123,7 +141,7 @@ fn resolved(
         }
         groups.push(Group { name: group.name, marking: group.marking, scenes });
     }
-    Suite { name, run, rules, staff_hints, show_output, build, limits, patience, groups }
+    Suite { name, milestone, run, rules, staff_hints, show_output, build, limits, patience, groups }
 }
 
 /// Reads, validates and looks up a suite in one go.
@@ -174,7 +192,6 @@ mod tests {
             let all = format!("schema = 1\nname = \"x\"\n[[group]]\nname = \"a\"\nscenes = [\"asset:{name}/*\"]\n");
             assert_eq!(load(&all, Path::new("nowhere")).expect(name).scenes().count(), own.len());
         }
-        load(config::TEMPLATE, Path::new("nowhere")).expect("the template");
     }
 
     #[test]

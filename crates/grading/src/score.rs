@@ -35,6 +35,7 @@ pub fn group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) ->
         name: name.to_owned(),
         visibility: marking.visibility,
         hints: marking.hints,
+        extra: marking.extra,
         points: with_speed(points, speed.as_ref()),
         max_points: marking.points + marking.speed.map_or(0.0, |speed| speed.points),
         speed,
@@ -52,13 +53,14 @@ pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Ve
         group(&planned.name, marking, results.by_ref().take(planned.scenes.len()).collect())
     };
     let groups: Vec<GroupGrade> = plan.groups.iter().map(of_group).collect();
+    let (verdict, points, max_points) = Grade::totals(&groups);
     Grade {
         submission,
         suite: plan.name.clone(),
         rules: plan.rules,
-        verdict: groups.iter().map(|group| group.verdict).max().unwrap_or(Verdict::NotRun),
-        points: groups.iter().map(|group| group.points).sum(),
-        max_points: groups.iter().map(|group| group.max_points).sum(),
+        verdict,
+        points,
+        max_points,
         // No program was run that could tell of a hidden scene.
         shows_output: true,
         refuted: refuted(plan, &groups),
@@ -109,9 +111,7 @@ fn share(credit: Credit, result: &SceneResult, all_accepted: bool) -> Option<f64
 /// elsewhere is checked before its points are believed.
 #[must_use]
 pub fn contradiction(grade: &Grade) -> Option<&'static str> {
-    let max_points: f64 = grade.groups.iter().map(|group| group.max_points).sum();
-    let points: Option<f64> = grade.groups.iter().map(|group| group.points).sum();
-    let verdict = grade.groups.iter().map(|group| group.verdict).max().unwrap_or(Verdict::NotRun);
+    let (verdict, points, max_points) = Grade::totals(&grade.groups);
     if !grade.groups.iter().all(|group| MOST_POINTS.contains(&group.max_points)) || grade.max_points != max_points {
         Some("the points that can be reached are none that a suite gives")
     } else if grade.points != points || !grade.groups.iter().all(follows) {
@@ -181,8 +181,14 @@ mod tests {
     }
 
     fn points(credit: Credit, scenes: Vec<(SceneResult, bool)>) -> f64 {
-        let marking =
-            Marking { points: 30.0, credit, visibility: Visibility::Visible, hints: Hints::Full, speed: None };
+        let marking = Marking {
+            points: 30.0,
+            credit,
+            visibility: Visibility::Visible,
+            hints: Hints::Full,
+            extra: false,
+            speed: None,
+        };
         group("g", marking, scenes).points.expect("points")
     }
 
@@ -204,6 +210,7 @@ mod tests {
             credit: Credit::Scenes,
             visibility: Visibility::Hidden,
             hints: Hints::Full,
+            extra: false,
             speed: None,
         };
         let graded = group("g", marking, vec![scene(Verdict::Accepted, 10), scene(Verdict::RuntimeError, 0)]);
@@ -223,8 +230,14 @@ mod tests {
     fn what_was_not_run_or_not_judged_has_no_points_and_its_group_neither() {
         for missing in [Verdict::NotRun, Verdict::JudgeError] {
             for credit in [Credit::Scenes, Credit::Steps, Credit::All] {
-                let marking =
-                    Marking { points: 30.0, credit, visibility: Visibility::Visible, hints: Hints::Full, speed: None };
+                let marking = Marking {
+                    points: 30.0,
+                    credit,
+                    visibility: Visibility::Visible,
+                    hints: Hints::Full,
+                    extra: false,
+                    speed: None,
+                };
                 let graded = group("g", marking, vec![scene(Verdict::WrongAnswer, 5), scene(missing, 0)]);
                 assert_eq!((graded.points, graded.scenes[1].points), (None, None));
                 assert!(graded.scenes[0].points.is_some());

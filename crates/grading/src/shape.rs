@@ -2,6 +2,7 @@
 //!
 //! Finds every fault at once, and takes what is wrong out, so that what is right can still be looked at.
 use super::near::closest;
+use fosssim_model::assignments::Assignment;
 use std::{borrow::Cow, ops::Range};
 use toml::{
     Spanned,
@@ -54,10 +55,22 @@ const LIMITS: &[Key] = &[
 
 const HINTS: &[&str] = &["none", "where", "what", "full"];
 
+/// The keys of the milestones, in the order of the course.
+const MILESTONES: [&str; Assignment::COURSE.len()] = {
+    let mut keys = [""; Assignment::COURSE.len()];
+    let mut index = 0;
+    while index < keys.len() {
+        keys[index] = Assignment::COURSE[index].key();
+        index += 1;
+    }
+    keys
+};
+
 const GROUP: &[Key] = &[
     Key("name", ValueKind::Text, true),
     Key("scenes", ValueKind::Texts, true),
     Key("points", ValueKind::Number("", MOST_POINTS), false),
+    Key("extra", ValueKind::Flag, false),
     Key("credit", ValueKind::Choice(&["scenes", "steps", "all"]), false),
     Key("visibility", ValueKind::Choice(&["visible", "hidden", "after_due_date", "after_published"]), false),
     Key("hints", ValueKind::Choice(HINTS), false),
@@ -74,6 +87,7 @@ const SPEED: &[Key] = &[
 const SUITE: &[Key] = &[
     Key("schema", ValueKind::Whole, true),
     Key("name", ValueKind::Text, true),
+    Key("milestone", ValueKind::Choice(&MILESTONES), false),
     Key("rules", ValueKind::Choice(&["parity", "fair", "both"]), false),
     Key("hints", ValueKind::Choice(HINTS), false),
     Key("show_output", ValueKind::Flag, false),

@@ -184,6 +184,7 @@ fn render_in_every_format(result: &SceneResult) {
     };
     let group = GroupGrade {
         hints: Hints::Full,
+        extra: false,
         speed: None,
         name: "group".to_owned(),
         visibility: Visibility::Visible,

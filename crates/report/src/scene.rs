@@ -20,7 +20,8 @@ pub fn list(scenes: &[(&str, Scene)], style: Style) -> String {
     scenes.iter().map(line).collect()
 }
 
-/// `3 particles, 1 edge, 20 steps`; what a scene has none of is left out.
+/// `3 particles, 1 edge, 20 steps, for T1M2, T1M3`: what a scene has none of is left out, and the milestones are those
+/// whose programs can run it.
 fn size(scene: &Scene) -> String {
     let parts = [
         (scene.particles.len() as u64, "particle"),
@@ -29,7 +30,9 @@ fn size(scene: &Scene) -> String {
         (scene.steps().into(), "step"),
     ];
     let told = parts.iter().filter(|(many, _)| *many > 0).map(|(many, noun)| counted(*many, noun));
-    told.collect::<Vec<_>>().join(", ")
+    let milestones = scene.assignments().map(|assignment| assignment.key().to_uppercase());
+    let milestones = milestones.reduce(|all, one| all + ", " + &one).map(|all| format!("for {all}"));
+    told.chain(milestones).collect::<Vec<_>>().join(", ")
 }
 
 /// The first sentence of a text.

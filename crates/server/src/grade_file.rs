@@ -36,6 +36,9 @@ pub(crate) struct GroupInFile {
     pub(crate) visibility: Option<String>,
     pub(crate) points: Option<f64>,
     pub(crate) max_points: Option<f64>,
+    /// Whether its points are extra, and neither in the sum nor in the maximum.
+    #[serde(default)]
+    pub(crate) extra: bool,
     pub(crate) scenes: Vec<SceneInFile>,
 }
 

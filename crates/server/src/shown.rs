@@ -87,12 +87,13 @@ fn of_file(report: &GradeFile) -> Option<Shown> {
         return None;
     }
     let scenes: Vec<&SceneInFile> = visible.iter().flat_map(|group| &group.scenes).collect();
-    let rank = |scene: &&&SceneInFile| CODES.iter().position(|code| scene.code == *code);
-    let Some(worst) = scenes.iter().max_by_key(rank) else { return Some(nothing()) };
+    let rank = |scene: &&SceneInFile| CODES.iter().position(|code| scene.code == *code);
+    let counted = visible.iter().filter(|group| !group.extra).flat_map(|group| &group.scenes);
+    let Some(worst) = counted.max_by_key(rank).or_else(|| scenes.first().copied()) else { return Some(nothing()) };
     let wrong: Vec<String> =
         scenes.iter().filter(|scene| scene.code != "AC").map(|scene| scene.scene.clone()).collect();
     let sum = |of: fn(&GroupInFile) -> Option<f64>| {
-        let numbers: Option<Vec<f64>> = visible.iter().map(|group| of(group)).collect();
+        let numbers: Option<Vec<f64>> = visible.iter().filter(|group| !group.extra).map(|group| of(group)).collect();
         numbers.and_then(|numbers| Number::from_f64(numbers.iter().sum())).map(|sum| sum.to_string())
     };
     let accepted = scenes.len() - wrong.len();

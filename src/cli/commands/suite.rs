@@ -18,13 +18,10 @@ use rayon::prelude::*;
 pub(super) fn run(suite: &Suite) -> Result<()> {
     match suite {
         Suite::Init(SuiteInit { name, output }) => {
-            let text = match name {
-                None => config::TEMPLATE,
-                Some(name) => named(name)?,
-            };
+            let text = template(name.as_deref())?;
             match output {
                 Some(file) => Output::create(file, &[])?.finish_and_tell(text.as_bytes(), false),
-                None => console::print(text),
+                None => console::print(&text),
             }
         }
         Suite::Check(SuiteCheck { suite, missing, mistakes }) => {
@@ -40,9 +37,10 @@ pub(super) fn run(suite: &Suite) -> Result<()> {
     }
 }
 
-/// The text of a suite that comes with the program.
-fn named(name: &str) -> Result<&'static str> {
-    plan::built_in(name).with_context(|| {
+/// A commented suite with the groups of one that comes with the program.
+fn template(name: Option<&str>) -> Result<String> {
+    let name = name.map_or_else(plan::default_name, str::to_owned);
+    config::template(&name).with_context(|| {
         let known: Vec<_> = plan::built_in_names().collect();
         format!("no suite {name} comes with the program; there are {}", known.join(", "))
     })

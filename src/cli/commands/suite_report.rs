@@ -1,6 +1,6 @@
 //! The text of `suite check`: what a suite would grade, and what is worth knowing before it does. And which suites
 //! there are.
-use super::suite_sight::SeenPart;
+use super::suite_sight::{ENOUGH, SeenPart};
 use crate::{
     judge::{PairWords, PassWords, Rules, fair::Borderline},
     report::{
@@ -45,10 +45,12 @@ pub(super) fn text(plan: &Plan, contents: &SuiteContents, undecided: &[Undecided
     }
     text += &of_contents(contents, style);
     text += &of_mistakes(&contents.parts, style);
+    let unknown = unknown(plan, style);
+    text += &unknown.concat();
     for (scene, found) in undecided {
         text += &note(scene, found, style);
     }
-    let notes = match undecided.len() {
+    let notes = match undecided.len() + unknown.len() {
         0 => String::new(),
         notes => format!("; {} above", counted(notes as u64, "note")),
     };
@@ -143,6 +145,7 @@ fn head(plan: &Plan, style: Style) -> String {
         limits.output >> 20,
         limits.trace >> 20,
     );
+    let _ = writeln!(text, "programs: {}", plan.assignment().definition().title);
     let _ = writeln!(text, "rules: {}", rules(plan.rules));
     let levels: BTreeSet<Hints> = plan.groups.iter().map(|group| group.marking.hints).collect();
     let several = levels.len() > 1;
@@ -161,7 +164,8 @@ fn of_group(group: &PlannedGroup, style: Style) -> String {
     let (points, visibility) = (counted_points(marking.points), key(&marking.visibility).replace('_', " "));
     let name = style.paint(Look::Strong, &one_line(&group.name));
     let (credit, hints) = (credit(marking.credit), marking.hints.words().0);
-    let mut text = format!("\n{name}: {points}, {credit}, {visibility}, hints {hints}\n");
+    let extra = if marking.extra { " extra" } else { "" };
+    let mut text = format!("\n{name}: {points}{extra}, {credit}, {visibility}, hints {hints}\n");
     if let Some(SpeedMarking { points, full_at, none_at, runs }) = marking.speed {
         let (points, runs) = (counted_points(points), counted(runs.into(), "run"));
         let _ = writeln!(
@@ -209,15 +213,29 @@ fn of_mistakes(parts: &[SeenPart], style: Style) -> String {
     let mut text = format!("\n{title}\n");
     let width = parts.iter().map(|part| key(&part.area).len()).chain(["together".len()]).max().unwrap_or(0);
     let (mut all_seen, mut together) = (0, 0);
-    for SeenPart { area, all, unseen } in parts {
+    for SeenPart { area, all, unseen, rare } in parts {
         (all_seen, together) = (all_seen + all - unseen.len(), together + all);
         let _ = writeln!(text, "  {:width$}  {:4} of {all:4}", key(area), all - unseen.len());
         if !unseen.is_empty() {
             let _ = writeln!(text, "    not shown: {}", unseen.join(", "));
         }
+        if !rare.is_empty() {
+            let _ = writeln!(text, "    shown by fewer than {ENOUGH} scenes: {}", rare.join(", "));
+        }
     }
     let _ = writeln!(text, "  {:width$}  {all_seen:4} of {together:4}", "together");
     text
+}
+
+/// A note for each scene that programs of the suite's milestone do not know to the end.
+fn unknown(plan: &Plan, style: Style) -> Vec<String> {
+    let milestone = plan.assignment();
+    let note = style.paint(Look::Notice, "note");
+    let scenes = plan.scenes().filter_map(|task| {
+        let unknown = task.scene.unknown_to(milestone).map(|unknown| unknown.to_string());
+        Some((one_line(&task.name), unknown.reduce(|all, one| all + ", " + &one)?))
+    });
+    scenes.map(|(scene, unknown)| format!("\n{note}: {scene}: {unknown}\n")).collect()
 }
 
 /// A note that is no error, but worth knowing before a class is graded.

@@ -20,7 +20,12 @@ pub(super) struct SeenPart {
     pub(super) all: usize,
     /// Those with which the sample program writes the same traces as without, on every scene.
     pub(super) unseen: Vec<&'static str>,
+    /// Those that fewer than [`ENOUGH`] scenes show: a small change of one scene could hide them.
+    pub(super) rare: Vec<&'static str>,
 }
+
+/// The number of scenes that are enough to show a mistake.
+pub(super) const ENOUGH: usize = 3;
 
 /// The parts in the order of the catalogue.
 pub(super) fn seen_parts(plan: &Plan) -> Vec<SeenPart> {
@@ -36,25 +41,28 @@ pub(super) fn seen_parts(plan: &Plan) -> Vec<SeenPart> {
     // Most mistakes of writing a trace are about what logs of states do not hold.
     let concerns =
         |row: &Row| (logs_polynomials || row.area != Area::Trace) && scenes.iter().any(|scene| can_show(scene, row));
-    let is_seen: Vec<bool> = rows
+    let seen: Vec<usize> = rows
         .par_iter()
         .map(|row| {
             let student = Student::new(Some(row.mistake));
-            scenes.iter().zip(&right).any(|(scene, right)| written(scene, student) != *right)
+            let showing = scenes.iter().zip(&right).filter(|(scene, right)| written(scene, student) != **right);
+            showing.take(ENOUGH).count()
         })
         .collect();
     let mut parts: Vec<SeenPart> = Vec::new();
-    for (row, is_seen) in rows.iter().zip(is_seen) {
-        if !is_seen && !concerns(row) {
+    for (row, seen) in rows.iter().zip(seen) {
+        if seen == 0 && !concerns(row) {
             continue;
         }
         let place = parts.iter().position(|part| part.area == row.area).unwrap_or_else(|| {
-            parts.push(SeenPart { area: row.area, all: 0, unseen: Vec::new() });
+            parts.push(SeenPart { area: row.area, all: 0, unseen: Vec::new(), rare: Vec::new() });
             parts.len() - 1
         });
         parts[place].all += 1;
-        if !is_seen {
-            parts[place].unseen.push(row.id);
+        match seen {
+            0 => parts[place].unseen.push(row.id),
+            ENOUGH.. => {}
+            _ => parts[place].rare.push(row.id),
         }
     }
     parts

@@ -1,9 +1,18 @@
 //! The parts of grading that are bound to an assignment of the course: the versions of its suite, and the template of
 //! suites. One folder each.
-use fosssim_model::assignments::Assignment;
+use fosssim_model::assignments::{Assignment, Definition};
 
-/// The commented suite to start from.
-pub const TEMPLATE: &str = include_str!("t2m2/template.toml");
+/// The settings of a suite, with comments, up to its groups.
+const SETTINGS: &str = include_str!("settings.toml");
+
+/// Returns a commented suite to start from: the settings, and the groups of a built-in suite.
+#[must_use]
+pub fn template(name: &str) -> Option<String> {
+    let (assignment, Version { suite, .. }) = version(name)?;
+    let groups = suite.split_once("rules = \"fair\"\n")?.1.trim_start();
+    let Definition { key, title, .. } = assignment.definition();
+    Some(SETTINGS.replace("TITLE", title).replace("MILESTONE", key) + groups)
+}
 
 /// A version of an assignment's suite. More scenes change the points of all, so they make a new one; what is published
 /// stays.
@@ -26,18 +35,31 @@ impl Version {
 /// The milestones before t2m2 in one suite, under the name by which servers and courses may know it.
 const EARLIER: Version = Version { suite: include_str!("earlier/suite.toml"), scenes: None };
 
+/// The two versions in an assignment's folder.
+macro_rules! two_versions {
+    ($key:literal) => {
+        [
+            Version {
+                suite: include_str!(concat!($key, "/suite-1.toml")),
+                scenes: Some(include_str!(concat!($key, "/version-1.txt"))),
+            },
+            Version {
+                suite: include_str!(concat!($key, "/suite.toml")),
+                scenes: Some(include_str!(concat!($key, "/version-2.txt"))),
+            },
+        ]
+    };
+}
+
 /// The versions of an assignment's suite: 1 comes first, the newest last.
 #[must_use]
 pub const fn versions(assignment: Assignment) -> &'static [Version] {
     match assignment {
-        Assignment::T1M1 => &[Version { suite: include_str!("t1m1/suite.toml"), scenes: None }],
-        Assignment::T1M2 => &[Version { suite: include_str!("t1m2/suite.toml"), scenes: None }],
-        Assignment::T1M3 => &[Version { suite: include_str!("t1m3/suite.toml"), scenes: None }],
-        Assignment::T2M1 => &[Version { suite: include_str!("t2m1/suite.toml"), scenes: None }],
-        Assignment::T2M2 => &[
-            Version { suite: include_str!("t2m2/suite-1.toml"), scenes: Some(include_str!("t2m2/version-1.txt")) },
-            Version { suite: include_str!("t2m2/suite.toml"), scenes: Some(include_str!("t2m2/version-2.txt")) },
-        ],
+        Assignment::T1M1 => &two_versions!("t1m1"),
+        Assignment::T1M2 => &two_versions!("t1m2"),
+        Assignment::T1M3 => &two_versions!("t1m3"),
+        Assignment::T2M1 => &two_versions!("t2m1"),
+        Assignment::T2M2 => &two_versions!("t2m2"),
         Assignment::T2M3 => &[Version { suite: include_str!("t2m3/suite.toml"), scenes: None }],
     }
 }
@@ -75,12 +97,13 @@ pub fn default_name() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::library;
+    use crate::{config, library};
 
     #[test]
     fn versions_are_named_and_the_newest_is_meant_without_a_number() {
         let all: Vec<String> = names().collect();
-        assert_eq!(all, ["t2m2@2", "t2m2@1", "t1m1@1", "t1m2@1", "t1m3@1", "t2m1@1", "t2m3@1"]);
+        let two = |key: &str| [format!("{key}@2"), format!("{key}@1")];
+        assert_eq!(all[..10], ["t2m2", "t1m1", "t1m2", "t1m3", "t2m1"].map(two).concat());
         assert!(version("earlier@1").is_some() && version("earlier").is_some(), "the name is in use");
         assert_eq!(default_name(), all[0]);
         let suite = |name: &str| version(name).map(|(_, version)| version.suite);
@@ -93,11 +116,23 @@ mod tests {
 
     #[test]
     fn published_versions_have_their_scenes_still() {
-        let (assignment, first) = version("t2m2@1").expect("a version");
-        let scenes: Vec<&str> = first.scenes.expect("a list").lines().collect();
-        assert_eq!(scenes.len(), 85);
-        for scene in scenes {
-            assert_eq!(library::assignment(scene), Some(assignment), "{scene}");
+        for (name, scenes) in [("t1m1@1", 6), ("t1m2@1", 11), ("t1m3@1", 5), ("t2m1@1", 13), ("t2m2@1", 85)] {
+            let (assignment, first) = version(name).expect("a version");
+            let listed: Vec<&str> = first.scenes.expect("a list").lines().collect();
+            assert_eq!(listed.len(), scenes, "{name}");
+            for scene in listed {
+                assert_eq!(library::assignment(scene), Some(assignment), "{scene}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_template_has_the_groups_of_the_suite_that_it_is_made_from() {
+        for name in names() {
+            let (template, suite) = (template(&name).expect("a template"), version(&name).expect("a suite").1.suite);
+            let [of_template, of_suite] = [&template, suite].map(|text| config::read(text).expect("a sound suite"));
+            let marks = |suite: config::Suite| suite.groups.into_iter().map(|group| (group.name, group.marking));
+            assert!(marks(of_template).eq(marks(of_suite)), "{template}");
         }
     }
 }

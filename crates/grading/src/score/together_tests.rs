@@ -36,6 +36,7 @@ fn grade(scenes: Vec<Vec<Explanation>>) -> Grade {
         credit: Credit::Scenes,
         visibility: Visibility::Visible,
         hints: Hints::Full,
+        extra: false,
         speed: None,
     };
     let results = scenes.into_iter().enumerate().map(wrong).collect();

@@ -2,7 +2,7 @@
 
 use crate::diagnose::{is_named_in, settled, several};
 use fosssim_findings::{
-    Hints, Verdict, Visibility,
+    Hints, Visibility,
     explanation::Explanation,
     grade::{Grade, GroupGrade},
 };
@@ -41,10 +41,11 @@ pub fn for_students(grade: &Grade) -> Cow<'_, Grade> {
     let grade = told_to_students(grade);
     let is_visible = |group: &&GroupGrade| group.visibility == Visibility::Visible;
     let groups: Vec<GroupGrade> = grade.groups.iter().filter(is_visible).cloned().collect();
+    let (verdict, points, max_points) = Grade::totals(&groups);
     let mut visible = Grade {
-        verdict: groups.iter().map(|group| group.verdict).max().unwrap_or(Verdict::NotRun),
-        points: groups.iter().map(|group| group.points).sum(),
-        max_points: groups.iter().map(|group| group.max_points).sum(),
+        verdict,
+        points,
+        max_points,
         groups,
         // It counts scenes that are not here.
         located: None,

@@ -43,6 +43,9 @@ impl Assignment {
     /// All of them: the default one, then the others in the order of the course.
     pub const ALL: [Self; 6] = [Self::T2M2, Self::T1M1, Self::T1M2, Self::T1M3, Self::T2M1, Self::T2M3];
 
+    /// All of them in the order of the course.
+    pub const COURSE: [Self; 6] = [Self::T1M1, Self::T1M2, Self::T1M3, Self::T2M1, Self::T2M2, Self::T2M3];
+
     /// The one that is meant where none is named.
     pub const DEFAULT: Self = Self::T2M2;
 

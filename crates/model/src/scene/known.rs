@@ -93,9 +93,7 @@ impl Scene {
 
     /// The assignments whose programs can run it, in the order of the course.
     pub fn assignments(&self) -> impl Iterator<Item = Assignment> {
-        let mut all = Assignment::ALL;
-        all.sort_unstable();
-        all.into_iter().filter(|assignment| self.unknown_to(*assignment).next().is_none())
+        Assignment::COURSE.into_iter().filter(|assignment| self.unknown_to(*assignment).next().is_none())
     }
 
     /// The first assignment of the course whose programs can run it; where there is none, the one that brought its

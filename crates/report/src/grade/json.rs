@@ -123,6 +123,9 @@ struct GroupView {
     /// Points that can be reached.
     #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
     max_points: f64,
+    /// True where its points count neither in the sum nor in the maximum of the grade; left out elsewhere.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    extra: bool,
     /// Points for speed, which are part of the group's points; left out where the suite gives none.
     #[serde(skip_serializing_if = "Option::is_none")]
     speed: Option<SpeedView>,
@@ -262,6 +265,7 @@ fn group(group: &GroupGrade) -> GroupView {
         verdict: group.verdict.words(),
         points: group.points,
         max_points: group.max_points,
+        extra: group.extra,
         speed: group.speed.as_ref().map(speed),
         scenes: group.scenes.iter().map(scene).collect(),
     }

@@ -35,7 +35,7 @@ pub(crate) use phrases::wrong_scenes;
 pub use phrases::{difference, head_lines, likely_mistakes, no_points, points, reached};
 use phrases::{see_above, wrong_first};
 pub(crate) use speed::speed_words;
-pub use text::{Advice, Text, TextDetail, changes, score, shortened, table as text_table};
+pub use text::{Advice, Text, TextDetail, changes, extra, score, shortened, table as text_table};
 
 #[cfg(test)]
 pub(crate) mod samples;

@@ -35,7 +35,7 @@ fn group(name: &str, visibility: Visibility, scenes: Vec<SceneResult>) -> GroupG
     let scenes = scenes.into_iter().map(|scene| (scene, false)).collect();
     score::group(
         name,
-        Marking { points: 10.0, credit: Credit::Scenes, visibility, hints: Hints::Full, speed: None },
+        Marking { points: 10.0, credit: Credit::Scenes, visibility, hints: Hints::Full, extra: false, speed: None },
         scenes,
     )
 }

@@ -431,6 +431,7 @@ mod tests {
             credit: Credit::Scenes,
             visibility: Visibility::Visible,
             hints: Hints::Full,
+            extra: false,
             speed: None,
         };
         let groups: Vec<GroupGrade> = (0..5)

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::foreign::{one_line, without_codes};
 use crate::{
-    grade::{difference, likely_mistakes, no_points, points, reached, score, speed_words, wrong_scenes},
+    grade::{difference, extra, likely_mistakes, no_points, points, reached, score, speed_words, wrong_scenes},
     number::counted,
     words,
 };
@@ -77,7 +77,7 @@ impl GradePage<'_> {
     fn head(&self, grade: &Grade, told: &[(&SceneGrade, Option<Card>)]) -> String {
         let look = if grade.verdict.is_accepted() { "good" } else { "bad" };
         let reached = match grade.points {
-            Some(reached) => score(reached, grade.max_points),
+            Some(reached) => score(reached, grade.max_points) + &extra(grade),
             None => no_points(grade).unwrap_or_default(),
         };
         let mut out = String::new();
@@ -236,12 +236,13 @@ fn groups(groups: &[GroupGrade], told: &[(&SceneGrade, Option<Card>)], reader: A
         let _ = writeln!(
             out,
             "<tr><th scope=\"row\">{}</th><td><span class=\"chip {}\">{}</span></td>\
-             <td class=\"num\" data-label=\"points\">{} of {}</td><td class=\"num\" data-label=\"scenes accepted\">{accepted} of {}</td><td class=\"to\">{first}</td>{who}</tr>",
+             <td class=\"num\" data-label=\"points\">{} of {}{}</td><td class=\"num\" data-label=\"scenes accepted\">{accepted} of {}</td><td class=\"to\">{first}</td>{who}</tr>",
             text(&one_line(&group.name)),
             if group.verdict.is_accepted() { "good" } else { "bad" },
             group.verdict.words(),
             reached(group.points),
             points(group.max_points),
+            if group.extra { " extra" } else { "" },
             group.scenes.len(),
         );
         if let Some(speed) = &group.speed {

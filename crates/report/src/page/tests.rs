@@ -236,7 +236,7 @@ fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
 
 /// A group of ten points, of whose scenes students are told this much.
 fn marking(hints: Hints) -> Marking {
-    Marking { points: 10.0, credit: Credit::Scenes, visibility: Visibility::Visible, hints, speed: None }
+    Marking { points: 10.0, credit: Credit::Scenes, visibility: Visibility::Visible, hints, extra: false, speed: None }
 }
 
 /// The wrong submission with these results.
@@ -401,8 +401,14 @@ fn a_student_s_page_has_no_hidden_group() {
             crate::grade::samples::saying("a secret fall"),
         )
     };
-    let marking =
-        |points, visibility| Marking { points, credit: Credit::Scenes, visibility, hints: Hints::Full, speed: None };
+    let marking = |points, visibility| Marking {
+        points,
+        credit: Credit::Scenes,
+        visibility,
+        hints: Hints::Full,
+        extra: false,
+        speed: None,
+    };
     let named = |name: &str, group| fosssim_grading::GroupGrade { name: name.to_owned(), ..group };
     let grade = Grade {
         groups: vec![

@@ -62,7 +62,8 @@ fn groups(options: &Text<'_>, grade: &Grade) -> String {
     }
     for group in listed.iter().take(GROUPS) {
         let name = one_line(&group.name);
-        let score = format!("{} of {}", reached(group.points), points(group.max_points));
+        let extra = if group.extra { " extra" } else { "" };
+        let score = format!("{} of {}{extra}", reached(group.points), points(group.max_points));
         table.row([
             name.into(),
             score.into(),

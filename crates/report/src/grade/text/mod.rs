@@ -91,7 +91,7 @@ impl Text<'_> {
         let look = if grade.verdict.is_accepted() { Look::Good } else { Look::Bad };
         let (name, verdict) = (one_line(&grade.submission), grade.verdict.words());
         let reached = match grade.points {
-            Some(reached) => score(reached, grade.max_points),
+            Some(reached) => score(reached, grade.max_points) + &extra(grade),
             None => no_points(grade).unwrap_or_default(),
         };
         format!("{}: {}, {reached}", self.style.paint(Look::Strong, &name), self.style.paint(look, verdict))
@@ -120,6 +120,14 @@ impl Text<'_> {
 pub fn score(reached: f64, most: f64) -> String {
     let plural = if points(most) == "1" { "" } else { "s" };
     format!("{} of {} point{plural}", points(reached), points(most))
+}
+
+/// `, 15 of 20 extra points`; nothing where the suite gives none.
+#[must_use]
+pub fn extra(grade: &Grade) -> String {
+    grade.extra().map_or_else(String::new, |(reached, most)| {
+        format!(", {} of {} extra point{}", points(reached), points(most), if points(most) == "1" { "" } else { "s" })
+    })
 }
 
 /// The book that counts, where a reader might take it for the other: nothing where both agree.

@@ -68,7 +68,8 @@ impl<'a> Scenes<'a, '_> {
     fn group(&mut self, group: &'a GroupGrade) -> String {
         let style = self.options.style;
         let name = style.paint(Look::Strong, &one_line(&group.name));
-        let mut text = format!("\n{name} ({} of {})\n", reached(group.points), points(group.max_points));
+        let extra = if group.extra { " extra" } else { "" };
+        let mut text = format!("\n{name} ({} of {}{extra})\n", reached(group.points), points(group.max_points));
         let accepted = group.scenes.iter().filter(|scene| scene.verdict.is_accepted()).count();
         let folds = self.options.shown < TextDetail::All;
         if folds && accepted > 0 {
