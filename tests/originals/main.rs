@@ -9,4 +9,5 @@ mod oracle;
 #[expect(dead_code, reason = "the integration tests use more of it")]
 mod workspace;
 
+mod programs;
 mod recorded;

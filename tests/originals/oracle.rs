@@ -31,6 +31,11 @@ impl Originals {
         None
     }
 
+    /// Returns the folder of the programs, which lies beside that of the originals.
+    pub fn programs(&self) -> PathBuf {
+        self.0.with_file_name("programs")
+    }
+
     /// Returns the command that runs a milestone's original in a folder.
     pub fn command(&self, milestone: Assignment, folder: &Path) -> Command {
         let mut command = Command::new("sh");

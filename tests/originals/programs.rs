@@ -1,0 +1,163 @@
+//! Programs that nobody here wrote, linked to the course's starter libraries: right ones get all points of their
+//! milestone's suite, wrong ones less, and the drop-in says of their traces what the original says.
+use fosssim_oracle::{
+    assignments::Assignment::{self, T1M1, T1M2, T1M3, T2M1, T2M2},
+    suite::{library, plan},
+};
+use fosssim_testing::{Need, skip};
+use rayon::prelude::*;
+use serde_json::Value;
+use std::{
+    collections::BTreeMap,
+    fs,
+    os::unix::fs::PermissionsExt,
+    path::{Path, PathBuf},
+    process::{Command, Stdio},
+};
+
+use crate::{
+    oracle::Originals,
+    workspace::{Workspace, finish},
+};
+
+/// The milestones whose programs are tried here.
+const MILESTONES: [Assignment; 5] = [T1M1, T1M2, T1M3, T2M1, T2M2];
+
+/// Students' programs that the originals accept on every scene of the suite. All others have mistakes.
+const RIGHT: [(Assignment, &str); 2] = [(T1M1, "real-a"), (T2M2, "real-f")];
+
+/// The bytes of a program in which the number of its variant stands.
+const TAG: &[u8] = b"MUTTAG=000";
+
+/// The programs of a milestone in a folder, and which of them are right.
+struct Class {
+    workspace: Workspace,
+    milestone: Assignment,
+    is_right: BTreeMap<String, bool>,
+}
+
+/// Reads one of the lists beside the programs.
+fn list(programs: &Path, name: &str) -> Value {
+    serde_json::from_slice(&fs::read(programs.join(name)).expect("a list")).expect("JSON")
+}
+
+impl Class {
+    /// Unpacks the programs of a milestone, and writes the variants of those that have some.
+    fn unpack(programs: &Path, milestone: Assignment) -> Self {
+        let workspace = Workspace::new();
+        let key = milestone.key();
+        let unpacked = finish(Command::new(programs.join("unpack")).arg(workspace.path("")).arg(key));
+        assert_eq!(unpacked.code, Some(0), "{}", unpacked.shown());
+        let mut is_right = BTreeMap::new();
+        for entry in list(programs, "programs.json").as_array().expect("programs") {
+            let (id, kind) = (entry["id"].as_str().expect("an id"), entry["kind"].as_str().expect("a kind"));
+            if entry["milestone"] == key && kind != "mutants" {
+                is_right.insert(id.to_owned(), kind == "right" || RIGHT.contains(&(milestone, id)));
+            }
+        }
+        let mutants = workspace.path(key).join("mutants");
+        if let Ok(program) = fs::read(&mutants) {
+            let at = program.windows(TAG.len()).position(|bytes| bytes == TAG).expect("a number");
+            let variants = list(programs, "mutants.json")[key].as_array().expect("variants").clone();
+            let known = variants.iter().map(|one| (one["number"].as_u64().expect("a number"), one["kind"] == "right"));
+            for (number, right) in std::iter::once((0, true)).chain(known) {
+                let (name, mut variant) = (format!("variant-{number:03}"), program.clone());
+                variant[at..at + TAG.len()].copy_from_slice(format!("MUTTAG={number:03}").as_bytes());
+                let path = workspace.path(key).join(&name);
+                fs::write(&path, variant).expect("written");
+                fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).expect("executable");
+                is_right.insert(name, right);
+            }
+            fs::remove_file(mutants).expect("removed");
+        }
+        Self { workspace, milestone, is_right }
+    }
+
+    fn program(&self, name: &str) -> PathBuf {
+        self.workspace.path(self.milestone.key()).join(name)
+    }
+
+    /// Grades all programs up to their first wrong scene, and returns those whose points are not what they should be.
+    fn misjudged(&self) -> Vec<String> {
+        let key = self.milestone.key();
+        let run =
+            self.workspace.run(["grade", key, "--suite", key, "--fail-fast", "-q", "--format", "json=grades.json"]);
+        assert!(matches!(run.code, Some(0 | 1)), "{}", run.shown());
+        let report: Value = serde_json::from_slice(&self.workspace.read("grades.json")).expect("JSON");
+        let grades = report["grades"].as_array().expect("grades");
+        assert_eq!(grades.len(), self.is_right.len(), "each program has a grade");
+        let misjudged = grades.iter().filter_map(|grade| {
+            let name = grade["submission"].as_str().expect("a name");
+            let (reached, most) = (&grade["points"], &grade["max_points"]);
+            // Groups of extra points are among those that have to be accepted.
+            let mut groups = grade["groups"].as_array().expect("groups").iter();
+            let is_right = reached == most && groups.all(|group| group["verdict"] == "accepted");
+            (self.is_right[name] != is_right).then(|| format!("{key} {name}: {reached} of {most} points"))
+        });
+        misjudged.collect()
+    }
+
+    /// Returns how the drop-in and the original differ in what they say of a program's trace of a scene.
+    fn differs(&self, originals: &Originals, name: &str, scene: &str) -> Option<String> {
+        let workspace = Workspace::new();
+        workspace.write("scene.xml", library::scene(scene).expect("a scene"));
+        let limits = "ulimit -t 2 -f 100000 -v 2000000; exec timeout 10 \"$0\" -s scene.xml -d 0 -o trace.bin";
+        let mut program = Command::new("sh");
+        program.args(["-c", limits]).arg(self.program(name)).current_dir(workspace.path(""));
+        finish(program.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()));
+        if !workspace.exists("trace.bin") {
+            return None;
+        }
+        let grade = ["-s", "scene.xml", "-d", "0", "-i", "trace.bin"];
+        let theirs = originals.run(self.milestone, &workspace.path(""), grade);
+        // Where an original hangs or dies there is nothing to compare with.
+        let their_residuals = workspace.exists("residual.txt").then(|| workspace.read("residual.txt"))?;
+        fs::remove_file(workspace.path("residual.txt")).expect("removed");
+        let ours = workspace.original(grade);
+        let our_residuals = workspace.exists("residual.txt").then(|| workspace.read("residual.txt"));
+        let is_equal = theirs.stdout == ours.stdout && Some(their_residuals) == our_residuals;
+        (!is_equal).then(|| format!("{} {name} on {scene}:\n{}\n{}", self.milestone.key(), theirs.out(), ours.shown()))
+    }
+}
+
+fn classes(originals: &Originals) -> Vec<Class> {
+    let programs = originals.programs();
+    MILESTONES.into_iter().map(|milestone| Class::unpack(&programs, milestone)).collect()
+}
+
+#[test]
+fn right_programs_get_all_points_and_wrong_ones_less() {
+    let Some(originals) = Originals::find() else { return };
+    let doctor = Workspace::new().run(["doctor"]);
+    if doctor.code != Some(0) {
+        skip(Need::Sandbox, doctor.out().lines().last().unwrap_or_default());
+        return;
+    }
+    let misjudged: Vec<String> = classes(&originals).iter().flat_map(Class::misjudged).collect();
+    assert!(misjudged.is_empty(), "{misjudged:#?}");
+}
+
+/// Each program meets every tenth scene of its suite, the next one those beside them.
+#[test]
+fn the_drop_in_says_of_every_program_what_the_original_says() {
+    const EVERY: usize = 10;
+    let Some(originals) = Originals::find() else { return };
+    let differing: Vec<String> = classes(&originals)
+        .iter()
+        .flat_map(|class| {
+            let plan = plan::find(class.milestone.key()).expect("a suite");
+            let scenes: Vec<String> = plan.scenes().map(|task| task.name.clone()).collect();
+            let names: Vec<&String> = class.is_right.keys().collect();
+            let chosen: Vec<(&String, &String)> = names
+                .iter()
+                .enumerate()
+                .flat_map(|(number, name)| {
+                    scenes.iter().skip(number % EVERY).step_by(EVERY).map(move |one| (*name, one))
+                })
+                .collect();
+            let differing = chosen.par_iter().filter_map(|(name, scene)| class.differs(&originals, name, scene));
+            differing.collect::<Vec<_>>()
+        })
+        .collect();
+    assert!(differing.is_empty(), "{} differ:\n{}", differing.len(), differing.join("\n"));
+}
