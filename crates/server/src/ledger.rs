@@ -172,8 +172,8 @@ async fn write_result(
     let seconds = if outcome.code == JUDGE_ERROR { about.seconds.to_string() } else { outcome.seconds.clone() };
     let statement =
         "INSERT INTO result (job, submission, campaign, attempt, worker, verdict, code, points, max_points, summary,
-           version, task, seconds, grader, essence, nearly_right, shown, failed, created_at)
-        VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, {now}) RETURNING id";
+           version, task, seconds, grader, nearly_right, shown, failed, created_at)
+        VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, {now}) RETURNING id";
     let result = transaction
         .one(
             statement,
@@ -192,7 +192,6 @@ async fn write_result(
                 &about.task,
                 seconds,
                 &outcome.grader,
-                &outcome.essence,
                 outcome.code == "AC" || !outcome.wrong.is_empty(),
                 outcome.shown.clone(),
                 outcome.failed.clone()

@@ -136,7 +136,6 @@ impl Shown {
     pub fn cover(self, outcome: &mut Outcome, page: &str) {
         (outcome.verdict, outcome.code, outcome.summary) = (self.verdict, self.code, self.summary);
         (outcome.points, outcome.max_points) = (self.points, self.max_points);
-        outcome.essence = String::new();
         outcome.seconds = String::new();
         outcome.files.retain(|file| file.name == page);
     }

@@ -120,11 +120,6 @@ pub struct Outcome {
     #[schema(pattern = "^([0-9a-f]{64})?$")]
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub grader: String,
-    /// The SHA-256 of what the grade says, without what was measured: anybody who grades again by the same comes to the
-    /// same.
-    #[schema(pattern = "^([0-9a-f]{64})?$")]
-    #[serde(default, skip_serializing_if = "String::is_empty")]
-    pub essence: String,
     /// Scenes that are not accepted, of a submission that is nearly right; not shown.
     #[schema(max_items = 1000)]
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

@@ -18,9 +18,6 @@ const READERS: usize = 40;
 const UPLOAD: usize = 120 << 20;
 const PACE: usize = 8 << 10;
 
-/// Requests that never end.
-const HALF_OPEN: usize = 4000;
-
 const HERE: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
 
 /// Connections that ask for a large upload and read it slowly.
@@ -66,35 +63,6 @@ pub(super) async fn slow_readers(arguments: &Bench) -> Result<String> {
     let reading = readers.iter().filter(|reader| !reader.is_finished()).count();
     stage.say(&format!("{reading} of them still read"));
     readers.iter().for_each(tokio::task::JoinHandle::abort);
-    stage.finish().await
-}
-
-/// Requests that never end, all from one address: the one that others come from, too.
-pub(super) async fn half_open(arguments: &Bench) -> Result<String> {
-    let mut stage = Stage::set(arguments, &[]).await?;
-    let limit = rustix::process::getrlimit(rustix::process::Resource::Nofile);
-    let most = rustix::process::Rlimit { current: limit.maximum, maximum: limit.maximum };
-    rustix::process::setrlimit(rustix::process::Resource::Nofile, most)?;
-    let address = stage.address;
-    let flood = tokio::spawn(async move {
-        let mut open = std::collections::VecDeque::new();
-        loop {
-            // Anybody who is cut off comes again.
-            if open.len() >= HALF_OPEN {
-                open.pop_front();
-            }
-            if let Ok(mut stream) = connect(address, HERE).await
-                && stream.write_all(b"GET / HTTP/1.1\r\nHost: x\r\nX-Never: ends").await.is_ok()
-            {
-                open.push_back(stream);
-            }
-            if open.len() >= HALF_OPEN {
-                tokio::time::sleep(Duration::from_millis(1)).await;
-            }
-        }
-    });
-    report(arguments, &mut stage, &format!("{HALF_OPEN} half-open requests, and as many new ones as fit")).await?;
-    flood.abort();
     stage.finish().await
 }
 

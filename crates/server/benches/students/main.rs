@@ -55,8 +55,6 @@ pub(crate) enum Measurement {
     Ladder,
     /// 40 connections that read an upload of 120 MiB slowly.
     SlowReaders,
-    /// 4,000 requests that never end.
-    HalfOpen,
     /// A million submissions, exported and given up.
     Million,
 }
@@ -68,7 +66,6 @@ pub(crate) fn run(words: impl IntoIterator<Item = OsString>) -> Result<String> {
         match bench.measurement {
             Measurement::Ladder => ladder::climb(&bench).await,
             Measurement::SlowReaders => attack::slow_readers(&bench).await,
-            Measurement::HalfOpen => attack::half_open(&bench).await,
             Measurement::Million => million::run(&bench).await,
         }
     })

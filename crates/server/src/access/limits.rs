@@ -1,12 +1,10 @@
 //! The shares of one account, one course, and all together in the server: transfers at one time, and bytes that are
 //! kept.
-use super::Member;
-use crate::{
-    db::Transaction,
-    net::{KeyLimit, Permit},
-    problem::Problem,
-    values,
+use super::{
+    Member,
+    key_limit::{KeyLimit, Permit},
 };
+use crate::{db::Transaction, problem::Problem, values};
 use std::{
     collections::HashMap,
     sync::{Arc, Mutex, PoisonError},

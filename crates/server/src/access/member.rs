@@ -25,7 +25,6 @@ pub struct Member {
     pub(crate) slug: String,
     pub(crate) title: String,
     pub(crate) is_staff: bool,
-    pub(crate) is_archived: bool,
     pub(crate) app: App,
 }
 

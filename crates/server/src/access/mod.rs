@@ -14,6 +14,7 @@ mod failed;
 mod identity;
 mod import;
 mod invitation;
+mod key_limit;
 mod launch;
 mod limits;
 mod mark;
@@ -71,6 +72,7 @@ use crate::{
     storage::Storage,
     store::Store,
 };
+use axum_client_ip::ClientIpSource;
 use std::{ops::Deref, path::PathBuf, sync::Arc, time::Duration};
 use tokio_util::sync::CancellationToken;
 
@@ -110,6 +112,8 @@ pub struct Options {
     pub low_water: u64,
     /// The address that people know the service by.
     pub public: String,
+    /// Where a request's own address is found: the other end of its connection, or a header of the proxy.
+    pub client_address: Option<ClientIpSource>,
     /// How long a body may pause.
     pub patience: Duration,
     /// Requests of one account in a minute.

@@ -21,8 +21,6 @@ pub struct CourseOf {
     pub course: Course,
     /// `student`, `staff`, or `admin`.
     pub role: String,
-    /// Whether it is put away: nobody hands in any more.
-    pub is_archived: bool,
 }
 
 /// Somebody who is signed in.
@@ -63,15 +61,12 @@ impl Person {
         let mut transaction = self.app.0.database.read().await?;
         let all: i64 = self.account.is_admin.into();
         let statement =
-            "SELECT course.slug, course.title, course.archived_at, coalesce(member.role, 'admin') AS role FROM course
+            "SELECT course.slug, course.title, coalesce(member.role, 'admin') AS role FROM course
             LEFT JOIN member ON member.course = course.id AND member.account = ?
             WHERE member.role IS NOT NULL OR ? = 1
-            ORDER BY CASE WHEN course.archived_at IS NULL THEN 0 ELSE 1 END, course.slug";
+            ORDER BY course.slug";
         let rows = transaction.rows(statement, values![self.account.id, all]).await?;
-        let read = |row: &Row| {
-            let is_archived = row.maybe_int("archived_at")?.is_some();
-            Ok(CourseOf { course: Course::from_row(row)?, role: row.text("role")?, is_archived })
-        };
+        let read = |row: &Row| Ok(CourseOf { course: Course::from_row(row)?, role: row.text("role")? });
         Ok(rows.iter().map(read).collect::<Result<_, DbError>>()?)
     }
 

@@ -142,9 +142,7 @@ impl Remote {
         outcome.summary = plain(&outcome.summary, 2000);
         outcome.version = plain(&outcome.version, 60);
         let is_digest = |text: &str| text.parse::<Digest>().is_ok();
-        if [&outcome.grader, &outcome.essence].into_iter().any(|text| !text.is_empty() && !is_digest(text)) {
-            return Err(Problem::invalid("grader and essence are digests"));
-        }
+        ensure(outcome.grader.is_empty() || is_digest(&outcome.grader), Problem::invalid("grader is a digest"))?;
         if outcome.wrong.len() > MANY_SCENES || outcome.wrong.iter().any(|wrong| !is_digest(&wrong.answer)) {
             return Err(Problem::invalid("what is answered in wrong scenes is told by digests, of few scenes"));
         }

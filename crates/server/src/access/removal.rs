@@ -1,10 +1,7 @@
 //! Removing people, submissions, assignments and courses with all that is kept of them. The audit log says that it was
 //! done, and names nobody. Bytes in the store go when nothing names them any more, see [`retention`](crate::retention);
 //! a job that runs meanwhile finds its lease gone, and ends without effect.
-use super::{
-    Admin, Staff,
-    view::{self, Entry},
-};
+use super::{Admin, Staff};
 use crate::{
     db::{DbError, Transaction},
     lti::score,
@@ -115,21 +112,6 @@ impl Admin {
     async fn course(&self, transaction: &mut Transaction, slug: &str) -> Result<i64, Problem> {
         let row = transaction.row("SELECT id FROM course WHERE slug = ?", values![slug]).await?;
         Ok(row.ok_or_else(|| Problem::not_found("course"))?.int("id")?)
-    }
-
-    /// Puts a course away: nobody hands in any more, and everything stays to be read. Or takes it out again.
-    ///
-    /// # Errors
-    /// When there is no such course.
-    pub async fn archive_course(&self, slug: &str, archived: bool) -> Result<(), Problem> {
-        let mut transaction = self.app.0.database.begin().await?;
-        let course = self.course(&mut transaction, slug).await?;
-        let statement = "UPDATE course SET archived_at = CASE WHEN ? = 1 THEN {now} END WHERE id = ?";
-        transaction.execute(statement, values![archived, course]).await?;
-        let text = format!("{slug} is {}", if archived { "archived" } else { "open again" });
-        let entry = Entry { course: Some(course), ..Entry::new("course", self.account.id, &text) };
-        view::note(&mut transaction, &entry).await?;
-        Ok(transaction.commit().await?)
     }
 
     /// Removes a course with its assignments and submissions. People's accounts stay.

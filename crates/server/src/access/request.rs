@@ -81,7 +81,7 @@ impl Person {
     /// When they are not in it, or there is no such course: who is not of it does not learn that it exists.
     pub async fn member_of(self, slug: &str) -> Result<Member, Problem> {
         let mut transaction = self.app.0.database.read().await?;
-        let statement = "SELECT course.id, course.slug, course.title, course.archived_at, member.role FROM course
+        let statement = "SELECT course.id, course.slug, course.title, member.role FROM course
             LEFT JOIN member ON member.course = course.id AND member.account = ?
             WHERE course.slug = ?";
         let row = transaction.row(statement, values![self.account.id, slug]).await?;
@@ -92,7 +92,6 @@ impl Person {
         Ok(read_row!(row => Member {
             course = "id", slug, title;
             is_staff: self.account.is_admin || role.as_deref() == Some("staff"),
-            is_archived: row.maybe_int("archived_at")?.is_some(),
             account: self.account,
             app: self.app,
         }))

@@ -186,9 +186,6 @@ pub struct History {
     pub version: String,
     /// The grader's SHA-256, where it is known.
     pub grader: String,
-    /// The SHA-256 of what the grade says, without what was measured: `replay` comes to the same.
-    #[serde(skip_serializing_if = "String::is_empty")]
-    pub essence: String,
     /// Rules, suite and upload in short.
     pub by_what: String,
     /// The complete task, from which it can be graded again: rules, suite, digests.
@@ -273,7 +270,7 @@ macro_rules! submissions {
                 job.scenes_done, job.scenes,
                 job.lane, job.last_fault, grade.result, result.verdict,
                 result.code, result.points, result.max_points, result.summary, result.version, result.seconds,
-                result.grader, result.essence, result.shown, result.created_at AS graded_at,
+                result.grader, result.shown, result.created_at AS graded_at,
                 assignment.settings, extension.due_at AS own_due,
                 mark.points AS mark_points, mark.comment, mark.marked_at, mark.request, mark.requested_at,
                 marker.login AS marker
@@ -294,7 +291,7 @@ macro_rules! submissions {
 
 fn read_grade(row: &Row, result: i64) -> Result<Graded, DbError> {
     let outcome = read_row!(row => Outcome {
-        verdict, code, points, max_points, summary, version, grader, essence, seconds, shown;
+        verdict, code, points, max_points, summary, version, grader, seconds, shown;
         // Some of these scenes may be hidden.
         wrong: Vec::new(),
         files: Vec::new(),
@@ -406,7 +403,7 @@ pub(super) async fn history(
     let statement = "SELECT grade_change.changed_at, grade_change.reason, account.login, old.code AS old_code,
            old.points AS old_points, old.shown AS old_shown, new.shown AS new_shown, grade_change.old_result,
            grade_change.given, new.id AS result, new.code AS new_code, new.points AS new_points, new.version,
-           new.grader, new.essence, new.task
+           new.grader, new.task
         FROM grade_change
         JOIN result AS new ON new.id = grade_change.new_result
         LEFT JOIN result AS old ON old.id = grade_change.old_result
@@ -439,7 +436,6 @@ pub(super) async fn history(
             old_points,
             new_code,
             new_points: given.clone().or(new_points),
-            essence: if withheld { String::new() } else { row.text("essence")? },
             by_what: by_what(&row.text("task")?),
         }))
     };

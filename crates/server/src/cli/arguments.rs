@@ -1,5 +1,6 @@
 //! The command line as typed.
-use crate::{db::Address, net::Networks};
+use crate::db::Address;
+use axum_client_ip::ClientIpSource;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::{net::SocketAddr, num::NonZeroUsize, path::PathBuf};
 
@@ -31,7 +32,6 @@ pub(super) enum Command {
     Serve(Serve),
     Worker(WorkerArguments),
     AdminLink(AdminLink),
-    Replay(ReplayArguments),
     Backup(Backup),
     Restore(Restore),
     Upgrade(Upgrade),
@@ -97,16 +97,13 @@ pub(super) struct Serve {
     /// After this many seconds of silence a request is given up.
     #[arg(long, value_name = "SECONDS", default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..=3600))]
     pub(super) patience: u64,
-    /// Connections at one time; an address may have half of them. Who asks for nothing gives way to who comes.
-    #[arg(long, value_name = "N", default_value_t = 4000, value_parser = clap::value_parser!(u32).range(8..))]
-    pub(super) connections: u32,
     /// Up- and downloads of an account at one time.
     #[arg(long, value_name = "N", default_value_t = 32, value_parser = clap::value_parser!(u32).range(1..))]
     pub(super) transfers: u32,
-    /// Addresses and networks (10.0.0.0/8), with commas between them, of proxies in front: what they say of a client's
-    /// address (X-Forwarded-For, or Forwarded) counts, and limits by address hold for clients, not for them.
-    #[arg(long, value_name = "NETWORKS", default_value = "")]
-    pub(super) trusted_proxies: Networks,
+    /// The header in which the proxy in front names a client's address, such as XRealIp or RightmostXForwardedFor.
+    /// Without it limits by address hold for the other end of a connection: the proxy.
+    #[arg(long, value_name = "HEADER")]
+    pub(super) client_address: Option<ClientIpSource>,
     /// MiB of uploads and reports that are kept of a person, in all courses; 0 for any number.
     #[arg(long, value_name = "MIB", default_value_t = 4096)]
     pub(super) keep_of_person: u64,
@@ -162,21 +159,6 @@ pub(super) struct AdminLink {
     #[arg(long, value_name = "URL", env = "FOSSSIM_PUBLIC_URL", value_parser = public_url,
         default_value = "http://127.0.0.1:8080")]
     pub(super) public_url: String,
-}
-
-/// Grades a submission once more by what it was graded by, and says whether the same comes out: nothing changes by it.
-/// The exit code is 0 when all results are the same, 1 when one is not.
-#[derive(Debug, Args)]
-pub(super) struct ReplayArguments {
-    #[command(flatten)]
-    pub(super) place: Place,
-    #[command(flatten)]
-    pub(super) work: Work,
-    /// The submission's number.
-    pub(super) submission: i64,
-    /// Only this result; its number stands in the history. All results of the submission otherwise.
-    #[arg(long, value_name = "NUMBER")]
-    pub(super) result: Option<i64>,
 }
 
 /// Copies the database and all uploads and reports into a new folder, while the server runs. PostgreSQL is copied by

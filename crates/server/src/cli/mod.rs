@@ -7,7 +7,6 @@ mod folders;
 mod health;
 mod heartbeat;
 mod logging;
-mod replay;
 mod serve;
 #[cfg(feature = "otel")]
 mod traces;
@@ -46,7 +45,6 @@ fn run(arguments: &Arguments) -> Result<u8> {
             Command::Serve(arguments) => serve::run(arguments).await?,
             Command::Worker(arguments) => worker::run(arguments).await?,
             Command::AdminLink(arguments) => serve::admin_link(arguments).await?,
-            Command::Replay(arguments) => return Ok(u8::from(!replay::run(arguments).await?)),
             Command::Backup(arguments) => return Ok(u8::from(!backup::backup(arguments).await?)),
             Command::Restore(arguments) => return Ok(u8::from(!backup::restore(arguments).await?)),
             Command::Upgrade(arguments) => return Ok(u8::from(!upgrade::run(arguments).await?)),

@@ -67,6 +67,7 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
         incoming: folders.incoming.clone(),
         low_water: arguments.low_water * MIB,
         public: public.clone(),
+        client_address: arguments.client_address.clone(),
         patience,
         requests_per_minute: arguments.requests_per_minute,
         limits: TransferLimits::new(
@@ -103,17 +104,15 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
     });
     let example = arguments.example.then_some(folders.flawed_program.as_path());
     greet(&app, [&local, &public], example, arguments.work.grader.as_deref()).await?;
-    let (connections, proxies) = (arguments.connections as usize, arguments.trusted_proxies.clone());
-    let manners = net::Manners { patience, connections, proxies };
     heartbeat::ready();
     let seen = database.clone();
     tokio::spawn(heartbeat::beat(folders.data.clone(), async move || db::version(&seen).await.is_ok()));
-    let serving = net::serve(listener, web::router(app), manners, stop.clone());
+    let serving = net::serve(listener, web::router(app), stop.clone());
     match working {
-        None => serving.await,
+        None => serving.await?,
         Some(working) => {
-            let ((), worked) = tokio::join!(serving, working);
-            worked?;
+            let (served, worked) = tokio::join!(serving, working);
+            worked.and(served.map_err(Into::into))?;
         }
     }
     database.close().await;

@@ -14,7 +14,8 @@ mod who;
 pub use upload::receive_form;
 
 use crate::access::App;
-use axum::{Router, extract::DefaultBodyLimit, middleware};
+use axum::{Extension, Router, extract::DefaultBodyLimit, middleware};
+use axum_client_ip::ClientIpSource;
 use utoipa_axum::router::OpenApiRouter;
 
 /// The largest body of a request that is no upload.
@@ -41,6 +42,7 @@ pub fn openapi() -> String {
 /// Everything that is served.
 pub fn router(app: App) -> Router {
     let (api, _) = api_router();
+    let client_address = app.client_address.clone().unwrap_or(ClientIpSource::ConnectInfo);
     let pages = pages::router().layer(middleware::from_fn(pages::show_problems));
     Router::new()
         .merge(api)
@@ -54,5 +56,6 @@ pub fn router(app: App) -> Router {
         .layer(middleware::from_fn_with_state(app.clone(), guard::renew))
         .layer(middleware::from_fn_with_state(app.clone(), guard::headers))
         .layer(middleware::from_fn_with_state(app.clone(), guard::log))
+        .layer(Extension(client_address))
         .with_state(app)
 }

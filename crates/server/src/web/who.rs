@@ -2,15 +2,18 @@
 use super::input::SignedIn;
 use crate::{
     access::{Admin, App, Member, Person, Remote, Secrets, Staff, Visitor},
-    net::ClientAddress,
     problem::Problem,
 };
 use axum::{
-    extract::{FromRequestParts, Path},
+    extract::{ConnectInfo, FromRequestParts, Path},
     http::{HeaderMap, HeaderValue, header, request::Parts},
 };
+use axum_client_ip::ClientIp;
 use serde::Deserialize;
-use std::sync::{Arc, OnceLock};
+use std::{
+    net::SocketAddr,
+    sync::{Arc, OnceLock},
+};
 
 /// Where a request's session is noted when it lasts longer from now on: the browser is to keep its cookie as long.
 #[derive(Debug, Clone, Default)]
@@ -49,8 +52,11 @@ pub(super) fn secrets(headers: &HeaderMap, secure: bool) -> Secrets {
     Secrets { bearer, session, browser, address: None }
 }
 
-fn of_parts(parts: &Parts, app: &App) -> Secrets {
-    let address = parts.extensions.get::<ClientAddress>().map(|ClientAddress(address)| *address);
+async fn of_parts(parts: &mut Parts, app: &App) -> Secrets {
+    let said = ClientIp::from_request_parts(parts, app).await.ok().map(|ClientIp(address)| address);
+    // A request that came past the proxy.
+    let peer = || parts.extensions.get::<ConnectInfo<SocketAddr>>().map(|ConnectInfo(peer)| peer.ip());
+    let address = said.or_else(peer).map(|address| address.to_canonical());
     Secrets { address, ..secrets(&parts.headers, app.is_secure()) }
 }
 
@@ -74,9 +80,9 @@ macro_rules! roles {
 }
 
 roles! {
-    Visitor: |parts, app| Ok(app.visitor(of_parts(parts, app)));
+    Visitor: |parts, app| Ok(app.visitor(of_parts(parts, app).await));
     Person: |parts, app| {
-        let secrets = of_parts(parts, app);
+        let secrets = of_parts(parts, app).await;
         let person = app.person(&secrets).await?;
         parts.extensions.insert(SignedIn);
         if let (true, Some(secret), Some(renewed)) =
@@ -95,7 +101,7 @@ roles! {
     Staff: |parts, app| Member::from_request_parts(parts, app).await?.staff();
     Admin: |parts, app| Person::from_request_parts(parts, app).await?.admin();
     Remote: |parts, app| {
-        let token = of_parts(parts, app).bearer.ok_or_else(Problem::not_signed_in)?;
+        let token = of_parts(parts, app).await.bearer.ok_or_else(Problem::not_signed_in)?;
         let name = parts.headers.get("fosssim-worker").and_then(|name| name.to_str().ok()).unwrap_or("worker");
         let remote = app.remote(&token, name).await?;
         parts.extensions.insert(SignedIn);

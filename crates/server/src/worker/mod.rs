@@ -19,7 +19,6 @@ pub use liveness::{Liveness, dead_workers, forget};
 pub use local::LocalSource;
 use program::GRACE;
 pub use program::{Program, REPORTS, STAFF_PAGE};
-pub(crate) use reading::essence;
 pub use remote::RemoteSource;
 pub use slots::work;
 pub use source::{JobSource, SourceError};

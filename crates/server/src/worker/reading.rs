@@ -4,15 +4,11 @@ use crate::{
     store::Digest,
     task::{Outcome, WrongScene},
 };
-use serde_json::Value;
 use std::{fs, path::Path};
 
 /// The schemas of `grade.json` that are read here. While servers and workers are upgraded one after the other, a grader
 /// may be older; what is read here was the same in both.
 const SCHEMAS: std::ops::RangeInclusive<u32> = 3..=4;
-
-/// The fields that are measured, or tell of the machine and not of the submission.
-const MEASURED: [&str; 5] = ["cpu_seconds", "wall_seconds", "memory_bytes", "cached", "sandbox"];
 
 /// Numbers keep their digits: the text that the grader wrote is what counts.
 pub(super) fn read_grade(file: &Path) -> Result<Outcome, String> {
@@ -42,31 +38,10 @@ pub(super) fn read_grade(file: &Path) -> Result<Outcome, String> {
         max_points: grade.max_points.as_ref().map(ToString::to_string),
         summary,
         version: report.version,
-        essence: Digest::of(essence(&bytes).map_err(damaged)?.as_bytes()).to_string(),
         wrong: wrong(&scenes),
         seconds: "0".to_owned(),
         ..Outcome::default()
     })
-}
-
-/// The text of a `grade.json` about the submission: without measurements, in one order, and compact.
-///
-/// # Errors
-/// When it is no JSON.
-pub(crate) fn essence(grade: &[u8]) -> Result<String, serde_json::Error> {
-    fn forget(value: &mut Value) {
-        match value {
-            Value::Object(fields) => {
-                fields.retain(|name, _| !MEASURED.contains(&name.as_str()));
-                fields.values_mut().for_each(forget);
-            }
-            Value::Array(values) => values.iter_mut().for_each(forget),
-            _ => {}
-        }
-    }
-    let mut value: Value = serde_json::from_slice(grade)?;
-    forget(&mut value);
-    serde_json::to_string(&value)
 }
 
 /// Whether this many wrong scenes leave a submission nearly right: what it answers there may be worth a second look.
@@ -102,6 +77,7 @@ fn wrong(scenes: &[&SceneInFile]) -> Vec<WrongScene> {
 mod tests {
     use super::*;
     use crate::grade_file::MistakeInFile;
+    use serde_json::Value;
 
     /// A grader of another schema would make every grading a judge error.
     #[test]
@@ -110,7 +86,7 @@ mod tests {
         let schema: Value = serde_json::from_slice(&std::fs::read(file).expect("the schema")).expect("JSON");
         assert_eq!(schema["properties"]["schema"]["const"], *SCHEMAS.end());
         let text = schema.to_string();
-        for name in MEASURED.iter().chain(&["right_steps", "summary", "scene"]) {
+        for name in ["right_steps", "summary", "scene"] {
             assert!(text.contains(&format!("\"{name}\"")), "the schema has no {name}");
         }
     }
@@ -128,20 +104,6 @@ mod tests {
         std::fs::write(&file, grade).expect("a file");
         let graded = read_grade(&file).expect("a grade");
         assert_eq!(graded.summary, "0 of 1 scenes accepted; The impulse lacks a factor.");
-    }
-
-    #[test]
-    fn what_was_measured_is_no_part_of_what_a_grade_says() {
-        let grade = |cpu: &str, right: u32| {
-            format!(
-                r#"{{"schema": 4, "grades": [{{"wall_seconds": {cpu}, "scenes": [{{"right_steps": {right},
-                "cpu_seconds": {cpu}, "memory_bytes": {right}}}], "points": 12.50}}]}}"#
-            )
-        };
-        let essence = |text: String| super::essence(text.as_bytes()).expect("JSON");
-        assert_eq!(essence(grade("1.5", 3)), essence(grade("0.25", 3)));
-        assert_ne!(essence(grade("1.5", 3)), essence(grade("1.5", 4)));
-        assert!(essence(grade("1", 3)).contains("12.5"));
     }
 
     #[test]

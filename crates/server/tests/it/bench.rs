@@ -34,7 +34,7 @@ fn the_ladder_is_climbed_on_postgres() {
 
 #[test]
 fn others_are_answered_beside_attacks_and_many_submissions() {
-    for (what, more) in [("slow-readers", &[][..]), ("half-open", &[]), ("million", &["--count", "2000"])] {
+    for (what, more) in [("slow-readers", &[][..]), ("million", &["--count", "2000"])] {
         let said = bench(&[&[what, "--seconds", "1"], more].concat());
         assert!(said.contains("memory") && said.contains("errors {}"), "{what}: {said}");
     }

@@ -107,12 +107,6 @@ answers! { OK:
 }
 
 deeds! { NO_CONTENT:
-    /// Puts a course away: nobody hands in any more, and everything stays to be read.
-    put "/api/v1/courses/{course}/archived" "administration"
-        archive(admin: Admin, { course }) -> "Archived": admin.archive_course(&course, true);
-    /// Takes it out again.
-    delete "/api/v1/courses/{course}/archived" "administration"
-        reopen(admin: Admin, { course }) -> "Open again": admin.archive_course(&course, false);
     /// Takes somebody out of the course; what they handed in stays.
     delete "/api/v1/courses/{course}/members/{login}" "courses"
         remove_member(staff: Staff, { login }) -> "They are out": staff.remove_member(&login);

@@ -65,7 +65,7 @@ operations! {
     operations: health ready metrics openapi;
     accounts: me set_password tokens new_token revoke_token accounts set_account disable_account remove_person
         worker_tokens new_worker_token revoke_worker_token queue audit;
-    courses: courses new_course remove_course archive reopen members import set_member remove_member member_link audit;
+    courses: courses new_course remove_course members import set_member remove_member member_link audit;
     assignments: assignments assignment set_assignment remove_assignment set_suite publish withhold standings export
         extend extend_no_more suspicions dismiss tell;
     submissions: own submit submission remove_submission mark request history events report upload grade_again

@@ -98,8 +98,6 @@ pages! {
     post "/c/{course}/assignments" => course::new_assignment,
     get "/c/{course}/remove" => removal::course,
     post "/c/{course}/remove" => removal::remove_course,
-    post "/c/{course}/archive" => removal::archive,
-    post "/c/{course}/reopen" => removal::reopen,
     get "/c/{course}/members" => course::members,
     post "/c/{course}/members" => course::set_member,
     get "/c/{course}/members/import" => student::import,

@@ -41,7 +41,7 @@ const SUBMISSION: &str = "The upload, its grades, their history and its reports 
 const ASSIGNMENT: &str = "All submissions to it, their grades and reports, regrades, and links of learning platforms to it are \
                           removed for ever. Export the class before.";
 const COURSE: &str = "Its assignments, all submissions, grades and reports, its members and its log are removed for ever. Accounts \
-                      stay. Archived it could still be read.";
+                      stay. Export what is to be kept before.";
 const PERSON: &str = "All that they handed in, what it came to, their login and name, tokens and links are removed for ever, in all \
                       courses. A shut account only can't sign in any more.";
 
@@ -71,13 +71,8 @@ pub(super) async fn assignment(staff: Staff, At { assignment, .. }: At) -> Page 
 }
 
 pub(super) async fn course(_: Admin, staff: Staff) -> Page {
-    let (way, button) = match staff.is_archived {
-        true => ("reopen", "Open it again"),
-        false => ("archive", "Archive it"),
-    };
-    let instead = Some((format!("/c/{}/{way}", staff.slug), button));
     let (frame, title, confirm) = (PageFrame::course(&staff), staff.title.clone(), staff.slug.clone());
-    show(&RemovePage { frame, title, words: COURSE, confirm, instead })
+    show(&RemovePage { frame, title, words: COURSE, confirm, instead: None })
 }
 
 pub(super) async fn person(admin: Admin, At { login, .. }: At) -> Page {
@@ -96,7 +91,5 @@ deeds! {
         { form.is(&course)?; admin.remove_course(&course) } => "/";
     remove_person(admin: Admin, { login }, form: Confirmed):
         { form.is(&login)?; admin.remove_person(&login) } => "/admin";
-    archive(admin: Admin, { course }): admin.archive_course(&course, true) => "/c/{course}";
-    reopen(admin: Admin, { course }): admin.archive_course(&course, false) => "/c/{course}";
     shut_account(admin: Admin, { login }): admin.disable_account(&login) => "/admin";
 }

@@ -94,10 +94,6 @@ async fn what_was_accepted_is_in_a_backup_that_is_made_meanwhile(fresh: Fresh) {
         let upload = ada.get(&format!("/api/v1/courses/physics/submissions/{id}/upload")).expect(200).body;
         assert_eq!(fosssim_server::store::Digest::of(&upload).as_str(), submission["digest"].as_str().expect("one"));
     }
-    let grader = server.grader();
-    let words = ["replay", &first.to_string(), "--grader", grader.to_str().expect("UTF-8")];
-    let (code, said) = command(&words, &data, Some(&again.database()));
-    assert!(code == Some(0) && said.contains("byte for byte"), "{said}");
 }
 
 /// The same person at another server.

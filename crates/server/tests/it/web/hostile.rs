@@ -154,7 +154,7 @@ fn bodies_that_are_too_large_or_too_slow_are_given_up() {
         // JSON has its own limit.
         let long = format!(r#"{{"name": "{}"}}"#, "x".repeat(2 << 20));
         ada.post_json("/api/v1/tokens", &long).expect(413);
-        // A client that stops in the middle of an upload, of JSON, or of the head is not waited for. All at one time.
+        // A client that stops in the middle of an upload or of JSON is not waited for. All at one time.
         let stopped: Vec<(&str, TcpStream)> = [
             (SUBMISSIONS, "Content-Length: 1000"),
             ("/api/v1/tokens", "Content-Type: application/json\r\nContent-Length: 1000"),
@@ -167,14 +167,10 @@ fn bodies_that_are_too_large_or_too_slow_are_given_up() {
             (path, stream)
         })
         .collect();
-        let mut beginning = connect(&server);
-        beginning.write_all(b"POST / HTTP/1.1\r\nHost: ").expect("a part of a head");
         for (path, mut stream) in stopped {
             let answer = Answer::read(&mut stream).expect("an answer");
             assert_eq!(answer.status, 408, "{path}: {}", answer.text());
         }
-        // It is closed, with or without a word.
-        drop(Answer::read(&mut beginning));
         // Nothing of all that lies around.
         let left = std::fs::read_dir(server.folder.join("incoming")).expect("a folder").count();
         assert_eq!(left, 0);

@@ -17,7 +17,6 @@ mod passwords;
 mod people;
 mod platforms;
 mod removal;
-mod replay;
 mod roles;
 mod settings;
 mod signs;

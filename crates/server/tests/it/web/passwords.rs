@@ -67,7 +67,7 @@ async fn a_password_signs_in_until_it_is_changed(fresh: Fresh) {
 }
 
 async fn nobody_signs_in_by_guessing(fresh: Fresh) {
-    let mut server = Server::start(&fresh, &["--workers", "0", "--passwords"]);
+    let mut server = Server::start(&fresh, &["--workers", "0", "--passwords", "--client-address", "RightmostXForwardedFor"]);
     let admin = server.admin();
     server.course(&admin, "physics");
     let ada = member(&server, &admin, "ada");
@@ -96,20 +96,14 @@ async fn nobody_signs_in_by_guessing(fresh: Fresh) {
     // Anybody who guesses shuts their own address out, and nobody else: from another one the right password goes on
     // working.
     sign_in(&server, "ada", "correct+horse").expect(429);
-    let body = "login=ada&password=correct+horse";
-    let host = server.url.strip_prefix("http://").expect("an address");
-    let socket = tokio::net::TcpSocket::new_v4().expect("a socket");
-    socket.bind("127.0.0.2:0".parse().expect("an address")).expect("another address");
-    let mut stream = socket.connect(host.parse().expect("an address")).await.expect("a connection");
-    let request = format!(
-        "POST /sign-in/password HTTP/1.0\r\nHost: {host}\r\nContent-Type: application/x-www-form-urlencoded\r\n\
-         Sec-Fetch-Site: same-origin\r\nContent-Length: {}\r\n\r\n{body}",
-        body.len()
-    );
-    tokio::io::AsyncWriteExt::write_all(&mut stream, request.as_bytes()).await.expect("sent");
-    let mut answer = String::new();
-    tokio::io::AsyncReadExt::read_to_string(&mut stream, &mut answer).await.expect("an answer");
-    assert!(answer.starts_with("HTTP/1.0 303"), "{answer}");
+    let headers = [
+        ("Content-Type", "application/x-www-form-urlencoded"),
+        ("Sec-Fetch-Site", "same-origin"),
+        // The last word is the proxy's; anybody may write what is before it.
+        ("X-Forwarded-For", "127.0.0.1, 2001:db8::7"),
+    ];
+    let body = b"login=ada&password=correct+horse";
+    server.visitor().send("POST", "/sign-in/password", &headers, body).expect(303);
 }
 
 async fn without_the_option_there_are_none(fresh: Fresh) {

@@ -49,15 +49,6 @@ async fn what_is_removed_is_gone(fresh: Fresh) {
     ada.get(&format!("/api/v1/courses/physics/submissions/{}", ids[0])).expect(404);
     assert_eq!(ada.wait_for_grade("physics", ids[1])["grade"]["points"], "1", "others stay");
     teacher.send("DELETE", &format!("/api/v1/courses/physics/submissions/{}", ids[1]), &[], b"").expect(204);
-    // A course that is put away is there to be read.
-    teacher.send("PUT", "/api/v1/courses/physics/archived", &[], b"").expect(403);
-    admin.send("PUT", "/api/v1/courses/physics/archived", &[], b"").expect(204);
-    let path = "/api/v1/courses/physics/assignments/m1/submissions?name=FOSSSim";
-    ada.send("POST", path, &[], &program("AC", 100)).expect(409);
-    ada.get(&format!("/c/physics/s/{}", ids[2])).expect(200);
-    assert_eq!(ada.get("/api/v1/courses").expect(200).json()[0]["is_archived"], true);
-    admin.send("DELETE", "/api/v1/courses/physics/archived", &[], b"").expect(204);
-    ada.submit("physics", &program("AC", 100));
     // An assignment, and a course.
     teacher.send("DELETE", "/api/v1/courses/physics/assignments/m1", &[], b"").expect(204);
     assert_eq!(rows(&fresh).await, [0; 7]);

@@ -7,7 +7,7 @@ use std::{
 
 /// Counts what is being done, by whom.
 #[derive(Debug)]
-pub struct KeyLimit<K>(Arc<Mutex<HashMap<K, usize>>>);
+pub(super) struct KeyLimit<K>(Arc<Mutex<HashMap<K, usize>>>);
 
 impl<K> Default for KeyLimit<K> {
     fn default() -> Self {
@@ -17,14 +17,14 @@ impl<K> Default for KeyLimit<K> {
 
 /// Leave to do one thing, until it is dropped.
 #[derive(Debug)]
-pub struct Permit<K: Hash + Eq> {
+pub(super) struct Permit<K: Hash + Eq> {
     who: K,
     counts: Arc<Mutex<HashMap<K, usize>>>,
 }
 
 impl<K: Hash + Eq + Clone> KeyLimit<K> {
     /// Leave for one more, if fewer than `most` are being done.
-    pub fn pass(&self, who: K, most: usize) -> Option<Permit<K>> {
+    pub(super) fn pass(&self, who: K, most: usize) -> Option<Permit<K>> {
         let mut counts = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let count = counts.entry(who.clone()).or_insert(0);
         if *count >= most {
