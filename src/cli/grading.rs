@@ -87,6 +87,9 @@ pub(super) struct Grade {
     /// Beside reports for students, write the page that tells staff everything.
     #[arg(long, value_name = "FILE", env = "FOSSSIM_STAFF_PAGE")]
     pub(super) staff_page: Option<PathBuf>,
+    /// Beside reports for students, write the page that they see when hidden groups are published, if there are any.
+    #[arg(long, value_name = "FILE", env = "FOSSSIM_PUBLISHED_PAGE")]
+    pub(super) published_page: Option<PathBuf>,
     /// Keep hidden groups in reports for students, because a platform that hides them itself asks for the reports.
     #[arg(long, env = "FOSSSIM_PLATFORM_HIDES")]
     pub(super) platform_hides: bool,

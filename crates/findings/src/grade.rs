@@ -90,6 +90,14 @@ impl Grade {
         self.groups.iter().all(|group| group.visibility == Visibility::Visible)
     }
 
+    /// The same when its hidden groups are published.
+    #[must_use]
+    pub fn published(&self) -> Self {
+        let mut published = self.clone();
+        published.groups.iter_mut().for_each(|group| group.visibility = Visibility::Visible);
+        published
+    }
+
     /// All scenes in order.
     pub fn scenes(&self) -> impl Iterator<Item = &SceneGrade> {
         self.groups.iter().flat_map(|group| &group.scenes)

@@ -279,9 +279,11 @@ impl GradingSession<'_> {
     fn report(&self, grades: &[Grade], submissions: &[Submission], reports: &[Report]) -> Result<()> {
         let (folder, pages, reader) = (self.folder.as_deref(), self.pages.as_ref(), self.arguments.reader);
         let passed_over = self.passed_over();
-        let (staff_page, is_part) = (self.arguments.staff_page.as_deref(), self.is_part);
-        let platform_hides = self.arguments.platform_hides;
-        let results = Results { folder, pages, reader, platform_hides, staff_page, is_part, grades, passed_over };
+        let arguments = self.arguments;
+        let (staff_page, published_page) = (arguments.staff_page.as_deref(), arguments.published_page.as_deref());
+        let (platform_hides, is_part) = (arguments.platform_hides, self.is_part);
+        let results =
+            Results { folder, pages, reader, platform_hides, staff_page, published_page, is_part, grades, passed_over };
         results.write(reports, |grades| self.text(grades, submissions))
     }
 

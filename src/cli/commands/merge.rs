@@ -72,6 +72,7 @@ pub(super) fn run(arguments: &Merge) -> Result<u8> {
         reader,
         platform_hides: false,
         staff_page: None,
+        published_page: None,
         is_part: false,
         grades: &grades,
         passed_over: &passed_over,

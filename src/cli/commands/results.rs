@@ -81,7 +81,9 @@ pub(super) fn wanted_pages(
     reports: &[Report],
     pictures: bool,
 ) -> Result<Option<Pages>> {
-    let is_asked = arguments.staff_page.is_some() || reports.iter().any(|report| report.format == Format::Html);
+    let is_asked = arguments.staff_page.is_some()
+        || arguments.published_page.is_some()
+        || reports.iter().any(|report| report.format == Format::Html);
     // A class's pages may be asked for later, and nobody wants to run it again for them.
     let for_students = arguments.reader == Audience::Student || is_class;
     (folder.is_some() || is_asked || pictures).then(|| Pages::new(folder, for_students)).transpose()
@@ -98,6 +100,8 @@ pub(super) struct Results<'a> {
     pub(super) platform_hides: bool,
     /// The file for a page that tells staff more than the reader, when one is wanted.
     pub(super) staff_page: Option<&'a Path>,
+    /// The file for the page that students see when hidden groups are published.
+    pub(super) published_page: Option<&'a Path>,
     /// Whether scenes of the suite were left out on purpose.
     pub(super) is_part: bool,
     pub(super) grades: &'a [Grade],
@@ -147,6 +151,11 @@ impl Results<'_> {
         }
         if let (Some(file), Some(pages), [grade]) = (self.staff_page, self.pages, grades) {
             keep(write(file, || pages.of_one(grade, None, Audience::Staff)));
+        }
+        if let (Some(file), Some(pages), [grade]) = (self.published_page, self.pages, grades)
+            && !grade.is_visible()
+        {
+            keep(write(file, || pages.of_one(&grade.published(), None, Audience::Student)));
         }
         for report in reports {
             let told = self.told(report.format);

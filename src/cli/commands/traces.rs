@@ -49,10 +49,19 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report]) -> Resu
         }
     }
     let (reader, platform_hides) = (arguments.reader, arguments.platform_hides);
-    let staff_page = arguments.staff_page.as_deref();
+    let (staff_page, published_page) = (arguments.staff_page.as_deref(), arguments.published_page.as_deref());
     let pages = pages.as_ref();
-    let results =
-        Results { folder, pages, reader, platform_hides, staff_page, is_part, grades: &grades, passed_over: &[] };
+    let results = Results {
+        folder,
+        pages,
+        reader,
+        platform_hides,
+        staff_page,
+        published_page,
+        is_part,
+        grades: &grades,
+        passed_over: &[],
+    };
     results.write(reports, |grades| text(grades, &[], shown(arguments, grades.len() > 1), HARDEST, None))?;
     Ok(exit_code(&grades))
 }
