@@ -192,10 +192,13 @@ fn pages_to_hand_out_hold_no_hidden_group() {
     for (reader, runs) in [("student", "1/1\n"), ("staff", "2/2\n")] {
         let report = format!("html={reader}.html");
         let words = ["grade", &words[7], "--suite", "veils.toml", "--for", reader, "--format", &report, "--quiet"];
-        workspace.run([&words[..], &["--progress", "progress"]].concat());
+        workspace.run([&words[..], &["--progress", "progress", "--published-page", "published.html"]].concat());
         assert_eq!(text(&workspace, "progress"), runs, "a count tells of no hidden scene");
     }
     assert!(!text(&workspace, "student.html").contains("Veiled"));
+    // Once they are published students see the points of all groups, and what the hints let them know.
+    let published = text(&workspace, "published.html");
+    assert!(published.contains("Veiled") && published.contains("of 2 scenes"), "{published}");
 }
 
 /// Staff sees the numbers of every scene; students see what the suite says, group by group, and the assignment's own

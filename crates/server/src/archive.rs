@@ -26,6 +26,11 @@ pub struct ArchiveLimits {
 impl ArchiveLimits {
     /// Enough for a suite with all its scenes, and for a student's sources with a library in them.
     pub const USUAL: Self = Self { bytes: 1 << 30, entries: 20_000 };
+
+    /// The same for an archive of this size: what unpacks to 200 times as much is a bomb, unless it is small.
+    fn of_size(self, packed: u64) -> Self {
+        Self { bytes: self.bytes.min(packed.saturating_mul(200).max(50 << 20)), ..self }
+    }
 }
 
 /// Why an archive is not unpacked.
@@ -87,8 +92,9 @@ struct Walk<'a> {
 
 fn walk(archive: &Path, limits: ArchiveLimits, folder: Option<&Path>) -> Result<Vec<PathBuf>, ArchiveError> {
     let file = File::open(archive).map_err(ArchiveError::Folder)?;
+    let packed = file.metadata().map_err(ArchiveError::Folder)?.len();
     let mut walk = Walk {
-        limits,
+        limits: limits.of_size(packed),
         folder,
         entries: 0,
         bytes: 0,

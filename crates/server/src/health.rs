@@ -27,7 +27,7 @@ pub fn recent(policy: &QueuePolicy) -> i64 {
 /// An error of the database.
 pub async fn seen(
     transaction: &mut Transaction,
-    worker: &str,
+    (worker, version): (&str, &str),
     token: Option<i64>,
     slots: usize,
     fault: Option<&str>,
@@ -36,8 +36,9 @@ pub async fn seen(
     let fault = fault.map(without_paths);
     let statement =
         "INSERT INTO worker (name, version, slots, started_at, seen_at, token) VALUES (?, ?, ?, {now}, {now}, ?)
-        ON CONFLICT (name) DO UPDATE SET slots = excluded.slots, seen_at = excluded.seen_at";
-    transaction.execute(statement, values![worker, env!("CARGO_PKG_VERSION"), slots, token]).await?;
+        ON CONFLICT (name) DO UPDATE SET version = excluded.version, slots = excluded.slots,
+           seen_at = excluded.seen_at";
+    transaction.execute(statement, values![worker, version, slots, token]).await?;
     if let Some(fault) = &fault {
         let statement = "UPDATE worker SET fault = ?, fault_at = {now}, aside_since = coalesce(aside_since, {now}),
             faults = faults + CASE WHEN aside_since IS NULL THEN 1 ELSE 0 END WHERE name = ?";

@@ -124,6 +124,8 @@ pub struct Metrics {
     pub paused: i64,
     /// Events by kind, of those kinds that somebody should look at.
     pub events: Vec<(String, i64)>,
+    /// Bytes of uploads and reports that are kept, in all and of the course that has most.
+    pub kept: [i64; 2],
     /// Submissions in all.
     pub submissions: i64,
     /// Scenes in which the reference is suspected and nobody has decided.
@@ -183,6 +185,8 @@ impl MetricsPage {
         ] {
             self.number(name, help, value as f64)?;
         }
+        let kept = [("all", queue.kept[0] as f64), ("largest course", queue.kept[1] as f64)];
+        self.gauge("kept_bytes", "Uploads and reports that are kept: of all, of the largest course.", "of", &kept)?;
         self.counter("submissions_total", "Submissions.", "", &[("", queue.submissions as f64)])?;
         let kinds = ["graded", "failed try", "late answer", "buried"];
         let kinds = kinds.map(|kind| (kind.replace(' ', "_"), named(&queue.events, kind)));

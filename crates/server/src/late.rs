@@ -1,5 +1,7 @@
 //! The worth of a submission that came after it was due.
 use crate::db::{DbError, Row};
+use chrono::{DateTime, Days};
+use chrono_tz::Tz;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -13,6 +15,7 @@ pub(crate) struct LatePolicy {
     pub(crate) due_at: Option<i64>,
     pub(crate) late_days: u32,
     pub(crate) late_percent: u32,
+    pub(crate) time_zone: Option<Tz>,
 }
 
 /// How late a submission came.
@@ -27,17 +30,31 @@ pub struct Late {
 impl LatePolicy {
     /// The last moment at which an upload is taken of somebody for whom it is due then.
     pub(crate) fn closes_at(&self, due: i64) -> i64 {
-        due + i64::from(self.late_days) * DAY
+        self.days_after(due, self.late_days.into())
+    }
+
+    /// The same time of the day some days later, by the course's calendar: a day may have 23 or 25 hours.
+    fn days_after(&self, due: i64, days: i64) -> i64 {
+        let by_calendar = self.time_zone.and_then(|zone| {
+            let due = DateTime::from_timestamp_millis(due)?.with_timezone(&zone);
+            Some(due.checked_add_days(Days::new(u64::try_from(days).ok()?))?.timestamp_millis())
+        });
+        // Without a calendar, or where the clocks skip that time.
+        by_calendar.unwrap_or_else(|| due.saturating_add(days.saturating_mul(DAY)))
     }
 
     /// How late a submission is that came at this moment, of somebody who has more time than the others, or not.
     /// Nothing where it came in time, or where the assignment says nothing of late ones.
-    fn late(&self, own_due: Option<i64>, came_at: i64) -> Option<Late> {
-        let after = came_at - self.due_at.map(|due| due.max(own_due.unwrap_or(due)))?;
+    pub(crate) fn late(&self, own_due: Option<i64>, came_at: i64) -> Option<Late> {
+        let due = self.due_at.map(|due| due.max(own_due.unwrap_or(due)))?;
         // At most as late as anything may be: it was in time by an extension that was taken back. Where nothing is
         // taken late any more, the work that was taken keeps its price.
         let most = if self.late_days == 0 { i64::MAX } else { self.late_days.into() };
-        let days = (after + DAY - 1).div_euclid(DAY).min(most);
+        let mut days = ((came_at - due) / DAY - 1).max(0);
+        while self.days_after(due, days) < came_at {
+            days += 1;
+        }
+        let days = days.min(most);
         let percent = days.saturating_mul(self.late_percent.into()).min(100);
         (days > 0 && (self.late_days > 0 || percent > 0)).then_some(Late { days, percent })
     }
@@ -65,7 +82,7 @@ mod tests {
     #[test]
     fn each_day_that_has_begun_costs_the_same() {
         let due = 1_700_000_000_000;
-        let policy = LatePolicy { due_at: Some(due), late_days: 3, late_percent: 40 };
+        let policy = LatePolicy { due_at: Some(due), late_days: 3, late_percent: 40, time_zone: None };
         let late = |after| policy.late(None, due + after).map(|late| (late.days, late.percent));
         assert_eq!([late(-DAY), late(0), late(1)], [None, None, Some((1, 40))]);
         assert_eq!([late(DAY), late(DAY + 1)], [Some((1, 40)), Some((2, 80))]);
@@ -78,5 +95,21 @@ mod tests {
         let never = LatePolicy { late_percent: 0, ..closed };
         assert_eq!(never.late(None, due + 1), None, "where nothing is said of late work, nothing is late");
         assert_eq!(Late { days: 1, percent: 10 }.left_of("85.5"), "76.95");
+    }
+
+    #[test]
+    fn a_day_ends_at_the_same_time_of_the_day_when_the_clocks_change() {
+        // The evening before the clocks go back in Berlin: the day has 25 hours.
+        let due = crate::calendar::read("2026-10-24T23:59+02:00").expect("a moment");
+        let zone = Some(Tz::Europe__Berlin);
+        let policy = LatePolicy { due_at: Some(due), late_days: 2, late_percent: 10, time_zone: zone };
+        let days = |came_at: &str| {
+            let came_at = crate::calendar::read(came_at).expect("a moment");
+            policy.late(None, came_at).map(|late| late.days)
+        };
+        assert_eq!(days("2026-10-25T23:59+01:00"), Some(1));
+        assert_eq!(days("2026-10-26T00:00+01:00"), Some(2));
+        assert_eq!(policy.closes_at(due), crate::calendar::read("2026-10-26T23:59+01:00").expect("a moment"));
+        assert_eq!(LatePolicy { time_zone: None, ..policy }.closes_at(due), due + 2 * DAY);
     }
 }

@@ -1,6 +1,5 @@
-//! Serving: connections are taken until the server is to end, and what was asked is answered then. How many there are at
-//! one time, how long a head may take, and how slowly somebody may read, is the proxy's to limit that docs/service.md
-//! asks for.
+//! Serving: connections are taken until the server is to end, and what was asked is answered then. The proxy that
+//! docs/service.md asks for limits their number, slow heads and slow readers.
 use axum::Router;
 use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 use std::{io, net::SocketAddr, time::Duration};

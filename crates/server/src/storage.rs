@@ -4,7 +4,7 @@
 //! [`Storage::prove`] writes, to the database and to the store, and [`Storage::has_room`] refuses uploads before the
 //! disk is full, so that what was accepted can still be graded.
 use crate::{
-    db::{Database, DbError},
+    db::{self, Database, DbError},
     problem::Problem,
     store::Store,
     values,
@@ -18,6 +18,9 @@ use tokio::sync::Mutex;
 
 /// A proof counts so long: monitors that ask more often than this cost one write.
 const PROOF_COUNTS: Duration = Duration::from_secs(2);
+
+/// How long a proof may take: probes wait for five seconds.
+const PROOF_TIME: Duration = Duration::from_secs(3);
 
 /// Database, store and disk, as far as writing to them goes.
 #[derive(Debug)]
@@ -43,6 +46,11 @@ impl Storage {
     /// # Errors
     /// When one can't: 503, and which.
     pub async fn prove(&self) -> Result<(), Problem> {
+        let proved = tokio::time::timeout(PROOF_TIME, self.prove_now()).await;
+        proved.unwrap_or_else(|_| Err(Problem::unavailable("the database or the store does not answer in time")))
+    }
+
+    async fn prove_now(&self) -> Result<(), Problem> {
         let mut last = self.last.lock().await;
         let known = last.filter(|(at, _)| at.elapsed() < PROOF_COUNTS);
         let fault = match known {
@@ -57,6 +65,14 @@ impl Storage {
     }
 
     async fn fault(&self) -> Option<&'static str> {
+        match db::version(&self.database).await {
+            Ok(db::LATEST) => {}
+            Ok(_) => return Some("the tables are not those of this version"),
+            Err(error) => {
+                tracing::error!(%error, "the database does not answer");
+                return Some("the database does not answer");
+            }
+        }
         if let Err(error) = self.write_to_database().await {
             tracing::error!(%error, "the database can't be written");
             return Some("the database can't be written");

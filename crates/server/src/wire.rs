@@ -1,4 +1,5 @@
-//! The messages between workers on other machines and the server, as JSON.
+//! The messages between workers on other machines and the server, as JSON. Fields that the other side does not know are
+//! passed over: the two may be of different versions while they are upgraded.
 use crate::{
     queue::{Lease, Progress},
     task::{Outcome, Task},
@@ -21,7 +22,6 @@ pub struct Claimed {
 
 /// A sign of life.
 #[derive(Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 pub(crate) struct Alive {
     /// How many gradings it does at one time; 0 while it can't grade.
     #[schema(maximum = 10_000)]
@@ -29,6 +29,10 @@ pub(crate) struct Alive {
     /// Why it can't.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) fault: Option<String>,
+    /// Its version.
+    #[serde(default)]
+    #[schema(max_length = 60)]
+    pub(crate) version: String,
 }
 
 /// The rules that a worker is to know.
@@ -36,6 +40,9 @@ pub(crate) struct Alive {
 pub struct Manners {
     /// How often to say that it is alive, in milliseconds.
     pub(crate) tick_every: u64,
+    /// The server's version.
+    #[serde(default)]
+    pub(crate) version: String,
 }
 
 /// Whether the lease still holds.
@@ -63,7 +70,6 @@ pub(crate) struct Renewal {
 
 /// Why a try came to nothing.
 #[derive(Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 pub(crate) struct JobFault {
     pub(crate) lease: Lease,
     #[schema(max_length = 2000)]
@@ -72,7 +78,6 @@ pub(crate) struct JobFault {
 
 /// A result.
 #[derive(Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 pub(crate) struct Finished {
     pub(crate) lease: Lease,
     pub(crate) outcome: Outcome,

@@ -2,6 +2,7 @@
 use super::{
     App, NewSecret,
     identity::{self, Link, NewToken, TokenInfo, Way},
+    members::PEOPLE,
     view::{self, Account, Course, Entry, Event, Queue},
 };
 use crate::{
@@ -48,6 +49,24 @@ impl Admin {
         self.note(&mut transaction, "course", &format!("{slug} ({title})")).await?;
         transaction.commit().await?;
         Ok(Course { slug: slug.to_owned(), title: title.to_owned() })
+    }
+
+    /// Accounts whose login or name has these words, behind the one of this login: a page of them, and whether there
+    /// are more.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn accounts_page(&self, words: &str, after: &str) -> Result<(Vec<Account>, bool), Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        let statement = "SELECT id, login, name, is_admin FROM account WHERE disabled_at IS NULL AND login > ?
+               AND ({strpos}(lower(login || ' ' || name), ?) > 0 OR {strpos}(name, ?) > 0)
+            ORDER BY login LIMIT ?";
+        let (words, most) = (words.trim(), PEOPLE + 1);
+        let values = values![after, words.to_lowercase(), words, most];
+        let mut accounts: Vec<Account> = transaction.all(statement, values).await?;
+        let has_more = accounts.len() as i64 == most;
+        accounts.truncate(PEOPLE as usize);
+        Ok((accounts, has_more))
     }
 
     /// All accounts.
@@ -177,7 +196,8 @@ impl App {
         }
         let statement = "SELECT id FROM account WHERE login = 'admin' AND is_admin = 1";
         let account = transaction.one(statement, values![]).await?.int("id")?;
-        let link = identity::new_link(&mut transaction, account, None, Way::Own).await?;
+        // Another server that starts at the same time printed one, too.
+        let link = identity::further_link(&mut transaction, account, None, Way::Own).await?;
         transaction.commit().await?;
         Ok(Some(link))
     }

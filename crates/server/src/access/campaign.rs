@@ -88,7 +88,8 @@ async fn step(database: &Database, wanted: Option<i64>) -> Result<Step, Problem>
         FROM campaign WHERE doing IS NOT NULL AND (id = ? OR ? = 0) ORDER BY id LIMIT 1 {skip locked}";
     let row = transaction.row(statement, values![wanted, wanted]).await?;
     let Some(row) = row else { return Ok(Step::Busy) };
-    let statement = "SELECT id, slug, title, visible, settings, published_at, course FROM assignment WHERE id = ?";
+    let statement =
+        "SELECT id, slug, title, visible, settings, published_at, revision, course FROM assignment WHERE id = ?";
     let of = transaction.one(statement, values![row.int("assignment")?]).await?;
     let campaign = Campaign {
         id: row.int("id")?,
@@ -244,7 +245,8 @@ async fn undo(transaction: &mut Transaction, campaign: &Campaign) -> Result<(), 
 
 async fn undone(transaction: &mut Transaction, campaign: &Campaign) -> Result<(), DbError> {
     // Unless somebody set others meanwhile.
-    let statement = "UPDATE assignment SET settings = (SELECT settings_before FROM campaign WHERE id = ?)
+    let statement =
+        "UPDATE assignment SET settings = (SELECT settings_before FROM campaign WHERE id = ?), revision = revision + 1
         WHERE id = ? AND settings = (SELECT settings FROM campaign WHERE id = ? AND settings_before IS NOT NULL)";
     transaction.execute(statement, values![campaign.id, campaign.assignment.id, campaign.id]).await?;
     decided(transaction, campaign, "discarded", "taken back").await

@@ -75,8 +75,8 @@ impl Person {
                 courses,
             });
         };
-        let statement =
-            "SELECT id, slug, title, visible, settings, published_at FROM assignment WHERE course = ? ORDER BY id";
+        let statement = "SELECT id, slug, title, visible, settings, published_at, revision FROM assignment
+            WHERE course = ? ORDER BY id";
         let assignments = transaction.all(statement, values![place.course]).await?;
         Ok(Choice::Assignment {
             course: Course { slug: place.slug, title: place.title },
@@ -138,8 +138,8 @@ impl Person {
         let statement = "SELECT account FROM member WHERE course = ? AND account = ? AND role = 'staff'";
         let staff = transaction.row(statement, values![place.course, self.account.id]).await?;
         ensure(staff.is_some(), Problem::not_allowed("this is for the course's staff"))?;
-        let statement =
-            "SELECT id, slug, title, visible, settings, published_at FROM assignment WHERE course = ? AND slug = ?";
+        let statement = "SELECT id, slug, title, visible, settings, published_at, revision FROM assignment
+                WHERE course = ? AND slug = ?";
         let found: Option<Assignment> = transaction.find(statement, values![place.course, slug]).await?;
         let assignment = found.ok_or_else(|| Problem::not_found("assignment"))?;
         let arrival = &pending.arrival;

@@ -118,6 +118,11 @@ async fn count(database: &Database, policy: &QueuePolicy) -> Result<(Metrics, Ve
     metrics.scores.push(("done".to_owned(), row.int("sent")?));
     (metrics.paused, metrics.oldest, metrics.suspicions) =
         (row.int("paused")?, row.int("oldest")?.max(0), row.int("suspicions")?);
+    let statement =
+        "SELECT CAST(coalesce(sum(bytes), 0) AS {int}) AS bytes, CAST(coalesce(max(bytes), 0) AS {int}) AS most
+        FROM (SELECT sum(bytes) AS bytes FROM kept_bytes GROUP BY course) AS of_courses";
+    let row = transaction.one(statement, values![]).await?;
+    metrics.kept = [row.int("bytes")?, row.int("most")?];
     let recent = health::recent(policy);
     let statement =
         "SELECT count(*) AS n, CAST(coalesce(sum(slots), 0) AS {int}) AS slots, count(aside_since) AS aside,

@@ -14,6 +14,9 @@ use utoipa::ToSchema;
 /// How long a session lasts after it was last seen.
 const SESSION: i64 = 14 * 24 * 3600 * 1000;
 
+/// The most sessions of an account: the oldest ends when another one begins.
+const SESSIONS: i64 = 50;
+
 /// How long a link that signs in is good for.
 const LINK: i64 = 7 * 24 * 3600 * 1000;
 
@@ -164,6 +167,9 @@ pub(super) async fn begin_session(transaction: &mut Transaction, account: i64, w
     let statement = "INSERT INTO session (digest, account, created_at, seen_at, expires_at, vouched, token)
         VALUES (?, ?, {now}, {now}, {now} + ?, ?, ?)";
     transaction.execute(statement, values![secret.digest(), account, SESSION, way == Way::Vouched, token]).await?;
+    let statement = "DELETE FROM session WHERE account = ? AND digest NOT IN
+        (SELECT digest FROM session WHERE account = ? ORDER BY created_at DESC, seen_at DESC LIMIT ?)";
+    transaction.execute(statement, values![account, account, SESSIONS]).await?;
     Ok(secret)
 }
 
@@ -180,8 +186,18 @@ pub(super) async fn new_link(
     by: Option<i64>,
     way: Way,
 ) -> Result<NewSecret, DbError> {
-    let secret = NewSecret::new("");
     transaction.execute("DELETE FROM sign_in_link WHERE account = ? AND used_at IS NULL", values![account]).await?;
+    further_link(transaction, account, by, way).await
+}
+
+/// The same beside earlier ones.
+pub(super) async fn further_link(
+    transaction: &mut Transaction,
+    account: i64,
+    by: Option<i64>,
+    way: Way,
+) -> Result<NewSecret, DbError> {
+    let secret = NewSecret::new("");
     let statement = "INSERT INTO sign_in_link (digest, account, created_by, created_at, expires_at, vouched)
         VALUES (?, ?, ?, {now}, {now} + ?, ?)";
     transaction.execute(statement, values![secret.digest(), account, by, LINK, way == Way::Vouched]).await?;
@@ -265,8 +281,11 @@ pub(super) async fn new_token(
 }
 
 /// Whether a character has no look of its own, or turns the letters around it.
-fn is_control(c: char) -> bool {
-    c.is_control() || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+pub(super) fn is_control(c: char) -> bool {
+    c.is_control()
+        || matches!(c, '\u{ad}' | '\u{115f}' | '\u{1160}' | '\u{180e}' | '\u{200b}'..='\u{200f}'
+            | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{3164}' | '\u{feff}' | '\u{ffa0}'
+            | '\u{e0000}'..='\u{e0fff}')
 }
 
 /// A name that people gave to something: shown in pages, logs and tables.
@@ -274,7 +293,7 @@ pub(super) fn check_title(what: &str, text: &str) -> Result<(), Problem> {
     let length = text.chars().count();
     if !(1..=200).contains(&length) || text.chars().any(is_control) || text.trim() != text {
         return Err(Problem::invalid(format!(
-            "{what} is 1 to 200 characters long, without control characters and spaces at its ends"
+            "{what} is 1 to 200 characters long, without invisible characters and spaces at its ends"
         )));
     }
     Ok(())

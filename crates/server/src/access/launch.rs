@@ -3,14 +3,18 @@
 use super::{
     App, NewSecret, Visitor,
     identity::{self, Way},
+    throttle,
     view::{self, Entry},
 };
 use crate::{
     db::{DbError, FromRow, Transaction, from_row},
     lti::{Arrival, LtiPerson, LtiRole, Message, Platform, Refused, score},
     problem::{Problem, ensure},
+    secret::{hex, random_hex},
     values,
 };
+use base64::{Engine, prelude::BASE64_URL_SAFE_NO_PAD as URL_SAFE_NO_PAD};
+use ring::hmac;
 use serde::Deserialize;
 use std::time::Instant;
 use url::Url;
@@ -21,7 +25,7 @@ const LOGIN: i64 = 10 * 60 * 1000;
 /// How long staff may take to choose.
 const CHOICE: i64 = 3600 * 1000;
 
-/// Sign-ins that one platform may begin in a minute: everybody can say that they come from it.
+/// Sign-ins from one platform that an address may begin in a minute: a lecture hall may be one address.
 const LOGINS: u32 = 3000;
 
 /// The words of a platform about somebody who wants to come (LTI 4.1, SEC 5.1.1.1).
@@ -100,20 +104,28 @@ impl Visitor {
         }
     }
 
-    /// Begins a sign-in: remembers what is asked, and says where to ask it.
+    /// Begins a sign-in, and says where to ask for it. What is to be known again is signed, and stands nowhere: anybody
+    /// may begin as many as they like.
     ///
     /// # Errors
     /// When there are too many, or the database does not answer.
     pub async fn begin_login(&self, platform: &Platform, request: &LoginRequest) -> Result<LoginAnswer, Problem> {
-        // Accounts have numbers above zero.
-        if !self.app.0.throttle.pass(-platform.id, LOGINS, Instant::now()) {
-            return Err(Problem::too_many("too many people come from this platform at this moment"));
+        let bucket = throttle::bucket(self.secrets.address, &platform.name);
+        if !self.app.0.throttle.pass(bucket, LOGINS, Instant::now()) {
+            return Err(Problem::too_many("too many people come from your address at this moment"));
         }
-        let (state, nonce) = (NewSecret::new(""), NewSecret::new(""));
         // One word for several windows of a browser.
         let is_word = |word: &String| word.len() == 64 && word.bytes().all(|c| c.is_ascii_hexdigit());
         let known = self.secrets.browser.clone().filter(is_word);
         let browser = known.unwrap_or_else(|| NewSecret::new("").reveal().to_owned());
+        let key = self.app.signing_key().await?;
+        let mut transaction = self.app.0.database.read().await?;
+        let now = transaction.one("SELECT {now} AS now", values![]).await?.int("now")?;
+        drop(transaction);
+        let state =
+            PendingLogin { platform: platform.id, expires_at: now + LOGIN, browser: identity::digest(&browser) };
+        let state = state.signed(&key);
+        let nonce = nonce(&key, &state);
         let settings = &platform.settings;
         let mut address = Url::parse(&settings.login_url).map_err(|_| Problem::fault())?;
         address
@@ -125,20 +137,11 @@ impl Visitor {
             .append_pair("client_id", &settings.client_id)
             .append_pair("redirect_uri", &self.app.launch_address())
             .append_pair("login_hint", &request.login_hint)
-            .append_pair("state", state.reveal())
-            .append_pair("nonce", nonce.reveal());
+            .append_pair("state", &state)
+            .append_pair("nonce", &nonce);
         if let Some(hint) = &request.lti_message_hint {
             address.query_pairs_mut().append_pair("lti_message_hint", hint);
         }
-        let mut transaction = self.app.0.database.begin().await?;
-        let expired = "DELETE FROM platform_login
-            WHERE state IN (SELECT state FROM platform_login WHERE expires_at < {now} {skip locked})";
-        transaction.execute(expired, values![]).await?;
-        let statement =
-            "INSERT INTO platform_login (state, nonce, browser, platform, expires_at) VALUES (?, ?, ?, ?, {now} + ?)";
-        let values = values![state.digest(), nonce.digest(), identity::digest(&browser), platform.id, LOGIN];
-        transaction.execute(statement, values).await?;
-        transaction.commit().await?;
         Ok(LoginAnswer { address: address.into(), browser })
     }
 
@@ -147,42 +150,93 @@ impl Visitor {
     /// # Errors
     /// When the answer is none of ours, none of the platform's, or nobody may come by it.
     pub async fn launch(&self, state: &str, token: &str) -> Result<Launched, Problem> {
-        let (platform, nonce) = self.use_login(state).await?;
+        let key = self.app.signing_key().await?;
+        let (login, platform) = self.login(&key, state).await?;
+        let nonce = identity::digest(&nonce(&key, state));
         let message = self.app.lti.receive(&platform, token, &nonce).await?;
         let Some(role) = message.person.role else {
             return Err(Problem::refused_launch("the platform says that you neither learn nor teach in this course"));
         };
         let mut transaction = self.app.0.database.begin().await?;
+        let expired = "DELETE FROM platform_login
+            WHERE state IN (SELECT state FROM platform_login WHERE expires_at < {now} {skip locked})";
+        transaction.execute(expired, values![]).await?;
+        let statement = "INSERT INTO platform_login (state, expires_at) VALUES (?, ?) ON CONFLICT (state) DO NOTHING";
+        let used = transaction.execute(statement, values![identity::digest(state), login.expires_at]).await?;
+        ensure(used > 0, unknown_login())?;
         let launched = arrive(&mut transaction, &platform, &message, role).await?;
         self.app.0.notifier.commit(transaction).await?;
         Ok(launched)
     }
 
-    /// Uses up a sign-in: which platform was asked, and the digest of the nonce.
-    async fn use_login(&self, state: &str) -> Result<(Platform, String), Problem> {
-        let unknown = || Problem::refused_launch("this sign-in is unknown, used, or was begun too long ago");
+    /// The sign-in that this browser began, and the platform that was asked.
+    async fn login(&self, key: &hmac::Key, state: &str) -> Result<(PendingLogin, Platform), Problem> {
+        let login = PendingLogin::read(key, state).ok_or_else(unknown_login)?;
         let mut transaction = self.app.0.database.read().await?;
-        let statement =
-            "SELECT platform_login.browser, platform_login.nonce, platform.id, platform.name, platform.settings
-            FROM platform_login
-            JOIN platform ON platform.id = platform_login.platform AND platform.disabled_at IS NULL
-            WHERE platform_login.state = ? AND platform_login.expires_at > {now}";
-        let row = transaction.row(statement, values![identity::digest(state)]).await?;
-        drop(transaction);
-        let row = row.ok_or_else(unknown)?;
+        let statement = "SELECT id, name, settings FROM platform
+            WHERE id = ? AND disabled_at IS NULL AND CAST(? AS {int}) > {now}
+               AND NOT EXISTS (SELECT 1 FROM platform_login WHERE state = ?)";
+        let values = values![login.platform, login.expires_at, identity::digest(state)];
+        let platform = transaction.find(statement, values).await?.ok_or_else(unknown_login)?;
         let Some(browser) = &self.secrets.browser else {
             return Err(Problem::refused_launch("your browser did not send the cookie of this sign-in"));
         };
         // Begun in another browser: somebody wants to sign this one in as somebody else.
-        if row.text("browser")? != identity::digest(browser) {
+        if login.browser != identity::digest(browser) {
             return Err(Problem::refused_launch("this sign-in was begun in another browser"));
         }
-        let mut transaction = self.app.0.database.begin().await?;
-        let used =
-            transaction.execute("DELETE FROM platform_login WHERE state = ?", values![identity::digest(state)]).await?;
-        transaction.commit().await?;
-        ensure(used > 0, unknown())?;
-        Ok((Platform::from_row(&row)?, row.text("nonce")?))
+        Ok((login, platform))
+    }
+}
+
+fn unknown_login() -> Problem {
+    Problem::refused_launch("this sign-in is unknown, used, or was begun too long ago")
+}
+
+/// A sign-in that a platform was asked for: answered once, by the same browser, and soon.
+struct PendingLogin {
+    platform: i64,
+    expires_at: i64,
+    /// The digest of the browser's word.
+    browser: String,
+}
+
+impl PendingLogin {
+    /// As the platform sends it back, in words that nobody else can make.
+    fn signed(&self, key: &hmac::Key) -> String {
+        let Self { platform, expires_at, browser } = self;
+        let words = format!("{platform}.{expires_at}.{browser}.{}", random_hex());
+        format!("{words}.{}", URL_SAFE_NO_PAD.encode(hmac::sign(key, words.as_bytes())))
+    }
+
+    fn read(key: &hmac::Key, state: &str) -> Option<Self> {
+        let (words, tag) = state.rsplit_once('.')?;
+        hmac::verify(key, words.as_bytes(), &URL_SAFE_NO_PAD.decode(tag).ok()?).ok()?;
+        let mut words = words.split('.');
+        let (platform, expires_at) = (words.next()?.parse().ok()?, words.next()?.parse().ok()?);
+        Some(Self { platform, expires_at, browser: words.next()?.to_owned() })
+    }
+}
+
+/// The word by which the platform's answer to a sign-in is known.
+fn nonce(key: &hmac::Key, state: &str) -> String {
+    hex(hmac::sign(key, format!("nonce {state}").as_bytes()).as_ref())
+}
+
+impl App {
+    /// The key by which the service knows again what it signed: the same for all servers of a database.
+    async fn signing_key(&self) -> Result<hmac::Key, Problem> {
+        let found = self.0.signing_key.get_or_try_init(async || {
+            let mut transaction = self.0.database.begin().await?;
+            let statement =
+                "INSERT INTO server_secret (name, value) VALUES ('signing', ?) ON CONFLICT (name) DO NOTHING";
+            transaction.execute(statement, values![NewSecret::new("").reveal()]).await?;
+            let statement = "SELECT value FROM server_secret WHERE name = 'signing'";
+            let value = transaction.one(statement, values![]).await?.text("value")?;
+            transaction.commit().await?;
+            Ok::<_, DbError>(value)
+        });
+        Ok(hmac::Key::new(hmac::HMAC_SHA256, found.await?.as_bytes()))
     }
 }
 
@@ -363,7 +417,7 @@ pub(super) async fn find_or_make(
 
 /// A name as this service shows names.
 fn tidy(name: &str) -> String {
-    let plain: String = name.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    let plain: String = name.chars().map(|c| if identity::is_control(c) { ' ' } else { c }).collect();
     plain.trim().chars().take(200).collect::<String>().trim().to_owned()
 }
 

@@ -1,17 +1,25 @@
 //! The shares of one account, one course, and all together in the server: transfers at one time, and bytes that are
 //! kept.
 use super::{
-    Member,
+    Member, Throttle,
     key_limit::{KeyLimit, Permit},
+    turns::{ArchiveTurn, Turns},
 };
 use crate::{db::Transaction, problem::Problem, values};
 use std::{
     collections::HashMap,
     sync::{Arc, Mutex, PoisonError},
+    time::{Duration, Instant},
 };
 
 /// Up- and downloads of all accounts at one time: each takes a connection, a file and some 100 KiB.
 const TRANSFERS: usize = 3000;
+
+/// How long an upload waits for others of the same account.
+const TURN: Duration = Duration::from_secs(30);
+
+/// Archives of an account that may be refused in a minute.
+const REFUSED: u32 = 30;
 
 /// A mebibyte.
 const MIB: u64 = 1 << 20;
@@ -30,6 +38,8 @@ pub struct TransferLimits {
     by_account: KeyLimit<i64>,
     of_all: KeyLimit<()>,
     turns: Mutex<HashMap<i64, Arc<tokio::sync::Mutex<()>>>>,
+    archives: Turns,
+    refused: Throttle,
 }
 
 /// Leave to transfer something, until it is dropped.
@@ -57,13 +67,14 @@ impl TransferLimits {
     }
 
     /// Waits until nobody else hands in for an account by this server.
-    pub(super) async fn turn(&self, account: i64) -> tokio::sync::OwnedMutexGuard<()> {
+    pub(super) async fn turn(&self, account: i64) -> Result<tokio::sync::OwnedMutexGuard<()>, Problem> {
         let turn = {
             let mut turns = self.turns.lock().unwrap_or_else(PoisonError::into_inner);
             turns.retain(|_, turn| Arc::strong_count(turn) > 1);
             turns.entry(account).or_default().clone()
         };
-        turn.lock_owned().await
+        let turn = tokio::time::timeout(TURN, turn.lock_owned()).await;
+        turn.map_err(|_| Problem::unavailable("other uploads of yours are still being written"))
     }
 }
 
@@ -76,26 +87,86 @@ impl Member {
         self.app.limits.transfer(self.account.id)
     }
 
-    /// Whether this many more bytes may be kept.
-    pub(super) async fn check_quota(&self, transaction: &mut Transaction, size: u64) -> Result<(), Problem> {
+    /// Waits until an archive of theirs may be looked through, which counts as refused until it turns out to be right.
+    ///
+    /// # Errors
+    /// When too many wait, or too many of theirs were refused.
+    pub async fn archive_turn(&self) -> Result<ArchiveTurn, Problem> {
+        let turn = self.app.limits.archives.wait(self.account.id).await?;
+        if !self.app.limits.refused.pass(self.account.id, REFUSED, Instant::now()) {
+            return Err(Problem::too_many(format!("more than {REFUSED} archives of yours were refused in a minute")));
+        }
+        Ok(turn)
+    }
+
+    /// An archive was not refused.
+    pub fn archive_was_right(&self) {
+        self.app.limits.refused.put_back(self.account.id);
+    }
+
+    /// The bytes that are kept of this person, their course and the server, each with the most that may be.
+    async fn shares(&self, transaction: &mut Transaction) -> Result<[RoomShare; 3], Problem> {
         let limits = &self.app.limits;
         let statement =
             "SELECT CAST(coalesce((SELECT sum(bytes) FROM kept_bytes WHERE account = ?), 0) AS {int}) AS student,
-            CAST(coalesce((SELECT sum(bytes) FROM kept_bytes WHERE course = ?), 0) AS {int}) AS course";
-        let row = transaction.one(statement, values![self.account.id, self.course]).await?;
-        let kept = |column: &str| row.int(column).map(|bytes| u64::try_from(bytes).unwrap_or(0));
-        exceeds("all that you handed in, with its reports,", kept("student")?, size, limits.student)?;
-        exceeds("all that was handed in in this course, with its reports,", kept("course")?, size, limits.course)?;
-        if limits.server > 0 {
-            let statement = "SELECT CAST(coalesce(sum(bytes), 0) AS {int}) AS bytes FROM kept_bytes";
-            let kept = u64::try_from(transaction.one(statement, values![]).await?.int("bytes")?).unwrap_or(0);
-            exceeds("all that was handed in here, with its reports,", kept, size, limits.server)?;
-        }
-        Ok(())
+            CAST(coalesce((SELECT sum(bytes) FROM kept_bytes WHERE course = ?), 0) AS {int}) AS course,
+            CAST(coalesce((SELECT sum(bytes) FROM kept_bytes WHERE ? > 0), 0) AS {int}) AS server";
+        let server = i64::try_from(limits.server).unwrap_or(i64::MAX);
+        let row = transaction.one(statement, values![self.account.id, self.course, server]).await?;
+        let kept = |column: &str, most| {
+            row.int(column).map(|bytes| RoomShare { bytes: u64::try_from(bytes).unwrap_or(0), most })
+        };
+        Ok([kept("student", limits.student)?, kept("course", limits.course)?, kept("server", limits.server)?])
+    }
+
+    /// Returns sentences about the room for uploads: to staff about their course, and to everybody about a share that
+    /// is nearly full.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn told_of_kept(&self) -> Result<Vec<String>, Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        let [student, course, server] = self.shares(&mut transaction).await?;
+        let shares = [("you", student, false), ("this course", course, self.is_staff), ("this server", server, false)];
+        let told = shares.into_iter().filter(|(_, kept, always)| kept.is_nearly_all() || *always);
+        Ok(told.map(|(whose, kept, _)| kept.words(whose)).collect())
+    }
+
+    /// Whether this many more bytes may be kept.
+    pub(super) async fn check_quota(&self, transaction: &mut Transaction, size: u64) -> Result<(), Problem> {
+        let [student, course, server] = self.shares(transaction).await?;
+        exceeds("all that you handed in, with its reports,", student, size)?;
+        exceeds("all that was handed in in this course, with its reports,", course, size)?;
+        exceeds("all that was handed in here, with its reports,", server, size)
     }
 }
 
-fn exceeds(what: &str, kept: u64, size: u64, most: u64) -> Result<(), Problem> {
+/// Bytes that are kept, and the most that may be: 0 for any number.
+#[derive(Debug, Clone, Copy)]
+struct RoomShare {
+    bytes: u64,
+    most: u64,
+}
+
+impl RoomShare {
+    /// Whether four fifths of it are taken.
+    fn is_nearly_all(self) -> bool {
+        self.most > 0 && self.bytes >= self.most / 5 * 4
+    }
+
+    fn words(self, whose: &str) -> String {
+        let kept = format!("Uploads and reports kept of {whose}: {} MiB", self.bytes.div_ceil(MIB));
+        match self.most {
+            0 => kept + ".",
+            most if self.is_nearly_all() => {
+                format!("{kept} of {}. When all are taken nothing can be handed in: ask the administrator.", most / MIB)
+            }
+            most => format!("{kept} of {}.", most / MIB),
+        }
+    }
+}
+
+fn exceeds(what: &str, RoomShare { bytes: kept, most }: RoomShare, size: u64) -> Result<(), Problem> {
     if most == 0 || kept.saturating_add(size) <= most {
         return Ok(());
     }

@@ -67,8 +67,15 @@ impl Staff {
     /// Gives a submission other points than the grader, or the grader's again, and says why. That answers a request.
     ///
     /// # Errors
-    /// When there is no such submission, or these are no points.
-    pub async fn mark(&self, id: i64, points: Option<&str>, comment: &str) -> Result<Submission, Problem> {
+    /// When there is no such submission, these are no points, or somebody marked it since the mark of the moment that
+    /// was `seen`.
+    pub async fn mark(
+        &self,
+        id: i64,
+        points: Option<&str>,
+        comment: &str,
+        seen: Option<Option<i64>>,
+    ) -> Result<Submission, Problem> {
         check_words("a comment", comment, 0)?;
         if points.is_some() && comment.is_empty() {
             return Err(Problem::conflict("other points need a reason", "say it in the comment"));
@@ -82,7 +89,14 @@ impl Staff {
             return Err(Problem::invalid("points are a number between 0 and a million, such as 7.5"));
         }
         let mut transaction = self.begin().await?;
+        transaction.row("SELECT id FROM submission WHERE id = ? {for update}", values![id]).await?;
         let submission = self.find_submission(&mut transaction, id).await?;
+        let marked_at = submission.mark.as_ref().and_then(|mark| mark.marked_at);
+        if let Some(mark) = submission.mark.as_ref().filter(|_| seen.is_some_and(|seen| seen != marked_at)) {
+            let who = mark.by.as_deref().unwrap_or("somebody");
+            let detail = format!("{who} marked it meanwhile: {}", mark.comment);
+            return Err(Problem::conflict(detail, "load the page again, and mark it there"));
+        }
         if points.is_some() && submission.grade.is_none() {
             return Err(Problem::conflict("it is not graded yet", "wait for its grade"));
         }

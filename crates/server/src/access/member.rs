@@ -10,7 +10,7 @@ use crate::{
     store::{Artefact, Digest, Opened},
     task::OutputFile,
     values,
-    worker::STAFF_PAGE,
+    worker::{PUBLISHED_PAGE, STAFF_PAGE},
 };
 use futures_util::StreamExt;
 use std::ops::Range;
@@ -40,9 +40,16 @@ impl Member {
     /// When the database does not answer.
     pub async fn assignments(&self) -> Result<Vec<Assignment>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
-        let statement = "SELECT id, slug, title, visible, settings, published_at FROM assignment
+        let statement = "SELECT id, slug, title, visible, settings, published_at, revision FROM assignment
             WHERE course = ? AND (visible = 1 OR ? = 1) ORDER BY id";
-        Ok(transaction.all(statement, values![self.course, self.is_staff]).await?)
+        let assignments: Vec<Assignment> = transaction.all(statement, values![self.course, self.is_staff]).await?;
+        Ok(assignments.into_iter().map(|assignment| self.shown(assignment)).collect())
+    }
+
+    /// An assignment as they may see it: which suite of the course it is graded by is staff's to know.
+    fn shown(&self, mut assignment: Assignment) -> Assignment {
+        assignment.settings.suite_archive.take_if(|_| !self.is_staff);
+        assignment
     }
 
     /// One of them.
@@ -50,7 +57,7 @@ impl Member {
     /// # Errors
     /// When there is none.
     pub async fn assignment(&self, slug: &str) -> Result<Assignment, Problem> {
-        Ok(self.read_at(slug).await?.1)
+        Ok(self.shown(self.read_at(slug).await?.1))
     }
 
     /// A transaction that reads, and the assignment that it found.
@@ -65,7 +72,7 @@ impl Member {
         transaction: &mut Transaction,
         slug: &str,
     ) -> Result<Assignment, Problem> {
-        let statement = "SELECT id, slug, title, visible, settings, published_at FROM assignment
+        let statement = "SELECT id, slug, title, visible, settings, published_at, revision FROM assignment
             WHERE course = ? AND slug = ? AND (visible = 1 OR ? = 1)";
         let found = transaction.find(statement, values![self.course, slug, self.is_staff]).await?;
         found.ok_or_else(|| Problem::not_found("assignment"))
@@ -93,14 +100,19 @@ impl Member {
         Ok(submissions)
     }
 
-    /// Leaves out what students do not see: the page for staff, and before it is published what the suite hides.
+    /// Leaves out what the reader does not see: what is staff's, before it is published what the suite hides, and pages
+    /// that tell of another part of the grade than the points that the reader sees.
     async fn withhold(&self, submission: &mut Submission) -> Result<(), Problem> {
-        if let Some(grade) = submission.grade.as_mut().filter(|_| !self.is_staff) {
-            grade.outcome.files.retain(|file| file.name != STAFF_PAGE);
-        }
-        let Some(grade) = submission.grade.as_mut().filter(|_| !self.is_staff && !submission.is_published) else {
+        let Some(grade) = submission.grade.as_mut() else { return Ok(()) };
+        let files = &mut grade.outcome.files;
+        files.retain(|file| self.is_staff || file.name != STAFF_PAGE);
+        if self.is_staff || submission.is_published {
+            // The page without hidden groups.
+            if files.iter().any(|file| file.name == PUBLISHED_PAGE) {
+                files.retain(|file| file.name != SHOWN);
+            }
             return Ok(());
-        };
+        }
         // Of what older versions graded nobody has looked yet.
         let kept = match grade.outcome.shown.take() {
             Some(kept) => kept,
@@ -142,7 +154,7 @@ impl Member {
     pub async fn history(&self, id: i64) -> Result<Vec<History>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let submission = self.find_submission(&mut transaction, id).await?;
-        Ok(view::history(&mut transaction, id, submission.is_withheld).await?)
+        Ok(view::history(&mut transaction, id, submission.is_withheld, self.is_staff).await?)
     }
 
     /// One of the reports on it, to be opened.

@@ -34,6 +34,9 @@ pub struct MemberLinks {
     pub invitation: Option<String>,
 }
 
+/// People on a page.
+pub(super) const PEOPLE: i64 = 200;
+
 from_row! { MemberInfo { login, name, role, is_invited } }
 
 /// Whether these are names and a role.
@@ -56,6 +59,28 @@ impl Staff {
             JOIN account ON account.id = invitation.account WHERE invitation.course = ?
             ORDER BY 1, 4";
         Ok(transaction.all(statement, values![self.course, self.course]).await?)
+    }
+
+    /// Those whose login or name has these words, behind the one of this login: a page of them, and whether there are
+    /// more.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn members_page(&self, words: &str, after: &str) -> Result<(Vec<MemberInfo>, bool), Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        let statement = "SELECT login, name, role, is_invited FROM (
+               SELECT account.login, account.name, member.role, CAST(0 AS {int}) AS is_invited FROM member
+               JOIN account ON account.id = member.account WHERE member.course = ?
+               UNION ALL SELECT account.login, invitation.name, invitation.role, CAST(1 AS {int}) FROM invitation
+               JOIN account ON account.id = invitation.account WHERE invitation.course = ?) AS people
+            WHERE login > ? AND ({strpos}(lower(login || ' ' || name), ?) > 0 OR {strpos}(name, ?) > 0)
+            ORDER BY login, is_invited LIMIT ?";
+        let (words, most) = (words.trim(), PEOPLE + 1);
+        let values = values![self.course, self.course, after, words.to_lowercase(), words, most];
+        let mut people: Vec<MemberInfo> = transaction.all(statement, values).await?;
+        let has_more = people.len() as i64 == most;
+        people.truncate(PEOPLE as usize);
+        Ok((people, has_more))
     }
 
     /// Makes somebody a member, or changes what they are; makes the account when there is none, and a link for it that

@@ -29,10 +29,12 @@ mod removal;
 mod request;
 mod settings;
 mod staff;
+mod standings;
 mod submit;
 mod suites;
 mod suspicion;
 mod throttle;
+mod turns;
 mod view;
 mod visitor;
 
@@ -52,12 +54,13 @@ pub use member::Member;
 pub use members::{MemberInfo, MemberLinks};
 pub use password::Passwords;
 pub use person::{CourseOf, Person};
-pub use platform::{RosterRead, ScoreInfo};
+pub use platform::{RosterRead, RosterWish, ScoreInfo};
 pub use regrade::{Change, Doing, Regrade, RegradeState};
 pub use remote::Remote;
 pub use settings::Settings;
 pub(crate) use settings::{moment, moment_schema};
-pub use staff::{Staff, Standing};
+pub use staff::{AssignmentChange, Staff};
+pub use standings::{ShortStanding, Standing};
 pub use submit::{Accepted, Upload};
 pub use suites::{Suites, is_file_name};
 pub use suspicion::Suspicion;
@@ -73,7 +76,9 @@ use crate::{
     store::Store,
 };
 use axum_client_ip::ClientIpSource;
+use standings::SharedStandings;
 use std::{ops::Deref, path::PathBuf, sync::Arc, time::Duration};
+use tokio::sync::OnceCell;
 use tokio_util::sync::CancellationToken;
 
 /// The parts of the service. Those that hold data are for this room alone; the rest everybody may read.
@@ -93,6 +98,10 @@ struct Parts {
     storage: Storage,
     /// Counts requests by account.
     throttle: Throttle,
+    /// How classes stand, for many who ask at one time.
+    standings: SharedStandings,
+    /// Signs what is looked at again, and stands nowhere.
+    signing_key: OnceCell<String>,
     instruments: Instruments,
     options: Options,
 }
@@ -137,6 +146,7 @@ impl Deref for App {
 }
 
 pub use throttle::Throttle;
+pub use turns::ArchiveTurn;
 
 impl App {
     /// A app on this database and store.
@@ -150,7 +160,20 @@ impl App {
     ) -> Self {
         let storage = Storage::new(database.clone(), store.clone(), options.incoming.clone(), options.low_water);
         let (counts, throttle) = (Counts::default(), Throttle::default());
-        Self(Arc::new(Parts { database, store, notifier, policy, counts, storage, throttle, instruments, options }))
+        let (signing_key, standings) = (OnceCell::new(), SharedStandings::default());
+        Self(Arc::new(Parts {
+            database,
+            store,
+            notifier,
+            policy,
+            counts,
+            storage,
+            throttle,
+            standings,
+            signing_key,
+            instruments,
+            options,
+        }))
     }
 
     /// The server's counts about itself.

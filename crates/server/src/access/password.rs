@@ -7,6 +7,7 @@
 use super::{
     App, NewSecret, Person, Throttle, Visitor,
     identity::{self, Way},
+    throttle,
 };
 use crate::{
     problem::{Problem, ensure},
@@ -15,8 +16,7 @@ use crate::{
 };
 use argon2::{Algorithm, Argon2, Params, Version};
 use std::{
-    hash::{DefaultHasher, Hash, Hasher},
-    net::{IpAddr, Ipv6Addr},
+    net::IpAddr,
     time::{Duration, Instant},
 };
 use tokio::sync::Semaphore;
@@ -83,12 +83,7 @@ async fn in_turn<T: Send + 'static>(work: impl FnOnce() -> Result<T, Problem> + 
 impl Passwords {
     /// Counts a try to be somebody, also somebody who does not exist, until it turns out to be right.
     fn try_of(&self, address: Option<IpAddr>, login: &str) -> Result<Try<'_>, Problem> {
-        let network = address.map(network);
-        let bucket = |word: &str| {
-            let mut hasher = DefaultHasher::new();
-            (network, word).hash(&mut hasher);
-            hasher.finish().cast_signed()
-        };
+        let bucket = |word: &str| throttle::bucket(address, word);
         // No login is empty.
         let buckets = [(bucket(""), TRIES_OF_ADDRESS), (bucket(login), TRIES)];
         let now = Instant::now();
@@ -111,14 +106,6 @@ struct Try<'a> {
 impl Try<'_> {
     fn was_right(&self) {
         self.buckets.iter().for_each(|bucket| self.passwords.tries.put_back(*bucket));
-    }
-}
-
-/// The part of an address that belongs to one customer: of the newer addresses everybody has 2^64.
-fn network(address: IpAddr) -> IpAddr {
-    match address.to_canonical() {
-        IpAddr::V6(address) => Ipv6Addr::from_bits(address.to_bits() >> 64 << 64).into(),
-        address @ IpAddr::V4(_) => address,
     }
 }
 

@@ -60,8 +60,7 @@ impl Person {
     pub async fn courses(&self) -> Result<Vec<CourseOf>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let all: i64 = self.account.is_admin.into();
-        let statement =
-            "SELECT course.slug, course.title, coalesce(member.role, 'admin') AS role FROM course
+        let statement = "SELECT course.slug, course.title, coalesce(member.role, 'admin') AS role FROM course
             LEFT JOIN member ON member.course = course.id AND member.account = ?
             WHERE member.role IS NOT NULL OR ? = 1
             ORDER BY course.slug";

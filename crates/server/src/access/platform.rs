@@ -15,12 +15,27 @@ use std::collections::BTreeSet;
 use utoipa::ToSchema;
 
 /// The result of reading a roster.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, ToSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, ToSchema)]
 pub struct RosterRead {
     /// Members that the platforms told of.
     pub members: usize,
     /// Members who left.
     pub left: usize,
+    /// The logins of those who were no members before.
+    pub comes: Vec<String>,
+    /// The logins of those who left.
+    pub goes: Vec<String>,
+}
+
+/// The use that is to be made of a roster.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RosterWish {
+    /// Nothing: who would come and go.
+    Preview,
+    /// It counts, unless many would leave.
+    Apply,
+    /// It counts, also when many leave.
+    Confirmed,
 }
 
 /// A score that a platform was told of somebody's work.
@@ -137,11 +152,13 @@ impl Admin {
 
 impl Staff {
     /// Reads who is in the course from the platforms that it is connected with. Who is not told of any more leaves,
-    /// unless staff made them members; what they handed in stays.
+    /// unless staff made them members; what they handed in stays. The person who asks stays, and a list of nobody
+    /// changes nothing.
     ///
     /// # Errors
-    /// When no platform tells, or one does not answer; then nothing of what it tells changes.
-    pub async fn read_roster(&self) -> Result<RosterRead, Problem> {
+    /// When no platform tells, one does not answer, or more than a third would leave without a confirmation; then
+    /// nothing of what it tells changes.
+    pub async fn read_roster(&self, wish: RosterWish) -> Result<RosterRead, Problem> {
         let app = &self.app;
         let mut transaction = app.0.database.read().await?;
         let statement = "SELECT platform_course.id AS place, platform_course.memberships, platform.id, platform.name,
@@ -165,8 +182,11 @@ impl Staff {
                 tracing::warn!(platform = platform.name, %fault, "a roster can't be read");
                 Problem::platform_failed(format!("{}: {fault}", platform.name))
             })?;
-            let one = self.apply_roster(place, &platform, &told).await?;
-            read = RosterRead { members: read.members + one.members, left: read.left + one.left };
+            let one = self.apply_roster(place, &platform, &told, wish).await?;
+            read.members += one.members;
+            read.left += one.left;
+            read.comes.extend(one.comes);
+            read.goes.extend(one.goes);
         }
         Ok(read)
     }
@@ -176,9 +196,14 @@ impl Staff {
         place: i64,
         platform: &Platform,
         told: &[lti::LtiPerson],
+        wish: RosterWish,
     ) -> Result<RosterRead, Problem> {
         let course = self.course;
         let mut transaction = self.begin().await?;
+        let members = "SELECT account.login FROM member JOIN account ON account.id = member.account
+            WHERE member.course = ? ORDER BY account.login";
+        let logins = |rows: Vec<Row>| rows.iter().map(|row| row.text("login")).collect::<Result<BTreeSet<_>, _>>();
+        let before = logins(transaction.rows(members, values![course]).await?)?;
         let mut present = BTreeSet::new();
         for person in told {
             let Some(role) = person.role else { continue };
@@ -192,12 +217,15 @@ impl Staff {
             }
             enrol(&mut transaction, platform.id, place, course, account, role).await?;
         }
+        // An answer of nobody is a filter, or a fault.
+        if present.is_empty() {
+            return Ok(RosterRead::default());
+        }
         let statement = "SELECT account FROM platform_member WHERE platform_course = ? ORDER BY account";
         let known = transaction.rows(statement, values![place]).await?;
-        let mut left = 0;
         for row in &known {
             let account = row.int("account")?;
-            if present.contains(&account) {
+            if present.contains(&account) || account == self.account.id {
                 continue;
             }
             let statement = "DELETE FROM platform_member WHERE platform_course = ? AND account = ?";
@@ -206,14 +234,25 @@ impl Staff {
                 AND NOT EXISTS (SELECT 1 FROM platform_member
                     JOIN platform_course ON platform_course.id = platform_member.platform_course
                     WHERE platform_course.course = member.course AND platform_member.account = member.account)";
-            let gone = transaction.execute(statement, values![course, account, platform.id]).await?;
-            left += usize::from(gone > 0);
+            transaction.execute(statement, values![course, account, platform.id]).await?;
         }
-        let members = present.len();
+        let after = logins(transaction.rows(members, values![course]).await?)?;
+        let (comes, goes) = (&after - &before, &before - &after);
+        let (members, left) = (present.len(), goes.len());
+        let read = RosterRead { members, left, comes: comes.into_iter().collect(), goes: goes.into_iter().collect() };
+        if wish == RosterWish::Preview {
+            return Ok(read);
+        }
+        if wish == RosterWish::Apply && left * 3 > before.len() {
+            return Err(Problem::conflict(
+                format!("{left} of {} members would leave: {}", before.len(), read.goes.join(", ")),
+                "look at who comes and goes (preview), and confirm it (confirm)",
+            ));
+        }
         let text = format!("{members} members by {}, {left} left", platform.name);
         self.note(&mut transaction, "roster", None, &text).await?;
         transaction.commit().await?;
-        Ok(RosterRead { members, left })
+        Ok(read)
     }
 
     /// The messages to platforms about an assignment's scores.

@@ -111,15 +111,16 @@ macro_rules! regrades {
 }
 
 impl Staff {
-    /// Begins a regrade of all submissions to an assignment, by other settings if there are any.
+    /// Begins a regrade of all submissions to an assignment by settings.
     ///
     /// # Errors
     /// When another one is open.
-    pub async fn regrade(&self, slug: &str, reason: &str, settings: Option<&Settings>) -> Result<Regrade, Problem> {
+    pub async fn regrade(&self, slug: &str, reason: &str, settings: &Settings) -> Result<Regrade, Problem> {
         super::identity::check_title("a reason", reason)?;
         let assignment = self.assignment(slug).await?;
-        let settings = settings.unwrap_or(&assignment.settings).checked(&self.app.suites)?;
+        let settings = settings.checked(&self.app.suites)?;
         let mut transaction = self.begin().await?;
+        self.check_suite(&mut transaction, &settings).await?;
         transaction.one("SELECT id FROM assignment WHERE id = ? {for update}", values![assignment.id]).await?;
         let statement = "SELECT id FROM campaign WHERE assignment = ? AND state = 'open'";
         if transaction.row(statement, values![assignment.id]).await?.is_some() {
@@ -165,8 +166,8 @@ impl Staff {
         find(&mut transaction, &assignment, id, after.unwrap_or(0)).await
     }
 
-    /// Makes the results of a regrade count, and its settings the assignment's. Where the grader failed, the old grade
-    /// stays.
+    /// Makes the results of a regrade count, and its settings about grading the assignment's. Where the grader failed,
+    /// the old grade stays.
     ///
     /// # Errors
     /// When it is not finished; submissions that came in meanwhile are graded first, too.
@@ -200,11 +201,13 @@ impl Staff {
         let waiting = row.int("waiting")?;
         ensure(waiting == 0, Problem::conflict(format!("{waiting} submissions are not graded yet"), "wait"))?;
         // From now on submissions are graded by these settings; the grades of others change one after the other.
-        let statement =
-            "UPDATE campaign SET settings_before = (SELECT settings FROM assignment WHERE id = ?) WHERE id = ?";
-        transaction.execute(statement, values![assignment.id, id]).await?;
-        let statement = "UPDATE assignment SET settings = ? WHERE id = ?";
-        transaction.execute(statement, values![row.text("settings")?, assignment.id]).await?;
+        let before = "SELECT settings FROM assignment WHERE id = ? {for update}";
+        let before = transaction.one(before, values![assignment.id]).await?.text("settings")?;
+        let settings = Settings::read(&before)?.graded_as(&Settings::read(&row.text("settings")?)?).text();
+        let statement = "UPDATE campaign SET settings_before = ?, settings = ? WHERE id = ?";
+        transaction.execute(statement, values![before, &settings, id]).await?;
+        let statement = "UPDATE assignment SET settings = ?, revision = revision + 1 WHERE id = ?";
+        transaction.execute(statement, values![settings, assignment.id]).await?;
         let statement = "UPDATE campaign SET doing = 'apply', decided_by = ?, cursor = 0, done = 0,
             total = (SELECT count(*) FROM result WHERE campaign = ?) WHERE id = ?";
         transaction.execute(statement, values![self.account.id, id, id]).await?;

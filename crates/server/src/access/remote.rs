@@ -71,15 +71,17 @@ impl Remote {
         Ok(self.source().claim(is_idle).await?)
     }
 
-    /// Says that it is alive, with this many slots, or why it can't grade.
+    /// Says that it is alive, with this many slots, or why it can't grade, and of which version it is.
     ///
     /// # Errors
     /// When the database does not answer.
-    pub async fn tick(&self, slots: usize, fault: Option<&str>) -> Result<Manners, Problem> {
+    pub async fn tick(&self, slots: usize, fault: Option<&str>, version: &str) -> Result<Manners, Problem> {
         let fault = fault.map(|fault| plain(fault, 2000));
-        self.source().tick(slots.min(MANY_SLOTS), fault.as_deref()).await?;
+        let source = self.source().with_version(plain(version, 60));
+        source.tick(slots.min(MANY_SLOTS), fault.as_deref()).await?;
         let tick_every = self.app.0.policy.tick_every().as_millis();
-        Ok(Manners { tick_every: u64::try_from(tick_every).unwrap_or(u64::MAX) })
+        let tick_every = u64::try_from(tick_every).unwrap_or(u64::MAX);
+        Ok(Manners { tick_every, version: env!("CARGO_PKG_VERSION").to_owned() })
     }
 
     /// Extends a lease, and keeps how far the grading is.

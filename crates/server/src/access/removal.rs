@@ -3,7 +3,7 @@
 //! a job that runs meanwhile finds its lease gone, and ends without effect.
 use super::{Admin, Staff};
 use crate::{
-    db::{DbError, Transaction},
+    db::{Database, DbError, Transaction},
     lti::score,
     problem::{Problem, ensure},
     values,
@@ -26,6 +26,13 @@ const PARTS: [&str; 11] = [
     "DELETE FROM event WHERE submission IN (SELECT CAST(wanted.value AS {int}) FROM {each})",
     "DELETE FROM submission WHERE id IN (SELECT CAST(wanted.value AS {int}) FROM {each})",
 ];
+
+/// The first of them: others write between two batches.
+const SOME_OF_ASSIGNMENT: &str = "SELECT id FROM submission WHERE assignment = ? ORDER BY id LIMIT 500";
+const SOME_OF_COURSE: &str =
+    "SELECT id FROM submission WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)
+    ORDER BY id LIMIT 500";
+const SOME_OF_PERSON: &str = "SELECT id FROM submission WHERE account = ? ORDER BY id LIMIT 500";
 
 const OF_ASSIGNMENT: &str = "SELECT id FROM submission WHERE assignment = ?";
 const OF_COURSE: &str = "SELECT id FROM submission WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)";
@@ -57,6 +64,18 @@ async fn remove_submissions(transaction: &mut Transaction, which: &'static str, 
     Ok(())
 }
 
+/// Removes submissions batch by batch, until a statement finds no more; the caller removes those that come meanwhile.
+async fn remove_in_batches(database: &Database, which: &'static str, value: i64) -> Result<(), DbError> {
+    loop {
+        let mut transaction = database.begin().await?;
+        if transaction.row(which, values![value]).await?.is_none() {
+            return Ok(());
+        }
+        remove_submissions(&mut transaction, which, value).await?;
+        transaction.commit().await?;
+    }
+}
+
 async fn run(transaction: &mut Transaction, statements: &[&'static str], id: i64) -> Result<(), DbError> {
     for statement in statements {
         transaction.execute(statement, values![id]).await?;
@@ -86,8 +105,9 @@ impl Staff {
     /// # Errors
     /// When there is no such assignment.
     pub async fn remove_assignment(&self, slug: &str) -> Result<(), Problem> {
+        let assignment = self.assignment(slug).await?;
+        remove_in_batches(&self.app.0.database, SOME_OF_ASSIGNMENT, assignment.id).await?;
         let mut transaction = self.begin().await?;
-        let assignment = self.find_assignment(&mut transaction, slug).await?;
         cancel_jobs(&mut transaction, OF_ASSIGNMENT, assignment.id).await?;
         // From here on nobody hands in.
         transaction.rows("SELECT id FROM assignment WHERE id = ? {for removal}", values![assignment.id]).await?;
@@ -119,8 +139,11 @@ impl Admin {
     /// # Errors
     /// When there is no such course.
     pub async fn remove_course(&self, slug: &str) -> Result<(), Problem> {
-        let mut transaction = self.app.0.database.begin().await?;
+        let mut transaction = self.app.0.database.read().await?;
         let course = self.course(&mut transaction, slug).await?;
+        drop(transaction);
+        remove_in_batches(&self.app.0.database, SOME_OF_COURSE, course).await?;
+        let mut transaction = self.app.0.database.begin().await?;
         cancel_jobs(&mut transaction, OF_COURSE, course).await?;
         transaction.rows("SELECT id FROM course WHERE id = ? {for removal}", values![course]).await?;
         transaction.rows("SELECT id FROM assignment WHERE course = ? {for removal}", values![course]).await?;
@@ -136,6 +159,7 @@ impl Admin {
             "DELETE FROM campaign WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)",
             "DELETE FROM suspicion WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)",
             "DELETE FROM assignment WHERE course = ?",
+            "DELETE FROM suite WHERE course = ?",
             "DELETE FROM kept_bytes WHERE course = ?",
             "DELETE FROM invitation WHERE course = ?",
             "DELETE FROM member WHERE course = ?",
@@ -155,10 +179,13 @@ impl Admin {
     /// When there is no such account, or it is one's own.
     pub async fn remove_person(&self, login: &str) -> Result<(), Problem> {
         ensure(login != self.account.login, Problem::own_account())?;
-        let mut transaction = self.app.0.database.begin().await?;
+        let mut transaction = self.app.0.database.read().await?;
         let row = transaction.row("SELECT id FROM account WHERE login = ?", values![login]).await?;
+        drop(transaction);
         let Some(row) = row else { return Err(Problem::not_found("account")) };
         let account = row.int("id")?;
+        remove_in_batches(&self.app.0.database, SOME_OF_PERSON, account).await?;
+        let mut transaction = self.app.0.database.begin().await?;
         cancel_jobs(&mut transaction, OF_PERSON, account).await?;
         transaction.rows("SELECT id FROM account WHERE id = ? {for removal}", values![account]).await?;
         remove_submissions(&mut transaction, OF_PERSON, account).await?;

@@ -8,6 +8,7 @@ use crate::{
     store::Digest,
     task::{Form, Input, Suite, Task},
 };
+use chrono_tz::Tz;
 use serde::{Deserialize, Deserializer, Serialize, de::Error};
 use serde_json::{Map, Value};
 use std::{collections::BTreeSet, ops::RangeInclusive};
@@ -65,7 +66,15 @@ pub struct Settings {
     /// How many percent of the grader's points a submission loses for each day that has begun after it was due.
     #[schema(maximum = 100)]
     pub late_percent: u32,
+    /// The time zone by whose calendar late days end, such as `Europe/Berlin`; without it each has 24 hours.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<String>, pattern = "^[A-Za-z][A-Za-z0-9/_+-]*$", max_length = 60)]
+    pub time_zone: Option<Tz>,
 }
+
+/// Settings that always say something.
+const ALWAYS: [&str; 9] =
+    ["suite", "forms", "program", "seconds", "max_bytes", "attempts", "per_hour", "late_days", "late_percent"];
 
 /// Reads a moment: a number, or a date.
 pub(crate) fn moment<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<i64>, D::Error> {
@@ -92,7 +101,8 @@ pub(crate) fn moment_schema() -> Schema {
     let date = ObjectBuilder::new().schema_type(Type::String).format(Some(date));
     let words = "No uploads of students after this moment: milliseconds since 1970, or a date with its time zone.";
     let [early, late] = calendar::PLAUSIBLE;
-    OneOfBuilder::new().item(number(early)).item(number(late)).item(date).description(Some(words)).into()
+    let null = ObjectBuilder::new().schema_type(Type::Null);
+    OneOfBuilder::new().item(number(early)).item(number(late)).item(date).item(null).description(Some(words)).into()
 }
 
 impl Default for Settings {
@@ -111,6 +121,7 @@ impl Default for Settings {
             due_at: None,
             late_days: 0,
             late_percent: 0,
+            time_zone: None,
         }
     }
 }
@@ -142,6 +153,34 @@ impl Settings {
             (_, Some(value)) => format!("{name} {value}"),
         };
         names.into_iter().filter(|name| new.get(*name) != old.get(*name)).map(words).collect::<Vec<_>>().join(", ")
+    }
+
+    /// The same with other fields; those that are null are taken away.
+    ///
+    /// # Errors
+    /// When a field is unknown, or of another kind.
+    pub fn with(&self, changes: &Map<String, Value>) -> Result<Self, Problem> {
+        let Ok(Value::Object(mut fields)) = serde_json::to_value(self) else { return Err(Problem::fault()) };
+        // A suite that is named is meant, and no other.
+        if changes.contains_key("suite") {
+            fields.remove("suite_archive");
+        }
+        for (name, value) in changes {
+            match value {
+                Value::Null if ALWAYS.contains(&name.as_str()) => {
+                    return Err(Problem::invalid(format!("{name} must not be null")));
+                }
+                Value::Null => drop(fields.remove(name)),
+                value => drop(fields.insert(name.clone(), value.clone())),
+            }
+        }
+        serde_json::from_value(Value::Object(fields)).map_err(|error| Problem::invalid(error.to_string()))
+    }
+
+    /// The same, graded as by others.
+    pub(super) fn graded_as(&self, other: &Self) -> Self {
+        let Self { suite, suite_archive, rules, hints, program, seconds, .. } = other.clone();
+        Self { suite, suite_archive, rules, hints, program, seconds, ..self.clone() }
     }
 
     /// As the database keeps them.
@@ -191,9 +230,9 @@ impl Settings {
     }
 
     /// Their part about being late.
-    pub(super) fn late_policy(&self) -> LatePolicy {
-        let Self { due_at, late_days, late_percent, .. } = *self;
-        LatePolicy { due_at, late_days, late_percent }
+    pub(crate) fn late_policy(&self) -> LatePolicy {
+        let Self { due_at, late_days, late_percent, time_zone, .. } = *self;
+        LatePolicy { due_at, late_days, late_percent, time_zone }
     }
 
     /// Whether a form of this name may be handed in.

@@ -6,33 +6,42 @@ use super::{
 use crate::{
     db::{DbError, FromRow, Transaction},
     lti::score,
-    problem::Problem,
+    problem::{Problem, ensure},
     values,
 };
-use serde::Serialize;
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    ops::Deref,
-    path::Path,
-};
-use utoipa::ToSchema;
+use std::{ops::Deref, path::Path};
 
 /// Somebody of a course's staff.
 pub struct Staff(pub(super) Member);
 
-/// How a student stands in an assignment.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
-pub struct Standing {
-    /// The name of their account.
-    pub login: String,
-    /// Their name.
-    pub name: String,
-    /// How often they handed in.
-    pub submissions: usize,
-    /// The submission that counts: the one with the most points, the later one of equals; the last one while none has
-    /// points.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub counts: Option<Submission>,
+/// A change of an assignment; parts that are not named stay as they are.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct AssignmentChange<'a> {
+    /// Its title.
+    pub title: Option<&'a str>,
+    /// Whether students see it.
+    pub visible: Option<bool>,
+    /// The revision that the change is of: it is refused when there is a later one.
+    pub revision: Option<i64>,
+    /// The digest of a suite that was just uploaded, and whether it hides groups.
+    pub suite: Option<(&'a str, bool)>,
+}
+
+/// Refuses a change of what somebody else changed meanwhile, and says who, and what.
+async fn check_revision(
+    transaction: &mut Transaction,
+    assignment: &Assignment,
+    revision: Option<i64>,
+) -> Result<(), Problem> {
+    if revision.is_none_or(|revision| revision == assignment.revision) {
+        return Ok(());
+    }
+    let statement = "SELECT account.login, event.text FROM event LEFT JOIN account ON account.id = event.actor
+        WHERE event.assignment = ? AND event.kind IN ('assignment', 'regrade') ORDER BY event.id DESC LIMIT 1";
+    let last = transaction.row(statement, values![assignment.id]).await?;
+    let last = last.map(|row| Ok::<_, DbError>((row.maybe_text("login")?.unwrap_or_default(), row.text("text")?)));
+    let (who, what) = last.transpose()?.unwrap_or_default();
+    Err(Problem::conflict(format!("{who} changed it meanwhile: {what}"), "load the page again, and change it there"))
 }
 
 impl Deref for Staff {
@@ -59,51 +68,41 @@ impl Staff {
     /// were published: they are withheld.
     ///
     /// # Errors
-    /// When something in it makes no sense.
+    /// When something in it makes no sense, or somebody changed it since `revision`.
     pub async fn set_assignment(
         &self,
         slug: &str,
-        title: &str,
-        visible: Option<bool>,
-        settings: Option<&Settings>,
-    ) -> Result<Assignment, Problem> {
-        self.change_assignment(slug, title, visible, settings, true).await
-    }
-
-    /// The same; another suite is known to hide groups or not to.
-    async fn change_assignment(
-        &self,
-        slug: &str,
-        title: &str,
-        visible: Option<bool>,
-        settings: Option<&Settings>,
-        hides: bool,
+        change: AssignmentChange<'_>,
+        settings: impl FnOnce(&Settings) -> Result<Settings, Problem>,
     ) -> Result<Assignment, Problem> {
         identity::check_slug("an assignment's name", slug)?;
-        identity::check_title("a title", title)?;
         let mut transaction = self.app.0.database.begin().await?;
-        let statement = "SELECT visible, settings, published_at FROM assignment WHERE course = ? AND slug = ?";
-        let before = transaction.row(statement, values![self.course, slug]).await?;
-        let was_visible = before.as_ref().map(|row| row.flag("visible")).transpose()?;
-        let was_published = before.as_ref().map(|row| row.maybe_int("published_at")).transpose()?.flatten().is_some();
-        let visible = visible.or(was_visible).unwrap_or_default();
-        let before = before.map(|row| row.text("settings")).transpose()?;
-        let before = before.and_then(|text| Settings::read(&text).ok()).unwrap_or_default();
-        let settings = settings.unwrap_or(&before).checked(&self.app.suites)?;
-        if let Some(digest) = settings.suite_archive.as_ref().and_then(|digest| digest.parse().ok())
-            && !self.app.0.store.has(&digest).await?
-        {
-            return Err(Problem::conflict(
-                "suite_archive: nothing of this digest was uploaded",
-                "upload the archive first",
-            ));
+        let statement = "SELECT id, slug, title, visible, settings, published_at, revision FROM assignment
+            WHERE course = ? AND slug = ? {for update}";
+        let before: Option<Assignment> = transaction.find(statement, values![self.course, slug]).await?;
+        if let Some(before) = &before {
+            check_revision(&mut transaction, before, change.revision).await?;
         }
+        let title = change.title.or(before.as_ref().map(|before| before.title.as_str())).unwrap_or(slug);
+        identity::check_title("a title", title)?;
+        let was_published = before.as_ref().is_some_and(|before| before.published_at.is_some());
+        let visible = change.visible.or(before.as_ref().map(|before| before.visible)).unwrap_or_default();
+        let before = before.as_ref().map(|before| before.settings.clone()).unwrap_or_default();
+        let settings = settings(&before)?.checked(&self.app.suites)?;
+        if let Some((digest, _)) = change.suite {
+            let statement = "INSERT INTO suite (course, digest) VALUES (?, ?) ON CONFLICT (course, digest) DO NOTHING";
+            transaction.execute(statement, values![self.course, digest]).await?;
+        }
+        self.check_suite(&mut transaction, &settings).await?;
         let statement = "INSERT INTO assignment (course, slug, title, visible, settings, created_at)
             VALUES (?, ?, ?, ?, ?, {now})
             ON CONFLICT (course, slug) DO UPDATE SET title = excluded.title, visible = excluded.visible,
-               settings = excluded.settings, published_at = CASE WHEN ? = 0 THEN assignment.published_at END
-            RETURNING id, slug, title, visible, settings, published_at";
+               settings = excluded.settings, revision = assignment.revision + 1,
+               published_at = CASE WHEN ? = 0 THEN assignment.published_at END
+            RETURNING id, slug, title, visible, settings, published_at, revision";
         let is_same_suite = (&before.suite, &before.suite_archive) == (&settings.suite, &settings.suite_archive);
+        // Another suite is known to hide groups or not to, or may.
+        let hides = change.suite.is_none_or(|(_, hides)| hides);
         let withholds = was_published && hides && !is_same_suite;
         let values = values![self.course, slug, title, visible, settings.text(), withholds];
         let assignment = Assignment::from_row(&transaction.one(statement, values).await?)?;
@@ -129,6 +128,21 @@ impl Staff {
         Ok(assignment)
     }
 
+    /// Whether settings name a suite of this course, if they name an archive: a digest opens nothing.
+    pub(super) async fn check_suite(&self, transaction: &mut Transaction, settings: &Settings) -> Result<(), Problem> {
+        let Some(digest) = &settings.suite_archive else { return Ok(()) };
+        let statement = "SELECT digest FROM suite WHERE course = ? AND digest = ?";
+        let known = transaction.row(statement, values![self.course, digest]).await?.is_some();
+        let kept = match digest.parse() {
+            Ok(digest) if known => self.app.0.store.has(&digest).await?,
+            _ => false,
+        };
+        ensure(
+            kept,
+            Problem::conflict("suite_archive: no suite of this digest was uploaded to this course", "upload it"),
+        )
+    }
+
     /// Shows students what the suite hides, or withholds it again; platforms are told what is shown.
     ///
     /// # Errors
@@ -136,8 +150,9 @@ impl Staff {
     pub async fn publish(&self, slug: &str, published: bool) -> Result<Assignment, Problem> {
         let mut transaction = self.begin().await?;
         let assignment = self.find_assignment(&mut transaction, slug).await?;
-        let statement = "UPDATE assignment SET published_at = CASE WHEN ? = 1 THEN {now} END WHERE id = ?
-            RETURNING id, slug, title, visible, settings, published_at";
+        let statement =
+            "UPDATE assignment SET published_at = CASE WHEN ? = 1 THEN {now} END, revision = revision + 1 WHERE id = ?
+            RETURNING id, slug, title, visible, settings, published_at, revision";
         let row = transaction.one(statement, values![published, assignment.id]).await?;
         let text = format!("hidden groups of {slug} are {}", if published { "published" } else { "withheld" });
         self.note(&mut transaction, "assignment", Some(assignment.id), &text).await?;
@@ -149,12 +164,19 @@ impl Staff {
     /// Stores an archive with a suite and makes it the assignment's. Submissions from now on are graded by it.
     ///
     /// # Errors
-    /// When there is no such assignment, or the store fails.
-    pub async fn set_suite(&self, slug: &str, archive: &Path, hides: bool) -> Result<Assignment, Problem> {
-        let assignment = self.assignment(slug).await?;
-        let artefact = self.app.0.store.put_file(archive).await?;
-        let settings = Settings { suite_archive: Some(artefact.digest.to_string()), ..assignment.settings };
-        self.change_assignment(slug, &assignment.title, None, Some(&settings), hides).await
+    /// When there is no such assignment, somebody changed it since `revision`, or the store fails.
+    pub async fn set_suite(
+        &self,
+        slug: &str,
+        archive: &Path,
+        hides: bool,
+        revision: Option<i64>,
+    ) -> Result<Assignment, Problem> {
+        self.assignment(slug).await?;
+        let digest = self.app.0.store.put_file(archive).await?.digest.to_string();
+        let change = AssignmentChange { revision, suite: Some((&digest, hides)), ..AssignmentChange::default() };
+        let settings = |before: &Settings| Ok(Settings { suite_archive: Some(digest.clone()), ..before.clone() });
+        self.set_assignment(slug, change, settings).await
     }
 
     /// Whether something that was handed in to an assignment was graded by a suite that hides groups.
@@ -168,49 +190,6 @@ impl Staff {
             WHERE submission.assignment = ? AND coalesce(result.shown, 'unknown') <> '' AND result.code <> 'JE'
             LIMIT 1";
         Ok(transaction.row(statement, values![assignment.id]).await?.is_some())
-    }
-
-    /// How all students stand in an assignment.
-    ///
-    /// # Errors
-    /// When there is no such assignment.
-    pub async fn standings(&self, assignment: &str) -> Result<Vec<Standing>, Problem> {
-        let (mut transaction, assignment) = self.read_at(assignment).await?;
-        let statement = "SELECT account.login, account.name, member.role FROM member
-            JOIN account ON account.id = member.account WHERE member.course = ?";
-        let rows = transaction.rows(statement, values![self.course]).await?;
-        let (mut standings, mut others) = (BTreeMap::new(), BTreeSet::new());
-        let empty = |login: String, name: String| Standing { login, name, submissions: 0, counts: None };
-        for row in rows {
-            let (login, name) = (row.text("login")?, row.text("name")?);
-            if row.text("role")? == "student" {
-                standings.insert(login.clone(), empty(login, name));
-            } else {
-                others.insert(login);
-            }
-        }
-        let points = |submission: &Submission| {
-            let points = submission.grade.as_ref()?.points.as_ref()?;
-            points.parse::<f64>().ok()
-        };
-        let mut after = 0;
-        loop {
-            let page = view::submissions_after(&mut transaction, assignment.id, after).await?;
-            let Some(last) = page.last() else { break };
-            after = last.id;
-            // Staff tries assignments, too.
-            for submission in page.into_iter().filter(|one| !others.contains(&one.login)) {
-                let standing = standings
-                    .entry(submission.login.clone())
-                    .or_insert_with(|| empty(submission.login.clone(), submission.name.clone()));
-                standing.submissions += 1;
-                let best = standing.counts.as_ref().and_then(points);
-                if best.is_none() || points(&submission) >= best {
-                    standing.counts = Some(submission);
-                }
-            }
-        }
-        Ok(standings.into_values().collect())
     }
 
     /// Submissions to an assignment of the course behind the one of this number, oldest first: a page of them, none

@@ -13,7 +13,7 @@ use crate::{
     task::{Form, Input},
     values,
 };
-use std::path::Path;
+use std::{path::Path, time::Instant};
 
 const MINUTE: i64 = 60 * 1000;
 const HOUR: i64 = 60 * MINUTE;
@@ -29,6 +29,8 @@ pub struct Upload<'a> {
     pub file: &'a Path,
     /// The sender's name for this upload: sent twice, it is one submission.
     pub key: Option<&'a str>,
+    /// When its request came, by the database's clock: what counts for due dates and limits.
+    pub came_at: i64,
 }
 
 /// The outcome.
@@ -47,14 +49,14 @@ impl Member {
     /// When the assignment does not take it (any more), or the server can't. Then nothing was handed in, or the same
     /// key finds it.
     pub async fn submit(&self, assignment: &str, upload: &Upload<'_>) -> Result<Accepted, Problem> {
-        let assignment = self.assignment(assignment).await?;
+        let (_, assignment) = self.read_at(assignment).await?;
         if !assignment.settings.takes(upload.form) {
             let (taken, found) = (assignment.settings.taken(), upload.form.words());
             return Err(Problem::unusable(format!("this assignment takes {taken}; the file is {found}")));
         }
         // Anybody who sends several at once has them looked at one after another, so that nothing is stored of one that
         // the one before leaves no room for.
-        let _turn = self.app.limits.turn(self.account.id).await;
+        let _turn = self.app.limits.turn(self.account.id).await?;
         // Nothing is stored of an upload that is refused, or was stored before.
         let artefact = digest_of_file(upload.file).await?;
         let mut transaction = self.app.0.database.read().await?;
@@ -74,24 +76,33 @@ impl Member {
         Ok(Accepted { submission: self.submission(submission).await?, repeated: false })
     }
 
-    /// Whether an upload may be handed in, by what is said of it, before its bytes come: what is refused later would
-    /// have come for nothing.
+    /// When an upload came whose request is known since then, by the database's clock; and whether it may be handed in,
+    /// by its key and size where it announces them: what is refused later would have come for nothing.
     ///
     /// # Errors
     /// When it may not.
-    pub async fn check_announced(&self, assignment: &str, key: Option<&str>, size: Option<u64>) -> Result<(), Problem> {
+    pub async fn check_announced(
+        &self,
+        assignment: &str,
+        announced: Option<(Option<&str>, u64)>,
+        since: Instant,
+    ) -> Result<i64, Problem> {
         let (mut transaction, assignment) = self.read_at(assignment).await?;
+        let now = transaction.one("SELECT {now} AS now", values![]).await?.int("now")?;
+        let came_at = now - queue::millis(since.elapsed());
+        let Some((key, size)) = announced else { return Ok(came_at) };
         if let Some(key) = key {
             let statement = "SELECT word FROM upload_key WHERE account = ? AND word = ?";
             // It may have been handed in before.
             if transaction.row(statement, values![self.account.id, key]).await?.is_some() {
-                return Ok(());
+                return Ok(came_at);
             }
         }
         if !self.is_staff {
-            self.check_limits(&mut transaction, &assignment).await?;
+            self.check_limits(&mut transaction, &assignment, came_at).await?;
         }
-        self.check_quota(&mut transaction, size.unwrap_or(0)).await
+        self.check_quota(&mut transaction, size).await?;
+        Ok(came_at)
     }
 
     /// The submission that this upload was before, or nothing where it may become one.
@@ -108,7 +119,7 @@ impl Member {
             return Ok(Some(submission));
         }
         if !self.is_staff {
-            self.check_limits(transaction, assignment).await?;
+            self.check_limits(transaction, assignment, upload.came_at).await?;
         }
         self.check_quota(transaction, artefact.size).await?;
         Ok(None)
@@ -133,22 +144,25 @@ impl Member {
         Ok(Some(self.find_submission(transaction, row.int("submission")?).await?))
     }
 
-    async fn check_limits(&self, transaction: &mut Transaction, assignment: &Assignment) -> Result<(), Problem> {
+    async fn check_limits(
+        &self,
+        transaction: &mut Transaction,
+        assignment: &Assignment,
+        came_at: i64,
+    ) -> Result<(), Problem> {
         let settings = &assignment.settings;
         // A failure of the grader costs nobody a try.
         let statement = "SELECT {now} AS now, count(*) AS n,
-               count(CASE WHEN submission.created_at > {now} - ? AND submission.created_at <= {now} THEN 1 END)
-                   AS recent,
-               min(CASE WHEN submission.created_at > {now} - ? THEN submission.created_at END) AS oldest
+               count(CASE WHEN submission.created_at > ? AND submission.created_at <= {now} THEN 1 END) AS recent,
+               min(CASE WHEN submission.created_at > ? THEN submission.created_at END) AS oldest
             FROM submission
             LEFT JOIN grade ON grade.submission = submission.id
             LEFT JOIN result ON result.id = grade.result
             WHERE submission.assignment = ? AND submission.account = ? AND coalesce(result.code, '') <> 'JE'";
-        let row = transaction.one(statement, values![HOUR, HOUR, assignment.id, self.account.id]).await?;
-        if mark::due(transaction, assignment, self.account.id)
-            .await?
-            .is_some_and(|due| row.int("now").is_ok_and(|now| now > settings.late_policy().closes_at(due)))
-        {
+        let row =
+            transaction.one(statement, values![came_at - HOUR, came_at - HOUR, assignment.id, self.account.id]).await?;
+        let due = mark::due(transaction, assignment, self.account.id).await?;
+        if due.is_some_and(|due| came_at > settings.late_policy().closes_at(due)) {
             return Err(Problem::conflict("the assignment was due before", "ask the course's staff"));
         }
         if settings.attempts > 0 && row.int("n")? >= settings.attempts.into() {
@@ -186,10 +200,11 @@ impl Member {
         let number = transaction.one(statement, values![assignment.id, self.account.id]).await?.int("number")?;
         let statement =
             "INSERT INTO submission (assignment, account, number, form, file_name, digest, size, created_at)
-            VALUES (?, ?, ?, ?, ?, ?, ?, {now}) RETURNING id";
+            VALUES (?, ?, ?, ?, ?, ?, ?, ?) RETURNING id";
         let (account, digest) = (self.account.id, artefact.digest.as_str());
         let size = i64::try_from(artefact.size).unwrap_or(i64::MAX);
-        let values = values![assignment.id, account, number, upload.form.name(), upload.name, digest, size];
+        let (form, came_at) = (upload.form.name(), upload.came_at);
+        let values = values![assignment.id, account, number, form, upload.name, digest, size, came_at];
         let submission = transaction.one(statement, values).await?.int("id")?;
         let (turn, payload) = (Turn::Student(account), &serde_json::to_string(&task).map_err(|_| Problem::fault())?);
         let job = NewJob { lane: Lane::Grading, submission: Some(submission), campaign: None, turn, payload };

@@ -1,7 +1,9 @@
 //! How many requests an account may make: a bucket of tokens for each that fills by itself. By account and not by
-//! address: a lecture hall behind one address is many people.
+//! address: a lecture hall behind one address is many people. Ways in are counted by address, of which one has many.
 use std::{
     collections::HashMap,
+    hash::{DefaultHasher, Hash, Hasher},
+    net::{IpAddr, Ipv6Addr},
     sync::{Mutex, PoisonError},
     time::Instant,
 };
@@ -38,6 +40,18 @@ impl Throttle {
             *level += 1.0;
         }
     }
+}
+
+/// The bucket of an address for something. Of the newer addresses everybody has 2^64: the network counts.
+pub(super) fn bucket(address: Option<IpAddr>, what: &str) -> i64 {
+    let network = address.map(|address| match address.to_canonical() {
+        IpAddr::V6(address) => Ipv6Addr::from_bits(address.to_bits() >> 64 << 64).into(),
+        address @ IpAddr::V4(_) => address,
+    });
+    let mut hasher = DefaultHasher::new();
+    (network, what).hash(&mut hasher);
+    // Accounts have numbers above zero.
+    -hasher.finish().cast_signed().saturating_abs()
 }
 
 #[cfg(test)]

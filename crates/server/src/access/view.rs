@@ -7,7 +7,7 @@ use crate::{
     queue::{self, Lane, Progress},
     shown::Shown,
     store::Artefact,
-    task::{Outcome, OutputFile, Task},
+    task::{Outcome, OutputFile, Suite, Task},
     values,
 };
 use serde::Serialize;
@@ -53,6 +53,8 @@ pub struct Assignment {
     /// Since when students see groups that the suite hides, in milliseconds since 1970.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub published_at: Option<i64>,
+    /// Counts its changes: a change that names an earlier one is refused.
+    pub revision: i64,
 }
 
 /// A submission, and its result.
@@ -188,7 +190,8 @@ pub struct History {
     pub grader: String,
     /// Rules, suite and upload in short.
     pub by_what: String,
-    /// The complete task, from which it can be graded again: rules, suite, digests.
+    /// The complete task, from which it can be graded again: rules, suite, digests. For staff.
+    #[serde(skip_serializing_if = "String::is_empty")]
     pub task: String,
 }
 
@@ -362,6 +365,12 @@ pub(super) async fn submissions_after(
     transaction.all(statement, values![assignment, after, PAGE]).await
 }
 
+/// Submissions of these numbers.
+pub(super) async fn submissions_named(transaction: &mut Transaction, ids: &[i64]) -> Result<Vec<Submission>, DbError> {
+    let statement = submissions!("submission.id IN (SELECT CAST(wanted.value AS {int}) FROM {each})");
+    transaction.all(statement, values![serde_json::to_string(ids).unwrap_or_default()]).await
+}
+
 /// A submission of a course with its place in the queue and its reports.
 pub(super) async fn submission(
     transaction: &mut Transaction,
@@ -394,11 +403,12 @@ pub(super) async fn submission(
     Ok(Some(submission))
 }
 
-/// How a grade came to be; with `withheld` as if there were no hidden groups.
+/// How a grade came to be; with `withheld` as if there were no hidden groups. Suites of the course are staff's to know.
 pub(super) async fn history(
     transaction: &mut Transaction,
     submission: i64,
     withheld: bool,
+    is_staff: bool,
 ) -> Result<Vec<History>, DbError> {
     let statement = "SELECT grade_change.changed_at, grade_change.reason, account.login, old.code AS old_code,
            old.points AS old_points, old.shown AS old_shown, new.shown AS new_shown, grade_change.old_result,
@@ -431,21 +441,25 @@ pub(super) async fn history(
             given = row.maybe_text("given")?;
         }
         Ok(read_row!(row => History {
-            changed_at, reason, by = "login", result, version, grader, task;
+            changed_at, reason, by = "login", result, version, grader;
             old_code,
             old_points,
             new_code,
             new_points: given.clone().or(new_points),
-            by_what: by_what(&row.text("task")?),
+            by_what: by_what(&row.text("task")?, is_staff),
+            task: if is_staff { row.text("task")? } else { String::new() },
         }))
     };
     rows.iter().map(read).collect()
 }
 
 /// A task in short: what it was graded by.
-fn by_what(task: &str) -> String {
+fn by_what(task: &str, is_staff: bool) -> String {
     let Ok(task) = serde_json::from_str::<Task>(task) else { return String::new() };
-    let suite = task.suite.short();
+    let suite = match task.suite {
+        Suite::Archive(_) if !is_staff => "of the course".to_owned(),
+        suite => suite.short(),
+    };
     let rules = task.rules.as_deref().unwrap_or("of the suite");
     format!("suite {suite}, rules {rules}, upload {}", task.submission.artefact.digest.short())
 }
@@ -453,7 +467,7 @@ fn by_what(task: &str) -> String {
 impl FromRow for Assignment {
     fn from_row(row: &Row) -> Result<Self, DbError> {
         let settings = Settings::read(&row.text("settings")?)?;
-        Ok(read_row!(row => Self { id, slug, title, visible, published_at; settings }))
+        Ok(read_row!(row => Self { id, slug, title, visible, published_at, revision; settings }))
     }
 }
 

@@ -36,6 +36,7 @@ pub(super) enum Command {
     Restore(Restore),
     Upgrade(Upgrade),
     Health(Health),
+    LookThrough(LookThrough),
     /// Prints the description of the API (OpenAPI).
     Openapi,
 }
@@ -108,7 +109,7 @@ pub(super) struct Serve {
     #[arg(long, value_name = "MIB", default_value_t = 4096)]
     pub(super) keep_of_person: u64,
     /// MiB of uploads and reports that are kept of a course; 0 for any number.
-    #[arg(long, value_name = "MIB", default_value_t = 200 * 1024)]
+    #[arg(long, value_name = "MIB", default_value_t = 1024 * 1024)]
     pub(super) keep_of_course: u64,
     /// MiB of uploads and reports that are kept in all; 0 for as many as there is room for.
     #[arg(long, value_name = "MIB", default_value_t = 0)]
@@ -202,6 +203,19 @@ pub(super) struct Health {
     /// The worker's data folder.
     #[arg(long, value_name = "DIR", default_value = "fosssim-data")]
     pub(super) data: PathBuf,
+}
+
+/// Looks through an upload; the server calls this for each archive.
+#[derive(Debug, Args)]
+#[command(hide = true)]
+pub(super) struct LookThrough {
+    #[arg(long)]
+    pub(super) form: Option<String>,
+    #[arg(long, default_value = "")]
+    pub(super) wanted: String,
+    #[arg(long)]
+    pub(super) into: Option<PathBuf>,
+    pub(super) file: PathBuf,
 }
 
 /// Grades what waits in the queue.

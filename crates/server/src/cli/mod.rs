@@ -7,6 +7,7 @@ mod folders;
 mod health;
 mod heartbeat;
 mod logging;
+mod look;
 mod serve;
 #[cfg(feature = "otel")]
 mod traces;
@@ -38,6 +39,10 @@ pub fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<u8> {
+    // Neither threads nor a log: it has little memory, and its answer is all that it says.
+    if let Command::LookThrough(arguments) = &arguments.command {
+        return look::run(arguments).map(|()| 0);
+    }
     let _traces = logging::begin(arguments.log_format);
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;
     runtime.block_on(async {
@@ -49,6 +54,7 @@ fn run(arguments: &Arguments) -> Result<u8> {
             Command::Restore(arguments) => return Ok(u8::from(!backup::restore(arguments).await?)),
             Command::Upgrade(arguments) => return Ok(u8::from(!upgrade::run(arguments).await?)),
             Command::Health(arguments) => return Ok(u8::from(!health::run(arguments))),
+            Command::LookThrough(_) => {}
             Command::Openapi => print!("{}", crate::web::openapi()),
         }
         Ok(0)

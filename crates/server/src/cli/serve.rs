@@ -106,7 +106,7 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
     greet(&app, [&local, &public], example, arguments.work.grader.as_deref()).await?;
     heartbeat::ready();
     let seen = database.clone();
-    tokio::spawn(heartbeat::beat(folders.data.clone(), async move || db::version(&seen).await.is_ok()));
+    tokio::spawn(heartbeat::beat(folders.data.clone(), async move || seen.is_well().await));
     let serving = net::serve(listener, web::router(app), stop.clone());
     match working {
         None => serving.await?,
@@ -209,10 +209,8 @@ async fn write_flawed_program(grader: Option<&Path>, program: &Path) -> Result<(
 async fn bring_up_to_date(database: &Database, folders: &ServiceFolders, address: &Address) -> Result<()> {
     let version = db::version(database).await?;
     if version > 0 && version < db::LATEST && matches!(address, Address::Sqlite(_)) {
-        std::fs::create_dir_all(folders.backups.clone())?;
-        let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |now| now.as_secs());
-        let copy = folders.backups.join(format!("version-{version}-{now}.db"));
-        database.copy_to(&copy).await.context("the backup before the tables change")?;
+        let copy = copy_before(database, &folders.backups, version).await;
+        let copy = copy.context("the backup before the tables change")?;
         tracing::info!(copy = %copy.display(), "the database was copied before its tables change");
     }
     let applied = db::migrate(database).await?;
@@ -220,6 +218,25 @@ async fn bring_up_to_date(database: &Database, folders: &ServiceFolders, address
         tracing::info!(version = db::LATEST, "the tables are up to date");
     }
     Ok(())
+}
+
+/// Copies a SQLite database into a new file, which has its name only when it is whole; what a killed server left of an
+/// earlier try goes.
+async fn copy_before(database: &Database, backups: &Path, version: i64) -> Result<PathBuf> {
+    std::fs::create_dir_all(backups)?;
+    for entry in std::fs::read_dir(backups)?.flatten() {
+        if entry.file_name().to_string_lossy().contains(".partial") {
+            std::fs::remove_file(entry.path())?;
+        }
+    }
+    let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |now| now.as_millis());
+    let copy = backups.join(format!("version-{version}-{now}.db"));
+    let partial = copy.with_extension("db.partial");
+    database.copy_to(&partial).await?;
+    std::fs::File::open(&partial)?.sync_all()?;
+    std::fs::rename(&partial, &copy)?;
+    std::fs::File::open(backups)?.sync_all()?;
+    Ok(copy)
 }
 
 /// Makes the folder of uploads, and removes what a dead server left behind in it.

@@ -48,7 +48,7 @@ pub(super) async fn run(arguments: &WorkerArguments) -> Result<()> {
     };
     heartbeat::ready();
     let seen = database.clone();
-    tokio::spawn(heartbeat::beat(local.folders.data.clone(), async move || db::version(&seen).await.is_ok()));
+    tokio::spawn(heartbeat::beat(local.folders.data.clone(), async move || seen.is_well().await));
     local.work(&arguments.work, arguments.slots, arguments.name.as_deref(), stop).await?;
     database.close().await;
     Ok(())

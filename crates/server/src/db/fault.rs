@@ -13,7 +13,7 @@ pub enum DbError {
     /// Something like it is there already; the statement's author knows what.
     #[error("it is there already: {0}")]
     Conflict(String),
-    /// The disk is full, a statement is wrong, a value is not what it should be.
+    /// A statement is wrong, a value is not what it should be.
     #[error("the database refused: {0}")]
     Other(String),
 }
@@ -37,13 +37,21 @@ impl From<sqlx::Error> for DbError {
                 if refusal.is_unique_violation() {
                     return Self::Conflict(text);
                 }
-                match refusal.code().as_deref() {
-                    // SQLite: BUSY and LOCKED with their extended codes.
-                    Some("5" | "6" | "261" | "262" | "517" | "773") => Self::Busy(text),
+                let code = refusal.code().unwrap_or_default();
+                // SQLite's codes are numbers, whose lower byte is the kind.
+                let kind = if code.len() < 5 { code.parse::<u32>().ok().map(|code| code & 0xff) } else { None };
+                match (kind, code.as_ref()) {
+                    // BUSY and LOCKED.
+                    (Some(5 | 6), _) => Self::Busy(text),
+                    // READONLY, IOERR, FULL, CANTOPEN.
+                    (Some(8 | 10 | 13 | 14), _) => Self::Unavailable(text),
                     // PostgreSQL: serialization failure, deadlock, lock not available.
-                    Some("40001" | "40P01" | "55P03") => Self::Busy(text),
-                    // PostgreSQL: connection lost, shutting down, starting up, too many connections.
-                    Some(code) if code.starts_with("08") || code.starts_with("57P") || code == "53300" => {
+                    (None, "40001" | "40P01" | "55P03") => Self::Busy(text),
+                    // Read-only, as while another server takes over; a statement that took too long.
+                    (None, "25006" | "57014") => Self::Unavailable(text),
+                    // Connection lost, shutting down, starting up; a full disk, no memory, too many connections; files
+                    // that can't be used; its own faults.
+                    (None, code) if ["08", "53", "57P", "58", "XX"].iter().any(|class| code.starts_with(class)) => {
                         Self::Unavailable(text)
                     }
                     _ => Self::Other(text),

@@ -6,7 +6,7 @@ use sha2::{Digest, Sha256};
 use thiserror::Error;
 
 /// Every change, oldest first. The number of a change is its place in this list, from 1.
-const MIGRATIONS: [(&str, &str); 18] = [
+const MIGRATIONS: [(&str, &str); 20] = [
     ("first tables", include_str!("migrations/0001_first_tables.sql")),
     ("people", include_str!("migrations/0002_people.sql")),
     ("answers", include_str!("migrations/0003_answers.sql")),
@@ -25,6 +25,8 @@ const MIGRATIONS: [(&str, &str); 18] = [
     ("progress", include_str!("migrations/0016_progress.sql")),
     ("failed scenes", include_str!("migrations/0017_failed_scenes.sql")),
     ("asked for", include_str!("migrations/0018_asked_for.sql")),
+    ("suites of courses", include_str!("migrations/0019_suites_of_courses.sql")),
+    ("server secret", include_str!("migrations/0020_server_secret.sql")),
 ];
 
 /// The version that this program works with.

@@ -18,7 +18,7 @@ pub use fault::DbError;
 pub use migrate::{LATEST, MigrateError, changes_after, migrate, version};
 pub(crate) use pooler::is_pooled;
 pub use transaction::Transaction;
-use transaction::{Inner, Turn};
+use transaction::{Faults, Inner, Turn};
 pub use value::{Column, FromRow, Row, Value};
 pub(crate) use value::{from_row, read_row};
 
@@ -30,7 +30,7 @@ use sqlx::{
 use std::{
     sync::{
         Arc,
-        atomic::{AtomicI64, AtomicU64, Ordering},
+        atomic::{AtomicBool, AtomicI64, AtomicU64, Ordering},
     },
     time::Duration,
 };
@@ -50,10 +50,11 @@ const FOR_THE_FIRST: u32 = 3;
 const BEGIN: &str = "BEGIN; SET LOCAL idle_in_transaction_session_timeout = '10s'; SET LOCAL lock_timeout = '20s'; \
                      SET LOCAL statement_timeout = '60s'";
 
-/// Whether a connection's last transaction has ended. One whose COMMIT and ROLLBACK both failed, as on a full disk,
-/// counts as open for ever and could begin no other; the pool closes it and opens a new one.
-fn has_ended(connection: &impl Connection) -> bool {
-    !connection.is_in_transaction()
+/// Whether a connection can be used again; else the pool closes it and opens a new one. One whose COMMIT and ROLLBACK
+/// both failed, as on a full disk, counts as in a transaction for ever and could begin no other. One from before the
+/// database last failed may lead to a server that is read-only now, or is none any more.
+fn is_good(connection: &impl Connection, faults: &Faults, age: Duration) -> bool {
+    !connection.is_in_transaction() && faults.trust(age)
 }
 
 /// How to reach a PostgreSQL. A pooler refuses start-up settings that it does not know.
@@ -71,6 +72,9 @@ pub(crate) fn postgres_options(url: &str) -> Result<PgConnectOptions, DbError> {
 pub struct Database {
     engine: Engine,
     waits: Arc<Waits>,
+    faults: Faults,
+    /// Whether a newer program has changed the tables: then nothing is written any more.
+    is_outdated: Arc<AtomicBool>,
     /// Of those who do not go first only this many use, or wait for, the connections.
     turns: Arc<Semaphore>,
     goes_first: bool,
@@ -129,6 +133,8 @@ impl Database {
             Address::Sqlite(_) => 1,
             Address::Postgres(_) => CONNECTIONS - FOR_THE_FIRST,
         };
+        let faults = Faults::default();
+        let good = faults.clone();
         let engine = match address {
             Address::Sqlite(file) => {
                 // FULL: a commit that was confirmed survives a power cut.
@@ -138,11 +144,16 @@ impl Database {
                     .journal_mode(SqliteJournalMode::Wal)
                     .synchronous(SqliteSynchronous::Full)
                     .foreign_keys(true)
+                    // Removed rows are overwritten.
+                    .pragma("secure_delete", "ON")
                     .busy_timeout(PATIENCE)
                     .disable_statement_logging();
                 let pool = |connections| {
+                    let good = good.clone();
                     SqlitePoolOptions::new()
-                        .before_acquire(|connection, _| Box::pin(std::future::ready(Ok(has_ended(connection)))))
+                        .before_acquire(move |connection, about| {
+                            Box::pin(std::future::ready(Ok(is_good(connection, &good, about.age))))
+                        })
                         .max_connections(connections)
                         .acquire_timeout(PATIENCE)
                         .idle_timeout(None)
@@ -154,7 +165,9 @@ impl Database {
             Address::Postgres(url) => {
                 let options = postgres_options(url)?;
                 let pool = PgPoolOptions::new()
-                    .before_acquire(|connection, _| Box::pin(std::future::ready(Ok(has_ended(connection)))))
+                    .before_acquire(move |connection, about| {
+                        Box::pin(std::future::ready(Ok(is_good(connection, &good, about.age))))
+                    })
                     .max_connections(CONNECTIONS)
                     .acquire_timeout(PATIENCE)
                     .connect_with(options.clone())
@@ -163,7 +176,7 @@ impl Database {
             }
         };
         let turns = Arc::new(Semaphore::new(turns as usize));
-        Ok(Self { engine, waits: Arc::default(), turns, goes_first: false })
+        Ok(Self { engine, waits: Arc::default(), faults, is_outdated: Arc::default(), turns, goes_first: false })
     }
 
     /// The same database, for those whom requests must not keep waiting: workers, whose leases run out. However many
@@ -196,6 +209,9 @@ impl Database {
     /// # Errors
     /// When the database can't be reached, or is busy for half a minute.
     pub async fn begin(&self) -> Result<Transaction, DbError> {
+        if self.is_outdated.load(Ordering::Relaxed) {
+            return Err(DbError::Unavailable("a newer program has changed its tables".to_owned()));
+        }
         match &self.engine {
             // A transaction that begins as a reader could not become the writer when another has written meanwhile.
             Engine::Sqlite { writer, .. } => {
@@ -203,6 +219,15 @@ impl Database {
             }
             Engine::Postgres { pool, .. } => self.waited(Inner::Postgres, || pool.begin_with(BEGIN), true).await,
         }
+    }
+
+    /// Whether the database answers; from when it has tables of a newer program on, nothing is written any more.
+    pub async fn is_well(&self) -> bool {
+        let version = version(self).await;
+        if version.as_ref().is_ok_and(|version| *version > LATEST) {
+            self.is_outdated.store(true, Ordering::Relaxed);
+        }
+        version.is_ok()
     }
 
     /// Begins a transaction that only reads, and sees one state of the database.
@@ -229,14 +254,14 @@ impl Database {
         let waiting = Waiting::begin(&self.waits.waiting);
         let begun = async {
             let turn = if in_turn { self.turn().await? } else { None };
-            Ok::<_, sqlx::Error>(Transaction::new(make(begin().await?), turn))
+            Ok::<_, sqlx::Error>(Transaction::new(make(begin().await?), self.faults.clone(), turn))
         }
         .await;
         drop(waiting);
         if matches!(begun, Err(sqlx::Error::PoolTimedOut)) {
             self.waits.timeouts.fetch_add(1, Ordering::Relaxed);
         }
-        Ok(begun?)
+        begun.map_err(|error| self.faults.note(error))
     }
 
     /// How its connections are used.

@@ -1,12 +1,43 @@
 //! A transaction, the only way to run statements.
 use super::{DbError, Dialect, FromRow, Row, Value, statement, value};
 use sqlx::{AssertSqlSafe, Postgres, Sqlite};
+use std::{
+    sync::{Arc, Mutex, PoisonError},
+    time::{Duration, Instant},
+};
 use tokio::sync::OwnedSemaphorePermit;
 
 /// A transaction. Dropped without [`commit`](Self::commit), nothing of it stands. Anybody who does not go first holds a
 /// turn as long as it lasts ([`Database::first`](super::Database::first)).
 #[derive(Debug)]
-pub struct Transaction(Inner, #[expect(dead_code, reason = "held, and given back with the transaction")] Turn);
+pub struct Transaction {
+    inner: Inner,
+    faults: Faults,
+    #[expect(dead_code, reason = "held, and given back with the transaction")]
+    turn: Turn,
+}
+
+/// When the database last failed in a way that may be its connections': those from before are thrown away.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Faults(Arc<Mutex<Option<Instant>>>);
+
+impl Faults {
+    /// Whether a connection of this age may be used.
+    pub(super) fn trust(&self, age: Duration) -> bool {
+        let last = *self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        last.is_none_or(|last| last.elapsed() > age)
+    }
+
+    /// Notes a failure. That all connections are in use is none of theirs.
+    pub(super) fn note(&self, error: sqlx::Error) -> DbError {
+        let is_of_pool = matches!(error, sqlx::Error::PoolTimedOut | sqlx::Error::PoolClosed);
+        let error = DbError::from(error);
+        if matches!(error, DbError::Unavailable(_)) && !is_of_pool {
+            *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(Instant::now());
+        }
+        error
+    }
+}
 
 /// A turn, where one was needed.
 pub(super) type Turn = Option<OwnedSemaphorePermit>;
@@ -32,13 +63,13 @@ macro_rules! query {
 }
 
 impl Transaction {
-    pub(super) fn new(inner: Inner, turn: Turn) -> Self {
-        Self(inner, turn)
+    pub(super) fn new(inner: Inner, faults: Faults, turn: Turn) -> Self {
+        Self { inner, faults, turn }
     }
 
     /// Which database it is.
     pub fn dialect(&self) -> Dialect {
-        match self.0 {
+        match self.inner {
             Inner::Sqlite(_) => Dialect::Sqlite,
             Inner::Postgres(_) => Dialect::Postgres,
         }
@@ -50,10 +81,15 @@ impl Transaction {
     /// An error of the database.
     pub async fn execute(&mut self, statement: &'static str, values: &[Value]) -> Result<u64, DbError> {
         let text = statement::text(statement, self.dialect());
-        Ok(match &mut self.0 {
-            Inner::Sqlite(inner) => query!(Sqlite, text, values).execute(&mut **inner).await?.rows_affected(),
-            Inner::Postgres(inner) => query!(Postgres, text, values).execute(&mut **inner).await?.rows_affected(),
-        })
+        let done = match &mut self.inner {
+            Inner::Sqlite(inner) => {
+                query!(Sqlite, text, values).execute(&mut **inner).await.map(|done| done.rows_affected())
+            }
+            Inner::Postgres(inner) => {
+                query!(Postgres, text, values).execute(&mut **inner).await.map(|done| done.rows_affected())
+            }
+        };
+        done.map_err(|error| self.faults.note(error))
     }
 
     /// Runs a statement and returns its rows.
@@ -62,16 +98,17 @@ impl Transaction {
     /// An error of the database.
     pub async fn rows(&mut self, statement: &'static str, values: &[Value]) -> Result<Vec<Row>, DbError> {
         let text = statement::text(statement, self.dialect());
-        Ok(match &mut self.0 {
+        let rows = match &mut self.inner {
             Inner::Sqlite(inner) => {
-                let rows = query!(Sqlite, text, values).fetch_all(&mut **inner).await?;
-                rows.into_iter().map(|row| Row(value::Inner::Sqlite(row))).collect()
+                let rows = query!(Sqlite, text, values).fetch_all(&mut **inner).await;
+                rows.map(|rows| rows.into_iter().map(|row| Row(value::Inner::Sqlite(row))).collect())
             }
             Inner::Postgres(inner) => {
-                let rows = query!(Postgres, text, values).fetch_all(&mut **inner).await?;
-                rows.into_iter().map(|row| Row(value::Inner::Postgres(row))).collect()
+                let rows = query!(Postgres, text, values).fetch_all(&mut **inner).await;
+                rows.map(|rows| rows.into_iter().map(|row| Row(value::Inner::Postgres(row))).collect())
             }
-        })
+        };
+        rows.map_err(|error| self.faults.note(error))
     }
 
     /// Runs a statement and reads its rows.
@@ -110,7 +147,7 @@ impl Transaction {
     pub(super) async fn script(&mut self, script: &str) -> Result<(), DbError> {
         let script = statement::parts(script, self.dialect());
         let text = AssertSqlSafe(statement::text(&script, self.dialect()));
-        match &mut self.0 {
+        match &mut self.inner {
             Inner::Sqlite(inner) => sqlx::raw_sql(text).execute(&mut **inner).await.map(|_| ())?,
             Inner::Postgres(inner) => sqlx::raw_sql(text).execute(&mut **inner).await.map(|_| ())?,
         }
@@ -122,10 +159,10 @@ impl Transaction {
     /// # Errors
     /// An error of the database.
     pub async fn commit(self) -> Result<(), DbError> {
-        match self.0 {
-            Inner::Sqlite(inner) => inner.commit().await?,
-            Inner::Postgres(inner) => inner.commit().await?,
-        }
-        Ok(())
+        let committed = match self.inner {
+            Inner::Sqlite(inner) => inner.commit().await,
+            Inner::Postgres(inner) => inner.commit().await,
+        };
+        committed.map_err(|error| self.faults.note(error))
     }
 }

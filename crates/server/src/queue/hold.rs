@@ -33,7 +33,6 @@ pub enum Failure {
 
 /// How far a grading is, in scenes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
 pub struct Progress {
     /// Scenes that have their verdict.
     #[schema(maximum = 1_000_000)]

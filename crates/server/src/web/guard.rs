@@ -1,5 +1,5 @@
 //! The rules for every request: where it may come from, what answers say to browsers, and what is logged.
-use super::who;
+use super::{input::Arrived, who};
 use crate::{access::App, problem::Problem};
 use axum::{
     extract::{MatchedPath, Request, State},
@@ -93,8 +93,9 @@ pub(super) async fn headers(State(app): State<App>, request: Request, next: Next
 }
 
 /// Notes and counts what was asked by the route, never by the address: addresses may hold secrets.
-pub(super) async fn log(State(app): State<App>, request: Request, next: Next) -> Response {
+pub(super) async fn log(State(app): State<App>, mut request: Request, next: Next) -> Response {
     let start = Instant::now();
+    request.extensions_mut().insert(Arrived(start));
     let in_flight = app.instruments().begin();
     let method = request.method().clone();
     let route = request.extensions().get::<MatchedPath>().map_or("none", MatchedPath::as_str).to_owned();

@@ -5,8 +5,9 @@ use axum::{
     http::{HeaderMap, Method, header, request::Parts},
 };
 use futures_util::StreamExt;
-use serde::{Deserialize, de::DeserializeOwned};
-use serde_json::Value;
+use serde::{Deserialize, Deserializer, de::DeserializeOwned};
+use serde_json::{Map, Value};
+use std::time::Instant;
 
 /// A body in JSON.
 pub(super) struct Body<T>(pub(super) T);
@@ -50,6 +51,10 @@ fn is_of_type(headers: &HeaderMap, wanted: &str) -> bool {
     value.split(';').next().is_some_and(|value| value.trim().eq_ignore_ascii_case(wanted))
 }
 
+/// When a request's head came.
+#[derive(Clone, Copy)]
+pub(super) struct Arrived(pub(super) Instant);
+
 /// Stands in a request once it is known who asks: more of its body may be read then.
 #[derive(Clone, Copy)]
 pub(super) struct SignedIn;
@@ -71,27 +76,35 @@ async fn bytes(request: Request, app: &App) -> Result<Vec<u8>, Problem> {
     tokio::time::timeout(app.patience, reading).await.map_err(|_| Problem::too_slow())?
 }
 
-/// Reads JSON in which whole numbers may be written as `7.0`, as some languages do: to JSON Schema, which describes the
-/// API, these are integers.
-fn with_whole_numbers<T: DeserializeOwned>(bytes: &[u8]) -> Option<T> {
-    fn mend(value: &mut Value) {
-        match value {
-            Value::Number(number) => {
-                let whole = number.as_f64().filter(|x| x.fract() == 0.0 && x.abs() < 9e15);
-                // Exact, below 2^53.
-                #[expect(clippy::cast_possible_truncation, reason = "whole and small")]
-                if let (false, Some(whole)) = (number.is_i64() || number.is_u64(), whole) {
-                    *value = Value::from(whole as i64);
-                }
+/// Makes whole numbers that are written as `7.0`, as some languages do, numbers without a point: to JSON Schema, which
+/// describes the API, these are integers.
+fn mend(value: &mut Value) {
+    match value {
+        Value::Number(number) => {
+            let whole = number.as_f64().filter(|x| x.fract() == 0.0 && x.abs() < 9e15);
+            // Exact, below 2^53.
+            #[expect(clippy::cast_possible_truncation, reason = "whole and small")]
+            if let (false, Some(whole)) = (number.is_i64() || number.is_u64(), whole) {
+                *value = Value::from(whole as i64);
             }
-            Value::Array(values) => values.iter_mut().for_each(mend),
-            Value::Object(fields) => fields.values_mut().for_each(mend),
-            _ => {}
         }
+        Value::Array(values) => values.iter_mut().for_each(mend),
+        Value::Object(fields) => fields.values_mut().for_each(mend),
+        _ => {}
     }
+}
+
+fn with_whole_numbers<T: DeserializeOwned>(bytes: &[u8]) -> Option<T> {
     let mut value = serde_json::from_slice(bytes).ok()?;
     mend(&mut value);
     serde_json::from_value(value).ok()
+}
+
+/// Reads the fields of an object whose kinds are looked at later.
+pub(super) fn whole_numbers<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Map<String, Value>, D::Error> {
+    let mut fields = Map::deserialize(deserializer)?;
+    fields.values_mut().for_each(mend);
+    Ok(fields)
 }
 
 impl<T: DeserializeOwned> FromRequest<App> for Body<T> {

@@ -5,13 +5,14 @@ mod description;
 mod download;
 mod guard;
 mod input;
+mod look;
 pub mod pages;
 mod refusal;
 mod status;
 mod upload;
 mod who;
 
-pub use upload::receive_form;
+pub use upload::{look_through, receive_form};
 
 use crate::access::App;
 use axum::{Extension, Router, extract::DefaultBodyLimit, middleware};

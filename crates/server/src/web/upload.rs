@@ -1,8 +1,8 @@
 //! Receiving files: as they come, into a file of the server's own, never whole in memory.
 use crate::{
-    access::{App, Settings, is_file_name},
+    access::{App, is_file_name},
     archive::{self, ArchiveLimits},
-    problem::{Problem, ensure},
+    problem::Problem,
     task::Form,
 };
 use axum::{
@@ -13,7 +13,6 @@ use axum::{
 use futures_util::{Stream, StreamExt};
 use std::{
     fmt::Display,
-    io::Read,
     path::Path,
     sync::{
         Arc,
@@ -27,8 +26,14 @@ use tokio::io::AsyncWriteExt;
 /// The longest that an upload may take, in pauses that a body may make.
 const PAUSES: u32 = 20;
 
-/// The bytes of a form beside its file: boundaries, names, short fields.
-const BESIDE: u64 = 256 * 1024;
+/// How long an upload of this size may take to count as come at its beginning: half a minute, and a second for each
+/// 32 KiB. So nobody begins one before the due date to write it later.
+pub(super) fn fair_time(size: u64) -> Duration {
+    Duration::from_secs(30 + size / (32 << 10))
+}
+
+/// The bytes of a form beside its file: boundaries, names, short fields, and what is read of a connection at one time.
+const BESIDE: u64 = 1024 * 1024;
 
 /// Counts what came of a form and was not taken by anybody: that lies in memory, and a form may be nothing else.
 #[derive(Clone, Default)]
@@ -228,56 +233,36 @@ pub(super) fn plain_name(name: &str) -> String {
     if is_file_name(plain) { plain.to_owned() } else { "submission".to_owned() }
 }
 
-/// A program, in words.
-const PROGRAM: &str = "a program for Linux (ELF, or a script that begins with #!)";
-
-/// Files that are looked into at one time: an archive may need some 100 MiB to be unpacked, and all of a processor.
-static LOOKING: tokio::sync::Semaphore = tokio::sync::Semaphore::const_new(2);
-
-/// The form of a file, and whether it can be that; a refusal names what the assignment takes.
-pub(super) async fn examine(file: &Path, said: Option<&str>, settings: &Settings) -> Result<Form, Problem> {
-    let wrong = || Problem::invalid("form is program, sources or traces");
-    let said = said.map(|name| Form::named(name).ok_or_else(wrong)).transpose()?;
-    let archives = [Form::Sources, Form::Traces].into_iter().filter(|form| settings.takes(*form));
-    let archives: Vec<&str> = archives.map(Form::name).collect();
-    let archives =
-        (!archives.is_empty()).then(|| format!("an archive of {} ({})", archives.join(" or "), archive::KNOWN));
-    let program = settings.takes(Form::Program).then(|| PROGRAM.to_owned());
-    let wanted: Vec<String> = program.into_iter().chain(archives).collect();
-    let (file, wanted) = (file.to_owned(), wanted.join(", or "));
-    let _looking = LOOKING.acquire().await.map_err(|_| Problem::fault())?;
-    tokio::task::spawn_blocking(move || examine_now(&file, said, &wanted)).await.map_err(|_| Problem::fault())?
+/// Whether a file that begins so is a program.
+pub(super) fn is_program(start: &[u8]) -> bool {
+    start.starts_with(b"\x7fELF") || start.starts_with(b"#!")
 }
 
-fn examine_now(file: &Path, said: Option<Form>, wanted: &str) -> Result<Form, Problem> {
-    let mut start = Vec::new();
-    std::fs::File::open(file)?.take(512).read_to_end(&mut start)?;
-    ensure(!start.is_empty(), Problem::unusable("the file is empty"))?;
-    let is_program = start.starts_with(b"\x7fELF") || start.starts_with(b"#!");
-    let found = archive::described(&start);
-    let form = said.unwrap_or(if is_program { Form::Program } else { Form::Sources });
-    match form {
-        Form::Program if !is_program => Err(Problem::unusable(format!("looked for {PROGRAM}, and found {found}"))),
-        Form::Program => Ok(form),
-        _ => match archive::look_through(file, ArchiveLimits::USUAL) {
-            Ok(files) if files.is_empty() => Err(Problem::unusable(
-                "looked for files in the archive, and found none, or only those that a file manager adds by itself",
-            )),
-            Ok(files) => {
-                let are_traces = files.iter().all(|file| file.extension().is_some_and(|extension| extension == "bin"));
-                match (said, are_traces) {
-                    (Some(Form::Traces), false) => Err(Problem::unusable(
-                        "an archive of traces holds files NAME.bin, one for each scene, and nothing else",
-                    )),
-                    (None, true) => Ok(Form::Traces),
-                    _ => Ok(form),
+/// The form of an archive, and whether it can be that. It runs in a process of its own ([`super::look`]).
+///
+/// # Errors
+/// Why it is refused.
+pub fn look_through(file: &Path, said: Option<&str>, wanted: &str) -> Result<Form, String> {
+    let said = said.and_then(Form::named);
+    match archive::look_through(file, ArchiveLimits::USUAL) {
+        Ok(files) if files.is_empty() => {
+            Err("looked for files in the archive, and found none, or only those that a file manager adds by itself"
+                .to_owned())
+        }
+        Ok(files) => {
+            let are_traces = files.iter().all(|file| file.extension().is_some_and(|extension| extension == "bin"));
+            match (said, are_traces) {
+                (Some(Form::Traces), false) => {
+                    Err("an archive of traces holds files NAME.bin, one for each scene, and nothing else".to_owned())
                 }
+                (None, true) => Ok(Form::Traces),
+                (said, _) => Ok(said.unwrap_or(Form::Sources)),
             }
-            Err(archive::ArchiveError::Unknown(found)) if said.is_none() => {
-                Err(Problem::unusable(format!("looked for {wanted}, and found {found}")))
-            }
-            Err(error) => Err(Problem::unusable(error.to_string())),
-        },
+        }
+        Err(archive::ArchiveError::Unknown(found)) if said.is_none() => {
+            Err(format!("looked for {wanted}, and found {found}"))
+        }
+        Err(error) => Err(error.to_string()),
     }
 }
 

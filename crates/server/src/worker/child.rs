@@ -26,6 +26,21 @@ pub(super) struct Child {
     end: watch::Receiver<Option<End>>,
 }
 
+/// Binds a command to this much memory and this many seconds of a processor; it dies with its owner.
+pub(crate) fn limit(command: &mut Command, memory: u64, seconds: u64) {
+    // SAFETY: these calls may be made between fork and exec.
+    unsafe {
+        command.pre_exec(move || {
+            libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGKILL);
+            for (what, most) in [(libc::RLIMIT_AS, memory), (libc::RLIMIT_CPU, seconds), (libc::RLIMIT_CORE, 0)] {
+                let limit = libc::rlimit { rlim_cur: most, rlim_max: most };
+                libc::setrlimit(what, &raw const limit);
+            }
+            Ok(())
+        });
+    }
+}
+
 impl Child {
     /// Starts a child without input.
     ///

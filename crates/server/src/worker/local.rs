@@ -28,6 +28,8 @@ pub struct LocalSource {
     subscription: Mutex<Subscription>,
     policy: QueuePolicy,
     worker: String,
+    /// The worker's version.
+    version: String,
     /// The token that the worker came by, if any.
     token: Option<i64>,
 }
@@ -35,7 +37,8 @@ pub struct LocalSource {
 impl Clone for LocalSource {
     fn clone(&self) -> Self {
         let (database, store, notifier) = (self.database.clone(), self.store.clone(), self.notifier.clone());
-        Self { token: self.token, ..Self::new(database, store, notifier, self.policy, self.worker.clone()) }
+        let (token, version) = (self.token, self.version.clone());
+        Self { token, version, ..Self::new(database, store, notifier, self.policy, self.worker.clone()) }
     }
 }
 
@@ -58,12 +61,26 @@ impl LocalSource {
     /// A source for the worker of this name.
     pub fn new(database: Database, store: Store, notifier: Notifier, policy: QueuePolicy, worker: String) -> Self {
         let subscription = Mutex::new(notifier.subscribe());
-        Self { database, store, notifier, subscription, policy, worker, token: None }
+        Self {
+            database,
+            store,
+            notifier,
+            subscription,
+            policy,
+            worker,
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            token: None,
+        }
     }
 
     /// The same for a worker that came by this token.
     pub fn with_token(self, token: i64) -> Self {
         Self { token: Some(token), ..self }
+    }
+
+    /// The same for a worker of this version.
+    pub fn with_version(self, version: String) -> Self {
+        Self { version, ..self }
     }
 }
 
@@ -160,7 +177,7 @@ impl JobSource for LocalSource {
 
     async fn tick(&self, slots: usize, fault: Option<&str>) -> Result<(), SourceError> {
         let mut transaction = self.database.begin().await?;
-        health::seen(&mut transaction, &self.worker, self.token, slots, fault).await?;
+        health::seen(&mut transaction, (&self.worker, &self.version), self.token, slots, fault).await?;
         transaction.commit().await?;
         Ok(ledger::tick(&self.database, &self.policy).await?)
     }

@@ -14,11 +14,12 @@ mod slots;
 mod source;
 mod suite_check;
 
+pub(crate) use child::limit;
 pub use grader::{Graded, Grader, GraderFault, NewFile, PROGRESS};
 pub use liveness::{Liveness, dead_workers, forget};
 pub use local::LocalSource;
 use program::GRACE;
-pub use program::{Program, REPORTS, STAFF_PAGE};
+pub use program::{PUBLISHED_PAGE, Program, REPORTS, STAFF_PAGE};
 pub use remote::RemoteSource;
 pub use slots::work;
 pub use source::{JobSource, SourceError};

@@ -29,12 +29,16 @@ const MESSAGE: usize = 2000;
 /// The page that tells staff everything, whatever students may know.
 pub const STAFF_PAGE: &str = "staff.html";
 
-/// The reports that a grading writes: format, file, media type. The page for staff has no format of its own.
-pub const REPORTS: [(&str, &str, &str); 9] = [
+/// The page that students see when hidden groups are published; only where there are any.
+pub const PUBLISHED_PAGE: &str = "published.html";
+
+/// The reports that a grading writes: format, file, media type. Two pages have no format of their own.
+pub const REPORTS: [(&str, &str, &str); 10] = [
     ("json", "grade.json", "application/json"),
     ("text", "report.txt", "text/plain; charset=utf-8"),
     ("html", "report.html", "text/html; charset=utf-8"),
     ("", STAFF_PAGE, "text/html; charset=utf-8"),
+    ("", PUBLISHED_PAGE, "text/html; charset=utf-8"),
     ("junit", "junit.xml", "application/xml"),
     ("csv", "scenes.csv", "text/csv; charset=utf-8"),
     ("markdown", "report.md", "text/markdown; charset=utf-8"),
@@ -96,7 +100,7 @@ impl Program {
         // All reports tell as much as students may know. Hidden groups are in all but the page: staff reads them, and
         // the server keeps them from students.
         command.args(["--for", "student"]);
-        for (format, file, _) in REPORTS.into_iter().filter(|(_, file, _)| *file != STAFF_PAGE) {
+        for (format, file, _) in REPORTS.into_iter().filter(|(format, _, _)| !format.is_empty()) {
             command.arg("--format").arg(format!("{format}={}", folder.join(file).display()));
         }
         at_home(&mut command, folder);
@@ -104,6 +108,7 @@ impl Program {
         command.env("FOSSSIM_PLATFORM_HIDES", "true");
         command.env("FOSSSIM_PROGRESS", folder.join(PROGRESS));
         command.env("FOSSSIM_STAFF_PAGE", folder.join(STAFF_PAGE));
+        command.env("FOSSSIM_PUBLISHED_PAGE", folder.join(PUBLISHED_PAGE));
         command
     }
 }

@@ -219,8 +219,11 @@ impl JobSource for RemoteSource {
     }
 
     async fn tick(&self, slots: usize, fault: Option<&str>) -> Result<(), SourceError> {
-        let alive = Alive { slots, fault: fault.map(str::to_owned) };
+        let alive = Alive { slots, fault: fault.map(str::to_owned), version: env!("CARGO_PKG_VERSION").to_owned() };
         let manners: Manners = self.call(move |parts| parts.json("tick", &alive)).await?;
+        if manners.version != env!("CARGO_PKG_VERSION") {
+            tracing::debug!(server = manners.version, "the server is of another version");
+        }
         self.0.tick_every.store(manners.tick_every.clamp(100, 60_000), Ordering::Relaxed);
         Ok(())
     }

@@ -1,10 +1,10 @@
 //! Asks the grader whether a suite can be graded by, before anybody's submission is.
 use super::{
-    child::{Child, End},
+    child::{Child, End, limit},
     program::at_home,
 };
 use crate::health::without_paths;
-use std::{fs, os::unix::process::CommandExt, path::Path, process::Command, time::Duration};
+use std::{fs, path::Path, process::Command, time::Duration};
 
 /// How long the grader may look, in seconds on the clock and of the processor.
 const SECONDS: u64 = 60;
@@ -25,16 +25,7 @@ pub async fn check_suite(grader: &Path, folder: &Path) -> Result<(), String> {
     command.args(["suite", "check", "suite.toml"]);
     at_home(&mut command, folder);
     command.stderr(messages.reopen().map_err(|error| error.to_string())?);
-    // SAFETY: setrlimit may be called between fork and exec.
-    unsafe {
-        command.pre_exec(|| {
-            for (what, most) in [(libc::RLIMIT_AS, MEMORY), (libc::RLIMIT_CPU, SECONDS), (libc::RLIMIT_CORE, 0)] {
-                let limit = libc::rlimit { rlim_cur: most, rlim_max: most };
-                libc::setrlimit(what, &raw const limit);
-            }
-            Ok(())
-        });
-    }
+    limit(&mut command, MEMORY, SECONDS);
     let child = Child::start(command).map_err(|error| format!("cannot start the grader: {error}"))?;
     let Ok(end) = tokio::time::timeout(Duration::from_secs(SECONDS), child.ended()).await else {
         child.kill();

@@ -1,4 +1,4 @@
-//! The service's tests, in one binary. What touches the database runs on both engines.
+//! The service's tests, in one binary. What differs between engines runs on both.
 
 mod bench;
 mod campaigns;

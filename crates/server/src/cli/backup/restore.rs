@@ -36,6 +36,17 @@ pub(in crate::cli) async fn restore(arguments: &Restore) -> Result<bool> {
     if place.data.exists() && fs::read_dir(&place.data)?.next().is_some() {
         bail!("{} is not empty: a backup is restored into an empty data folder", place.data.display());
     }
+    let restored = fill(arguments, &manifest, &copy).await;
+    if restored.is_err() {
+        // Half a data folder is of no use, and was empty before.
+        drop(fs::remove_dir_all(&place.data));
+    }
+    restored
+}
+
+/// Fills an empty data folder.
+async fn fill(arguments: &Restore, manifest: &Manifest, copy: &Path) -> Result<bool> {
+    let (place, from) = (&arguments.place, arguments.backup.as_path());
     let folders = ServiceFolders::open(place)?;
     let address = folders.database(place);
     let is_dump = manifest.database.file == super::POSTGRES;
@@ -65,8 +76,8 @@ pub(in crate::cli) async fn restore(arguments: &Restore) -> Result<bool> {
         );
     }
     match &address {
-        Address::Sqlite(file) => copy_database(&copy, file)?,
-        Address::Postgres(url) => postgres::load(url, &copy).await?,
+        Address::Sqlite(file) => copy_database(copy, file)?,
+        Address::Postgres(url) => postgres::load(url, copy).await?,
     }
     let database = Database::open(&address).await.with_context(|| format!("database {address}"))?;
     let missing = missing(&database, &store).await?;

@@ -1,11 +1,10 @@
 //! Assignments, and how a class stands in them.
 use super::super::{
-    input::{Asked, At, Body},
-    upload,
+    input::{Asked, At, Body, whole_numbers},
+    look, upload,
 };
 use crate::{
-    access::{Assignment, Member, Settings, Staff, Standing, Suspicion, moment, moment_schema},
-    archive::{self, ArchiveLimits},
+    access::{Assignment, AssignmentChange, Member, Settings, Staff, Standing, Suspicion, moment, moment_schema},
     problem::{Problem, ensure},
     schema::Title,
     worker,
@@ -18,14 +17,15 @@ use axum::{
     response::{IntoResponse, Response},
 };
 use serde::Deserialize;
+use serde_json::{Map, Value};
 use std::path::Path;
 use utoipa::ToSchema;
 
 /// The largest archive of a suite.
 const SUITE: u64 = 64 << 20;
 
-/// An assignment as it is to be. Of an assignment that is there, parts that are not named stay as they are; settings
-/// are one part.
+/// An assignment as it is to be. Parts and settings that are not named stay as they are; a setting that is null is
+/// taken away.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct AssignmentWish {
@@ -33,7 +33,25 @@ pub(super) struct AssignmentWish {
     title: String,
     /// Whether students see it; not at first.
     visible: Option<bool>,
-    settings: Option<Settings>,
+    #[serde(default, deserialize_with = "whole_numbers")]
+    #[schema(value_type = Option<Settings>)]
+    settings: Map<String, Value>,
+    /// The revision that the change is of: with it the change is refused when somebody made another one.
+    #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
+    revision: Option<i64>,
+}
+
+/// The revision of an assignment, as a query.
+#[derive(Deserialize)]
+pub(in crate::web) struct Revision {
+    revision: Option<i64>,
+}
+
+impl AssignmentWish {
+    fn change(&self) -> AssignmentChange<'_> {
+        let Self { title, visible, revision, .. } = self;
+        AssignmentChange { title: Some(title), visible: *visible, revision: *revision, suite: None }
+    }
 }
 
 /// How to write an export.
@@ -55,41 +73,48 @@ pub(super) struct Extension {
 /// Uploads an archive (zip, 7z, tar, tar.gz, tar.xz, tar.bz2) with a `suite.toml` at its top as the assignment's suite.
 /// Groups that it hides are withheld, also where others were published.
 #[utoipa::path(put, path = "/api/v1/courses/{course}/assignments/{assignment}/suite", tag = "assignments",
+    params(("revision" = Option<i64>, Query, description = "The revision of the assignment that the change is of")),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),
     responses((status = 200, body = Assignment)))]
 pub(super) async fn set_suite(
     staff: Staff,
     At { assignment, .. }: At,
+    Asked(asked): Asked<Revision>,
     request: Request,
 ) -> Result<Json<Assignment>, Problem> {
-    Ok(Json(receive_suite(&staff, &assignment, request).await?))
+    Ok(Json(receive_suite(&staff, &assignment, &asked, request).await?))
 }
 
 /// Receives an archive with a suite, and makes it the assignment's.
 pub(in crate::web) async fn receive_suite(
     staff: &Staff,
     assignment: &str,
+    asked: &Revision,
     request: Request,
 ) -> Result<Assignment, Problem> {
     let received = upload::receive(&staff.app, request, SUITE).await?;
     let app = &staff.app;
-    let (path, incoming) = (received.file.to_path_buf(), app.incoming.clone());
-    let looked = tokio::task::spawn_blocking(move || unpack_suite(&path, &incoming)).await;
-    let (folder, hides) = looked.map_err(|_| Problem::fault())??;
+    ensure(std::fs::metadata(&received.file)?.len() > 0, Problem::no_suite("the file is empty"))?;
+    let folder = tempfile::tempdir_in(&app.incoming)?;
+    look::unpack(staff, &received.file, folder.path()).await?;
+    let hides = check_scenes(folder.path())?;
     if let Some(grader) = app.grader.as_deref() {
         worker::check_suite(grader, folder.path()).await.map_err(Problem::no_suite)?;
     }
-    staff.set_suite(assignment, &received.file, hides).await
+    staff.set_suite(assignment, &received.file, hides, asked.revision).await
 }
 
-/// Unpacks an archive with a suite that keeps to itself: its scenes lie in the archive, or come with the program. A
-/// worker would read any other file of its machine for it. Also whether it hides groups.
-fn unpack_suite(archive: &Path, incoming: &Path) -> Result<(tempfile::TempDir, bool), Problem> {
-    ensure(std::fs::metadata(archive)?.len() > 0, Problem::no_suite("the file is empty"))?;
-    let folder = tempfile::tempdir_in(incoming)?;
-    archive::unpack(archive, folder.path(), ArchiveLimits::USUAL)
-        .map_err(|error| Problem::no_suite(error.to_string()))?;
-    let Ok(text) = std::fs::read_to_string(folder.path().join("suite.toml")) else {
+/// The largest `suite.toml`.
+const SUITE_FILE: u64 = 1 << 20;
+
+/// Checks that a suite keeps to itself: its scenes are in the archive, or come with the program. A worker would read
+/// any other file of its machine for it. Returns whether it hides groups.
+fn check_scenes(folder: &Path) -> Result<bool, Problem> {
+    let file = folder.join("suite.toml");
+    if std::fs::metadata(&file).is_ok_and(|file| file.len() > SUITE_FILE) {
+        return Err(Problem::no_suite("suite.toml is larger than a mebibyte"));
+    }
+    let Ok(text) = std::fs::read_to_string(&file) else {
         return Err(Problem::no_suite("the archive has no suite.toml at its top, in UTF-8"));
     };
     let suite: toml::Table =
@@ -103,7 +128,7 @@ fn unpack_suite(archive: &Path, incoming: &Path) -> Result<(tempfile::TempDir, b
             return Err(Problem::no_suite(format!("the scene {scene} does not lie in the archive")));
         }
     }
-    Ok((folder, hides))
+    Ok(hides)
 }
 
 /// The class's grades as a table (`csv`, one line per student) or all submissions as JSON lines (`jsonl`).
@@ -152,7 +177,7 @@ answers! { OK:
     /// once.
     put "/api/v1/courses/{course}/assignments/{assignment}" "assignments"
         set_assignment(staff: Staff, { assignment }, wish: AssignmentWish) -> Assignment:
-            staff.set_assignment(&assignment, &wish.title, wish.visible, wish.settings.as_ref());
+            staff.set_assignment(&assignment, wish.change(), |before| before.with(&wish.settings));
     /// The assignments of a course.
     get "/api/v1/courses/{course}/assignments" "assignments"
         assignments(member: Member) -> Vec<Assignment>: member.assignments();

@@ -44,7 +44,7 @@ mod submissions;
 mod workers;
 
 pub(super) use accounts::{PasswordWish, TokenName, WorkerTokenName};
-pub(super) use assignments::receive_suite;
+pub(super) use assignments::{Revision, receive_suite};
 pub(super) use courses::CourseWish;
 pub use submissions::export_csv;
 pub(super) use submissions::{RequestWish, cell, receive, report_response, upload_response};

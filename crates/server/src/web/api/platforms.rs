@@ -1,11 +1,35 @@
 //! Learning platforms.
-use super::super::input::{At, Body};
+use super::super::input::{Asked, At, Body};
 use crate::{
-    access::{Admin, RosterRead, ScoreInfo, Staff},
+    access::{Admin, RosterRead, RosterWish, ScoreInfo, Staff},
     lti::{Platform, PlatformWish},
     problem::Problem,
 };
 use axum::{Json, http::StatusCode};
+use serde::Deserialize;
+
+/// Whether only to look, or to go on although many leave.
+#[derive(Deserialize)]
+pub(super) struct RosterParameters {
+    #[serde(default)]
+    preview: bool,
+    #[serde(default)]
+    confirm: bool,
+}
+
+/// Reads who is in the course from the platforms that it is connected with.
+#[utoipa::path(post, path = "/api/v1/courses/{course}/roster", tag = "courses",
+    params(("preview" = Option<bool>, Query, description = "Only say who would come and go"),
+        ("confirm" = Option<bool>, Query, description = "Also when more than a third leaves")),
+    responses((status = 200, body = RosterRead)))]
+pub(super) async fn roster(staff: Staff, Asked(asked): Asked<RosterParameters>) -> Result<Json<RosterRead>, Problem> {
+    let wish = match asked {
+        RosterParameters { preview: true, .. } => RosterWish::Preview,
+        RosterParameters { confirm: true, .. } => RosterWish::Confirmed,
+        RosterParameters { .. } => RosterWish::Apply,
+    };
+    Ok(Json(staff.read_roster(wish).await?))
+}
 
 answers! { OK:
     /// Registers a platform, or changes it.
@@ -13,8 +37,6 @@ answers! { OK:
         set_platform(admin: Admin, { name }, wish: PlatformWish) -> Platform: admin.set_platform(&name, &wish);
     /// The registered platforms.
     get "/api/v1/platforms" "administration" platforms(admin: Admin) -> Vec<Platform>: admin.platforms();
-    /// Reads who is in the course from the platforms that it is connected with.
-    post "/api/v1/courses/{course}/roster" "courses" roster(staff: Staff) -> RosterRead: staff.read_roster();
     /// The messages to platforms about an assignment's scores.
     get "/api/v1/courses/{course}/assignments/{assignment}/scores" "assignments"
         scores(staff: Staff, { assignment }) -> Vec<ScoreInfo>: staff.scores(&assignment);

@@ -1,5 +1,5 @@
 //! Regrades: begun, looked at, applied or discarded.
-use super::super::input::{After, Asked, At, Body};
+use super::super::input::{After, Asked, At, Body, whole_numbers};
 use crate::{
     access::{Regrade, Settings, Staff},
     problem::Problem,
@@ -7,6 +7,7 @@ use crate::{
 };
 use axum::{Json, http::StatusCode};
 use serde::Deserialize;
+use serde_json::{Map, Value};
 use utoipa::ToSchema;
 
 /// A regrade as it is to be.
@@ -16,8 +17,10 @@ pub(super) struct RegradeWish {
     /// Why, as students read it when it is applied.
     #[schema(value_type = Title)]
     reason: String,
-    /// By what; without it by the assignment's settings as they are.
-    settings: Option<Settings>,
+    /// Settings about grading that are to be others than the assignment's.
+    #[serde(default, deserialize_with = "whole_numbers")]
+    #[schema(value_type = Option<Settings>)]
+    settings: Map<String, Value>,
 }
 
 /// Grades all submissions again, beside their grades. Nothing changes until it is applied.
@@ -29,7 +32,8 @@ pub(super) async fn begin(
     At { assignment, .. }: At,
     Body(wish): Body<RegradeWish>,
 ) -> Result<(StatusCode, Json<Regrade>), Problem> {
-    Ok(answer(staff.regrade(&assignment, &wish.reason, wish.settings.as_ref()).await?, StatusCode::CREATED))
+    let settings = staff.assignment(&assignment).await?.settings.with(&wish.settings)?;
+    Ok(answer(staff.regrade(&assignment, &wish.reason, &settings).await?, StatusCode::CREATED))
 }
 
 /// The changes that a regrade would make, or made, and why.

@@ -1,12 +1,13 @@
 //! Submissions.
 use super::super::{
     download,
-    input::{Asked, At, Body},
-    status, upload,
+    input::{Arrived, Asked, At, Body},
+    look, status, upload,
 };
 use crate::{
     access::{Accepted, Again, History, Member, Staff, Standing, Submission, Upload},
     problem::Problem,
+    queue::millis,
 };
 use axum::{
     Json,
@@ -15,6 +16,7 @@ use axum::{
     response::{IntoResponse, Response},
 };
 use serde::Deserialize;
+use std::time::Instant;
 use utoipa::ToSchema;
 
 /// The parameters of an upload that is the whole body.
@@ -62,15 +64,17 @@ pub(in crate::web) async fn receive(
     let _transfer = member.transfer()?;
     let settings = member.assignment(assignment).await?.settings;
     let most = settings.max_bytes;
+    let since = request.extensions().get::<Arrived>().map_or_else(Instant::now, |Arrived(since)| *since);
     // Of a form nobody knows yet whether it was sent before.
-    if !upload::is_form(&request) {
-        let checked = member.check_announced(assignment, key, upload::announced(&request)).await;
-        if let Err(problem) = checked {
-            return Err(upload::refuse(&member.app, request, most, problem).await);
-        }
-    }
+    let announced = (!upload::is_form(&request)).then(|| (key, upload::announced(&request).unwrap_or(0)));
+    let came_at = match member.check_announced(assignment, announced, since).await {
+        Ok(came_at) => came_at,
+        Err(problem) => return Err(upload::refuse(&member.app, request, most, problem).await),
+    };
     let received = upload::receive(&member.app, request, most).await?;
-    let form = upload::examine(&received.file, received.form.as_deref().or(form), &settings).await?;
+    let too_long = since.elapsed().saturating_sub(upload::fair_time(std::fs::metadata(&received.file)?.len()));
+    let came_at = came_at.saturating_add(millis(too_long));
+    let form = look::examine(member, &received.file, received.form.as_deref().or(form), &settings).await?;
     let name = upload::plain_name(received.name.as_deref().or(name).unwrap_or("submission"));
     // A page's key and the file together: another file from the same page is another submission.
     let of_page = match &received.key {
@@ -81,7 +85,7 @@ pub(in crate::web) async fn receive(
     if key.is_some_and(|key| !(1..=200).contains(&key.len()) || key.chars().any(char::is_control)) {
         return Err(Problem::invalid("a key is 1 to 200 characters long"));
     }
-    member.submit(assignment, &Upload { form, name: &name, file: &received.file, key }).await
+    member.submit(assignment, &Upload { form, name: &name, file: &received.file, key, came_at }).await
 }
 
 /// The mark that staff gives a submission.
@@ -96,6 +100,9 @@ pub(super) struct MarkWish {
     #[serde(default)]
     #[schema(max_length = 2000)]
     comment: String,
+    /// When the last mark was given that the sender has seen: with it a mark is refused when there is a later one.
+    #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
+    marked_at: Option<i64>,
 }
 
 /// The question of a student.
@@ -216,7 +223,12 @@ answers! { OK:
     /// Gives a submission other points than the grader, with a comment, or the grader's again.
     put "/api/v1/courses/{course}/submissions/{id}/mark" "submissions"
         mark(staff: Staff, { id }, wish: MarkWish) -> Submission:
-            staff.mark(id, wish.points.map(|points| points.to_string()).as_deref(), &wish.comment);
+            staff.mark(
+                id,
+                wish.points.map(|points| points.to_string()).as_deref(),
+                &wish.comment,
+                wish.marked_at.map(Some)
+            );
     /// One's own submissions, newest first.
     get "/api/v1/courses/{course}/assignments/{assignment}/submissions" "submissions"
         own(member: Member, { assignment }) -> Vec<Submission>: member.submissions(&assignment);

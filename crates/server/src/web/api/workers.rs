@@ -41,7 +41,7 @@ pub(super) async fn claim(remote: Remote, Asked(claimant): Asked<Claimant>) -> R
 answers! { OK:
     /// Says that the worker is alive.
     post "/api/v1/worker/tick" "workers"
-        tick(remote: Remote, alive: Alive) -> Manners: remote.tick(alive.slots, alive.fault.as_deref());
+        tick(remote: Remote, alive: Alive) -> Manners: remote.tick(alive.slots, alive.fault.as_deref(), &alive.version);
     /// Extends a lease, and says how far the grading is.
     post "/api/v1/worker/renew" "workers"
         renew(remote: Remote, renewal: Renewal) -> LeaseAnswer: remote.renew(&renewal.lease, renewal.progress);

@@ -2,9 +2,11 @@
 use super::{
     super::{
         api::{CourseWish, WorkerTokenName},
-        input::{At, Fields},
+        input::{Asked, At, Fields},
     },
-    Page, PageFrame, see, show, text,
+    Page, PageFrame,
+    course::People,
+    see, show, text,
 };
 use crate::{
     access::{Account, Admin, Event, Queue, TokenInfo},
@@ -20,6 +22,9 @@ use serde::Deserialize;
 struct AdminPage {
     frame: PageFrame,
     accounts: Vec<Account>,
+    look: People,
+    /// The address of the next page of accounts.
+    after: Option<String>,
     workers: Vec<TokenInfo>,
     platforms: Vec<Platform>,
     /// The addresses that platforms are told.
@@ -37,10 +42,14 @@ pub(super) struct NewAccount {
     is_admin: Option<String>,
 }
 
-async fn make(admin: &Admin, link: Option<String>, token: Option<String>) -> Page {
+async fn make(admin: &Admin, look: People, link: Option<String>, token: Option<String>) -> Page {
+    let (accounts, has_more) = admin.accounts_page(&look.q, &look.after).await?;
+    let after = look.next(accounts.last().filter(|_| has_more).map(|last| last.login.as_str()));
     show(&AdminPage {
         frame: PageFrame::of(&admin.account).then("/admin".to_owned(), "Administration"),
-        accounts: admin.accounts().await?,
+        accounts,
+        look,
+        after,
         workers: admin.worker_tokens().await?,
         platforms: admin.platforms().await?,
         public: admin.app.public.clone(),
@@ -51,18 +60,18 @@ async fn make(admin: &Admin, link: Option<String>, token: Option<String>) -> Pag
     })
 }
 
-pub(super) async fn page(admin: Admin) -> Page {
-    make(&admin, None, None).await
+pub(super) async fn page(admin: Admin, Asked(look): Asked<People>) -> Page {
+    make(&admin, look, None, None).await
 }
 
 pub(super) async fn set_account(admin: Admin, Fields(form): Fields<NewAccount>) -> Page {
     let link = admin.set_account(form.login.trim(), form.name.trim(), form.is_admin.is_some()).await?.link;
-    make(&admin, link, None).await
+    make(&admin, People::default(), link, None).await
 }
 
 pub(super) async fn new_worker(admin: Admin, Fields(form): Fields<WorkerTokenName>) -> Page {
     let token = admin.new_worker_token(form.name.trim()).await?.token;
-    make(&admin, None, Some(token)).await
+    make(&admin, People::default(), None, Some(token)).await
 }
 
 deeds! {

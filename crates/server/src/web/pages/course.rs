@@ -4,7 +4,7 @@ use super::{
     Page, PageFrame, see, show, text,
 };
 use crate::{
-    access::{Assignment, Event, Member, MemberInfo, Overview, Queue, Settings, Staff, Submission},
+    access::{Assignment, AssignmentChange, Event, Member, MemberInfo, Overview, Queue, Staff, Submission},
     problem::Problem,
 };
 use askama::Template;
@@ -18,6 +18,8 @@ struct CoursePage {
     frame: PageFrame,
     member: Member,
     assignments: Vec<Row>,
+    /// Sentences about the room for uploads.
+    kept: Vec<String>,
 }
 
 /// An assignment in the table of its course.
@@ -49,16 +51,16 @@ impl OwnWork {
         let due = member.due(assignment).await?;
         let submissions = member.submissions(&assignment.slug).await?;
         let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_millis());
-        let late = u128::from(assignment.settings.late_days) * 86_400_000;
-        let passed = |late: u128| due.is_some_and(|due| u128::try_from(due).is_ok_and(|due| due + late < now));
+        let passed = |at: Option<i64>| at.is_some_and(|at| u128::try_from(at).is_ok_and(|at| at < now));
+        let closes_at = due.map(|due| assignment.settings.late_policy().closes_at(due));
         let attempts = assignment.settings.attempts as usize;
         let points = |one: &Submission| one.grade.as_ref()?.points.as_ref()?.parse::<f64>().ok();
         let graded = submissions.iter().rev().filter_map(|one| Some((points(one)?, one)));
         let best = graded.max_by(|(one, _), (other, _)| one.total_cmp(other)).map(|(_, one)| one.clone());
         Ok(Self {
             due,
-            is_late: passed(0),
-            is_over: passed(late),
+            is_late: passed(due),
+            is_over: passed(closes_at),
             left: (attempts > 0).then(|| attempts.saturating_sub(submissions.len())),
             submissions,
             best,
@@ -77,6 +79,9 @@ struct MembersPage {
     frame: PageFrame,
     slug: String,
     members: Vec<MemberInfo>,
+    look: People,
+    /// The address of the next page.
+    after: Option<String>,
     platforms: Vec<String>,
     /// A link to be handed on: to whom, what it is, and its address.
     link: Option<(String, &'static str, String)>,
@@ -119,7 +124,8 @@ pub(super) async fn course(member: Member) -> Page {
         let (work, overview) = (OwnWork::of(&member, &assignment).await?, member.overview(&assignment).await?);
         assignments.push(Row { assignment, work, overview });
     }
-    show(&CoursePage { frame: PageFrame::course(&member), member, assignments })
+    let (frame, kept) = (PageFrame::course(&member), member.told_of_kept().await?);
+    show(&CoursePage { frame, member, assignments, kept })
 }
 
 pub(super) async fn new_assignment(staff: Staff, Fields(form): Fields<NewAssignment>) -> Result<Redirect, Problem> {
@@ -127,30 +133,52 @@ pub(super) async fn new_assignment(staff: Staff, Fields(form): Fields<NewAssignm
     if staff.assignments().await?.iter().any(|assignment| assignment.slug == slug) {
         return Err(Problem::conflict("there is an assignment of this name", "give it another name"));
     }
-    staff.set_assignment(slug, form.title.trim(), Some(false), Some(&Settings::default())).await?;
+    let change =
+        AssignmentChange { title: Some(form.title.trim()), visible: Some(false), ..AssignmentChange::default() };
+    staff.set_assignment(slug, change, |before| Ok(before.clone())).await?;
     Ok(see(&format!("/c/{}/a/{slug}/settings", staff.slug)))
 }
 
-async fn members_page(staff: &Staff, link: Option<(String, &'static str, String)>) -> Page {
-    let slug = staff.slug.clone();
-    let frame = PageFrame::course(staff).then(format!("/c/{slug}/members"), "Members");
-    show(&MembersPage { frame, slug, members: staff.members().await?, platforms: staff.platforms().await?, link })
+/// Which people to show: those whose login or name has these words, behind a login.
+#[derive(Default, Deserialize)]
+pub(super) struct People {
+    #[serde(default)]
+    pub(super) q: String,
+    #[serde(default)]
+    pub(super) after: String,
 }
 
-pub(super) async fn members(staff: Staff) -> Page {
-    members_page(&staff, None).await
+impl People {
+    /// The address of the page behind the last of these logins, where there are more.
+    pub(super) fn next(&self, last: Option<&str>) -> Option<String> {
+        let mut query = url::form_urlencoded::Serializer::for_suffix("?".to_owned(), 1);
+        Some(query.append_pair("q", &self.q).append_pair("after", last?).finish())
+    }
+}
+
+async fn members_page(staff: &Staff, look: People, link: Option<(String, &'static str, String)>) -> Page {
+    let slug = staff.slug.clone();
+    let frame = PageFrame::course(staff).then(format!("/c/{slug}/members"), "Members");
+    let (members, has_more) = staff.members_page(&look.q, &look.after).await?;
+    let after = look.next(members.last().filter(|_| has_more).map(|last| last.login.as_str()));
+    show(&MembersPage { frame, slug, members, look, after, platforms: staff.platforms().await?, link })
+}
+
+pub(super) async fn members(staff: Staff, Asked(look): Asked<People>) -> Page {
+    members_page(&staff, look, None).await
 }
 
 pub(super) async fn set_member(staff: Staff, Fields(form): Fields<NewMember>) -> Page {
     let login = form.login.trim();
     let links = staff.set_member(login, form.name.trim(), &form.role).await?;
     let (signs_in, invites) = (links.link.map(|link| (SIGNS_IN, link)), links.invitation.map(|link| (INVITES, link)));
-    members_page(&staff, signs_in.or(invites).map(|(what, link)| (login.to_owned(), what, link))).await
+    members_page(&staff, People::default(), signs_in.or(invites).map(|(what, link)| (login.to_owned(), what, link)))
+        .await
 }
 
 pub(super) async fn member_link(staff: Staff, At { login, .. }: At) -> Page {
     let link = staff.new_link(&login).await?.link;
-    members_page(&staff, link.map(|link| (login, SIGNS_IN, link))).await
+    members_page(&staff, People::default(), link.map(|link| (login, SIGNS_IN, link))).await
 }
 
 pub(super) async fn audit(staff: Staff, Asked(asked): Asked<Before>) -> Page {

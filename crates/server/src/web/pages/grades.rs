@@ -10,7 +10,7 @@ use super::{
     text,
 };
 use crate::{
-    access::{Assignment, Regrade, RegradeState, ScoreInfo, Staff, Standing, Suspicion},
+    access::{Assignment, Regrade, RegradeState, ScoreInfo, ShortStanding, Staff, Standing, Suspicion},
     problem::Problem,
 };
 use askama::Template;
@@ -64,12 +64,13 @@ pub(super) struct Look {
 
 impl Look {
     /// Those who are to be shown, how many there are on all pages, and the addresses of the pages before and after.
-    fn at(&self, mut standings: Vec<Standing>) -> (Vec<Standing>, usize, [Option<String>; 2]) {
+    fn at(&self, standings: &[ShortStanding]) -> (Vec<ShortStanding>, usize, [Option<String>; 2]) {
         let words = self.q.trim().to_lowercase();
-        standings.retain(|one| one.login.contains(&words) || one.name.to_lowercase().contains(&words));
-        let points = |one: &Standing| {
-            let grade = one.counts.as_ref().and_then(|counts| counts.grade.as_ref());
-            grade.and_then(|grade| grade.points.as_ref()?.parse::<f64>().ok()).unwrap_or(-1.0)
+        let is_wanted = |one: &&ShortStanding| one.login.contains(&words) || one.name.to_lowercase().contains(&words);
+        let mut standings: Vec<&ShortStanding> = standings.iter().filter(is_wanted).collect();
+        let points = |one: &ShortStanding| {
+            let points = one.counts.as_ref().and_then(|counts| counts.points.as_ref());
+            points.and_then(|points| points.parse::<f64>().ok()).unwrap_or(-1.0)
         };
         match self.sort.as_str() {
             "name" => standings.sort_by_cached_key(|one| one.name.to_lowercase()),
@@ -86,7 +87,7 @@ impl Look {
             query.append_pair("q", &self.q).append_pair("sort", &self.sort).append_pair("page", &page.to_string());
             query.finish()
         };
-        let shown = standings.into_iter().skip((page - 1) * PAGE).take(PAGE).collect();
+        let shown = standings.into_iter().skip((page - 1) * PAGE).take(PAGE).cloned().collect();
         (shown, found, [(page > 1).then(|| address(page - 1)), (page < pages).then(|| address(page + 1))])
     }
 }
@@ -106,9 +107,10 @@ pub(super) fn frame(staff: &Staff, assignment: &Assignment) -> PageFrame {
 
 pub(super) async fn class(staff: Staff, At { course: slug, assignment, .. }: At, Asked(look): Asked<Look>) -> Page {
     let assignment = staff.assignment(&assignment).await?;
-    let standings = staff.standings(&assignment.slug).await?;
+    let standings = staff.short_standings(&assignment).await?;
     let statistics = Statistics::of(&standings);
-    let (standings, found, [before, after]) = look.at(standings);
+    let (standings, found, [before, after]) = look.at(&standings);
+    let standings = staff.whole_standings(&standings).await?;
     let results: Vec<i64> =
         standings.iter().filter_map(|one| Some(one.counts.as_ref()?.grade.as_ref()?.result)).collect();
     show(&GradesPage {
@@ -137,7 +139,7 @@ pub(super) async fn begin(
     Fields(form): Fields<NewRegrade>,
 ) -> Result<Redirect, Problem> {
     let settings = form.grading.over(&staff.assignment(&assignment).await?.settings)?;
-    let regrade = staff.regrade(&assignment, form.reason.trim(), Some(&settings)).await?;
+    let regrade = staff.regrade(&assignment, form.reason.trim(), &settings).await?;
     Ok(see(&format!("/c/{slug}/a/{assignment}/regrades/{}", regrade.id)))
 }
 

@@ -7,7 +7,7 @@ use super::{
     Page, PageFrame, see, show, sign_in,
 };
 use crate::{
-    access::{Admin, App, Choice, Chosen, LoginRequest, Person, Staff, Visitor},
+    access::{Admin, App, Choice, Chosen, LoginRequest, Person, RosterRead, RosterWish, Staff, Visitor},
     lti::{PlatformWish, scope},
     problem::Problem,
 };
@@ -51,6 +51,19 @@ struct AnswerPage {
     frame: PageFrame,
     address: String,
     token: String,
+}
+
+#[derive(Template)]
+#[template(path = "roster.html")]
+struct RosterPage {
+    frame: PageFrame,
+    slug: String,
+    read: RosterRead,
+}
+
+#[derive(Deserialize)]
+pub(super) struct RosterForm {
+    confirm: Option<String>,
 }
 
 #[derive(Deserialize)]
@@ -220,6 +233,18 @@ impl NewPlatform {
     }
 }
 
+/// Shows who would come and go first.
+pub(super) async fn read_roster(staff: Staff, Fields(form): Fields<RosterForm>) -> Result<Response, Problem> {
+    let members = format!("/c/{}/members", staff.slug);
+    if form.confirm.is_some() {
+        staff.read_roster(RosterWish::Confirmed).await?;
+        return Ok(see(&members).into_response());
+    }
+    let read = staff.read_roster(RosterWish::Preview).await?;
+    let frame = PageFrame::course(&staff).then(members, "Members");
+    Ok(show(&RosterPage { frame, slug: staff.slug.clone(), read })?.into_response())
+}
+
 deeds! {
     choose_course(person: Person, { secret }, choice: CourseChoice): {
         let known = choice.known.as_deref().filter(|slug| !slug.is_empty());
@@ -228,7 +253,6 @@ deeds! {
     set_platform(admin: Admin, form: NewPlatform): admin.set_platform(form.name.trim(), &form.wish()) => "/admin";
     shut_platform(admin: Admin, { name }): admin.shut_platform(&name) => "/admin";
     new_key(admin: Admin): admin.new_platform_key() => "/admin";
-    read_roster(staff: Staff, { course }): staff.read_roster() => "/c/{course}/members";
     send_scores(staff: Staff, { course, assignment }):
         staff.send_scores(&assignment) => "/c/{course}/a/{assignment}/class";
 }

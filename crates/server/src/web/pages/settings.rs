@@ -1,13 +1,13 @@
 //! Settings of an assignment as a form.
 use super::{
     super::{
-        api,
-        input::{At, Fields},
+        api::{self, Revision},
+        input::{Asked, At, Fields},
     },
     Page, PageFrame, see, show, text,
 };
 use crate::{
-    access::{Assignment, Settings, Staff},
+    access::{Assignment, AssignmentChange, Settings, Staff},
     calendar,
     problem::{Problem, ensure},
 };
@@ -58,8 +58,8 @@ pub(super) struct Grading {
     seconds: String,
 }
 
-fn number<T: std::str::FromStr>(what: &str, text: &str) -> Result<T, Problem> {
-    text.trim().parse().map_err(|_| Problem::invalid(format!("{what} is a number, and {text:?} is none")))
+fn parsed<T: std::str::FromStr>(what: &str, text: &str) -> Result<T, Problem> {
+    text.trim().parse().map_err(|_| Problem::invalid(format!("{what} must not be {text:?}")))
 }
 
 impl Grading {
@@ -76,7 +76,7 @@ impl Grading {
             rules: chosen(&self.rules),
             hints: chosen(&self.hints),
             program: self.program.trim().to_owned(),
-            seconds: number("seconds", &self.seconds)?,
+            seconds: parsed("seconds", &self.seconds)?,
             ..before.clone()
         })
     }
@@ -86,6 +86,9 @@ impl Grading {
 #[derive(Deserialize)]
 pub(super) struct NewSettings {
     title: String,
+    /// The revision that the page showed.
+    #[serde(default)]
+    revision: String,
     visible: Option<String>,
     #[serde(flatten)]
     grading: Grading,
@@ -102,24 +105,30 @@ pub(super) struct NewSettings {
     late_days: String,
     #[serde(default)]
     late_percent: String,
+    #[serde(default)]
+    time_zone: String,
 }
 
 impl NewSettings {
     fn over(&self, before: &Settings) -> Result<Settings, Problem> {
         // A form from before they were there.
-        let late = |what: &str, text: &str, before: u32| if text.is_empty() { Ok(before) } else { number(what, text) };
-        let megabytes: f64 = number("the largest upload", &self.megabytes)?;
+        let late = |what: &str, text: &str, before: u32| if text.is_empty() { Ok(before) } else { parsed(what, text) };
+        let megabytes: f64 = parsed("the largest upload", &self.megabytes)?;
         ensure((0.0..=1024.0).contains(&megabytes), Problem::invalid("the largest upload is at most 1024 MiB"))?;
         let forms = [("program", &self.form_program), ("sources", &self.form_sources), ("traces", &self.form_traces)];
         Ok(Settings {
             forms: forms.iter().filter(|(_, ticked)| ticked.is_some()).map(|(name, _)| (*name).to_owned()).collect(),
             // At most a gigabyte, so that nothing is lost.
             max_bytes: (megabytes * MIB).round() as u64,
-            attempts: number("submissions in all", &self.attempts)?,
-            per_hour: number("submissions in an hour", &self.per_hour)?,
+            attempts: parsed("submissions in all", &self.attempts)?,
+            per_hour: parsed("submissions in an hour", &self.per_hour)?,
             late_days: late("days", &self.late_days, before.late_days)?,
             late_percent: late("percent", &self.late_percent, before.late_percent)?,
             due_at: moment(&self.due, &self.due_zone, before.due_at)?,
+            time_zone: match self.time_zone.trim() {
+                "" => None,
+                name => Some(parsed("the time zone, such as Europe/Berlin,", name)?),
+            },
             ..self.grading.over(before)?
         })
     }
@@ -130,7 +139,7 @@ pub(super) fn moment(field: &str, zone: &str, before: Option<i64>) -> Result<Opt
     if field.trim().is_empty() {
         return Ok(None);
     }
-    let east = if zone.is_empty() { 0 } else { number("the time zone", zone)? };
+    let east = if zone.is_empty() { 0 } else { parsed("the time zone", zone)? };
     let at = calendar::read_field(field.trim(), east);
     let at = at.ok_or_else(|| Problem::invalid(format!("{field:?} is no date and time")))?;
     let same = before.filter(|before| before.div_euclid(60_000) == at.div_euclid(60_000));
@@ -153,16 +162,20 @@ pub(super) async fn set(
 ) -> Result<Redirect, Problem> {
     // An assignment is made on the course's page: a typing error in an address makes none.
     let assignment = staff.assignment(&assignment).await?;
-    let settings = form.over(&assignment.settings)?;
-    staff.set_assignment(&assignment.slug, form.title.trim(), Some(form.visible.is_some()), Some(&settings)).await?;
+    let (title, visible) = (Some(form.title.trim()), Some(form.visible.is_some()));
+    // A page of an earlier version has no revision, and may be any.
+    let revision = Some(form.revision.parse().unwrap_or(-1));
+    let change = AssignmentChange { title, visible, revision, suite: None };
+    staff.set_assignment(&assignment.slug, change, |before| form.over(before)).await?;
     Ok(see(&format!("/c/{slug}/a/{}", assignment.slug)))
 }
 
 pub(super) async fn set_suite(
     staff: Staff,
     At { course: slug, assignment, .. }: At,
+    Asked(asked): Asked<Revision>,
     request: Request,
 ) -> Result<Redirect, Problem> {
-    let assignment = api::receive_suite(&staff, &assignment, request).await?;
+    let assignment = api::receive_suite(&staff, &assignment, &asked, request).await?;
     Ok(see(&format!("/c/{slug}/a/{}/settings", assignment.slug)))
 }

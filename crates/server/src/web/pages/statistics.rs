@@ -1,5 +1,5 @@
 //! How a class did, in numbers.
-use crate::{access::Standing, task::rounded};
+use crate::{access::ShortStanding, task::rounded};
 use std::collections::BTreeMap;
 
 /// Parts of the whole, in percent.
@@ -20,21 +20,21 @@ pub(super) struct Statistics {
 
 impl Statistics {
     /// Of those who have points; nothing where nobody has.
-    pub(super) fn of(standings: &[Standing]) -> Option<Self> {
+    pub(super) fn of(standings: &[ShortStanding]) -> Option<Self> {
         let mut parts = Vec::new();
         let mut accepted = 0;
         let mut mistakes: BTreeMap<String, (Vec<String>, i64)> = BTreeMap::new();
         for standing in standings {
             let Some(counts) = &standing.counts else { continue };
-            let Some(grade) = &counts.grade else { continue };
-            accepted += usize::from(grade.verdict == "accepted");
+            let Some(verdict) = &counts.verdict else { continue };
+            accepted += usize::from(verdict == "accepted");
             let number = |text: &Option<String>| text.as_ref().and_then(|text| text.parse::<f64>().ok());
-            if let (Some(points), Some(most)) = (number(&grade.points), number(&grade.max_points))
+            if let (Some(points), Some(most)) = (number(&counts.points), number(&counts.max_points))
                 && most > 0.0
             {
                 parts.push((100.0 * points / most).clamp(0.0, 100.0));
             }
-            if let Some((_, mistake)) = grade.summary.split_once("; ") {
+            if let Some((_, mistake)) = counts.summary.split_once("; ") {
                 let (logins, _) = mistakes.entry(mistake.to_owned()).or_insert_with(|| (Vec::new(), counts.id));
                 logins.push(standing.login.clone());
             }

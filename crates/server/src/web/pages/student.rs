@@ -69,6 +69,8 @@ pub(super) struct NewMark {
     points: String,
     #[serde(default)]
     comment: String,
+    /// When the mark was given that the page showed.
+    marked_at: Option<String>,
 }
 
 #[derive(Deserialize)]
@@ -149,7 +151,11 @@ deeds! {
         staff.extend(&assignment, &login, moment(&form.due, &form.due_zone, before)?)
     } => "/c/{course}/a/{assignment}/students/{login}";
     mark(staff: Staff, { course, id }, form: NewMark):
-        staff.mark(id, points(form.points.trim()).as_deref(), form.comment.trim()) => "/c/{course}/s/{id}";
+        async {
+            let seen = form.marked_at.as_ref().map(|moment| moment.parse().ok());
+            let points = points(form.points.trim());
+            staff.mark(id, points.as_deref(), form.comment.trim(), seen).await
+        } => "/c/{course}/s/{id}";
     request(member: Member, { course, id }, form: RequestWish):
         member.request(id, form.text.trim()) => "/c/{course}/s/{id}";
 }

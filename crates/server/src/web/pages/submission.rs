@@ -12,7 +12,7 @@ use crate::{
     access::{Assignment, History, Member, Staff, Submission},
     problem::Problem,
     secret,
-    worker::STAFF_PAGE,
+    worker::{PUBLISHED_PAGE, STAFF_PAGE},
 };
 use askama::Template;
 use axum::{
@@ -160,7 +160,7 @@ pub(super) async fn beside(member: Member, At { id, .. }: At, Asked(Beside { att
 fn page_of(submission: &Submission) -> Option<&'static str> {
     let files = submission.grade.iter().flat_map(|grade| &grade.files);
     let names: Vec<&str> = files.map(|file| file.name.as_str()).collect();
-    [STAFF_PAGE, "report.html"].into_iter().find(|name| names.contains(name))
+    [STAFF_PAGE, PUBLISHED_PAGE, "report.html"].into_iter().find(|name| names.contains(name))
 }
 
 pub(super) async fn report(member: Member, At { id, name, .. }: At, headers: HeaderMap) -> Result<Response, Problem> {

@@ -71,6 +71,14 @@ macro_rules! on_both_engines {
 }
 pub(crate) use on_both_engines;
 
+/// Makes a test of what is the same on all engines; every handler's statements run on PostgreSQL in `web::roles`.
+macro_rules! on_sqlite {
+    ($($name:ident),* $(,)?) => {
+        $crate::support::engines::tests! { sqlite, $($name)* }
+    };
+}
+pub(crate) use on_sqlite;
+
 /// The same, and once more behind a pooler.
 macro_rules! on_all_engines {
     ($($name:ident),* $(,)?) => {

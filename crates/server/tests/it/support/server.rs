@@ -72,11 +72,16 @@ fi
 [ "$code" = FAIL ] && code=WA
 # By the other rules everything is worth half.
 [ "$rules" = parity ] && points=$((points / 2))
-printf '<script>alert(1)</script> %s by %s\n' "$(basename "$program")" "$(basename "$suite")" > "$text"
-echo '<script>document.title = document.cookie</script>' > "$html"
-echo 'everything' > "$FOSSSIM_STAFF_PAGE"
+printf '<script>alert(1)</script> %s by %s, ' "$(basename "$program")" "$(basename "$suite")" > "$text"
+echo "$points points" >> "$text"
 visibility=visible
 case $scene in Secret/*) visibility=hidden ;; esac
+echo "<script>document.title = document.cookie</script> $points points" > "$html"
+echo "everything $points points" > "$FOSSSIM_STAFF_PAGE"
+if [ $visibility = hidden ]; then
+    echo '10.0 points' > "$html"
+    echo "published $points points" > "$FOSSSIM_PUBLISHED_PAGE"
+fi
 cat > "$json" <<END
 {"schema": 4, "version": "1.0", "grades": [{"verdict": "in words", "code": "$code", "points": $points,
  "max_points": 100, "wall_seconds": $$.5, "groups": [{"points": 10, "max_points": 10, "scenes": [{"scene": "Group/easy", "code": "AC", "verdict": "accepted", "right_steps": 9}]},

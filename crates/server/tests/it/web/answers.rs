@@ -1,10 +1,10 @@
 //! The words that people are told: which file an assignment takes, when they may go on, and where they get from here.
 use crate::support::{
-    engines::{Fresh, on_both_engines},
+    engines::{Fresh, on_sqlite},
     server::{Answer, Client, JSON, Server, program},
 };
 
-on_both_engines!(
+on_sqlite!(
     a_refusal_names_what_is_taken,
     the_hourly_limit_says_until_when,
     a_browser_gets_pages_and_goes_on_where_it_wanted,
@@ -48,7 +48,7 @@ async fn a_refusal_names_what_is_taken(fresh: Fresh) {
         answer["detail"].as_str().expect("words").to_owned()
     };
     assert!(detail(b"text").contains("or an archive of sources or traces ("), "{}", detail(b"text"));
-    set(&admin, true, "{}");
+    set(&admin, true, r#"{"forms": ["program"]}"#);
     assert_eq!(
         detail(b"text"),
         "looked for a program for Linux (ELF, or a script that begins with #!), and found text"

@@ -1,11 +1,11 @@
 //! A server to try the service with: what the README promises of two commands.
 use crate::support::{
-    engines::{Fresh, on_both_engines},
+    engines::{Fresh, on_sqlite},
     server::Server,
 };
 use std::os::unix::fs::PermissionsExt;
 
-on_both_engines!(two_commands_and_an_upload, a_real_server_is_no_example);
+on_sqlite!(two_commands_and_an_upload, a_real_server_is_no_example);
 
 async fn two_commands_and_an_upload(fresh: Fresh) {
     let mut server = Server::start(&fresh, &["--workers", "1", "--example"]);

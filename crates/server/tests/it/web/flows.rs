@@ -157,11 +157,11 @@ async fn limits_are_kept_and_say_so(fresh: Fresh) {
     send(b"").expect(422);
     send(&program("AC", 1)).expect(201);
     assert!(send(&program("AC", 2)).expect(409).text().contains("used up"));
-    set(r#"{"per_hour": 1}"#).expect(200);
+    set(r#"{"attempts": 0, "per_hour": 1}"#).expect(200);
     send(&program("AC", 2)).expect(429);
     set(r#"{"due_at": 1}"#).expect(200);
     assert!(send(&program("AC", 2)).expect(409).text().contains("was due before"));
-    set(r#"{"forms": ["sources"]}"#).expect(200);
+    set(r#"{"forms": ["sources"], "due_at": null, "per_hour": 0}"#).expect(200);
     send(&program("AC", 2)).expect(422);
     // Settings that make no sense, and hidden assignments.
     for wrong in [
@@ -177,7 +177,7 @@ async fn limits_are_kept_and_say_so(fresh: Fresh) {
     // Which suites there are, the grader says.
     set(r#"{"suite": "course-2027"}"#).expect(200);
     assert!(set(r#"{"suite": "course-2028"}"#).expect(409).text().contains("suite is t2m2 or course-2027"));
-    assert_eq!(set("{}").expect(200).json()["settings"]["suite"], "t2m2");
+    assert_eq!(set(r#"{"suite": ""}"#).expect(200).json()["settings"]["suite"], "t2m2");
     let page = admin.get("/c/physics/a/m1/settings").expect(200).text();
     assert!(page.contains(">t2m2</option><option value=\"course-2027\">course-2027</option>"), "{page}");
     let hidden = r#"{"title": "M1", "visible": false}"#;

@@ -65,7 +65,7 @@ async fn files_are_sent_in_pieces(fresh: Fresh) {
     assert!(admin.get(&path).expect(200).body == bytes, "another account has its own");
     let held = server.peak_memory() - before;
     assert!(held < 32 << 20, "{held} bytes for readers of {} each", bytes.len());
-    // Whoever stops reading has room again.
+    // An account whose readers are gone has room again.
     drop(readers);
     let start = Instant::now();
     while ada.send("GET", &path, &[("Range", "bytes=0-4")], b"").status != 206 {

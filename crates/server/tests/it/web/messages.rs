@@ -5,6 +5,8 @@ use crate::support::{
     platform::{self, CLIENT, KEYS, LEARNER, Platform, begin, come, now, unsigned},
     server::Server,
 };
+use base64::{Engine as _, engine::general_purpose::URL_SAFE_NO_PAD};
+use ring::hmac;
 use serde_json::{Value, json};
 
 /// The beginning of the names of LTI claims.
@@ -163,12 +165,19 @@ fn a_message_is_believed_once_and_in_the_browser_that_asked() {
         come(&server, &mine, &token).expect(303);
         // Too late.
         let late = begin(&server, &platform);
-        let mut transaction = fresh.database.begin().await.expect("a transaction");
-        let statement = "UPDATE platform_login SET expires_at = expires_at - 600000";
-        transaction.execute(statement, fosssim_server::values![]).await.expect("a statement");
-        transaction.commit().await.expect("commit");
-        let token = KEYS[0].sign(&platform.claims(&late.nonce, "ada", LEARNER));
-        come(&server, &late, &token).expect(403);
+        let mut transaction = fresh.database.read().await.expect("a transaction");
+        let secret = transaction.one("SELECT value FROM server_secret", &[]).await.expect("a row");
+        let key = hmac::Key::new(hmac::HMAC_SHA256, secret.text("value").expect("a text").as_bytes());
+        let words: Vec<&str> = late.state.split('.').collect();
+        for (expires_at, status) in [(words[1], 303), ("1000", 403)] {
+            let state = format!("{}.{expires_at}.{}.again", words[0], words[2]);
+            let state = format!("{state}.{}", URL_SAFE_NO_PAD.encode(hmac::sign(&key, state.as_bytes())));
+            let nonce = hmac::sign(&key, format!("nonce {state}").as_bytes());
+            let nonce: String = nonce.as_ref().iter().map(|byte| format!("{byte:02x}")).collect();
+            let token = KEYS[0].sign(&platform.claims(&nonce, "ada", LEARNER));
+            let begun = platform::Begun { state, cookie: late.cookie.clone(), nonce };
+            come(&server, &begun, &token).expect(status);
+        }
         // A platform that nobody registered leads nowhere.
         let unknown = server.visitor().get("/lti/login?iss=https%3A%2F%2Fevil.example&login_hint=x").expect(403);
         assert!(unknown.header("location").is_none() && unknown.text().contains("has registered this platform"));

@@ -1,6 +1,6 @@
 //! The page for monitors: Prometheus' text format, by its rules.
 use crate::support::{
-    engines::{Fresh, on_both_engines, run},
+    engines::{Fresh, on_sqlite, run},
     server::{Server, program},
 };
 use std::{
@@ -47,7 +47,7 @@ fn read(text: &str) -> BTreeMap<String, f64> {
     series
 }
 
-on_both_engines!(a_monitor_sees_requests_queue_process_and_disk);
+on_sqlite!(a_monitor_sees_requests_queue_process_and_disk);
 
 async fn a_monitor_sees_requests_queue_process_and_disk(fresh: Fresh) {
     let mut server = Server::start(&fresh, &["--workers", "1"]);

@@ -1,14 +1,10 @@
 //! Passwords, where a server allows them.
 use crate::support::{
-    engines::{Fresh, on_both_engines},
+    engines::{Fresh, on_sqlite},
     server::{Client, JSON, Server},
 };
 
-on_both_engines!(
-    a_password_signs_in_until_it_is_changed,
-    nobody_signs_in_by_guessing,
-    without_the_option_there_are_none
-);
+on_sqlite!(a_password_signs_in_until_it_is_changed, nobody_signs_in_by_guessing, without_the_option_there_are_none);
 
 fn set(person: &Client, old: &str, new: &str) -> u16 {
     let wish = format!(r#"{{"old": "{old}", "new": "{new}"}}"#);
@@ -67,7 +63,8 @@ async fn a_password_signs_in_until_it_is_changed(fresh: Fresh) {
 }
 
 async fn nobody_signs_in_by_guessing(fresh: Fresh) {
-    let mut server = Server::start(&fresh, &["--workers", "0", "--passwords", "--client-address", "RightmostXForwardedFor"]);
+    let mut server =
+        Server::start(&fresh, &["--workers", "0", "--passwords", "--client-address", "RightmostXForwardedFor"]);
     let admin = server.admin();
     server.course(&admin, "physics");
     let ada = member(&server, &admin, "ada");

@@ -236,7 +236,10 @@ fn expected(role: Role, whom: For) -> Option<u16> {
 #[test]
 fn every_route_serves_whom_it_should_and_nobody_else() {
     run(async {
-        let fresh = Fresh::sqlite().await.expect("SQLite");
+        let fresh = match Fresh::postgres().await {
+            Some(fresh) => fresh.with_tables().await,
+            None => Fresh::sqlite().await.expect("SQLite"),
+        };
         let mut server = Server::start(&fresh, &["--workers", "1", "--requests-per-minute", "100000"]);
         let admin = server.admin();
         server.course(&admin, "physics");

@@ -1,23 +1,25 @@
 //! Settings, as people fill them in and programs write them.
 use crate::support::{
-    engines::{Fresh, on_both_engines},
+    engines::{Fresh, on_sqlite},
     server::{JSON, Server},
 };
 
-on_both_engines!(settings_are_a_form, a_date_is_a_date);
+on_sqlite!(settings_are_a_form, a_date_is_a_date, nothing_is_overwritten_unseen);
 
 async fn settings_are_a_form(fresh: Fresh) {
     let mut server = Server::start(&fresh, &["--workers", "0"]);
     let admin = server.admin();
     server.course(&admin, "physics");
     let settings = || admin.get("/api/v1/courses/physics/assignments/m1").expect(200).json()["settings"].clone();
+    let revision = || admin.get("/api/v1/courses/physics/assignments/m1").expect(200).json()["revision"].clone();
+    let send = |path: &str, form: &str| admin.post_form(path, &format!("{form}&revision={}", revision()));
     let form = "title=Milestone+one&visible=on&suite=course-2027&rules=&hints=what&program=FOSSSim&seconds=90&form_sources=on\
                 &megabytes=0.5&attempts=3&per_hour=0&late_days=2&late_percent=25";
     let path = "/c/physics/a/m1/settings";
     // Without a script the field is in UTC, and says so; with one in the reader's zone.
-    admin.post_form(path, &format!("{form}&due=2026-12-01T22:59&due_zone=0")).expect(303);
+    send(path, &format!("{form}&due=2026-12-01T22:59&due_zone=0")).expect(303);
     let utc = settings();
-    admin.post_form(path, &format!("{form}&due=2026-12-01T23:59&due_zone=60")).expect(303);
+    send(path, &format!("{form}&due=2026-12-01T23:59&due_zone=60")).expect(303);
     assert_eq!(settings(), utc);
     assert_eq!(
         utc,
@@ -34,16 +36,16 @@ async fn settings_are_a_form(fresh: Fresh) {
     let page = admin.get("/c/physics/a/m1").expect(200).text();
     assert!(page.contains("<time datetime=\"2026-12-01T22:59:00.000+00:00\">2026-12-01 22:59 UTC</time>"), "{page}");
     for bad in ["due=tomorrow&due_zone=0", "due=2026-12-01T22:59&due_zone=east"] {
-        admin.post_form(path, &format!("{form}&{bad}")).expect(400);
+        send(path, &format!("{form}&{bad}")).expect(400);
     }
-    admin.post_form(path, &form.replace("form_sources=on", "x=y")).expect(400);
+    send(path, &form.replace("form_sources=on", "x=y")).expect(400);
     assert_eq!(settings(), utc);
     // Settings that the form does not show stay: seconds of a date, and a suite that was uploaded.
     let wish = r#"{"title": "M", "visible": true, "settings": {"due_at": "2026-12-01T23:59:30+01:00"}}"#;
     admin.send("PUT", "/api/v1/courses/physics/assignments/m1", JSON, wish.as_bytes()).expect(200);
-    admin.post_form(path, &format!("{form}&due=2026-12-01T22:59&due_zone=0")).expect(303);
+    send(path, &format!("{form}&due=2026-12-01T22:59&due_zone=0")).expect(303);
     assert_eq!(settings()["due_at"], 1_796_165_970_000_i64);
-    admin.post_form(path, &format!("{form}&due=&due_zone=0")).expect(303);
+    send(path, &format!("{form}&due=&due_zone=0")).expect(303);
     assert!(settings()["due_at"].is_null());
     let regrade = "reason=again&suite=t2m2&rules=parity&hints=&program=FOSSSim&seconds=60";
     admin.post_form("/c/physics/a/m1/regrades", regrade).expect(303);
@@ -67,4 +69,42 @@ async fn a_date_is_a_date(fresh: Fresh) {
     for due in ["\"2026-12-01T22:59\"", "\"soon\"", "1.5", "-1"] {
         set(due).expect(400);
     }
+}
+
+async fn nothing_is_overwritten_unseen(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "0"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let colleague = server.member(&admin, "physics", "colleague", "staff");
+    let path = "/api/v1/courses/physics/assignments/m1";
+    let seen = admin.get(path).expect(200).json()["revision"].as_i64().expect("a number");
+    let page = admin.get("/c/physics/a/m1/settings").expect(200).text();
+    assert!(page.contains(&format!("name=\"revision\" value=\"{seen}\"")), "{page}");
+    let wish = r#"{"title": "M", "settings": {"due_at": "2026-12-01T22:59Z", "attempts": 3}}"#;
+    colleague.send("PUT", path, JSON, wish.as_bytes()).expect(200);
+    // The page that was opened before.
+    let form = format!(
+        "title=M&visible=on&suite=t2m2&rules=&hints=&program=FOSSSim&seconds=60&form_program=on&megabytes=1&attempts=0\
+         &per_hour=0&late_days=0&late_percent=0&due=&due_zone=0&revision={seen}"
+    );
+    let refused = admin.post_form("/c/physics/a/m1/settings", &form).expect(409).text();
+    assert!(refused.contains("colleague changed it meanwhile") && refused.contains("attempts 3"), "{refused}");
+    let stale = format!(r#"{{"title": "M", "settings": {{"attempts": 9}}, "revision": {seen}}}"#);
+    admin.send("PUT", path, JSON, stale.as_bytes()).expect(409);
+    // A field is a field: what others set stays, also without a revision.
+    let one = admin.send("PUT", path, JSON, br#"{"title": "M", "settings": {"hints": "what"}}"#).expect(200).json();
+    assert_eq!((&one["settings"]["attempts"], &one["settings"]["hints"]), (&3.into(), &"what".into()));
+    admin.send("PUT", path, JSON, br#"{"title": "M", "settings": {"attempts": null}}"#).expect(400);
+    // A mark, too.
+    let ada = server.member(&admin, "physics", "ada", "student");
+    let id = ada.submit("physics", b"#!grade WA 1\n");
+    let mark = format!("/api/v1/courses/physics/submissions/{id}/mark");
+    let seen = colleague.send("PUT", &mark, JSON, br#"{"comment": "well done"}"#).expect(200).json();
+    let seen = seen["mark"]["marked_at"].as_i64().expect("a moment");
+    let other = format!(r#"{{"comment": "poor", "marked_at": {}}}"#, seen - 1);
+    let refused = admin.send("PUT", &mark, JSON, other.as_bytes()).expect(409).text();
+    assert!(refused.contains("colleague marked it meanwhile: well done"), "{refused}");
+    let form = format!("points=&comment=poor&marked_at={}", seen - 1);
+    admin.post_form(&format!("/c/physics/s/{id}/mark"), &form).expect(409);
+    admin.post_form(&format!("/c/physics/s/{id}/mark"), &format!("points=&comment=poor&marked_at={seen}")).expect(303);
 }

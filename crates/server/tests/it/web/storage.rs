@@ -1,12 +1,12 @@
 //! Disks that are full, and what is not to be kept.
 use crate::support::{
     disk::{SmallDisk, stored},
-    engines::{Fresh, on_both_engines, run},
+    engines::{Fresh, on_sqlite, run},
     server::{JSON, Server, program},
 };
 use std::{io::Write, time::Instant};
 
-on_both_engines!(uploads_need_room, nothing_is_stored_of_a_refused_upload);
+on_sqlite!(uploads_need_room, nothing_is_stored_of_a_refused_upload);
 
 const SUBMISSIONS: &str = "/api/v1/courses/physics/assignments/m1/submissions";
 
@@ -75,5 +75,39 @@ fn a_full_disk_heals() {
         ada.submit("physics", &program("AC", 3));
         let submissions = ada.get(SUBMISSIONS).expect(200).json();
         assert_eq!(submissions.as_array().map(Vec::len), Some(2), "{submissions}");
+    });
+}
+
+/// While another server takes over, a database is read-only: that is said, and over as soon as it is.
+#[test]
+fn a_database_that_was_read_only_is_written_again_at_once() {
+    run(async {
+        let Some(fresh) = Fresh::postgres().await else { return };
+        let fresh = fresh.with_tables().await;
+        let mut server = Server::start(&fresh, &["--workers", "0"]);
+        let admin = server.admin();
+        let run = async |statements: [&'static str; 2]| {
+            let mut transaction = fresh.database.begin().await.expect("a transaction");
+            transaction.execute("SET TRANSACTION READ WRITE", &[]).await.expect("a statement");
+            for statement in statements {
+                transaction.execute(statement, &[]).await.expect("a statement");
+            }
+            transaction.commit().await.expect("commit");
+        };
+        let end_others = "SELECT pg_terminate_backend(pid) FROM pg_stat_activity
+            WHERE datname = current_database() AND pid <> pg_backend_pid()";
+        let begin = "DO $$ BEGIN EXECUTE format('ALTER DATABASE %I SET default_transaction_read_only = on',
+            current_database()); END $$";
+        run([begin, end_others]).await;
+        for slug in ["one", "two"] {
+            let course = format!(r#"{{"slug": "{slug}", "title": "{slug}"}}"#);
+            let refused = admin.post_json("/api/v1/courses", &course).expect(503);
+            assert!(refused.header("retry-after").is_some(), "{:?}", refused.headers);
+        }
+        server.visitor().get("/ready").expect(503);
+        let end = "DO $$ BEGIN EXECUTE format('ALTER DATABASE %I RESET default_transaction_read_only',
+            current_database()); END $$";
+        run([end, "SELECT 1"]).await;
+        admin.post_json("/api/v1/courses", r#"{"slug": "one", "title": "one"}"#).expect(201);
     });
 }

@@ -9,7 +9,7 @@ use fosssim_server::{
 };
 
 /// Statements that take a database back to the tables of the first version, with an account in it.
-const BACK_TO_THE_FIRST: [&str; 79] = [
+const BACK_TO_THE_FIRST: [&str; 82] = [
     "DROP INDEX job_token",
     "DROP INDEX job_buried",
     "DROP INDEX job_cancelled",
@@ -87,6 +87,9 @@ const BACK_TO_THE_FIRST: [&str; 79] = [
     "DROP TABLE job_file",
     "DROP INDEX event_assignment",
     "DROP INDEX campaign_assignment",
+    "DROP TABLE suite",
+    "DROP TABLE server_secret",
+    "ALTER TABLE assignment DROP COLUMN revision",
     "DELETE FROM schema_change WHERE number > 1",
     "INSERT INTO account (login, name, created_at) VALUES ('ada', 'Ada', {now})",
 ];
@@ -101,11 +104,16 @@ fn the_database_is_copied_before_its_tables_change() {
             transaction.execute(statement, values![]).await.expect("a statement");
         }
         transaction.commit().await.expect("commit");
-        let mut server = Server::start(&fresh, &["--workers", "0"]);
+        // A server that was killed in the middle of a copy left a part of it.
+        let temp = tempfile::tempdir().expect("a folder");
+        let backups = temp.path().join("data/backups");
+        std::fs::create_dir_all(&backups).expect("a folder");
+        std::fs::write(backups.join("version-1-7.db.partial"), b"").expect("a file");
+        let mut server = Server::start_in(&fresh, &["--workers", "0"], temp.path().join("data"));
         let admin = server.admin();
         let accounts = admin.get("/api/v1/accounts").expect(200).json();
         assert_eq!(accounts[0]["login"], "ada", "what was there stays there");
-        let backups = server.folder.join("backups");
+        assert!(!backups.join("version-1-7.db.partial").exists());
         let copies = || -> Vec<_> {
             let entries = std::fs::read_dir(&backups).expect("a folder").map(|entry| entry.expect("an entry").path());
             // SQLite keeps files of its own beside a database that is open.

@@ -1,6 +1,6 @@
 //! Workers on other machines: processes that know nothing but an address and a token.
 use crate::support::{
-    engines::{Fresh, on_both_engines},
+    engines::{Fresh, on_sqlite},
     server::{Client, JSON, Server, program},
 };
 use std::{
@@ -8,7 +8,7 @@ use std::{
     process::{Child, Command, Stdio},
 };
 
-on_both_engines!(
+on_sqlite!(
     a_worker_of_another_machine_grades,
     kills_of_workers_and_server_lose_nothing,
     a_worker_reaches_the_jobs_that_it_holds_and_nothing_else,

@@ -1,0 +1,82 @@
+//! Looking through what strangers send: a program by its first bytes, an archive in a process of its own, with limits
+//! of time and memory, in the sender's turn.
+use super::upload::is_program;
+use crate::{
+    access::{Member, Settings},
+    archive,
+    problem::{Problem, ensure},
+    task::Form,
+    worker,
+};
+use std::{
+    io::Read,
+    path::Path,
+    process::{Command, Stdio},
+    time::Duration,
+};
+
+/// How long an archive may be looked through, in seconds on the clock and of the processor, and with how much memory.
+const SECONDS: u64 = 30;
+const MEMORY: u64 = 1 << 30;
+
+/// A program, in words.
+const PROGRAM: &str = "a program for Linux (ELF, or a script that begins with #!)";
+
+/// The form of a file, and whether it can be that; a refusal names what the assignment takes.
+pub(super) async fn examine(
+    member: &Member,
+    file: &Path,
+    said: Option<&str>,
+    settings: &Settings,
+) -> Result<Form, Problem> {
+    let wrong = || Problem::invalid("form is program, sources or traces");
+    let form = said.map(|name| Form::named(name).ok_or_else(wrong)).transpose()?;
+    let mut start = Vec::new();
+    std::fs::File::open(file)?.take(512).read_to_end(&mut start)?;
+    ensure(!start.is_empty(), Problem::unusable("the file is empty"))?;
+    match (form, is_program(&start)) {
+        (None | Some(Form::Program), true) => return Ok(Form::Program),
+        (Some(Form::Program), false) => {
+            let found = archive::described(&start);
+            return Err(Problem::unusable(format!("looked for {PROGRAM}, and found {found}")));
+        }
+        _ => {}
+    }
+    let archives = [Form::Sources, Form::Traces].into_iter().filter(|form| settings.takes(*form));
+    let archives: Vec<&str> = archives.map(Form::name).collect();
+    let archives =
+        (!archives.is_empty()).then(|| format!("an archive of {} ({})", archives.join(" or "), archive::KNOWN));
+    let program = settings.takes(Form::Program).then(|| PROGRAM.to_owned());
+    let wanted = program.into_iter().chain(archives).collect::<Vec<_>>().join(", or ");
+    let mut words = vec!["--wanted", &wanted];
+    words.extend(said.iter().flat_map(|form| ["--form", form]));
+    let answer = in_turn(member, file, &words).await?;
+    answer.map_err(Problem::unusable)?.ok_or_else(Problem::fault)
+}
+
+/// Unpacks an archive into a folder that is there and empty.
+pub(super) async fn unpack(member: &Member, archive: &Path, folder: &Path) -> Result<(), Problem> {
+    let folder = folder.to_str().ok_or_else(Problem::fault)?;
+    in_turn(member, archive, &["--into", folder]).await?.map(drop).map_err(Problem::no_suite)
+}
+
+/// Has this program look through a file when it is the sender's turn. Refused files count: an account
+/// that sends many waits.
+async fn in_turn(member: &Member, file: &Path, words: &[&str]) -> Result<Result<Option<Form>, String>, Problem> {
+    let _turn = member.archive_turn().await?;
+    // The same program, also where another has taken its place meanwhile.
+    let mut command = Command::new("/proc/self/exe");
+    command.arg("look-through").args(words).arg("--").arg(file);
+    command.env_clear().stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null());
+    worker::limit(&mut command, MEMORY, SECONDS);
+    let looked = tokio::process::Command::from(command).kill_on_drop(true).output();
+    let answer = match tokio::time::timeout(Duration::from_secs(SECONDS), looked).await {
+        Ok(output) => serde_json::from_slice(&output?.stdout).ok(),
+        Err(_) => None,
+    };
+    let answer = answer.unwrap_or_else(|| Err("it takes too long, or too much memory, to look through".to_owned()));
+    if answer.is_ok() {
+        member.archive_was_right();
+    }
+    Ok(answer)
+}
