@@ -60,6 +60,9 @@ fn headings(words: &[String]) -> Result<Option<[Option<usize>; 4]>, Problem> {
 /// Reads a table; what is wrong with a line is told with it.
 fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
     let first = text.lines().next().unwrap_or_default();
+    if first.trim_start().starts_with(['{', '[']) {
+        return Err(Problem::invalid("this is JSON, and no table"));
+    }
     // Spreadsheets of other countries separate by something else.
     let delimiter = *b";\t,".iter().max_by_key(|c| first.bytes().filter(|byte| byte == *c).count()).unwrap_or(&b',');
     let mut reader = csv::ReaderBuilder::new()
@@ -151,6 +154,6 @@ mod tests {
         let wrong = lines("Ada,ada\nAda,ada\n,eve\nEve,e v e\nEve,eve,,boss\n");
         let errors: Vec<bool> = wrong.iter().map(|line| line.error.is_some()).collect();
         assert_eq!(errors, [false, true, true, true, true]);
-        assert!(read("").is_err());
+        assert!(read("").is_err() && read(r#"[{"name": "Ada", "login": "ada"}]"#).is_err());
     }
 }

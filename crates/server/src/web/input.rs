@@ -37,7 +37,14 @@ pub(super) struct Asked<T>(pub(super) T);
 /// Where a list is to end, as a query.
 #[derive(Deserialize)]
 pub(super) struct Before {
-    pub(super) before: Option<i64>,
+    before: Option<u64>,
+}
+
+impl Before {
+    /// The number before which it ends.
+    pub(super) fn number(&self) -> Option<i64> {
+        self.before.map(|before| i64::try_from(before).unwrap_or(i64::MAX))
+    }
 }
 
 /// Where a list is to begin, as a query.

@@ -23,7 +23,7 @@ use std::{
 use tempfile::TempPath;
 use tokio::io::AsyncWriteExt;
 
-/// The longest that an upload may take, in pauses that a body may make.
+/// The longest that an upload may take beside its fair time, in pauses that a body may make.
 const PAUSES: u32 = 20;
 
 /// How long an upload of this size may take to count as come at its beginning: half a minute, and a second for each
@@ -130,7 +130,7 @@ pub(super) fn announced(request: &Request) -> Option<u64> {
 }
 
 async fn receive_at(place: &Place<'_>, request: Request, most: u64) -> Result<Received, Problem> {
-    let deadline = Instant::now() + place.patience * PAUSES;
+    let deadline = Instant::now() + place.patience * PAUSES + fair_time(most);
     if !is_form(&request) {
         if announced(&request).is_some_and(|announced| announced > most) {
             return Err(Problem::too_large(most));

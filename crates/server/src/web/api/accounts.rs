@@ -77,7 +77,7 @@ pub(super) async fn new_token(
     params(("before" = Option<i64>, Query, description = "Only events before this one")),
     responses((status = 200, body = Vec<Event>)))]
 pub(super) async fn audit(admin: Admin, Asked(asked): Asked<Before>) -> Result<Json<Vec<Event>>, Problem> {
-    Ok(Json(admin.audit(asked.before).await?))
+    Ok(Json(admin.audit(asked.number()).await?))
 }
 
 answers! { CREATED:

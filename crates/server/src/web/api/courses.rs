@@ -82,7 +82,7 @@ pub(super) async fn import(
     params(("before" = Option<i64>, Query, description = "Only events before this one")),
     responses((status = 200, body = Vec<Event>)))]
 pub(super) async fn audit(staff: Staff, Asked(asked): Asked<Before>) -> Result<Json<Vec<Event>>, Problem> {
-    Ok(Json(staff.audit(asked.before).await?))
+    Ok(Json(staff.audit(asked.number()).await?))
 }
 
 answers! { CREATED:

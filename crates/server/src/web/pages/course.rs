@@ -184,7 +184,7 @@ pub(super) async fn member_link(staff: Staff, At { login, .. }: At) -> Page {
 pub(super) async fn audit(staff: Staff, Asked(asked): Asked<Before>) -> Page {
     let slug = staff.slug.clone();
     let frame = PageFrame::course(&staff).then(format!("/c/{slug}/audit"), "Audit log");
-    show(&AuditPage { frame, slug, events: staff.audit(asked.before).await? })
+    show(&AuditPage { frame, slug, events: staff.audit(asked.number()).await? })
 }
 
 pub(super) async fn queue(staff: Staff) -> Page {

@@ -156,7 +156,7 @@ async fn numbers_and_staff_are_kept(fresh: Fresh) {
     colleague.send("DELETE", &format!("{members}/colleague"), &[], b"").expect(409);
     admin.send("DELETE", &format!("{members}/colleague"), &[], b"").expect(204);
     // Names that turn the letters behind them.
-    for name in ["a\u{202e}b", "a\u{2066}b"] {
+    for name in ["a\u{202e}b", "a\u{2066}b", "a\u{200b}b", "ab\u{feff}"] {
         admin.send("PUT", &format!("{members}/eve"), JSON, wish(name, "student").as_bytes()).expect(400);
     }
     admin.send("DELETE", "/api/v1/accounts/ada/data", &[], b"").expect(204);

@@ -133,6 +133,7 @@ fn a_backup_that_is_damaged_incomplete_or_newer_is_refused() {
         let refused = |number: u32, what: &str| {
             let (code, said) = restore(number);
             assert!(code == Some(2) && said.contains(what), "{code:?} {said}");
+            assert!(!folder.path().join(number.to_string()).exists(), "half a data folder is left: {what}");
         };
         // One artefact is changed, then one is missing.
         fs::write(&artefact, program("AC", 99)).expect("written");

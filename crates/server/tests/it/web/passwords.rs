@@ -4,7 +4,12 @@ use crate::support::{
     server::{Client, JSON, Server},
 };
 
-on_sqlite!(a_password_signs_in_until_it_is_changed, nobody_signs_in_by_guessing, without_the_option_there_are_none);
+on_sqlite!(
+    a_password_signs_in_until_it_is_changed,
+    nobody_signs_in_by_guessing,
+    without_the_option_there_are_none,
+    ways_in_are_counted_by_network_and_bounded
+);
 
 fn set(person: &Client, old: &str, new: &str) -> u16 {
     let wish = format!(r#"{{"old": "{old}", "new": "{new}"}}"#);
@@ -109,4 +114,32 @@ async fn without_the_option_there_are_none(fresh: Fresh) {
     assert_eq!(set(&admin, "", "correct horse"), 403);
     sign_in(&server, "admin", "correct+horse").expect(403);
     assert!(!server.visitor().get("/sign-in").expect(200).text().contains("With a password"));
+}
+
+async fn ways_in_are_counted_by_network_and_bounded(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "0", "--client-address", "XRealIp"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let ada = member(&server, &admin, "ada");
+    let made = ada.post_json("/api/v1/tokens", r#"{"name": "mine"}"#).expect(201).json();
+    let token = made["token"].as_str().expect("a token").to_owned();
+    let sign_in = |address: &str, token: &str| {
+        let headers = [
+            ("Content-Type", "application/x-www-form-urlencoded"),
+            ("Sec-Fetch-Site", "same-origin"),
+            ("X-Real-Ip", address),
+        ];
+        server.visitor().send("POST", "/sign-in", &headers, format!("token={token}").as_bytes()).status
+    };
+    // However often somebody signs in, they have few sessions: the first one ends.
+    for _ in 0..51 {
+        assert_eq!(sign_in("192.0.2.1", &token), 303);
+    }
+    ada.get("/api/v1/me").expect(401);
+    server.with_token(&token).get("/api/v1/me").expect(200);
+    // A network that tries too much shuts itself out, and nobody else.
+    let tried = (0..3000).map(|_| sign_in("2001:db8::1", "fso_none")).find(|status| *status != 401);
+    assert_eq!(tried, Some(429));
+    assert_eq!(sign_in("2001:db8::2", &token), 429);
+    assert_eq!(sign_in("2001:db8:0:1::2", &token), 303);
 }
