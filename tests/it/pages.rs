@@ -198,7 +198,7 @@ fn pages_to_hand_out_hold_no_hidden_group() {
     assert!(!text(&workspace, "student.html").contains("Veiled"));
     // Once they are published students see the points of all groups, and what the hints let them know.
     let published = text(&workspace, "published.html");
-    assert!(published.contains("Veiled") && published.contains("of 2 scenes"), "{published}");
+    assert!(published.contains("Veiled") && published.contains(" of 3 points"), "{published}");
 }
 
 /// Staff sees the numbers of every scene; students see what the suite says, group by group, and the assignment's own
