@@ -4,6 +4,7 @@
 //! The originals are measuring instruments that lie beside the checkout, and no part of them is in the project.
 #![forbid(unsafe_code)]
 
+mod contest;
 mod oracle;
 #[path = "../it/workspace.rs"]
 #[expect(dead_code, reason = "the integration tests use more of it")]

@@ -9,7 +9,7 @@ use super::{
 };
 use fosssim_model::{
     scene::Scene,
-    sim::{RootSearch, SearchCounts, Simulation, State},
+    sim::{RootSearch, SearchCounts, Simulation, State, SweepOrder},
     trace::{Layout, Lenient, StepBytes},
 };
 use fosssim_num::polynomial::MAX_COEFFICIENTS;
@@ -21,6 +21,9 @@ const LONGEST_PAUSE: u32 = 63;
 /// Looks for such steps.
 pub(super) struct Identical {
     simulation: Simulation,
+    /// The order of bodies from which the reference begins the step, in a contest. It depends on all steps before, so
+    /// that no step of a contest is skipped here.
+    order: SweepOrder,
     /// The reference's records of the step.
     records: StepBytes,
     /// The number of steps in a row that differed. After the first of them no step is skipped, and then about twice as
@@ -47,6 +50,7 @@ impl Identical {
     pub(super) fn new(scene: &Scene, root_search: RootSearch) -> Self {
         Self {
             simulation: Simulation::new(scene, root_search),
+            order: SweepOrder::default(),
             records: StepBytes::new(Layout::of(scene)),
             misses: 0,
             skipped: 0,
@@ -57,6 +61,11 @@ impl Identical {
     /// Tries no step.
     pub(super) fn give_up(&mut self) {
         self.skipped = u32::MAX;
+    }
+
+    /// The order of bodies from which the reference begins the step that was asked for last; empty but in a contest.
+    pub(super) fn order(&self) -> &SweepOrder {
+        &self.order
     }
 
     /// Counts of root searches, of the steps that were found.
@@ -79,14 +88,28 @@ impl Identical {
         context: Option<&Context<'_>>,
         most_work: u64,
     ) -> Option<Found> {
-        if self.skipped > 0 {
+        let has_order = self.simulation.penalty_pairs().is_some_and(|pairs| pairs.order(&mut self.order));
+        let is_skipped = self.skipped > 0;
+        if is_skipped {
             self.skipped -= 1;
-            return None;
+            if !has_order {
+                return None;
+            }
         }
         let (counts, work) = (self.simulation.search_counts(), self.simulation.work());
-        let is_found = self.step(step, before, context, work.saturating_add(most_work))
+        let is_ordinary = |state: &State| context.is_none_or(|context| context.ordinary.holds(state));
+        let is_found = (has_order || is_ordinary(before))
+            && self.step(step, before, work.saturating_add(most_work))
+            && !is_skipped
+            && is_ordinary(before)
+            && self.records.is_finite()
+            && self.records.mid().is_none_or(is_ordinary)
+            && is_ordinary(self.simulation.state())
             && !self.hangs_on_size()
             && reader.passes(&self.records);
+        if is_skipped {
+            return None;
+        }
         if !is_found {
             self.skipped = ((1 << self.misses) - 1).min(LONGEST_PAUSE);
             self.misses = (self.misses + 1).min(LONGEST_PAUSE.ilog2() + 1);
@@ -98,17 +121,12 @@ impl Identical {
         Some(Found { work: self.simulation.work() - work, bytes: self.records.len(), fair })
     }
 
-    /// Whether the step has a result and its states are nothing out of the ordinary.
-    fn step(&mut self, step: u32, before: &State, context: Option<&Context<'_>>, most_work: u64) -> bool {
+    /// Whether the step has a result.
+    fn step(&mut self, step: u32, before: &State, most_work: u64) -> bool {
         self.simulation.state_mut().clone_from(before);
         self.simulation.set_steps_done(step - 1);
         self.simulation.limit_work(most_work);
-        let is_ordinary = |state: &State| context.is_none_or(|context| context.ordinary.holds(state));
-        is_ordinary(before)
-            && self.simulation.step(&mut self.records).is_ok()
-            && self.records.is_finite()
-            && self.records.mid().is_none_or(is_ordinary)
-            && is_ordinary(self.simulation.state())
+        self.simulation.step(&mut self.records).is_ok()
     }
 
     /// Whether the original rejects a polynomial although it is the reference's.

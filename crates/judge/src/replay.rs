@@ -22,7 +22,7 @@ use super::{
 use fosssim_model::{
     assignments::ImpulseList,
     scene::Scene,
-    sim::{RootSearch, State, StepError},
+    sim::{RootSearch, State, StepError, SweepOrder},
     trace::{Layout, Lenient, LenientFrame, LoggedImpulse, Malformation, TraceError, Unreadable, record_memory},
 };
 use std::{io::Read, sync::Mutex};
@@ -44,6 +44,8 @@ struct StepSlot {
     /// Its number, and where it lies.
     place: StepPlace,
     before: State,
+    /// The order of bodies from which the reference begins, in a contest.
+    order: SweepOrder,
     /// The mid record; without its lists, unless the fair rules want them.
     mid: LenientFrame,
     end: LenientFrame,
@@ -283,6 +285,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             return Ok(());
         }
         slot.before.clone_from(&self.state);
+        slot.order.clone_from(self.identical.order());
         let mut damage = None;
         let mut read = Ok(());
         if self.shape.layout.polynomials {

@@ -22,6 +22,10 @@ pub const PARITY_ACCUMULATED: f64 = 1e-6;
 /// Parity: bound of the maximum position and velocity residuals (strict; oracle-behaviour.md 6).
 pub const PARITY_MAXIMUM: f64 = 1e-10;
 
+/// In the contest bodies that are closer than this leave each other alone (scene length unit; simulation.md 3.1).
+/// Changing it changes traces of bodies at the same place.
+pub const CONTEST_DISTANCE: f64 = 1e-10;
+
 /// Newton's method of implicit-euler stops when the update's norm is below this (velocity unit; simulation.md 4).
 pub const NEWTON_UPDATE: f64 = 1e-9;
 

@@ -211,7 +211,7 @@ fn grade(
     let outcome = replay::judge(scene, trace, &replay::Options::default(), &mut transcript);
     transcript.graded(&outcome);
     drop(transcript.finish());
-    if let Some(residuals) = residual_file(&outcome)
+    if let Some(residuals) = residual_file(&outcome, scene.assignment().definition())
         && let Ok(mut file) = create_now(Path::new("residual.txt"))
     {
         // Like the original, this follows links, truncates, and takes no notice of a failure.

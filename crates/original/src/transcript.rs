@@ -160,14 +160,13 @@ impl<'a, W: Write> Transcript<'a, W> {
         self.write(format!("{PINK}Progress: {PLAIN}{}\n{}", "-".repeat(50), " ".repeat(10)).as_bytes());
     }
 
-    /// A step is done: the time that it took, where the original tells it. The parts of a step are not measured here.
+    /// A step is done: the time that it took, where the original tells it.
     pub(crate) fn step_ends(&mut self, step: u32) {
         let Some(clock) = &mut self.clock else { return };
         let now = Instant::now();
         let [frame, total] = [now - clock.frame, now - clock.start].map(|time| general(time.as_secs_f64()));
         clock.frame = now;
         let time = general(f64::from(step) * self.heading.scene.time_step);
-        self.write(b"Preparation: 0s\nCollision detection: 0s\nCollision handling: 0s\n");
         self.write(format!("T: {time}\nFrame run time: {frame}s. Total run time: {total}s. \n").as_bytes());
     }
 
@@ -210,6 +209,10 @@ impl<W: Write> Progress for Transcript<'_, W> {
 
     fn step_begins(&mut self, step: u32) {
         self.dot(step.saturating_sub(1));
+        if self.clock.is_some() {
+            // The original says these before it reads the step's record. The parts of a step are not measured here.
+            self.write(b"Preparation: 0s\nCollision detection: 0s\nCollision handling: 0s\n");
+        }
     }
 
     fn step_judged(&mut self, step: u32, remarks: &[Remark]) {

@@ -1,6 +1,7 @@
 //! The original's closing words about residuals, and the text of `residual.txt` (oracle-behaviour.md 6).
 use crate::words::{PINK, PLAIN};
 use fosssim_judge::{Outcome, Overall, Residuals};
+use fosssim_model::assignments::Definition;
 use fosssim_num::printed::general;
 
 /// The original's names of the residuals, in its order.
@@ -40,15 +41,19 @@ pub(crate) fn incomplete(residuals: &Residuals) -> String {
     text
 }
 
-/// The text of `residual.txt`: per residual `1` or `0`, three spaces, the value. `None` when grading did not come to
-/// its end; the file is not written then.
+/// The text of `residual.txt`: per residual `1` or `0`, three spaces, the value; in the contest a line about collisions,
+/// too. `None` when grading did not come to its end; the file is not written then.
 #[must_use]
-pub(crate) fn residual_file(outcome: &Outcome) -> Option<String> {
+pub(crate) fn residual_file(outcome: &Outcome, assignment: &Definition) -> Option<String> {
     if outcome.parity.overall == Overall::None {
         return None;
     }
     let line = |(value, bound): (f64, f64)| format!("{}   {}\n", u8::from(value < bound), general(value));
-    Some(outcome.parity.residuals.with_bounds().into_iter().map(line).collect())
+    let mut text: String = outcome.parity.residuals.with_bounds().into_iter().map(line).collect();
+    if assignment.tells_times {
+        text += &format!("{}\n", u8::from(outcome.parity.collisions_passed == Some(true)));
+    }
+    Some(text)
 }
 
 const fn passed(yes: bool) -> &'static str {

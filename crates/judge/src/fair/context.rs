@@ -29,8 +29,8 @@ impl<'a> Context<'a> {
     /// The context of a scene.
     pub fn new(scene: &'a Scene) -> Self {
         let pairs = pairs(scene);
-        let mut of_kinds = ByKind::default();
-        pairs.iter().for_each(|pair| of_kinds[pair.kind] += 1);
+        let counts = pairs.counts();
+        let of_kinds = ByKind::from_fn(|kind| counts[kind] as u64);
         let (per_pass, pairs) = (pairs.polynomials(), pairs.count());
         let records_per_step = Layout::of(scene).records_per_step();
         Self { scene, per_pass, pairs, of_kinds, records_per_step, ordinary: Ordinary::of(scene), looks_closely: false }

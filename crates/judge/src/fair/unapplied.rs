@@ -3,13 +3,17 @@
 //! The force of a pair changes the velocities of its particles by known amounts. Where velocities are wrong, those
 //! amounts are fitted to the differences: a pair is named only if no other choice of pairs fits, and the differences of
 //! all its particles are round-off once the pair's force is taken away or added.
+//!
+//! In a contest with a layer the original leaves out bodies whose layers alone are near (simulation.md 3.1). A program
+//! may do otherwise, since the contest is about layers without thickness: such a pair is never named.
 use super::{contact::Tolerances, context::Context};
 use fosssim_findings::FindingDetail;
 use fosssim_model::{
-    scene::Integrator,
-    sim::{Pair, PenaltyTerms, State},
+    scene::{Collision, CollisionDetection, Integrator, Scene},
+    sim::{Pair, PairKind, PenaltyTerms, State},
 };
 use fosssim_num::vector::{Vec2, at, length, put};
+use std::collections::BTreeSet;
 
 /// The greatest number of pairs at one particle among which left-out ones are looked for: all choices are tried.
 const MOST_AT_ONE: usize = 6;
@@ -57,7 +61,11 @@ pub(super) fn explain(
         // There all forces together have one effect.
         Integrator::LinearizedImplicitEuler | Integrator::ImplicitEuler => return None,
     };
-    let mut terms = PenaltyTerms::of(scene)?;
+    let layer = layer_of_contest(scene, &before.positions);
+    let mut terms = match &layer {
+        Some((all_pairs, _)) => PenaltyTerms::of(all_pairs)?,
+        None => PenaltyTerms::of(scene)?,
+    };
     let particles = scene.particles.len();
     let mut rest: Vec<Vec2> =
         (0..particles).map(|index| at(&logged.velocities, index) - at(&own.velocities, index)).collect();
@@ -93,11 +101,14 @@ pub(super) fn explain(
         let excess = candidates[index].excess.take().unwrap_or(0.0);
         candidates[index].changes().iter().for_each(|&(particle, change)| rest[particle] += excess * change);
     }
-    let mut faulty = own.clone();
+    let (mut faulty, mut is_explained) = (own.clone(), false);
     let mut found = Vec::new();
     for candidate in &candidates {
         let Some(excess) = candidate.excess.filter(|excess| *excess != 0.0) else { continue };
-        found.push(FindingDetail::PairForce { pair: candidate.pair, is_doubled: excess > 0.0 });
+        is_explained = true;
+        if layer.as_ref().is_none_or(|(_, touching)| touching.contains(&candidate.pair)) {
+            found.push(FindingDetail::PairForce { pair: candidate.pair, is_doubled: excess > 0.0 });
+        }
         for &(particle, change) in candidate.changes() {
             let change = excess * change;
             let velocity = at(&faulty.velocities, particle) + change;
@@ -108,7 +119,28 @@ pub(super) fn explain(
             }
         }
     }
-    (!found.is_empty()).then_some((found, faulty))
+    is_explained.then_some((found, faulty))
+}
+
+/// Of a contest with a layer: the scene with the force between all pairs, and the pairs whose force is due at positions
+/// `x`, since they overlap without their layers or one of them is a half-plane.
+fn layer_of_contest(scene: &Scene, x: &[f64]) -> Option<(Scene, BTreeSet<Pair>)> {
+    let Collision::Penalty { stiffness, thickness, detection: CollisionDetection::Contest } = scene.collision else {
+        return None;
+    };
+    let between_all = |thickness: f64| {
+        let collision = Collision::Penalty { stiffness, thickness, detection: CollisionDetection::AllPairs };
+        Scene { collision, ..scene.clone() }
+    };
+    let (all_pairs, mut due) = ((thickness > 0.0).then(|| between_all(thickness))?, BTreeSet::new());
+    for (scene, is_bare) in [(&all_pairs, false), (&between_all(0.0), true)] {
+        PenaltyTerms::of(scene)?.visit(x, |pair, _| {
+            if is_bare || pair.kind == PairKind::ParticleHalfPlane {
+                due.insert(pair);
+            }
+        });
+    }
+    Some((all_pairs, due))
 }
 
 /// Finds, particle by particle, the only choice of pairs that explains its velocity. Each particle that is explained

@@ -130,10 +130,24 @@ fn judge_batch(batch: &Batch, workers: &mut [Worker], shape: &StepRules<'_>, res
 
 fn judge_step(slot: &mut StepSlot, worker: &mut Worker, shape: &StepRules<'_>) {
     let step = slot.place.step;
-    let StepSlot { before, mid, end, result, fair: judged, is_extraordinary, is_put_off, error, beyond_limit, .. } =
-        slot;
+    let StepSlot {
+        before,
+        order,
+        mid,
+        end,
+        result,
+        fair: judged,
+        is_extraordinary,
+        is_put_off,
+        error,
+        beyond_limit,
+        ..
+    } = slot;
     let Worker { simulation, buffers, searches } = worker;
     simulation.state_mut().clone_from(before);
+    if let Some(pairs) = simulation.penalty_pairs() {
+        pairs.set_order(order);
+    }
     simulation.set_steps_done(step - 1);
     let layout = shape.layout;
     let frame = layout.end_record(step);

@@ -103,7 +103,8 @@ pub struct Definition {
     pub version: &'static str,
     /// How the original calls its verdict on collisions (oracle-behaviour.md 6).
     pub verdict: &'static str,
-    /// Whether the original says after each step how long it took.
+    /// Whether the original says after each step how long it took, and writes into `residual.txt` whether collisions
+    /// passed.
     pub tells_times: bool,
     /// The part of a scene that its starter library knows.
     pub library: Library,

@@ -4,7 +4,7 @@
 //! a particle is on an edge or a half-plane when the formula of simulation.md 3 gives the zero vector. Only the start
 //! is looked at; what happens later is the simulator's business.
 use super::document::Document;
-use super::model::{Collision, Edge, Force, HalfPlane, Particle};
+use super::model::{Collision, CollisionDetection, Edge, Force, HalfPlane, Particle};
 use super::problem::{Problem, Report};
 use super::tag::Tag;
 use super::xml::{Part, SceneParts};
@@ -181,7 +181,10 @@ struct ContactRule {
 impl ContactRule {
     fn of(parts: &SceneParts<'_, '_>) -> Option<Self> {
         match parts.collision? {
-            Collision::None | Collision::Simple { .. } => None,
+            // In the contest bodies at the same place leave each other alone.
+            Collision::None
+            | Collision::Simple { .. }
+            | Collision::Penalty { detection: CollisionDetection::Contest, .. } => None,
             Collision::Penalty { thickness, .. } => Some(Self { penalty: true, responds: false, thickness }),
             Collision::Hybrid { thickness, .. } => Some(Self { penalty: true, responds: true, thickness }),
             Collision::ContinuousTime { .. } => Some(Self { penalty: false, responds: true, thickness: 0.0 }),

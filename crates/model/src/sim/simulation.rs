@@ -2,7 +2,7 @@
 use super::{
     bodies::Bodies,
     collision::Handler,
-    forces::Forces,
+    forces::{Forces, PenaltyPairs},
     integrators::Stepper,
     observer::Observer,
     search::{RootSearch, SearchCounts},
@@ -55,6 +55,11 @@ impl Simulation {
     /// keep their length 2N.
     pub fn state_mut(&mut self) -> &mut State {
         &mut self.state
+    }
+
+    /// The pairs of the penalty force, if the scene has one. In a contest their order depends on the steps before.
+    pub fn penalty_pairs(&mut self) -> Option<&mut PenaltyPairs> {
+        self.forces.pairs()
     }
 
     /// Declares that `steps` steps lie behind (for judging steps out of order).

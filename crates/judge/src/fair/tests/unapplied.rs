@@ -9,23 +9,32 @@ use fosssim_model::{
     sim::PairKind,
 };
 
-/// Balls in rows, each near some of the others.
-fn pile() -> Scene {
+/// Balls in rows, each near some of the others. They repel each other within 1.05.
+fn pile(radius: f64) -> Scene {
+    let thickness = 1.05 - 2.0 * radius;
     let ball = |index: u32| {
         let (row, column) = (f64::from(index / 4), f64::from(index % 4));
         let (x, y) = (0.93 * column + 0.41 * row + 0.01 * column * row, 0.87 * row + 0.02 * column);
-        format!(r#"<particle m="{}" px="{x}" py="{y}" vx="0.{index}" vy="0" fixed="0" radius="0.5"/>"#, 1 + index % 3)
+        format!(
+            r#"<particle m="{}" px="{x}" py="{y}" vx="0.{index}" vy="0" fixed="0" radius="{radius}"/>"#,
+            1 + index % 3
+        )
     };
     let balls: String = (0..12).map(ball).collect();
     let text = format!(
         r#"<scene><duration time="0.1"/><integrator type="forward-backward-euler" dt="0.01"/>
-        <collision type="penalty" k="200" thickness="0.05"/><collisiondetection type="contest"/>{balls}</scene>"#
+        <collision type="penalty" k="200" thickness="{thickness}"/><collisiondetection type="contest"/>{balls}</scene>"#
     );
     scene::read("scene", text.as_bytes()).expect("a scene").scene
 }
 
 /// The trace of a program that applies the force of each pair to its two balls as often as `times` says.
 fn trace(scene: &Scene, times: impl Fn(usize, usize) -> [f64; 2]) -> Vec<u8> {
+    trace_within(scene, 1.05, times)
+}
+
+/// The same of a program that applies forces of balls that are nearer than `reach`.
+fn trace_within(scene: &Scene, reach: f64, times: impl Fn(usize, usize) -> [f64; 2]) -> Vec<u8> {
     let mut x: Vec<[f64; 2]> = scene.particles.iter().map(|ball| [ball.position.x, ball.position.y]).collect();
     let mut v: Vec<[f64; 2]> = scene.particles.iter().map(|ball| [ball.velocity.x, ball.velocity.y]).collect();
     let mut bytes = Vec::new();
@@ -38,7 +47,7 @@ fn trace(scene: &Scene, times: impl Fn(usize, usize) -> [f64; 2]) -> Vec<u8> {
             for first in 0..second {
                 let n = [x[second][0] - x[first][0], x[second][1] - x[first][1]];
                 let distance = (n[0] * n[0] + n[1] * n[1]).sqrt();
-                if distance < 1.05 {
+                if distance < reach {
                     let [one, other] = times(first, second);
                     for k in 0..2 {
                         let push = 0.01 * 200.0 * (distance - 1.05) * n[k] / distance;
@@ -57,7 +66,7 @@ fn trace(scene: &Scene, times: impl Fn(usize, usize) -> [f64; 2]) -> Vec<u8> {
 }
 
 fn judged(times: impl Fn(usize, usize) -> [f64; 2]) -> Judgement {
-    let scene = pile();
+    let scene = pile(0.525);
     let options = Options { threads: 1, fair: true, ..Options::default() };
     *judge(&scene, &trace(&scene, times)[..], &options, &mut ()).fair.expect("the fair rules were asked")
 }
@@ -72,6 +81,18 @@ fn counts(fair: &Judgement) -> [u64; 2] {
 fn forces_may_be_summed_in_any_order() {
     let fair = judged(|_, _| [1.0; 2]);
     assert_eq!((fair.verdict, counts(&fair)), (FairVerdict::Accepted, [0, 0]), "{fair:?}");
+}
+
+/// The original leaves out bodies whose layers alone are near, others do not.
+#[test]
+fn forces_of_a_layer_alone_may_be_left_out() {
+    let scene = pile(0.5);
+    let options = Options { threads: 1, fair: true, ..Options::default() };
+    for reach in [1.0, 1.05] {
+        let fair =
+            judge(&scene, &trace_within(&scene, reach, |_, _| [1.0; 2])[..], &options, &mut ()).fair.expect("asked");
+        assert_eq!((fair.verdict, counts(&fair)), (FairVerdict::Accepted, [0, 0]), "{fair:?}");
+    }
 }
 
 #[test]

@@ -5,7 +5,7 @@
 use super::{
     super::{
         bodies::Bodies,
-        nearby::{NearPairs, Nearby},
+        nearby::Nearby,
         observer::{Decision, Detection, Impulse, Observer, Pass, Stage, Time, Wanted},
         pair::{PairKind, pair},
         pairs::{PassCursor, is_end},
@@ -30,7 +30,7 @@ pub(super) fn handle<O: Observer>(
     observer.begin_pass(pass);
     let mut found = match observer.wanted() {
         Wanted::Calls => None,
-        Wanted::Bytes(_) | Wanted::Nothing => nearby.and_then(|nearby| nearby.find(x)).map(NearPairs::sorted),
+        Wanted::Bytes(_) | Wanted::Nothing => nearby.and_then(|nearby| nearby.find(x)),
     };
     let mut looking = Looking { pass, bodies, factor: law.factor, q_start, x, v, observer, hits: 0 };
     for i in 0..bodies.particles() {

@@ -16,7 +16,7 @@ use crate::scene::{Collision, CollisionDetection, Force, Scene};
 use fosssim_num::vector::{Vec2, at, put};
 use nalgebra::DMatrix;
 use penalty::Penalty;
-pub use penalty::{PenaltyPairs, PenaltyTerms};
+pub use penalty::{PenaltyPairs, PenaltyTerms, SweepOrder};
 
 /// All forces of a scene in acting order.
 #[derive(Debug, Clone)]
@@ -39,6 +39,11 @@ impl Forces {
             Collision::None | Collision::Simple { .. } | Collision::ContinuousTime { .. } => None,
         };
         Self { list: scene.forces.clone(), penalty }
+    }
+
+    /// The pairs of the penalty force, if there is one.
+    pub fn pairs(&mut self) -> Option<&mut PenaltyPairs> {
+        self.penalty.as_mut().map(Penalty::pairs)
     }
 
     /// Whether every force has the Hessians that implicit integrators need; a vortex force has none.

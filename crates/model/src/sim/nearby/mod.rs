@@ -49,32 +49,7 @@ fn apart(numbers: Numbers) -> [usize; 2] {
     [(numbers >> 32) as usize, (numbers & u64::from(u32::MAX)) as usize]
 }
 
-/// The pairs that were found; all others are at least as far apart as their radii and the margin.
-#[derive(Debug)]
-pub(super) struct NearPairs<'a> {
-    particles: &'a mut Vec<Numbers>,
-    edges: &'a [Numbers],
-}
-
-impl<'a> NearPairs<'a> {
-    /// Pairs of particles in no order, the smaller number first.
-    pub fn particles(&self) -> impl Iterator<Item = [usize; 2]> {
-        self.particles.iter().map(|&pair| apart(pair))
-    }
-
-    /// Particles and edges that they are no ends of, sorted.
-    pub fn edges(&self) -> impl Iterator<Item = [usize; 2]> {
-        self.edges.iter().map(|&pair| apart(pair))
-    }
-
-    /// The same in the order of a detection pass.
-    pub fn sorted(self) -> NearRows<'a> {
-        self.particles.sort_unstable();
-        NearRows { particles: self.particles, edges: self.edges }
-    }
-}
-
-/// The pairs that were found, particle by particle.
+/// The pairs that were found, particle by particle; all others are at least as far apart as their radii and the margin.
 #[derive(Debug)]
 pub(super) struct NearRows<'a> {
     particles: &'a [Numbers],
@@ -121,7 +96,7 @@ impl Nearby {
     }
 
     /// Looks for the pairs at positions `x` (2N). None when there are too many to be kept: then go through all.
-    pub fn find(&mut self, x: &[f64]) -> Option<NearPairs<'_>> {
+    pub fn find(&mut self, x: &[f64]) -> Option<NearRows<'_>> {
         let Self { radii, sizes, edges, margin, most, particles, edge_pairs, tested } = self;
         particles.clear();
         edge_pairs.clear();
@@ -156,8 +131,9 @@ impl Nearby {
         if particles.len() > *most {
             return None;
         }
+        particles.sort_unstable();
         edge_pairs.sort_unstable();
-        Some(NearPairs { particles, edges: edge_pairs })
+        Some(NearRows { particles, edges: edge_pairs })
     }
 
     /// How many pairs were tested so far: the work of all searches.

@@ -4,7 +4,9 @@
 //! and reaches the gradient when the distance test holds. Only the contest's detection has a guard.
 //!
 //! Each detection has an order of its own in which pairs are summed ([`PenaltyPairs`]).
+mod introsort;
 mod pairs;
+mod sweep;
 mod terms;
 #[cfg(test)]
 mod tests;
@@ -18,8 +20,12 @@ use crate::{
         pair::{Pair, PairKind},
     },
 };
-use fosssim_num::vector::{at, length, unit};
+use fosssim_num::{
+    tolerances::CONTEST_DISTANCE,
+    vector::{at, length, unit},
+};
 pub use pairs::PenaltyPairs;
+pub use sweep::SweepOrder;
 pub use terms::PenaltyTerms;
 
 /// The force of a scene, with the memory to find near pairs.
@@ -36,8 +42,8 @@ struct Law {
     stiffness: f64,
     /// `h`
     thickness: f64,
-    /// Whether it is that of Theme 2, Milestone 3: bodies at the same place leave each other alone, and the direction
-    /// from particle to particle is normalised twice, which rounds twice.
+    /// Whether it is that of Theme 2, Milestone 3 (simulation.md 3.1): bodies at the same place leave each other alone,
+    /// particles compare squares of lengths, and the direction from one to the other is normalised twice.
     is_contest: bool,
 }
 
@@ -47,6 +53,11 @@ impl Penalty {
         let is_contest = detection == CollisionDetection::Contest;
         let pairs = PenaltyPairs::new(scene, thickness, detection);
         Self { law: Law { stiffness, thickness, is_contest }, pairs }
+    }
+
+    /// Its pairs.
+    pub fn pairs(&mut self) -> &mut PenaltyPairs {
+        &mut self.pairs
     }
 
     /// Adds the gradient, pair by pair.
@@ -71,7 +82,7 @@ impl Law {
     /// Whether bodies at this distance repel each other.
     #[inline]
     fn repels(self, distance: f64, reach: f64) -> bool {
-        distance < reach && !(self.is_contest && distance == 0.0)
+        distance < reach && !(self.is_contest && distance < CONTEST_DISTANCE)
     }
 
     fn particle_particle(self, bodies: &Bodies, i: usize, j: usize, x: &[f64], gradient: &mut [f64]) {
@@ -79,7 +90,9 @@ impl Law {
         let (r1, r2) = (bodies.radii[i], bodies.radii[j]);
         let reach = (r1 + r2) + self.thickness;
         let l = length(n);
-        if self.repels(l, reach) {
+        // In the contest a length of no number repels, but its square is below nothing.
+        let repels = if self.is_contest { n.dot(&n) < reach * reach && !(l < CONTEST_DISTANCE) } else { l < reach };
+        if repels {
             let u = if self.is_contest { unit(unit(n)) } else { unit(n) };
             let s = self.stiffness * (((l - r1) - r2) - self.thickness);
             subtract(gradient, i, s * u);

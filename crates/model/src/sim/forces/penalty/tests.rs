@@ -68,3 +68,55 @@ fn the_contest_sums_in_the_order_of_a_sweep() {
     assert_ne!(sums[0][6..8], sums[1][6..8], "the order shows");
     assert_eq!((&all_pairs[6..8], &contest[6..8]), (&sums[0][6..8], &sums[1][6..8]));
 }
+
+/// The original's boxes have the bare radii; half-planes have no boxes.
+#[test]
+fn in_the_contest_only_bodies_whose_boxes_overlap_repel() {
+    let x = [0.0, 0.0, 0.25, 0.0, 0.0, 5.0];
+    let mut scene = scene(x.chunks(2).map(|c| particle((c[0], c[1]), (0.0, 0.0), 1.0, 0.1)).collect());
+    scene.half_planes.push(half_plane((0.0, 4.85), (0.0, 2.0)));
+    let g = by(CollisionDetection::Contest, &scene, &x);
+    assert_eq!(g[..4], [0.0; 4], "the gap is 0.05, the thickness 0.1");
+    assert!((g[5] + 0.5).abs() < 1e-14, "{g:?}");
+    let near = [0.0, 0.0, 0.19, 0.0, 0.0, 5.0];
+    assert!(by(CollisionDetection::Contest, &scene, &near)[0] > 1.0);
+}
+
+/// The pairs of a contest's search, again and again.
+fn searched(scene: &Scene, steps: &[&[f64]]) -> Vec<[u32; 2]> {
+    let mut pairs = PenaltyPairs::new(scene, 0.0, CollisionDetection::Contest);
+    let mut found = Vec::new();
+    for x in steps {
+        found.clear();
+        pairs.visit(x, |pair| found.push([pair.first, pair.second]));
+    }
+    found
+}
+
+#[test]
+fn bodies_that_begin_at_the_same_place_keep_the_order_of_the_search_before() {
+    let (first, then) = ([0.0, 0.0, -0.05, 0.0, 0.05, 0.0], [0.0; 6]);
+    let scene = scene(first.chunks(2).map(|c| particle((c[0], c[1]), (0.0, 0.0), 1.0, 0.1)).collect());
+    assert_eq!(searched(&scene, &[&then]), [[0, 1], [0, 2], [1, 2]]);
+    assert_eq!(searched(&scene, &[&first, &then]), [[0, 1], [1, 2], [0, 2]]);
+    // What was written down goes on alike.
+    let mut pairs = PenaltyPairs::new(&scene, 0.0, CollisionDetection::Contest);
+    let mut order = SweepOrder::default();
+    pairs.visit(&first, |_| {});
+    assert!(pairs.order(&mut order));
+    let mut other = PenaltyPairs::new(&scene, 0.0, CollisionDetection::Contest);
+    other.set_order(&order);
+    let mut found = Vec::new();
+    other.visit(&then, |pair| found.push([pair.first, pair.second]));
+    assert_eq!(found, searched(&scene, &[&first, &then]));
+}
+
+/// Two boxes that overlap on x and y, but not on the diagonals, which count where there are edges.
+#[test]
+fn where_there_are_edges_boxes_have_four_axes() {
+    let x = [0.0, 0.0, 0.18, 0.18, 5.0, 0.0, 6.0, 0.0];
+    let mut scene = scene(x.chunks(2).map(|c| particle((c[0], c[1]), (0.0, 0.0), 1.0, 0.1)).collect());
+    assert_eq!(searched(&scene, &[&x]), [[0, 1]]);
+    scene.edges.push(edge(2, 3, 0.1));
+    assert!(searched(&scene, &[&x]).is_empty());
+}

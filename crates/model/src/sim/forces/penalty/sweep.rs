@@ -1,0 +1,160 @@
+//! The contest's search for near pairs, and the order in which it finds them (simulation.md 3.1).
+//!
+//! Bodies are boxes of their bare radii: what overlaps on x and on y is near. Where there are edges, unless there are
+//! less than one for a hundred particles, boxes have to overlap on x + y and x - y, too. The search goes through bodies
+//! as they begin on x. It goes on from the order of the search before, so that bodies which begin at the same place
+//! keep their order; the first order is that of the C++ library's sort.
+use super::introsort;
+use crate::scene::Scene;
+use fosssim_num::vector::{Vec2, at};
+use std::f64::consts::SQRT_2;
+
+/// Scenes with at least one edge for this many particles have boxes with four axes.
+const PARTICLES_PER_EDGE: usize = 100;
+
+/// The bodies in the order in which the search before has left them.
+///
+/// A force at certain positions depends on it where bodies begin at the same place: it belongs to a state.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct SweepOrder {
+    particles: Vec<u32>,
+    edges: Vec<u32>,
+}
+
+/// The search, with its memory.
+#[derive(Debug, Clone)]
+pub(super) struct Sweep {
+    has_four_axes: bool,
+    radii: Vec<f64>,
+    edges: Vec<([usize; 2], f64)>,
+    particle_boxes: Vec<BoundingBox>,
+    edge_boxes: Vec<BoundingBox>,
+    /// The greatest end on x of the edges up to each.
+    furthest: Vec<f64>,
+}
+
+/// A body's extent on x, y, x + y and x - y.
+#[derive(Debug, Clone, Copy, Default)]
+struct BoundingBox {
+    body: u32,
+    /// Its place in the order before.
+    rank: u32,
+    low: [f64; 4],
+    high: [f64; 4],
+}
+
+impl Sweep {
+    /// The search among the particles and edges of a scene.
+    pub fn new(scene: &Scene) -> Self {
+        let edges = scene.edges.len();
+        Self {
+            has_four_axes: edges > 0 && scene.particles.len() / PARTICLES_PER_EDGE <= edges,
+            radii: scene.particles.iter().map(|particle| particle.radius).collect(),
+            edges: scene.edges.iter().map(|edge| ([edge.first, edge.second], edge.radius)).collect(),
+            particle_boxes: Vec::with_capacity(scene.particles.len()),
+            edge_boxes: Vec::with_capacity(edges),
+            furthest: Vec::with_capacity(edges),
+        }
+    }
+
+    /// Writes down the order of the last search; empty before the first one.
+    pub fn order(&self, order: &mut SweepOrder) {
+        for (list, boxes) in [(&mut order.particles, &self.particle_boxes), (&mut order.edges, &self.edge_boxes)] {
+            list.clear();
+            list.extend(boxes.iter().map(|one| one.body));
+        }
+    }
+
+    /// Goes on from this order.
+    pub fn set_order(&mut self, order: &SweepOrder) {
+        for (list, boxes) in [(&order.particles, &mut self.particle_boxes), (&order.edges, &mut self.edge_boxes)] {
+            boxes.clear();
+            boxes.extend(list.iter().map(|&body| BoundingBox { body, ..BoundingBox::default() }));
+        }
+    }
+
+    /// Sorts the bodies anew, for positions `x` (2N).
+    pub fn update(&mut self, x: &[f64]) {
+        let Self { has_four_axes, radii, edges, particle_boxes, edge_boxes, furthest } = self;
+        let particle = |body: u32| {
+            let place = at(x, body as usize);
+            BoundingBox::around(body, [place; 2], radii[body as usize], *has_four_axes)
+        };
+        let edge = |body: u32| {
+            let (ends, radius) = edges[body as usize];
+            BoundingBox::around(body, ends.map(|end| at(x, end)), radius, *has_four_axes)
+        };
+        sort(particle_boxes, radii.len(), particle);
+        sort(edge_boxes, edges.len(), edge);
+        furthest.clear();
+        furthest.extend(edge_boxes.iter().scan(f64::NEG_INFINITY, |furthest, one| {
+            *furthest = furthest.max(one.high[0]);
+            Some(*furthest)
+        }));
+    }
+
+    /// Hands all near pairs of particles to `hear`, the smaller number first.
+    pub fn particles(&self, mut hear: impl FnMut(usize, usize)) {
+        for (index, one) in self.particle_boxes.iter().enumerate() {
+            for other in self.particle_boxes[index + 1..].iter().take_while(|other| !(other.low[0] > one.high[0])) {
+                if one.overlaps(other) {
+                    let (one, other) = (one.body as usize, other.body as usize);
+                    hear(one.min(other), one.max(other));
+                }
+            }
+        }
+    }
+
+    /// Hands all particles with the edges near them to `hear`, apart from their own.
+    pub fn edges(&self, mut hear: impl FnMut(usize, usize)) {
+        for one in &self.particle_boxes {
+            let first = self.furthest.partition_point(|furthest| *furthest < one.low[0]);
+            for other in self.edge_boxes[first..].iter().take_while(|other| !(other.low[0] > one.high[0])) {
+                let (particle, edge) = (one.body as usize, other.body as usize);
+                if one.overlaps(other) && !self.edges[edge].0.contains(&particle) {
+                    hear(particle, edge);
+                }
+            }
+        }
+    }
+}
+
+/// Makes the boxes of `count` bodies, and sorts them as they begin on x: from the order that they have, if they have
+/// one. By insertion, which the original does then, no body passes one that begins nowhere.
+#[expect(clippy::cast_possible_truncation, reason = "a scene with 2^32 objects does not fit into memory")]
+fn sort(boxes: &mut Vec<BoundingBox>, count: usize, make: impl Fn(u32) -> BoundingBox) {
+    if boxes.is_empty() {
+        boxes.extend((0..count as u32).map(make));
+        return introsort::sort(boxes, |one| one.low[0]);
+    }
+    (0..).zip(&mut *boxes).for_each(|(rank, one)| *one = BoundingBox { rank, ..make(one.body) });
+    for part in boxes.split_mut(|one| one.low[0].is_nan()) {
+        // Adding zero makes -0 the same as 0.
+        let key = |one: &BoundingBox| one.low[0] + 0.0;
+        part.sort_unstable_by(|one, other| key(one).total_cmp(&key(other)).then(one.rank.cmp(&other.rank)));
+    }
+}
+
+impl BoundingBox {
+    /// Around what is between two places, with this radius.
+    fn around(body: u32, [one, other]: [Vec2; 2], radius: f64, has_four_axes: bool) -> Self {
+        let mut own = Self { body, ..Self::default() };
+        let mut extend = |axis: usize, one: f64, other: f64, radius: f64| {
+            // As the processor's instructions: of two places that can't be compared the second counts.
+            own.low[axis] = if one < other { one } else { other } - radius;
+            own.high[axis] = if one > other { one } else { other } + radius;
+        };
+        extend(0, one.x, other.x, radius);
+        extend(1, one.y, other.y, radius);
+        if has_four_axes {
+            extend(2, one.x + one.y, other.x + other.y, radius * SQRT_2);
+            extend(3, one.x - one.y, other.x - other.y, radius * SQRT_2);
+        }
+        own
+    }
+
+    /// Whether boxes overlap or touch on all axes.
+    fn overlaps(&self, other: &Self) -> bool {
+        (0..4).all(|axis| !(self.low[axis] > other.high[axis]) && !(other.low[axis] > self.high[axis]))
+    }
+}
