@@ -18,7 +18,7 @@ fn summaries_of_all_embedded_scenes() {
         let scene = scene::read(name, library::scene(name).expect("an embedded scene")).expect("a sound scene").scene;
         let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
         let mut observers =
-            (Recorder::start(Vec::new(), Layout::of(&scene), simulation.state()), EventCounts::default());
+            (Recorder::start(Vec::new(), Layout::of(&scene), simulation.state()), EventCounts::new(&scene));
         for _ in 0..scene.steps() {
             simulation.step(&mut observers).expect("a step");
         }

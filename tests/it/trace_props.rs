@@ -299,7 +299,7 @@ fn a_summary_says_what_happened_and_where_reading_ended() {
     let scene = original::read(xml).expect("a scene").scene;
     let mut simulation = Simulation::new(&scene, RootSearch::default());
     let recorder = Recorder::start(Vec::new(), Layout::of(&scene), simulation.state());
-    let mut both = (recorder, EventCounts::default());
+    let mut both = (recorder, EventCounts::new(&scene));
     for _ in 0..scene.steps() {
         simulation.step(&mut both).unwrap();
     }

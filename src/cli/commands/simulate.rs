@@ -18,7 +18,7 @@ pub(super) fn run(arguments: &Simulate) -> Result<()> {
     let root_search = if arguments.audit { RootSearch::Audit } else { RootSearch::WhereNeeded };
     let mut simulation = Simulation::new(&scene.scene, root_search);
     let mut recorder = Recorder::start(output, Layout::of(&scene.scene), simulation.state());
-    let mut counts = EventCounts::default();
+    let mut counts = EventCounts::new(&scene.scene);
     let steps = scene.scene.steps();
     let mut bar = console::Bar::new(steps);
     for step in 1..=steps {

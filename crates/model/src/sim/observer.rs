@@ -33,6 +33,8 @@ pub trait Observer {
     }
     /// A pair was looked at.
     fn detection(&mut self, _detection: &Detection<'_>) {}
+    /// A pair collides: right after its `detection`, which not everybody wants.
+    fn hit(&mut self, _pair: Pair) {}
     /// The pass is over; `hits` pairs collide.
     fn end_pass(&mut self, _pass: Pass, _hits: usize) {}
     /// A response was applied.
@@ -108,6 +110,7 @@ macro_rules! go_on {
         fn begin_pass(&mut $self, pass: Pass) { $($to.begin_pass(pass);)+ }
         fn pass_positions(&mut $self, q_start: &[f64], q_end: &[f64]) { $($to.pass_positions(q_start, q_end);)+ }
         fn detection(&mut $self, detection: &Detection<'_>) { $($to.detection(detection);)+ }
+        fn hit(&mut $self, pair: Pair) { $($to.hit(pair);)+ }
         fn end_pass(&mut $self, pass: Pass, hits: usize) { $($to.end_pass(pass, hits);)+ }
         fn impulse(&mut $self, impulse: &Impulse) { $($to.impulse(impulse);)+ }
         fn synchronised(&mut $self, state: &State) { $($to.synchronised(state);)+ }
@@ -133,6 +136,16 @@ impl<O: Observer + ?Sized> Observer for &mut O {
 /// Two observers hear the same, the first one first.
 impl<A: Observer, B: Observer> Observer for (A, B) {
     go_on!(self => self.0, self.1);
+    /// What one of them wants, if the other one wants nothing.
+    fn wanted(&mut self) -> Wanted<'_> {
+        if matches!(self.1.wanted(), Wanted::Nothing) {
+            self.0.wanted()
+        } else if matches!(self.0.wanted(), Wanted::Nothing) {
+            self.1.wanted()
+        } else {
+            Wanted::Calls
+        }
+    }
     fn steers(&mut self) -> Option<&mut dyn Steer> {
         Some(self)
     }

@@ -1,8 +1,13 @@
 //! Counting what happens inside the steps: an observer that adds up and does nothing else.
-use crate::sim::{ByKind, Detection, Impulse, Observer, Pass, Stage, State, Zone};
+use crate::{
+    scene::Scene,
+    sim::{ByKind, Impulse, Observer, Pair, Pass, Stage, State, Wanted, Zone, pairs},
+};
 use std::fmt;
 
 /// Numbers of events over all steps that it heard. Use it with others as a tuple: `(&mut recorder, &mut counts)`.
+///
+/// It asks about no pair: a pass looks at every pair of the scene.
 ///
 /// ```
 /// use fosssim_model::{scene::original, sim::{RootSearch, Simulation}, trace::EventCounts};
@@ -12,7 +17,7 @@ use std::fmt;
 ///     <particle m="1" px="0" py="0" vx="0" vy="0" fixed="0"/><particle m="1" px="9" py="0" vx="0" vy="0" fixed="0"/></scene>"#;
 /// let scene = original::read(xml).expect("a scene").scene;
 /// let mut simulation = Simulation::new(&scene, RootSearch::default());
-/// let mut counts = EventCounts::default();
+/// let mut counts = EventCounts::new(&scene);
 /// for _ in 0..scene.steps() {
 ///     simulation.step(&mut counts)?;
 /// }
@@ -48,9 +53,22 @@ pub struct EventCounts {
     pub largest_zone: u64,
     /// Largest number of zones after a merge.
     pub most_zones: u64,
+    /// Calls in a pass.
+    of_pass: ByKind<u64>,
+    /// Polynomials in a pass that has any.
+    polynomials_of_pass: u64,
 }
 
 impl EventCounts {
+    /// Has heard nothing yet of a simulation of this scene.
+    #[must_use]
+    pub fn new(scene: &Scene) -> Self {
+        let pairs = pairs(scene);
+        let counts = pairs.counts();
+        let of_pass = ByKind::from_fn(|kind| counts[kind] as u64);
+        Self { of_pass, polynomials_of_pass: pairs.polynomials() as u64, ..Self::default() }
+    }
+
     /// Passes of all stages.
     #[must_use]
     pub fn passes(&self) -> u64 {
@@ -71,11 +89,19 @@ impl Observer for EventCounts {
         }
     }
 
-    fn detection(&mut self, detection: &Detection<'_>) {
-        let kind = detection.pair.kind;
-        self.calls[kind] += 1;
-        self.hits[kind] += u64::from(detection.decision.collides());
-        self.polynomials += detection.polynomials.len() as u64;
+    fn wanted(&mut self) -> Wanted<'_> {
+        Wanted::Nothing
+    }
+
+    fn hit(&mut self, pair: Pair) {
+        self.hits[pair.kind] += 1;
+    }
+
+    fn end_pass(&mut self, pass: Pass, _hits: usize) {
+        self.of_pass.iter().for_each(|(kind, calls)| self.calls[kind] += calls);
+        if pass.stage != Stage::Simple {
+            self.polynomials += self.polynomials_of_pass;
+        }
     }
 
     fn impulse(&mut self, _impulse: &Impulse) {
@@ -122,27 +148,31 @@ impl fmt::Display for EventCounts {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sim::{Decision, Pair, PairKind, Time};
-    use fosssim_num::vector::Vec2;
+    use crate::{scene::original, sim::PairKind};
 
     #[test]
     fn events_are_counted_by_stage_and_kind() {
-        let mut counts = EventCounts::default();
-        let pair = Pair { kind: PairKind::ParticleEdge, first: 0, second: 1 };
+        let ball = "<particle m=\"1\" px=\"0\" py=\"0\" vx=\"0\" vy=\"0\" fixed=\"0\" radius=\"0.1\"/>".repeat(3);
+        let xml = format!(
+            "<scene><duration time=\"1\"/><integrator type=\"explicit-euler\" dt=\"0.1\"/>{ball}\
+             <edge i=\"0\" j=\"1\" radius=\"0.1\"/></scene>"
+        );
+        let scene = original::read(xml.as_bytes()).expect("a scene").scene;
+        let mut counts = EventCounts::new(&scene);
         for round in 0..2 {
             let pass = Pass { stage: Stage::Geometric { round }, index: round };
             counts.begin_pass(pass);
-            let hit = Decision::Hit { time: 0.5, normal: Vec2::new(1.0, 0.0) };
-            for decision in [hit, Decision::Miss { time: Time::None }] {
-                counts.detection(&Detection { pass, pair, polynomials: &[], decision, q_start: &[], q_end: &[] });
-            }
+            counts.hit(Pair { kind: PairKind::ParticleEdge, first: 2, second: 0 });
+            counts.end_pass(pass, 1);
         }
         let zone = Zone { particles: &[0, 1, 2], half_plane: false };
         counts.zones(0, &[zone]);
         counts.failsafe(0, &zone);
         counts.end_step(1, &State::default());
         assert_eq!((counts.geometric_passes, counts.geometric_steps, counts.passes()), (2, 1, 2));
-        assert_eq!((counts.calls, counts.hits), ([0, 4, 0].into(), [0, 2, 0].into()));
+        assert_eq!((counts.calls, counts.hits), ([6, 2, 0].into(), [0, 2, 0].into()));
+        let polynomials = 2 * (3 * PairKind::ParticleParticle.polynomials() + PairKind::ParticleEdge.polynomials());
+        assert_eq!(counts.polynomials, polynomials as u64);
         assert_eq!((counts.most_zones, counts.failsafes, counts.largest_zone, counts.steps), (1, 1, 3, 1));
     }
 }

@@ -158,6 +158,7 @@ impl Detector {
             };
             let Some(impulse) = self.blocks.next_hit(setting, place, &mut self.counts, bytes)? else { break };
             hits += 1;
+            observer.hit(impulse.pair);
             if react(observer, &impulse, q_end) == Reaction::Moved {
                 let moved = self.displace(bodies, impulse.pair, q_start, q_end);
                 let setting = Setting { bodies, step, q_start, displacements: &self.displacements };
@@ -203,6 +204,7 @@ impl Detector {
         };
         let Decision::Hit { time, normal } = decision else { return Ok(()) };
         context.hits += 1;
+        context.observer.hit(pair);
         if (context.react)(context.observer, &Impulse { pair, normal, time }, context.q_end) == Reaction::Moved {
             self.displace(bodies, pair, q_start, context.q_end);
         }

@@ -100,6 +100,7 @@ impl<O: Observer> Looking<'_, O> {
         self.observer.detection(&Detection { pass, pair, polynomials: &[], decision, q_start, q_end });
         if let Decision::Hit { normal, .. } = decision {
             self.hits += 1;
+            self.observer.hit(pair);
             respond(self, normal).apply_velocities(self.v);
             self.observer.impulse(&Impulse { pair, normal, time: 0.0 });
         }
