@@ -73,7 +73,8 @@ fn scene(seed: u64) -> String {
         let [x, y] = place;
         write!(
             text,
-            "<particle m=\"{mass}\" px=\"{x}\" py=\"{y}\" vx=\"{vx}\" vy=\"{vy}\" fixed=\"{fixed}\" radius=\"{radius}\"/>"
+            "<particle m=\"{mass}\" px=\"{x}\" py=\"{y}\" vx=\"{vx}\" vy=\"{vy}\" fixed=\"{fixed}\" \
+             radius=\"{radius}\"/>"
         )
         .expect("memory");
     }

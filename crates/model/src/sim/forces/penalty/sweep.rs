@@ -27,15 +27,15 @@ pub(super) struct Sweep {
     has_four_axes: bool,
     radii: Vec<f64>,
     edges: Vec<([usize; 2], f64)>,
-    particle_boxes: Vec<BoundingBox>,
-    edge_boxes: Vec<BoundingBox>,
+    particle_boxes: Vec<BodyExtent>,
+    edge_boxes: Vec<BodyExtent>,
     /// The greatest end on x of the edges up to each.
     furthest: Vec<f64>,
 }
 
 /// A body's extent on x, y, x + y and x - y.
 #[derive(Debug, Clone, Copy, Default)]
-struct BoundingBox {
+struct BodyExtent {
     body: u32,
     /// Its place in the order before.
     rank: u32,
@@ -69,7 +69,7 @@ impl Sweep {
     pub fn set_order(&mut self, order: &SweepOrder) {
         for (list, boxes) in [(&order.particles, &mut self.particle_boxes), (&order.edges, &mut self.edge_boxes)] {
             boxes.clear();
-            boxes.extend(list.iter().map(|&body| BoundingBox { body, ..BoundingBox::default() }));
+            boxes.extend(list.iter().map(|&body| BodyExtent { body, ..BodyExtent::default() }));
         }
     }
 
@@ -78,11 +78,11 @@ impl Sweep {
         let Self { has_four_axes, radii, edges, particle_boxes, edge_boxes, furthest } = self;
         let particle = |body: u32| {
             let place = at(x, body as usize);
-            BoundingBox::around(body, [place; 2], radii[body as usize], *has_four_axes)
+            BodyExtent::around(body, [place; 2], radii[body as usize], *has_four_axes)
         };
         let edge = |body: u32| {
             let (ends, radius) = edges[body as usize];
-            BoundingBox::around(body, ends.map(|end| at(x, end)), radius, *has_four_axes)
+            BodyExtent::around(body, ends.map(|end| at(x, end)), radius, *has_four_axes)
         };
         sort(particle_boxes, radii.len(), particle);
         sort(edge_boxes, edges.len(), edge);
@@ -122,20 +122,20 @@ impl Sweep {
 /// Makes the boxes of `count` bodies, and sorts them as they begin on x: from the order that they have, if they have
 /// one. By insertion, which the original does then, no body passes one that begins nowhere.
 #[expect(clippy::cast_possible_truncation, reason = "a scene with 2^32 objects does not fit into memory")]
-fn sort(boxes: &mut Vec<BoundingBox>, count: usize, make: impl Fn(u32) -> BoundingBox) {
+fn sort(boxes: &mut Vec<BodyExtent>, count: usize, make: impl Fn(u32) -> BodyExtent) {
     if boxes.is_empty() {
         boxes.extend((0..count as u32).map(make));
         return introsort::sort(boxes, |one| one.low[0]);
     }
-    (0..).zip(&mut *boxes).for_each(|(rank, one)| *one = BoundingBox { rank, ..make(one.body) });
+    (0..).zip(&mut *boxes).for_each(|(rank, one)| *one = BodyExtent { rank, ..make(one.body) });
     for part in boxes.split_mut(|one| one.low[0].is_nan()) {
         // Adding zero makes -0 the same as 0.
-        let key = |one: &BoundingBox| one.low[0] + 0.0;
+        let key = |one: &BodyExtent| one.low[0] + 0.0;
         part.sort_unstable_by(|one, other| key(one).total_cmp(&key(other)).then(one.rank.cmp(&other.rank)));
     }
 }
 
-impl BoundingBox {
+impl BodyExtent {
     /// Around what is between two places, with this radius.
     fn around(body: u32, [one, other]: [Vec2; 2], radius: f64, has_four_axes: bool) -> Self {
         let mut own = Self { body, ..Self::default() };
