@@ -23,7 +23,7 @@ use super::{
     own, program, room,
     running::{Running, Supervised},
     supervisor::{MODE_KEEP, MODE_PROBE, MODE_RUN},
-    sys,
+    sys::{self, OFlags},
     wire::{self, Event, Probe, RunOrder, SUPERVISOR_ARGUMENT, Walls},
 };
 
@@ -479,7 +479,7 @@ impl TracePipe {
         }
         let folder = File::open(folder).map_err(failed)?;
         let reader = sys::make_pipe(folder.as_fd(), &c_name).map_err(failed)?;
-        let writer = sys::open_beneath(folder.as_fd(), &c_name, libc::O_WRONLY | libc::O_NONBLOCK).map_err(failed)?;
+        let writer = sys::open_beneath(folder.as_fd(), &c_name, OFlags::WRONLY | OFlags::NONBLOCK).map_err(failed)?;
         sys::set_blocking(reader.as_fd(), true).map_err(failed)?;
         Ok(Self { reader: reader.into(), _writer: writer.into() })
     }

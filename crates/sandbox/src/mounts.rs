@@ -8,7 +8,15 @@
 use std::{
     ffi::CStr,
     io,
-    os::fd::{AsRawFd, BorrowedFd, FromRawFd, OwnedFd, RawFd},
+    os::fd::{AsRawFd, BorrowedFd, OwnedFd, RawFd},
+};
+
+use rustix::{
+    fs::{CWD, StatVfsMountFlags},
+    mount::{
+        MountFlags, MountPropagationFlags, MoveMountFlags, OpenTreeFlags, UnmountFlags, mount_change, move_mount,
+        open_tree, unmount,
+    },
 };
 
 use crate::sys::{Fork, SingleThread, check, done};
@@ -20,9 +28,7 @@ pub(super) const NO_SET_USER: u64 = 0x2;
 /// Device files are without effect.
 pub(super) const NO_DEVICES: u64 = 0x4;
 
-const OPEN_TREE_CLONE: u32 = 1;
 const AT_RECURSIVE: u32 = 0x8000;
-const MOVE_MOUNT_FROM_DESCRIPTOR: u32 = 4;
 
 /// The kernel's `mount_attr`.
 #[repr(C)]
@@ -53,26 +59,20 @@ pub(super) fn fork_into(_: &SingleThread, namespaces: i32) -> io::Result<Fork> {
 
 /// Has no mount of this namespace show anywhere else.
 pub(super) fn keep_to_ourselves() -> io::Result<()> {
-    let flags = libc::MS_REC | libc::MS_PRIVATE;
-    // SAFETY: the path is a constant; the other pointers are not read for a change of propagation.
-    done(unsafe { libc::mount(std::ptr::null(), c"/".as_ptr(), std::ptr::null(), flags, std::ptr::null()) })
+    Ok(mount_change(c"/", MountPropagationFlags::PRIVATE | MountPropagationFlags::REC)?)
 }
 
 /// Mounts a fresh file system of this kind. What set-user bits and devices mean there is: nothing. Its files may be
 /// executed only where that is said.
 pub(super) fn mount(kind: &CStr, target: &CStr, options: &CStr, executable: bool) -> io::Result<()> {
-    let flags = libc::MS_NOSUID | libc::MS_NODEV | if executable { 0 } else { libc::MS_NOEXEC };
-    // SAFETY: all texts outlive the call.
-    done(unsafe { libc::mount(kind.as_ptr(), target.as_ptr(), kind.as_ptr(), flags, options.as_ptr().cast()) })
+    let limits = if executable { MountFlags::empty() } else { MountFlags::NOEXEC };
+    Ok(rustix::mount::mount(kind, target, kind, MountFlags::NOSUID | MountFlags::NODEV | limits, options)?)
 }
 
 /// A copy of the mounts at and beneath the path, which lies nowhere yet. A link at its end is not followed.
 pub(super) fn copy_of(path: &CStr) -> io::Result<OwnedFd> {
-    let flags = OPEN_TREE_CLONE | AT_RECURSIVE | (libc::O_CLOEXEC | libc::AT_SYMLINK_NOFOLLOW).cast_unsigned();
-    // SAFETY: the path outlives the call.
-    let fd = check(unsafe { libc::syscall(libc::SYS_open_tree, libc::AT_FDCWD, path.as_ptr(), flags) })?;
-    // SAFETY: the kernel has just opened it for us alone.
-    Ok(unsafe { OwnedFd::from_raw_fd(fd as RawFd) })
+    let kind = OpenTreeFlags::OPEN_TREE_CLONE | OpenTreeFlags::OPEN_TREE_CLOEXEC;
+    Ok(open_tree(CWD, path, kind | OpenTreeFlags::AT_RECURSIVE | OpenTreeFlags::AT_SYMLINK_NOFOLLOW)?)
 }
 
 /// Restricts every mount of the copy.
@@ -96,50 +96,28 @@ fn set_attributes(start: RawFd, path: &CStr, flags: u32, attributes: u64) -> io:
 
 /// Lays the copy over the path.
 pub(super) fn attach(tree: BorrowedFd<'_>, target: &CStr) -> io::Result<()> {
-    // SAFETY: both paths outlive the call; the empty one means the descriptor itself.
-    let answer = unsafe {
-        libc::syscall(
-            libc::SYS_move_mount,
-            tree.as_raw_fd(),
-            c"".as_ptr(),
-            libc::AT_FDCWD,
-            target.as_ptr(),
-            MOVE_MOUNT_FROM_DESCRIPTOR,
-        )
-    };
-    check(answer).map(drop)
+    Ok(move_mount(tree, c"", CWD, target, MoveMountFlags::MOVE_MOUNT_F_EMPTY_PATH)?)
 }
 
 /// Makes the mount at `root` the root folder, and the old root a folder beneath it.
 pub(super) fn change_root(root: &CStr, old: &CStr) -> io::Result<()> {
-    // SAFETY: both paths outlive the call.
-    check(unsafe { libc::syscall(libc::SYS_pivot_root, root.as_ptr(), old.as_ptr()) })?;
+    rustix::process::pivot_root(root, old)?;
     std::env::set_current_dir("/")
-}
-
-/// The facts of the file system that the descriptor lies on.
-fn about_file_system(fd: BorrowedFd<'_>) -> io::Result<libc::statvfs> {
-    // SAFETY: an all-zero structure is valid and outlives the call, which fills it.
-    unsafe {
-        let mut about: libc::statvfs = std::mem::zeroed();
-        done(libc::fstatvfs(fd.as_raw_fd(), &raw mut about)).map(|()| about)
-    }
 }
 
 /// Whether the open file lies where nothing may be executed (a mount with `noexec`).
 pub(super) fn forbids_execution(fd: BorrowedFd<'_>) -> bool {
-    about_file_system(fd).is_ok_and(|about| about.f_flag & libc::ST_NOEXEC != 0)
+    rustix::fs::fstatvfs(fd).is_ok_and(|about| about.f_flag.contains(StatVfsMountFlags::NOEXEC))
 }
 
 /// Bytes and files of the file system that the descriptor lies on.
 pub(super) fn file_system_usage(fd: BorrowedFd<'_>) -> io::Result<(u64, u64)> {
-    let about = about_file_system(fd)?;
+    let about = rustix::fs::fstatvfs(fd)?;
     let bytes = about.f_blocks.saturating_sub(about.f_bfree).saturating_mul(about.f_frsize);
     Ok((bytes, about.f_files.saturating_sub(about.f_ffree)))
 }
 
 /// Takes the mounts at and beneath the path away.
 pub(super) fn detach(path: &CStr) -> io::Result<()> {
-    // SAFETY: the path outlives the call.
-    done(unsafe { libc::umount2(path.as_ptr(), libc::MNT_DETACH) })
+    Ok(unmount(path, UnmountFlags::DETACH)?)
 }

@@ -1,18 +1,36 @@
-//! The system calls that the standard library does not offer, each behind a safe function.
+//! The system calls that the standard library does not offer, each behind a safe function: most are `rustix`'s.
 //!
-//! This file and `mounts.rs` are the sandbox's only ones with `unsafe` code. Every function passes the kernel valid
+//! This file, `machine.rs` and `mounts.rs` are the sandbox's only ones with `unsafe` code. Every function passes the kernel valid
 //! pointers to live values and turns its answer into a `Result`; none keeps a pointer. The one call with a condition of
 //! its own, [`fork`], checks that condition.
 
-#![expect(unsafe_code, reason = "fork, seccomp, prctl and their kin have no safe wrapper among the dependencies")]
+#![expect(unsafe_code, reason = "fork, execve, seccomp and their kin have no safe wrapper among the dependencies")]
 
-use std::ffi::{CStr, CString};
-use std::io;
-use std::os::fd::{AsRawFd, BorrowedFd, FromRawFd, OwnedFd, RawFd};
-use std::os::unix::net::UnixStream;
-use std::time::Duration;
+use std::{
+    ffi::{CStr, CString},
+    io::{self, IoSlice, IoSliceMut},
+    mem::MaybeUninit,
+    os::{
+        fd::{AsRawFd, BorrowedFd, FromRawFd, OwnedFd, RawFd},
+        unix::net::UnixStream,
+    },
+    time::Duration,
+};
 
+use rustix::{
+    event::{PollFd, PollFlags, Timespec},
+    fs::{AtFlags, MemfdFlags, Mode, ResolveFlags},
+    io::{Errno, FdFlags},
+    net::{RecvAncillaryBuffer, RecvAncillaryMessage, RecvFlags, SendAncillaryBuffer, SendAncillaryMessage, SendFlags},
+    process::{Gid, Pid, PidfdFlags, Rlimit, Signal, Uid, WaitOptions, getrlimit, setrlimit},
+    time::ClockId,
+};
 use seccompiler::sock_filter;
+
+pub(super) use rustix::{
+    fs::{Access, OFlags},
+    process::Resource,
+};
 
 /// Turns the kernel's -1 into the error it left behind.
 pub(super) fn check(answer: i64) -> io::Result<i64> {
@@ -68,63 +86,46 @@ pub(super) fn exit_now(code: i32) -> ! {
 
 /// The effective user.
 pub(super) fn user() -> u32 {
-    // SAFETY: no arguments, cannot fail.
-    unsafe { libc::geteuid() }
+    rustix::process::geteuid().as_raw()
 }
 
 /// The effective group.
 pub(super) fn group() -> u32 {
-    // SAFETY: no arguments, cannot fail.
-    unsafe { libc::getegid() }
+    rustix::process::getegid().as_raw()
 }
 
 /// Starts a session of its own, without a controlling terminal.
 pub(super) fn new_session() -> io::Result<()> {
-    // SAFETY: no arguments.
-    done(unsafe { libc::setsid() })
-}
-
-/// A `prctl` whose arguments are integers.
-fn prctl(option: i32, argument: u64) -> io::Result<()> {
-    let none: libc::c_ulong = 0;
-    // SAFETY: only called with options that take integers; unused arguments are zero, as the kernel asks.
-    done(unsafe { libc::prctl(option, argument as libc::c_ulong, none, none, none) })
+    Ok(rustix::process::setsid().map(drop)?)
 }
 
 /// Makes this process adopt the orphans among its descendants.
 pub(super) fn become_reaper() -> io::Result<()> {
-    prctl(libc::PR_SET_CHILD_SUBREAPER, 1)
+    Ok(rustix::process::set_child_subreaper(Some(rustix::process::getpid()))?)
 }
 
 /// Has the kernel kill this process when its parent dies.
 pub(super) fn die_with_parent() -> io::Result<()> {
-    prctl(libc::PR_SET_PDEATHSIG, libc::SIGKILL as u64)
+    Ok(rustix::process::set_parent_process_death_signal(Some(Signal::KILL))?)
 }
 
 /// Gives up for ever the gain of privileges by executing a program.
 pub(super) fn no_new_privileges() -> io::Result<()> {
-    prctl(libc::PR_SET_NO_NEW_PRIVS, 1)
+    Ok(rustix::thread::set_no_new_privs(true)?)
 }
 
-/// Sets a limit (`RLIMIT_*`), soft and hard, never above the hard limit that is already there.
-pub(super) fn limit(resource: u32, value: u64) -> io::Result<()> {
-    let mut old = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
-    // SAFETY: `old` outlives the call; the resource number is checked by the kernel.
-    done(unsafe { libc::getrlimit(resource, &raw mut old) })?;
-    let value = value.min(old.rlim_max);
-    let new = libc::rlimit { rlim_cur: value, rlim_max: value };
-    // SAFETY: `new` outlives the call.
-    done(unsafe { libc::setrlimit(resource, &raw const new) })
+/// Sets a limit, soft and hard, never above the hard limit that is already there.
+pub(super) fn limit(resource: Resource, value: u64) -> io::Result<()> {
+    let value = Some(getrlimit(resource).maximum.map_or(value, |most| value.min(most)));
+    Ok(setrlimit(resource, Rlimit { current: value, maximum: value })?)
 }
 
 /// Becomes another user and group for good, and leaves all supplementary groups.
 pub(super) fn switch_user(id: u32) -> io::Result<()> {
-    // SAFETY: an empty list needs no memory behind its pointer.
-    done(unsafe { libc::setgroups(0, std::ptr::null()) })?;
-    // SAFETY: integers only.
-    done(unsafe { libc::setresgid(id, id, id) })?;
-    // SAFETY: integers only.
-    done(unsafe { libc::setresuid(id, id, id) })
+    let (user, group) = (Uid::from_raw(id), Gid::from_raw(id));
+    rustix::thread::set_thread_groups(&[])?;
+    rustix::thread::set_thread_res_gid(group, group, group)?;
+    Ok(rustix::thread::set_thread_res_uid(user, user, user)?)
 }
 
 /// Does something with the file permissions of another user, as who root may look into that user's `/proc` entries even
@@ -142,25 +143,21 @@ pub(super) fn with_files_of<T>(user: Option<u32>, action: impl FnOnce() -> T) ->
     result
 }
 
-/// Makes `new` a copy of the descriptor `old`, which stays open across `execve`.
-pub(super) fn duplicate_to(old: RawFd, new: RawFd) -> io::Result<()> {
-    // SAFETY: integers only; the caller owns what lies at `new` (the standard streams of a fresh child).
-    done(unsafe { libc::dup2(old, new) })
+/// Makes these the standard streams, which stay open across `execve`.
+pub(super) fn connect(input: &OwnedFd, output: &OwnedFd, error: &OwnedFd) -> io::Result<()> {
+    rustix::stdio::dup2_stdin(input)?;
+    rustix::stdio::dup2_stdout(output)?;
+    Ok(rustix::stdio::dup2_stderr(error)?)
 }
 
 /// A copy of the descriptor under a number from `least` on, closed by the next `execve`.
 pub(super) fn duplicate_from(fd: BorrowedFd<'_>, least: u32) -> io::Result<OwnedFd> {
-    let least = i32::try_from(least).map_err(io::Error::other)?;
-    // SAFETY: integers only, on an open descriptor.
-    let copy = check(i64::from(unsafe { libc::fcntl(fd.as_raw_fd(), libc::F_DUPFD_CLOEXEC, least) }))?;
-    // SAFETY: the kernel has just opened it for us alone.
-    Ok(unsafe { OwnedFd::from_raw_fd(copy as RawFd) })
+    Ok(rustix::io::fcntl_dupfd_cloexec(fd, least.cast_signed())?)
 }
 
 /// Keeps the descriptor open across `execve`.
 pub(super) fn keep_on_execute(fd: BorrowedFd<'_>) -> io::Result<()> {
-    // SAFETY: integers only, on an open descriptor.
-    done(unsafe { libc::fcntl(fd.as_raw_fd(), libc::F_SETFD, 0) })
+    Ok(rustix::io::fcntl_setfd(fd, FdFlags::empty())?)
 }
 
 /// Has every descriptor from 3 on closed by the next `execve`.
@@ -210,8 +207,7 @@ pub(super) fn default_signals(ignored: &[i32]) {
 
 /// Sets the mask of permission bits that new files do not get.
 pub(super) fn file_mask(mask: u32) {
-    // SAFETY: an integer; cannot fail.
-    unsafe { libc::umask(mask) };
+    rustix::process::umask(Mode::from_raw_mode(mask));
 }
 
 /// Sends a signal to one process.
@@ -249,24 +245,16 @@ pub(super) struct Reaped {
 ///
 /// `ECHILD` when there is no child at all.
 pub(super) fn reap() -> io::Result<Option<Reaped>> {
-    let mut status = 0;
-    // SAFETY: `status` outlives the call.
-    let pid = check(i64::from(unsafe { libc::waitpid(-1, &raw mut status, libc::WNOHANG) }))? as i32;
-    Ok((pid != 0).then_some(Reaped { pid, status }))
+    let ended = rustix::process::wait(WaitOptions::NOHANG)?;
+    Ok(ended.map(|(pid, status)| Reaped { pid: pid.as_raw_pid(), status: status.as_raw() }))
 }
 
 /// Waits until the child has ended; the answer is its exit code, or 128 and the signal that ended it.
 pub(super) fn wait_for(pid: i32) -> io::Result<u8> {
-    let mut status = 0;
-    loop {
-        // SAFETY: `status` outlives the call.
-        match check(i64::from(unsafe { libc::waitpid(pid, &raw mut status, 0) })) {
-            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-            Err(error) => return Err(error),
-            Ok(_) if libc::WIFSIGNALED(status) => return Ok(128 + libc::WTERMSIG(status) as u8),
-            Ok(_) => return Ok(libc::WEXITSTATUS(status) as u8),
-        }
-    }
+    let ended = rustix::io::retry_on_intr(|| rustix::process::waitpid(Pid::from_raw(pid), WaitOptions::empty()))?;
+    let (_, status) = ended.ok_or(io::ErrorKind::WouldBlock)?;
+    let code = status.terminating_signal().map(|signal| 128 + signal).or(status.exit_status());
+    Ok(code.unwrap_or_default() as u8)
 }
 
 /// Processor time and the largest resident set (bytes) of all reaped children and theirs.
@@ -296,28 +284,25 @@ pub(super) enum Readiness {
 
 /// Waits until one of the descriptors can be read or was hung up, or until the time is over. The answer says which.
 pub(super) fn poll<const N: usize>(fds: [Option<BorrowedFd<'_>>; N], time: Duration) -> io::Result<[Readiness; N]> {
-    let mut list =
-        fds.map(|fd| libc::pollfd { fd: fd.map_or(-1, |fd| fd.as_raw_fd()), events: libc::POLLIN, revents: 0 });
-    let time = libc::timespec { tv_sec: time.as_secs().cast_signed(), tv_nsec: i64::from(time.subsec_nanos()) };
-    // SAFETY: the array and the time outlive the call, the array's length is passed along; no signals are named.
-    let answer = unsafe { libc::ppoll(list.as_mut_ptr(), N as libc::nfds_t, &raw const time, std::ptr::null()) };
-    match check(i64::from(answer)) {
-        Err(error) if error.kind() == io::ErrorKind::Interrupted => Ok([Readiness::Idle; N]),
-        Err(error) => Err(error),
-        Ok(_) => Ok(list.map(|entry| match entry.revents {
-            0 => Readiness::Idle,
-            events if events & libc::POLLIN != 0 => Readiness::Ready,
-            _ => Readiness::HungUp,
-        })),
-    }
+    let there = fds.iter().flatten();
+    let mut list: Vec<PollFd<'_>> = there.map(|fd| PollFd::from_borrowed_fd(*fd, PollFlags::IN)).collect();
+    let time = Timespec { tv_sec: time.as_secs().cast_signed(), tv_nsec: time.subsec_nanos().into() };
+    match rustix::event::poll(&mut list, Some(&time)) {
+        Err(Errno::INTR) => return Ok([Readiness::Idle; N]),
+        found => found?,
+    };
+    let mut found = list.iter().map(PollFd::revents);
+    Ok(fds.map(|fd| match fd.and_then(|_| found.next()).unwrap_or(PollFlags::empty()) {
+        events if events.is_empty() => Readiness::Idle,
+        events if events.contains(PollFlags::IN) => Readiness::Ready,
+        _ => Readiness::HungUp,
+    }))
 }
 
 /// Whether a write to the pipe would wait, because it is full.
 pub(super) fn is_full(pipe: BorrowedFd<'_>) -> bool {
-    let mut entry = libc::pollfd { fd: pipe.as_raw_fd(), events: libc::POLLOUT, revents: 0 };
-    // SAFETY: the structure outlives the call, which does not wait.
-    let answer = unsafe { libc::poll(&raw mut entry, 1, 0) };
-    answer == 0
+    let mut list = [PollFd::from_borrowed_fd(pipe, PollFlags::OUT)];
+    rustix::event::poll(&mut list, Some(&Timespec::default())) == Ok(0)
 }
 
 /// Has writes beyond the limit of file sizes fail instead of ending the process.
@@ -328,85 +313,61 @@ pub(super) fn ignore_file_size_signal() {
 
 /// A descriptor that becomes readable when the process ends; `None` on kernels before 5.3.
 pub(super) fn process_descriptor(pid: i32) -> Option<OwnedFd> {
-    // SAFETY: integers only.
-    let fd = check(unsafe { libc::syscall(libc::SYS_pidfd_open, pid, 0) }).ok()?;
-    // SAFETY: the kernel has just opened it for us alone.
-    Some(unsafe { OwnedFd::from_raw_fd(fd as RawFd) })
+    rustix::process::pidfd_open(Pid::from_raw(pid)?, PidfdFlags::empty()).ok()
 }
 
 /// Makes reads and writes on the descriptor return at once when they would wait, or wait again.
 pub(super) fn set_blocking(fd: BorrowedFd<'_>, blocking: bool) -> io::Result<()> {
-    // SAFETY: integers only, on a borrowed and therefore open descriptor.
-    let flags = check(i64::from(unsafe { libc::fcntl(fd.as_raw_fd(), libc::F_GETFL) }))? as i32;
-    let flags = if blocking { flags & !libc::O_NONBLOCK } else { flags | libc::O_NONBLOCK };
-    // SAFETY: as above.
-    done(unsafe { libc::fcntl(fd.as_raw_fd(), libc::F_SETFL, flags) })
+    Ok(rustix::io::ioctl_fionbio(fd, !blocking)?)
 }
 
 /// Opens `name` beneath the folder with `flags`, never leaving the folder and never following a symbolic link.
-pub(super) fn open_beneath(folder: BorrowedFd<'_>, name: &CStr, flags: i32) -> io::Result<OwnedFd> {
-    let flags = flags | libc::O_CLOEXEC | libc::O_NOFOLLOW;
-    // SAFETY: an all-zero `open_how` is a valid value.
-    let mut how: libc::open_how = unsafe { std::mem::zeroed() };
-    how.flags = flags as u64;
-    how.resolve = libc::RESOLVE_BENEATH | libc::RESOLVE_NO_SYMLINKS | libc::RESOLVE_NO_MAGICLINKS;
-    let size = size_of::<libc::open_how>();
-    // SAFETY: name and structure outlive the call and the size is the structure's.
-    let mut answer =
-        unsafe { libc::syscall(libc::SYS_openat2, folder.as_raw_fd(), name.as_ptr(), &raw const how, size) };
-    let refused = |errno| matches!(errno, Some(libc::ENOSYS | libc::EPERM));
+pub(super) fn open_beneath(folder: BorrowedFd<'_>, name: &CStr, flags: OFlags) -> io::Result<OwnedFd> {
+    let flags = flags | OFlags::CLOEXEC | OFlags::NOFOLLOW;
+    let inside = ResolveFlags::BENEATH | ResolveFlags::NO_SYMLINKS | ResolveFlags::NO_MAGICLINKS;
     let plain = !name.to_bytes().contains(&b'/') && name != c"..";
-    if answer < 0 && plain && refused(io::Error::last_os_error().raw_os_error()) {
+    match rustix::fs::openat2(folder, name, flags, Mode::empty(), inside) {
         // Kernels before 5.6 and old container profiles have no `openat2`; a single name needs less protection.
-        // SAFETY: the name outlives the call.
-        answer = i64::from(unsafe { libc::openat(folder.as_raw_fd(), name.as_ptr(), flags) });
+        Err(Errno::NOSYS | Errno::PERM) if plain => Ok(rustix::fs::openat(folder, name, flags, Mode::empty())?),
+        opened => Ok(opened?),
     }
-    let fd = check(answer)?;
-    // SAFETY: the kernel has just opened it for us alone.
-    Ok(unsafe { OwnedFd::from_raw_fd(fd as RawFd) })
 }
 
 /// Makes a FIFO in the folder; the answer is its reading end, which does not wait yet.
 pub(super) fn make_pipe(folder: BorrowedFd<'_>, name: &CStr) -> io::Result<OwnedFd> {
     // The larger, the fewer switches between the program and the grader.
-    const BYTES: i32 = 1 << 20;
+    const BYTES: usize = 1 << 20;
     make_fifo(folder, name)?;
-    let reader = open_beneath(folder, name, libc::O_RDONLY | libc::O_NONBLOCK)?;
-    // SAFETY: integers only, on an open descriptor. The kernel may refuse, and a smaller pipe works, too.
-    unsafe { libc::fcntl(reader.as_raw_fd(), libc::F_SETPIPE_SZ, BYTES) };
+    let reader = open_beneath(folder, name, OFlags::RDONLY | OFlags::NONBLOCK)?;
+    // The kernel may refuse, and a smaller pipe works, too.
+    let _ = rustix::pipe::fcntl_setpipe_size(&reader, BYTES);
     Ok(reader)
 }
 
 /// Makes a FIFO in the folder, for its owner only.
 pub(super) fn make_fifo(folder: BorrowedFd<'_>, name: &CStr) -> io::Result<()> {
-    // SAFETY: the name outlives the call.
-    done(unsafe { libc::mkfifoat(folder.as_raw_fd(), name.as_ptr(), 0o600) })
+    Ok(rustix::fs::mkfifoat(folder, name, Mode::RUSR | Mode::WUSR)?)
 }
 
 /// Gives an open file or folder (also one opened with `O_PATH`) to a user and group.
 pub(super) fn change_owner(fd: BorrowedFd<'_>, user: u32, group: u32) -> io::Result<()> {
-    // SAFETY: the empty name is a constant; with AT_EMPTY_PATH the descriptor itself is meant.
-    done(unsafe { libc::fchownat(fd.as_raw_fd(), c"".as_ptr(), user, group, libc::AT_EMPTY_PATH) })
+    let (user, group) = (Some(Uid::from_raw(user)), Some(Gid::from_raw(group)));
+    Ok(rustix::fs::chownat(fd, c"", user, group, AtFlags::EMPTY_PATH)?)
 }
 
 /// Makes the open folder the current one.
 pub(super) fn enter_folder(fd: BorrowedFd<'_>) -> io::Result<()> {
-    // SAFETY: an open descriptor.
-    done(unsafe { libc::fchdir(fd.as_raw_fd()) })
+    Ok(rustix::process::fchdir(fd)?)
 }
 
-/// Whether the current user may do `mode` (`X_OK`, `R_OK`) with the path.
-pub(super) fn accessible(path: &CStr, mode: i32) -> bool {
-    // SAFETY: the path outlives the call.
-    unsafe { libc::access(path.as_ptr(), mode) == 0 }
+/// Whether the current user may do this with the path.
+pub(super) fn accessible(path: &CStr, mode: Access) -> bool {
+    rustix::fs::access(path, mode).is_ok()
 }
 
 /// A file in memory that nobody else can name.
 pub(super) fn memory_file() -> io::Result<OwnedFd> {
-    // SAFETY: the name is a constant.
-    let fd = check(i64::from(unsafe { libc::memfd_create(c"program".as_ptr(), libc::MFD_CLOEXEC) }))?;
-    // SAFETY: the kernel has just opened it for us alone.
-    Ok(unsafe { OwnedFd::from_raw_fd(fd as RawFd) })
+    Ok(rustix::fs::memfd_create(c"program", MemfdFlags::CLOEXEC)?)
 }
 
 /// Null-terminated pointers to the strings, which must outlive the list.
@@ -495,10 +456,7 @@ pub(super) fn is_waiting(listener: BorrowedFd<'_>, id: u64) -> bool {
 
 /// The time since the clock's beginning: the calendar's clock, or the one that always goes on.
 pub(super) fn time_by(calendar: bool) -> Duration {
-    let clock = if calendar { libc::CLOCK_REALTIME } else { libc::CLOCK_MONOTONIC };
-    let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
-    // SAFETY: the structure outlives the call, which fills it.
-    unsafe { libc::clock_gettime(clock, &raw mut time) };
+    let time = rustix::time::clock_gettime(if calendar { ClockId::Realtime } else { ClockId::Monotonic });
     Duration::new(time.tv_sec.unsigned_abs(), time.tv_nsec.unsigned_abs() as u32)
 }
 
@@ -525,65 +483,35 @@ pub(super) fn answer(listener: BorrowedFd<'_>, id: u64, answer: CallAnswer) -> i
     done(unsafe { libc::ioctl(listener.as_raw_fd(), libc::SECCOMP_IOCTL_NOTIF_SEND, &raw mut answer) })
 }
 
-/// Space for some descriptors in a control message, aligned as the kernel needs it.
-#[repr(C, align(8))]
-struct ControlSpace([u8; 64]);
+/// The largest number of descriptors in one message.
+const MOST_DESCRIPTORS: usize = 8;
 
 /// Sends one byte and, along with it, descriptors.
-pub(super) fn send_descriptors<const N: usize>(
-    to: &UnixStream,
-    mut byte: u8,
-    fds: [BorrowedFd<'_>; N],
-) -> io::Result<()> {
-    const { assert!(N > 0 && N <= 8, "they fit into the control space") };
-    let numbers = fds.map(|fd| fd.as_raw_fd());
-    let size = size_of_val(&numbers);
-    let mut space = ControlSpace([0; 64]);
-    let mut part = libc::iovec { iov_base: (&raw mut byte).cast(), iov_len: 1 };
-    // SAFETY: an all-zero header is valid; its pointers are set to values that outlive the call, the control space is
-    // larger than CMSG_SPACE of this number of descriptors, so that the first header and its data lie within it.
-    unsafe {
-        let mut message: libc::msghdr = std::mem::zeroed();
-        message.msg_iov = &raw mut part;
-        message.msg_iovlen = 1;
-        message.msg_control = space.0.as_mut_ptr().cast();
-        message.msg_controllen = libc::CMSG_SPACE(size as u32) as _;
-        let header = libc::CMSG_FIRSTHDR(&raw const message);
-        (*header).cmsg_level = libc::SOL_SOCKET;
-        (*header).cmsg_type = libc::SCM_RIGHTS;
-        (*header).cmsg_len = libc::CMSG_LEN(size as u32) as _;
-        std::ptr::copy_nonoverlapping(numbers.as_ptr().cast(), libc::CMSG_DATA(header), size);
-        check(libc::sendmsg(to.as_raw_fd(), &raw const message, libc::MSG_NOSIGNAL) as i64).map(drop)
-    }
+pub(super) fn send_descriptors<const N: usize>(to: &UnixStream, byte: u8, fds: [BorrowedFd<'_>; N]) -> io::Result<()> {
+    const { assert!(N <= MOST_DESCRIPTORS, "they fit into the control space") };
+    let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(MOST_DESCRIPTORS))];
+    let mut control = SendAncillaryBuffer::new(&mut space);
+    control.push(SendAncillaryMessage::ScmRights(&fds));
+    rustix::net::sendmsg(to, &[IoSlice::new(&[byte])], &mut control, SendFlags::NOSIGNAL)?;
+    Ok(())
 }
 
 /// Receives bytes and the descriptors that came along. No bytes mean that the other side is closed.
 pub(super) fn receive_descriptors(from: &UnixStream, buffer: &mut [u8]) -> io::Result<(usize, Vec<OwnedFd>)> {
-    let mut space = ControlSpace([0; 64]);
-    let mut part = libc::iovec { iov_base: buffer.as_mut_ptr().cast(), iov_len: buffer.len() };
-    // SAFETY: as in `send_descriptors`; the kernel writes only within the lengths given, and a header is read only when
-    // it says that it holds descriptors, which are then ours alone.
-    unsafe {
-        let mut message: libc::msghdr = std::mem::zeroed();
-        message.msg_iov = &raw mut part;
-        message.msg_iovlen = 1;
-        message.msg_control = space.0.as_mut_ptr().cast();
-        message.msg_controllen = space.0.len() as _;
-        let length = check(libc::recvmsg(from.as_raw_fd(), &raw mut message, libc::MSG_CMSG_CLOEXEC) as i64)?;
-        let header = libc::CMSG_FIRSTHDR(&raw const message);
-        let holds =
-            !header.is_null() && (*header).cmsg_level == libc::SOL_SOCKET && (*header).cmsg_type == libc::SCM_RIGHTS;
-        let size = if holds { ((*header).cmsg_len as usize).saturating_sub(libc::CMSG_LEN(0) as usize) } else { 0 };
-        let fd = |at| std::ptr::read_unaligned(libc::CMSG_DATA(header).cast::<RawFd>().add(at));
-        let fds = (0..size / size_of::<RawFd>()).map(|at| OwnedFd::from_raw_fd(fd(at))).collect();
-        Ok((length as usize, fds))
-    }
+    let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(MOST_DESCRIPTORS))];
+    let mut control = RecvAncillaryBuffer::new(&mut space);
+    let parts = &mut [IoSliceMut::new(buffer)];
+    let received = rustix::net::recvmsg(from, parts, &mut control, RecvFlags::CMSG_CLOEXEC)?;
+    let fds = control.drain().filter_map(|message| match message {
+        RecvAncillaryMessage::ScmRights(fds) => Some(fds),
+        _ => None,
+    });
+    Ok((received.bytes, fds.flatten().collect()))
 }
 
 /// Bytes of one page of memory.
 pub(super) fn page_size() -> u64 {
-    // SAFETY: an integer; the answer of this question is always positive.
-    unsafe { libc::sysconf(libc::_SC_PAGESIZE) }.unsigned_abs()
+    rustix::param::page_size() as u64
 }
 
 /// Landlock's version in the running kernel; 0 when there is none.

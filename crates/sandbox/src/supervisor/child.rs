@@ -77,9 +77,7 @@ fn prepare(plan: &mut ChildPlan) -> Result<(Strings, Strings), Failure> {
     for group in &mut plan.groups {
         group.write_all(b"0").map_err(stage("enter the control group"))?;
     }
-    for (number, fd) in [(0, &plan.input), (1, &plan.output), (2, &plan.error)] {
-        sys::duplicate_to(fd.as_raw_fd(), number).map_err(stage("connect the standard streams"))?;
-    }
+    sys::connect(&plan.input, &plan.output, &plan.error).map_err(stage("connect the standard streams"))?;
     sys::default_signals(&plan.ignored);
     sys::file_mask(0o022);
     sys::enter_folder(plan.folder.as_fd()).map_err(stage("enter the working folder"))?;
@@ -104,7 +102,7 @@ fn prepare(plan: &mut ChildPlan) -> Result<(Strings, Strings), Failure> {
         _ => return Err(Failure { stage: "pass text with a NUL byte".into(), errno: libc::EINVAL }),
     };
     for raw in &plan.order.readable {
-        if !c_string(raw).is_ok_and(|path| sys::accessible(&path, libc::R_OK)) {
+        if !c_string(raw).is_ok_and(|path| sys::accessible(&path, Access::READ_OK)) {
             let stage =
                 format!("let the program read {}, which every user must be able to reach", wire::path(raw).display());
             return Err(Failure { stage, errno: libc::EACCES });
@@ -139,21 +137,21 @@ fn limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
     // The address sanitiser reserves 20 TiB and what the program itself needs, others more.
     const SANITISERS_SPACE: u64 = 64 << 40;
     // One byte, not none: the kernel pipes the dumps of programs with a limit of 0 to a handler, if the host has one.
-    sys::limit(libc::RLIMIT_CORE, 1)?;
+    sys::limit(Resource::Core, 1)?;
     let limits = &order.limits;
-    sys::limit(libc::RLIMIT_FSIZE, limits.folder_bytes)?;
-    sys::limit(libc::RLIMIT_NOFILE, u64::from(limits.open_files))?;
+    sys::limit(Resource::Fsize, limits.folder_bytes)?;
+    sys::limit(Resource::Nofile, u64::from(limits.open_files))?;
     let begun = u64::from(limits.cpu.subsec_nanos() > 0);
-    sys::limit(libc::RLIMIT_CPU, limits.cpu.as_secs().saturating_add(begun + SPARE_SECONDS))?;
-    sys::limit(libc::RLIMIT_STACK, STACK)?;
-    sys::limit(libc::RLIMIT_MEMLOCK, 64 << 10)?;
-    sys::limit(libc::RLIMIT_MSGQUEUE, 0)?;
-    sys::limit(libc::RLIMIT_RTPRIO, 0)?;
+    sys::limit(Resource::Cpu, limits.cpu.as_secs().saturating_add(begun + SPARE_SECONDS))?;
+    sys::limit(Resource::Stack, STACK)?;
+    sys::limit(Resource::Memlock, 64 << 10)?;
+    sys::limit(Resource::Msgqueue, 0)?;
+    sys::limit(Resource::Rtprio, 0)?;
     // The count is per user, like that of processes.
-    sys::limit(libc::RLIMIT_SIGPENDING, PENDING_SIGNALS)?;
+    sys::limit(Resource::Sigpending, PENDING_SIGNALS)?;
     // Address space is not memory: libraries reserve more than they touch. What is touched is watched.
     let space = limits.memory.saturating_mul(2).saturating_add(SPARE_MEMORY);
-    sys::limit(libc::RLIMIT_AS, if order.sanitisers { space.max(SANITISERS_SPACE) } else { space })?;
+    sys::limit(Resource::As, if order.sanitisers { space.max(SANITISERS_SPACE) } else { space })?;
     // The kernel counts for a user, or for a user namespace: where both are shared with other runs, the limit is only
     // against bombs, because the supervisor counts the run's own.
     let processes = u64::from(limits.processes) + SPARE_PROCESSES;
@@ -161,7 +159,7 @@ fn limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
         true => processes + SPARE_FOR_OTHERS,
         false => MOST_RUNS * processes + processes::threads_of_user(sys::user()),
     };
-    sys::limit(libc::RLIMIT_NPROC, processes)
+    sys::limit(Resource::Nproc, processes)
 }
 
 /// Filters that were compiled before there was a child, with their purpose.
@@ -246,7 +244,7 @@ fn arguments(plan: &ChildPlan) -> io::Result<Strings> {
 /// The script, if its interpreter has to read it by a descriptor, because its path is closed to the run's user.
 fn script_by_descriptor(plan: &ChildPlan) -> Option<&OpenedFile> {
     let opened = plan.opened.as_ref().filter(|_| plan.order.interpreter.is_some())?;
-    let readable = c_string(&plan.order.program).is_ok_and(|path| sys::accessible(&path, libc::R_OK));
+    let readable = c_string(&plan.order.program).is_ok_and(|path| sys::accessible(&path, Access::READ_OK));
     (!readable).then_some(opened)
 }
 
@@ -254,7 +252,8 @@ fn script_by_descriptor(plan: &ChildPlan) -> Option<&OpenedFile> {
 fn environment(order: &RunOrder) -> io::Result<Strings> {
     let folder = c_string(&order.folder)?;
     // A folder whose parents are closed to the sandbox's user is reached from within, as the current one.
-    let home = if sys::accessible(&folder, libc::W_OK | libc::X_OK) { order.folder.clone() } else { b".".to_vec() };
+    let home =
+        if sys::accessible(&folder, Access::WRITE_OK | Access::EXEC_OK) { order.folder.clone() } else { b".".to_vec() };
     let mut variables: Vec<(Raw, Raw)> = vec![
         (b"PATH".to_vec(), b"/usr/local/bin:/usr/bin:/bin".to_vec()),
         (b"LC_ALL".to_vec(), b"C".to_vec()),

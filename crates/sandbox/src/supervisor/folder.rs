@@ -17,7 +17,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::{mounts, sys};
+use crate::{
+    mounts,
+    sys::{self, OFlags},
+};
 
 /// Nobody nests folders deeper than this by accident.
 const DEEPEST: u32 = 32;
@@ -96,7 +99,7 @@ pub(crate) fn open_up(folder: BorrowedFd<'_>) -> bool {
     let mut next = 0;
     while let Some(name) = moved.get(next) {
         next += 1;
-        if let Ok(inner) = sys::open_beneath(folder, name, libc::O_RDONLY | libc::O_DIRECTORY) {
+        if let Ok(inner) = sys::open_beneath(folder, name, OFlags::RDONLY | OFlags::DIRECTORY) {
             open_level(folder, inner.as_fd(), 1, &mut moved);
         }
     }
@@ -108,7 +111,7 @@ fn open_level(root: BorrowedFd<'_>, folder: BorrowedFd<'_>, depth: u32, moved: &
     let Ok(entries) = std::fs::read_dir(inside(folder)) else { return };
     for entry in entries.flatten().filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_dir())) {
         let Ok(name) = CString::new(entry.file_name().as_bytes()) else { continue };
-        let Ok(opened) = sys::open_beneath(folder, &name, libc::O_PATH | libc::O_DIRECTORY) else { continue };
+        let Ok(opened) = sys::open_beneath(folder, &name, OFlags::PATH | OFlags::DIRECTORY) else { continue };
         let Ok(mode) = std::fs::metadata(inside(opened.as_fd())).map(|metadata| metadata.permissions().mode()) else {
             continue;
         };
@@ -118,7 +121,7 @@ fn open_level(root: BorrowedFd<'_>, folder: BorrowedFd<'_>, depth: u32, moved: &
         }
         drop(opened);
         if depth < DEEPEST {
-            if let Ok(inner) = sys::open_beneath(folder, &name, libc::O_RDONLY | libc::O_DIRECTORY) {
+            if let Ok(inner) = sys::open_beneath(folder, &name, OFlags::RDONLY | OFlags::DIRECTORY) {
                 open_level(root, inner.as_fd(), depth + 1, moved);
             }
         } else if let Some(name) = free_name(root, moved.len())
@@ -156,7 +159,7 @@ fn walk(folder: BorrowedFd<'_>, depth: u32, visit: &mut dyn FnMut(&Path, &Metada
             continue;
         }
         let Ok(name) = CString::new(entry.file_name().as_bytes()) else { return false };
-        let inner = match sys::open_beneath(folder, &name, libc::O_RDONLY | libc::O_DIRECTORY) {
+        let inner = match sys::open_beneath(folder, &name, OFlags::RDONLY | OFlags::DIRECTORY) {
             Ok(inner) => inner,
             Err(error) if matches!(error.raw_os_error(), Some(libc::ENOENT | libc::ENOTDIR | libc::ELOOP)) => continue,
             Err(_) => return false,

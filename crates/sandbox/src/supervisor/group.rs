@@ -16,7 +16,10 @@ use std::{
     time::{Duration, SystemTime, UNIX_EPOCH},
 };
 
-use crate::{sys, wire::RunOrder};
+use crate::{
+    sys::{self, OFlags},
+    wire::RunOrder,
+};
 
 /// How the names of our groups begin.
 const PREFIX: &str = "fosssim-oracle-";
@@ -97,7 +100,7 @@ impl Group {
 
     /// Ends everybody in the group, where that can be.
     pub(super) fn kill(&self) -> io::Result<()> {
-        self.unified().map_or(Ok(()), |part| part.open(c"cgroup.kill", libc::O_WRONLY)?.write_all(b"1"))
+        self.unified().map_or(Ok(()), |part| part.open(c"cgroup.kill", OFlags::WRONLY)?.write_all(b"1"))
     }
 
     /// Whether the kernel ended somebody because the group had no memory left.
@@ -137,7 +140,7 @@ impl Group {
                 ],
             };
             for (file, value) in values {
-                match part.open(file, libc::O_WRONLY) {
+                match part.open(file, OFlags::WRONLY) {
                     Ok(mut file) => file.write_all(value.as_bytes())?,
                     // The controller is not there; `controls` says so.
                     Err(error) if error.kind() == io::ErrorKind::NotFound => {}
@@ -199,7 +202,7 @@ impl Part {
         let mut part = Self { kind, path, folder, limits: Vec::new() };
         // Only a group that can be entered and, in version 2, ended is of use.
         if kind == Kind::Unified {
-            part.open(c"cgroup.kill", libc::O_WRONLY)?;
+            part.open(c"cgroup.kill", OFlags::WRONLY)?;
         }
         part.entrance()?;
         part.look_for_limits();
@@ -207,21 +210,21 @@ impl Part {
     }
 
     fn look_for_limits(&mut self) {
-        let held = |(name, file): &HeldLimit| self.open(file, libc::O_WRONLY).is_ok().then_some(*name);
+        let held = |(name, file): &HeldLimit| self.open(file, OFlags::WRONLY).is_ok().then_some(*name);
         self.limits = self.kind.limits().iter().filter_map(held).collect();
     }
 
     fn entrance(&self) -> io::Result<File> {
-        self.open(c"cgroup.procs", libc::O_WRONLY)
+        self.open(c"cgroup.procs", OFlags::WRONLY)
     }
 
-    fn open(&self, name: &CStr, flags: i32) -> io::Result<File> {
+    fn open(&self, name: &CStr, flags: OFlags) -> io::Result<File> {
         sys::open_beneath(self.folder.as_fd(), name, flags).map(File::from)
     }
 
     fn number(&self, file: &CStr, key: &str) -> Option<u64> {
         let mut text = String::new();
-        self.open(file, libc::O_RDONLY).ok()?.read_to_string(&mut text).ok()?;
+        self.open(file, OFlags::RDONLY).ok()?.read_to_string(&mut text).ok()?;
         value_of(&text, key)
     }
 }

@@ -16,7 +16,7 @@ use std::{
 };
 
 use super::calls;
-use crate::sys::{self, Announced};
+use crate::sys::{self, Announced, OFlags};
 
 /// Set-user and set-group bits are not given away.
 const MODE_BITS: u64 = 0o1777;
@@ -83,7 +83,7 @@ fn named(thread: u32, start: &Start, address: u64, folder: BorrowedFd<'_>, root:
 /// way is followed.
 fn beneath(path: &Path, folder: BorrowedFd<'_>, root: &Path) -> io::Result<OwnedFd> {
     let inside = path.strip_prefix(root).map_err(io::Error::other)?;
-    sys::open_beneath(folder, &CString::new(inside.as_os_str().as_bytes())?, libc::O_PATH)
+    sys::open_beneath(folder, &CString::new(inside.as_os_str().as_bytes())?, OFlags::PATH)
 }
 
 /// The text that ends with a zero byte at this address in the thread's memory.

@@ -19,7 +19,7 @@ use super::{
     slot, walls,
 };
 use crate::{
-    sys::{self, Fork},
+    sys::{self, Fork, Resource},
     wire::{self, Failure, Probe, RunOrder},
 };
 
@@ -172,7 +172,7 @@ fn try_namespaces() -> Option<String> {
 
 /// Puts up one wall after the other.
 fn try_walls(mut probe: Probe, user: Option<u32>) -> Probe {
-    probe.limits = why(sys::limit(libc::RLIMIT_CORE, 0).and_then(|()| sys::limit(libc::RLIMIT_FSIZE, 1 << 30)));
+    probe.limits = why(sys::limit(Resource::Core, 0).and_then(|()| sys::limit(Resource::Fsize, 1 << 30)));
     if let Some(user) = user {
         probe.own_user = why(sys::switch_user(user));
     }

@@ -29,7 +29,7 @@ use super::{
 use crate::{
     job::Limits,
     outcome::{Ended, Stream},
-    sys::{self, CallAnswer, Fork, Readiness},
+    sys::{self, CallAnswer, Fork, OFlags, Readiness},
     wire::{self, Event, Failure, Report, RunOrder, stage},
 };
 
@@ -138,7 +138,7 @@ impl Run {
         let slot = slot.map(|slot| owner_before(folder.as_fd(), slot.user).map(|owner| (slot, owner))).transpose();
         let slot = slot.map_err(stage("give the working folder away"))?;
         // This end says how full it is.
-        let open = |name: &CString| sys::open_beneath(folder.as_fd(), name, libc::O_WRONLY | libc::O_NONBLOCK);
+        let open = |name: &CString| sys::open_beneath(folder.as_fd(), name, OFlags::WRONLY | OFlags::NONBLOCK);
         let pipe = name.as_ref().map(open).transpose().map_err(stage("open the trace pipe"))?;
         if order.volatile {
             hand_over(&control, folder.as_fd(), volatile_pipe).map_err(stage("hand the working folder over"))?;

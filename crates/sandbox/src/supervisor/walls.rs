@@ -22,7 +22,7 @@ use landlock::{
 
 use crate::{
     own::{self, Allowed},
-    sys,
+    sys::{self, OFlags},
     wire::{self, RunOrder},
 };
 
@@ -168,7 +168,7 @@ pub(super) fn add_own_entry(mut ruleset: RulesetCreated) -> io::Result<RulesetCr
     let Ok(own) = at_place(Path::new("/proc/self")) else { return Ok(ruleset) };
     let files = OWN_FILES.map(|name| (name, AccessFs::ReadFile));
     for (name, access) in files.into_iter().chain(OWN_FOLDERS.map(|name| (name, AccessFs::ReadDir))) {
-        if let Ok(opened) = sys::open_beneath(own.as_fd(), name, libc::O_PATH) {
+        if let Ok(opened) = sys::open_beneath(own.as_fd(), name, OFlags::PATH) {
             ruleset = ruleset.add_rule(PathBeneath::new(opened.as_fd(), access)).map_err(refused)?;
         }
     }
