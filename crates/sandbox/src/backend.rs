@@ -20,6 +20,7 @@ use super::{
     job::{Job, Policy, ProgramIdentity},
     keepers::{Host, Keeper, KeeperPool, Kind as Keeping},
     layers::{self, Layer, LayerReport},
+    outcome::Ended,
     own, program, room,
     running::{Running, Supervised},
     supervisor::{MODE_KEEP, MODE_PROBE, MODE_RUN},
@@ -376,7 +377,13 @@ impl Backend {
             }
             Ok(Event::Failed(failure)) => {
                 asked.host.rest(None, false);
-                Err(set_up_failed(failure))
+                match failure.errno {
+                    // The program itself is larger than its memory may be.
+                    libc::ENOMEM if failure.stage == wire::EXECUTE => {
+                        Ok(FakeRun::ended(Ended::MemoryLimit).into_running(job, self.layers.clone()))
+                    }
+                    _ => Err(set_up_failed(failure)),
+                }
             }
             Ok(Event::Done(_)) | Err(_) => {
                 asked.host.kill();

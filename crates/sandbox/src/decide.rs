@@ -14,6 +14,9 @@ const LOADER_FAILED: i32 = 127;
 
 /// How the run of `order` ended, given the facts and what the program wrote to standard error.
 pub(super) fn ended(order: &RunOrder, report: &Report, stderr: &[u8]) -> Ended {
+    if report.exec_errno == Some(libc::ENOMEM) {
+        return Ended::MemoryLimit;
+    }
     if let Some(errno) = report.exec_errno {
         return Ended::CouldNotStart(start_problem(errno));
     }

@@ -113,6 +113,9 @@ pub(super) enum Event {
     Done(Report),
 }
 
+/// The step of the set-up whose failure is the program's and not ours.
+pub(super) const EXECUTE: &str = "execute the program";
+
 /// A step of the set-up that failed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Failure {

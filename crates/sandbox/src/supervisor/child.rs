@@ -19,14 +19,13 @@ use std::{
 use landlock::RulesetCreated;
 use seccompiler::BpfProgram;
 
-use super::{filter, filter::Purpose, processes, view, walls};
+use super::{filter, filter::Purpose, processes, view, volatile, walls};
 use crate::{
-    mounts, sys,
-    wire::{self, Failure, Raw, RunOrder, stage},
+    mounts,
+    sys::{self, Access, Resource},
+    wire::{self, EXECUTE, Failure, Raw, RunOrder, stage},
 };
 
-/// The stage whose failure is the program's and not ours.
-pub(super) const EXECUTE: &str = "execute the program";
 /// Announces that a seccomp listener comes along.
 pub(super) const LISTENER: u8 = b'L';
 
@@ -284,17 +283,28 @@ pub(super) struct OpenedFile {
 impl OpenedFile {
     /// Opens the program: the file itself, or a copy in memory when its permission bits are for the owner only or
     /// nothing may be executed where it lies. A program that its user may not read would be closed to the supervisor's
-    /// looks as well.
-    pub(super) fn new(path: &Path, for_another: bool) -> io::Result<Self> {
-        const READ_AND_EXECUTE: u32 = 0o005;
-        let program = File::open(path)?;
-        let mode = program.metadata()?.permissions().mode();
-        let fits = !for_another || mode & READ_AND_EXECUTE == READ_AND_EXECUTE;
-        if fits && !mounts::forbids_execution(program.as_fd()) {
-            return Ok(Self { file: program.into(), copied: false });
-        }
+    /// looks as well. A copy that takes more than `most` bytes of memory is refused as the kernel refuses memory.
+    pub(super) fn new(path: &Path, for_another: bool, most: u64) -> Result<Self, Failure> {
+        let open = || -> io::Result<Self> {
+            const READ_AND_EXECUTE: u32 = 0o005;
+            let program = File::open(path)?;
+            let mode = program.metadata()?.permissions().mode();
+            let fits = !for_another || mode & READ_AND_EXECUTE == READ_AND_EXECUTE;
+            match fits && !mounts::forbids_execution(program.as_fd()) {
+                true => Ok(Self { file: program.into(), copied: false }),
+                false => Self::copy(&program, most),
+            }
+        };
+        open().map_err(|error| match error.kind() {
+            io::ErrorKind::OutOfMemory => Failure::new(EXECUTE, &error),
+            _ => Failure::new("open the program", &error),
+        })
+    }
+
+    /// A copy of the program in memory, in which holes stay holes.
+    fn copy(program: &File, most: u64) -> io::Result<Self> {
         let mut copy = File::from(sys::memory_file()?);
-        io::copy(&mut io::BufReader::new(program), &mut copy)?;
+        volatile::copy_blocks(program, &mut copy, most)?;
         copy.set_permissions(Permissions::from_mode(0o555))?;
         // A file that is open for writing cannot be executed: open it again for reading only.
         let again = File::open(format!("/proc/self/fd/{}", copy.as_raw_fd()))?;

@@ -147,7 +147,7 @@ impl Run {
         let (stderr, error) = io::pipe().map_err(stage("make a pipe"))?;
         let (status, child_status) = UnixStream::pair().map_err(stage("make a socket"))?;
         status.set_nonblocking(true).map_err(stage("make a socket"))?;
-        let opened = OpenedFile::new(&wire::path(&order.program), slot.is_some()).map_err(stage("open the program"))?;
+        let opened = OpenedFile::new(&wire::path(&order.program), slot.is_some(), order.limits.memory)?;
         let entrance = entrance(&order, &opened)?;
         let rules = prepared.rules(&order, folder.as_fd()).map_err(stage("prepare Landlock"))?;
         let plan = ChildPlan {
@@ -247,7 +247,7 @@ impl Run {
         let told = Some(&self.told[..]).filter(|told| !told.is_empty());
         let failure: Option<Failure> = told.and_then(|told| serde_json::from_slice(told).ok());
         let exec_errno = match failure {
-            Some(failure) if failure.stage == child::EXECUTE => Some(failure.errno),
+            Some(failure) if failure.stage == wire::EXECUTE => Some(failure.errno),
             Some(failure) => return Err(failure),
             None => None,
         };
@@ -445,8 +445,9 @@ impl Run {
         let reaped = sys::children_usage().map_or(Duration::ZERO, |(cpu, _)| cpu);
         let memory = usage.memory + self.unseen_memory;
         self.peak_memory = self.peak_memory.max(memory);
-        self.blame_if(memory > self.order.limits.memory, Ended::MemoryLimit);
+        // A bomb of processes passes both.
         self.blame_if(usage.threads > u64::from(self.order.limits.processes), Ended::ProcessLimit);
+        self.blame_if(memory > self.order.limits.memory, Ended::MemoryLimit);
         let cpu = (usage.cpu + reaped).max(self.uncounted_cpu());
         self.blame_if(cpu > self.order.limits.cpu, Ended::CpuLimit);
         let full = self.pipe.as_ref().is_some_and(|pipe| sys::is_full(pipe.as_fd()));
@@ -527,8 +528,8 @@ fn entrance(order: &RunOrder, opened: &OpenedFile) -> Result<Option<OwnedFd>, Fa
     if !order.walls.seccomp || order.walls.notify || order.tools {
         return Ok(None);
     }
-    let interpreter = order.interpreter.as_ref().map(|path| OpenedFile::new(&wire::path(path), false)).transpose();
-    let interpreter = interpreter.map_err(stage("open the interpreter"))?;
+    let open = |path| OpenedFile::new(&wire::path(path), false, order.limits.memory);
+    let interpreter = order.interpreter.as_ref().map(open).transpose()?;
     let entrance = interpreter.as_ref().unwrap_or(opened).under_number(order.limits.open_files);
     entrance.map(Some).map_err(stage("open the program once more"))
 }

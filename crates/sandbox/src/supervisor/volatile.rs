@@ -6,10 +6,12 @@
 
 use std::{
     fs::{File, Permissions},
-    io::{self, Read, Seek, SeekFrom, Write},
-    os::unix::fs::{MetadataExt, PermissionsExt},
+    io,
+    os::unix::fs::{FileExt, MetadataExt, PermissionsExt},
     path::Path,
 };
+
+use rustix::io::Errno;
 
 use crate::wire::{self, Raw, RunOrder};
 
@@ -36,7 +38,7 @@ pub(super) fn copy(from: &Path, to: &Path) -> io::Result<()> {
             std::fs::create_dir(&target)?;
             copy(&entry.path(), &target)?;
         } else if metadata.is_file() {
-            copy_file(&mut File::open(entry.path())?, &target, metadata.len())?;
+            copy_blocks(&File::open(entry.path())?, &mut File::create_new(&target)?, u64::MAX)?;
         } else {
             continue;
         }
@@ -58,26 +60,37 @@ pub(super) fn add(folder: &Path, files: &[(Raw, Vec<u8>)]) -> io::Result<()> {
     Ok(())
 }
 
-/// Copies a file that had this length a moment ago.
-fn copy_file(from: &mut File, to: &Path, expected: u64) -> io::Result<()> {
-    let mut target = File::create_new(to)?;
-    let mut buffer = vec![0; AT_ONE_GO.min(usize::try_from(expected).unwrap_or(AT_ONE_GO) + 1)];
-    let mut length = 0;
+/// Copies the blocks of a file that hold anything, and leaves holes between them.
+///
+/// # Errors
+///
+/// `OutOfMemory` when they take more than `most` bytes.
+pub(super) fn copy_blocks(from: &File, to: &mut File, most: u64) -> io::Result<()> {
+    let mut buffer = vec![0; AT_ONE_GO];
+    let (mut at, mut copied) = (0, 0);
     loop {
-        let read = match from.read(&mut buffer) {
+        // A file system that knows no holes has none.
+        at = match rustix::fs::seek(from, rustix::fs::SeekFrom::Data(at)) {
+            Err(Errno::NXIO) => break,
+            Err(Errno::INVAL) => at,
+            data => data?,
+        };
+        let read = match from.read_at(&mut buffer, at) {
             Ok(0) => break,
             Ok(read) => &buffer[..read],
             Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
             Err(error) => return Err(error),
         };
-        length += read.len() as u64;
-        if read.iter().all(|byte| *byte == 0) {
-            target.seek(SeekFrom::Start(length))?;
-        } else {
-            target.write_all(read)?;
+        if read.iter().any(|byte| *byte != 0) {
+            copied += read.len() as u64;
+            if copied > most {
+                return Err(io::Error::from_raw_os_error(libc::ENOMEM));
+            }
+            to.write_all_at(read, at)?;
         }
+        at += read.len() as u64;
     }
-    target.set_len(length)
+    to.set_len(from.metadata()?.len().max(at))
 }
 
 #[cfg(test)]
@@ -111,5 +124,19 @@ mod tests {
         let sparse = to.join("sparse").metadata().unwrap();
         assert!(sparse.len() == 50 << 20 && sparse.blocks() < 100);
         assert!(to.join("link").symlink_metadata().is_err());
+    }
+
+    #[test]
+    fn holes_of_any_size_are_passed_over_and_blocks_are_limited() {
+        let folder = tempfile::tempdir().unwrap();
+        let from = File::create_new(folder.path().join("from")).unwrap();
+        from.set_len(1 << 40).unwrap();
+        from.write_all_at(&[7; 4096], 1 << 39).unwrap();
+        let from = File::open(folder.path().join("from")).unwrap();
+        let mut to = File::create_new(folder.path().join("to")).unwrap();
+        assert_eq!(copy_blocks(&from, &mut to, 4095).unwrap_err().kind(), io::ErrorKind::OutOfMemory);
+        copy_blocks(&from, &mut to, AT_ONE_GO as u64).unwrap();
+        let metadata = folder.path().join("to").metadata().unwrap();
+        assert!(metadata.len() == 1 << 40 && metadata.blocks() < 1000, "{metadata:?}");
     }
 }
