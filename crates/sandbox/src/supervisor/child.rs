@@ -131,7 +131,6 @@ fn limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
     const SPARE_PROCESSES: u64 = 16;
     // The run's own user has no other processes but in another container that hands out the same numbers.
     const SPARE_FOR_OTHERS: u64 = 128;
-    const MOST_RUNS: u64 = 64;
     const PENDING_SIGNALS: u64 = 1024;
     // The address sanitiser reserves 20 TiB and what the program itself needs, others more.
     const SANITISERS_SPACE: u64 = 64 << 40;
@@ -154,9 +153,11 @@ fn limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
     // The kernel counts for a user, or for a user namespace: where both are shared with other runs, the limit is only
     // against bombs, because the supervisor counts the run's own.
     let processes = u64::from(limits.processes) + SPARE_PROCESSES;
+    // Processes of a bomb take memory and time until the supervisor has counted them; threads hardly do.
+    let most_runs = if order.tools { 8 } else { 64 };
     let processes = match own_user || order.walls.namespaces {
         true => processes + SPARE_FOR_OTHERS,
-        false => MOST_RUNS * processes + processes::threads_of_user(sys::user()),
+        false => most_runs * processes + processes::threads_of_user(sys::user()),
     };
     sys::limit(Resource::Nproc, processes)
 }

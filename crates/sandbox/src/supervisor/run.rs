@@ -207,7 +207,6 @@ impl Run {
         let session = (!walls.namespaces && !walls.bubblewrap).then_some(self.child);
         let _ = wire::send(answers, &Event::Ready { session, user });
         let watched = self.watch();
-        let wall = self.wall();
         let (child, mut main_status) = (self.child, self.main_status);
         if let Some(group) = &self.group {
             // Processes that are left over, if any, are ended one by one.
@@ -239,6 +238,8 @@ impl Run {
         if let Some((_, (owner, group))) = self.slot.as_ref().filter(|_| !self.order.volatile || self.order.tools) {
             folder::give(self.folder.as_fd(), *owner, *group).map_err(stage("take the working folder back"))?;
         }
+        // Cleaning up counts for the run.
+        let wall = self.wall();
         watched.map_err(stage("watch the program"))?;
         if self.orphaned {
             return Ok(None);
