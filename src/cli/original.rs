@@ -1,12 +1,10 @@
-//! The parts of this program that the drop-in for the original asks for: pictures, and words for what has no result.
+//! The parts of this program that the drop-in for the original asks for: pictures.
 use crate::original::{NO_PICTURE_FOLDER, Outside, Pictures};
 use crate::{
     cli::output::Folder,
     render::{Extent, Painter, PictureOptions, Raster, Size, film::png, svg},
-    report::describe,
     sandbox,
     scene::Scene,
-    sim::StepError,
 };
 use anyhow::Result;
 use std::path::Path;
@@ -42,10 +40,6 @@ impl Outside for Program {
         let start: Vec<f64> = scene.particles.iter().flat_map(|p| [p.position.x, p.position.y]).collect();
         let painter = Painter::new(scene, &Extent::of(scene, &start), PictureOptions { size, label: false });
         Ok(Box::new(PictureFolders { painter, raster: Raster::new(size), png, svg }))
-    }
-
-    fn step_error(&self, error: &StepError) -> (u32, String) {
-        describe::step_error(error)
     }
 }
 

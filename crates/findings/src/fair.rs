@@ -12,7 +12,7 @@ pub enum FairVerdict {
     Accepted,
     /// Something is.
     Rejected,
-    /// Judging was cut short before its end, and nothing was wrong so far.
+    /// Undecided: judging was given up before its end, and nothing was wrong so far.
     #[default]
     None,
 }
@@ -22,7 +22,7 @@ pub enum FairVerdict {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum FairRefusal {
-    /// It can't be read to its end, or a step of its states has no result.
+    /// It can't be read to its end.
     Stopped,
     /// It can be read only as the original reads damaged files.
     Damaged,
@@ -101,6 +101,9 @@ pub struct Judgement {
     pub refusal: Option<FairRefusal>,
     /// Its findings.
     pub findings: BookFindings,
+    /// The first step that was not judged any more, because that would have taken too much work, or because the scene
+    /// itself has no result there.
+    pub given_up: Option<u32>,
     /// How many decisions about pairs the trace holds, in all steps and passes.
     pub decisions: u64,
     /// How many borderline decisions the trace has the other way.

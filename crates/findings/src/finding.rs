@@ -1,6 +1,6 @@
 //! Findings: what is wrong with a step, and where.
 use fosssim_model::{
-    sim::{Impulse, Pair, PairKind, Pass},
+    sim::{Impulse, Pair, PairKind, Pass, StepError},
     trace::LoggedImpulse,
 };
 use fosssim_num::polynomial::Polynomial;
@@ -45,11 +45,13 @@ pub enum FindingKind {
     MixedForms,
     /// Fair rules: the penalty force between two bodies was left out, or applied twice.
     PairForce,
+    /// Fair rules: from the step's state, or with its polynomials, no next state exists.
+    NoResult,
 }
 
 impl FindingKind {
     /// All kinds, in order.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::MissedCollision,
         Self::SuperfluousCollision,
         Self::WrongNormal,
@@ -67,6 +69,7 @@ impl FindingKind {
         Self::TrimmedDecision,
         Self::MixedForms,
         Self::PairForce,
+        Self::NoResult,
     ];
 
     /// The original's message for it; positions and velocities have none, they only raise residuals, and what it does
@@ -119,6 +122,7 @@ impl Finding {
             FindingDetail::TrimmedDecision { .. } | FindingDetail::TrimmedTime { .. } => FindingKind::TrimmedDecision,
             FindingDetail::MixedForms { .. } => FindingKind::MixedForms,
             FindingDetail::PairForce { .. } => FindingKind::PairForce,
+            FindingDetail::NoResult { .. } => FindingKind::NoResult,
         }
     }
 }
@@ -304,6 +308,11 @@ pub enum FindingDetail {
         /// Whether it was applied twice.
         is_doubled: bool,
     },
+    /// From the trace's own state, or with its own polynomials, no next state exists (fair rules).
+    NoResult {
+        /// The reason.
+        error: StepError,
+    },
 }
 
 impl FindingDetail {
@@ -314,7 +323,9 @@ impl FindingDetail {
             Self::MissedCollision { expected }
             | Self::WrongNormal { expected, .. }
             | Self::ContactTime { expected, .. } => FindingPlace::Pair(expected.pair),
-            Self::PairForce { pair, .. } => FindingPlace::Pair(*pair),
+            Self::PairForce { pair, .. } | Self::NoResult { error: StepError::RootSearch { pair, .. } } => {
+                FindingPlace::Pair(*pair)
+            }
             Self::PolynomialDegree { place, .. }
             | Self::VanishingPolynomial { place, .. }
             | Self::Coefficient { place, .. }
@@ -331,7 +342,8 @@ impl FindingDetail {
             Self::PolynomialCount { .. }
             | Self::PassCount { .. }
             | Self::RecordsDiffer { .. }
-            | Self::ImpossibleLog => FindingPlace::Step,
+            | Self::ImpossibleLog
+            | Self::NoResult { .. } => FindingPlace::Step,
         }
     }
 

@@ -1,12 +1,12 @@
 //! The verdict on one trace.
-use super::{fair, parity};
+use super::{fair, parity, rules::Book};
 use fosssim_model::{
     sim::{SearchCounts, StepError},
     trace::{Malformation, Unreadable},
 };
 
 /// Why grading stopped before its end.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub enum Stop {
     /// The trace can't be read on; the original says so and stops.
     Trace {
@@ -21,12 +21,11 @@ pub enum Stop {
         /// The damage.
         what: Malformation,
     },
-    /// The trace's own states lead the reference into a computation without end or result; the original hangs.
+    /// Judging took more work than a trace may ask for; or, by the original's rules, a step has no result.
     Step(StepError),
 }
 
-/// Damage that the original's reading passes over in silence; before a step without result also a number in the trace's
-/// state that is not finite.
+/// Damage that the original's reading passes over in silence.
 pub use fosssim_model::trace::TraceError as Damage;
 
 /// Everything that judging one trace yields.
@@ -71,6 +70,13 @@ impl Outcome {
             trailing_bytes: false,
             searches: SearchCounts::default(),
         }
+    }
+
+    /// Why judging by a book stopped early, if it did.
+    #[must_use]
+    pub fn stop_of(&self, book: Book) -> Option<Stop> {
+        let is_parity = book == Book::Parity || self.fair.is_none();
+        self.stop.clone().or(self.parity.endless.filter(|_| is_parity).map(Stop::Step))
     }
 
     /// Draws the verdict of the original's rules.

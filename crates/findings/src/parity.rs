@@ -1,5 +1,6 @@
 //! The original's rule book on a trace: lock-step comparison (oracle-behaviour.md 4 to 6).
 use super::book_findings::BookFindings;
+use fosssim_model::sim::StepError;
 use fosssim_num::tolerances::{PARITY_ACCUMULATED, PARITY_MAXIMUM};
 use serde::{Deserialize, Serialize};
 
@@ -64,13 +65,16 @@ pub struct Judgement {
     pub collisions_passed: Option<bool>,
     /// The findings.
     pub findings: BookFindings,
+    /// The first step without a result, where the original computes without end or gives up; nothing is judged from
+    /// there on.
+    pub endless: Option<StepError>,
 }
 
 impl Judgement {
-    /// Draws the verdict, when nothing stopped judging (oracle-behaviour.md 6).
+    /// Draws the verdict, when nothing ended judging (oracle-behaviour.md 6).
     pub fn conclude(&mut self, is_stopped: bool, is_complete: bool) {
         self.findings.conclude();
-        if is_stopped {
+        if is_stopped || self.endless.is_some() {
             return;
         }
         let passed = self.findings.counts.collisions() == 0;

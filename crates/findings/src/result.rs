@@ -116,7 +116,7 @@ pub enum Reason {
     Right,
     /// The trace is complete and wrong.
     Wrong(Wrong),
-    /// The trace can't be followed to its end.
+    /// The trace can't be read to its end.
     Trace(BadTrace),
     /// The program wrote no trace.
     NoTrace,
@@ -137,7 +137,7 @@ pub enum Reason {
 }
 
 /// In what a trace is wrong, as far as hints tell it.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Wrong {
     /// Hints tell nothing.
     Untold,
@@ -158,9 +158,15 @@ pub enum Wrong {
     Damaged,
     /// In no step: small errors add up beyond the tolerance.
     SmallErrors,
+    /// In that a step has no result, where the original computes without end.
+    NoResult(StepError),
+    /// By the fair rules: in that most of its decisions differ from the reference's, though round-off may flip them.
+    Borderline,
+    /// In nothing so far, but judging it was given up.
+    Undecided,
 }
 
-/// Why a trace can't be followed to its end.
+/// Why a trace can't be read to its end.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum BadTrace {
     /// A record can't be read.
@@ -176,18 +182,10 @@ pub enum BadTrace {
         /// The damage, as the reader tells it.
         damage: Malformation,
     },
-    /// The trace's own states lead into a step without result.
-    NoResult(StepError),
-    /// By the fair rules: the trace's own polynomials lead into a search without end.
-    NoEnd,
     /// By the fair rules: it is damaged.
     Damaged,
     /// By the fair rules: bytes follow its last record.
     TrailingBytes,
-    /// By the fair rules: most of its decisions differ from the reference's, though round-off may flip them.
-    Undecided,
-    /// It was not judged to its end.
-    Unfinished,
 }
 
 /// How far a program came, and the limit that it was stopped at, if it was.

@@ -1,7 +1,12 @@
 //! Which rule book is asked, which one is official, and what each says about one trace in the same words.
 //!
 //! The parity book is always computed, because everything else builds on its replay; the fair one only on demand.
-use super::{book_findings::BookFindings, fair, outcome::Outcome, parity::Overall};
+use super::{
+    book_findings::BookFindings,
+    fair,
+    outcome::{Outcome, Stop},
+    parity::Overall,
+};
 use serde::{Deserialize, Serialize};
 
 /// A rule book.
@@ -62,21 +67,24 @@ impl Rules {
 pub enum Ruling {
     /// Everything is right.
     Accepted,
-    /// The trace is complete and wrong.
+    /// Nothing is wrong so far, and judging was given up before the end.
+    Undecided,
+    /// The trace is wrong.
     WrongAnswer,
-    /// The trace can't be followed to its end; by the fair rules also: it is damaged, or goes on after its end.
+    /// The trace can't be read to its end; by the fair rules also: it is damaged, or goes on after its end.
     BadTrace,
 }
 
 impl Ruling {
     /// All verdicts.
-    pub const ALL: [Self; 3] = [Self::Accepted, Self::WrongAnswer, Self::BadTrace];
+    pub const ALL: [Self; 4] = [Self::Accepted, Self::Undecided, Self::WrongAnswer, Self::BadTrace];
 
-    /// The words: `accepted`, `wrong answer`, `bad trace`.
+    /// The words, such as `wrong answer`.
     #[must_use]
     pub const fn words(self) -> &'static str {
         match self {
             Self::Accepted => "accepted",
+            Self::Undecided => "undecided",
             Self::WrongAnswer => "wrong answer",
             Self::BadTrace => "bad trace",
         }
@@ -90,13 +98,18 @@ impl Outcome {
         match (book, &self.fair) {
             (Book::Fair, Some(fair)) => match (fair.verdict, fair.refusal) {
                 (fair::FairVerdict::Accepted, _) => Ruling::Accepted,
-                (fair::FairVerdict::Rejected, None) => Ruling::WrongAnswer,
-                (fair::FairVerdict::Rejected, Some(_)) | (fair::FairVerdict::None, _) => Ruling::BadTrace,
+                (fair::FairVerdict::Rejected, None | Some(fair::FairRefusal::Undecided)) => Ruling::WrongAnswer,
+                (fair::FairVerdict::Rejected, Some(_)) => Ruling::BadTrace,
+                (fair::FairVerdict::None, _) => Ruling::Undecided,
             },
             _ => match self.parity.overall {
                 Overall::Passed => Ruling::Accepted,
                 Overall::Failed => Ruling::WrongAnswer,
-                Overall::None => Ruling::BadTrace,
+                Overall::None if matches!(self.stop, Some(Stop::Trace { .. })) => Ruling::BadTrace,
+                Overall::None if self.parity.endless.is_some() || self.parity.findings.counts.total() > 0 => {
+                    Ruling::WrongAnswer
+                }
+                Overall::None => Ruling::Undecided,
             },
         }
     }
@@ -107,11 +120,21 @@ impl Outcome {
     #[must_use]
     pub fn right_steps(&self, book: Book) -> u32 {
         let wrong = u32::try_from(self.findings_by(book).wrong_steps).unwrap_or(u32::MAX);
-        let right = self.steps_judged.saturating_sub(wrong);
+        let right = self.judged_by(book).saturating_sub(wrong);
         if self.ruling(book) == Ruling::Accepted {
             return right;
         }
         right.saturating_sub(self.damaged_steps).min(self.steps.saturating_sub(1))
+    }
+
+    /// How many steps a book has judged.
+    #[must_use]
+    pub fn judged_by(&self, book: Book) -> u32 {
+        let end = match (book, &self.fair) {
+            (Book::Fair, Some(fair)) => fair.given_up,
+            _ => self.parity.endless.map(|error| error.step()),
+        };
+        end.map_or(self.steps_judged, |step| step - 1)
     }
 
     /// The findings of a book; by the fair one the original's, if the fair one was not asked.

@@ -4,7 +4,7 @@
 //! value. Reports that lay values out side by side use the fields of [`FindingDetail`] instead.
 use super::finding::{Finding, FindingDetail, FindingKind, Part, PolynomialPlace, RecordPart, Role};
 use fosssim_model::{
-    sim::{Impulse, Pair, PairKind, Pass, Stage},
+    sim::{Impulse, Pair, PairKind, Pass, Stage, StepError},
     trace::LoggedImpulse,
 };
 use fosssim_num::vector::{self, Vec2};
@@ -112,6 +112,9 @@ impl Display for WithoutStep<'_> {
             FindingDetail::MixedForms { place } => write!(f, "{place}: {OTHER_FORM}"),
             FindingDetail::PairForce { pair, is_doubled: false } => write!(f, "{} {LEFT_OUT}", PairWords(pair)),
             FindingDetail::PairForce { pair, is_doubled: true } => write!(f, "{} {DOUBLED}", PairWords(pair)),
+            FindingDetail::NoResult { error } => {
+                write!(f, "no next state follows from the trace's own one, because {}", WithoutResult(error))
+            }
         }
     }
 }
@@ -208,7 +211,32 @@ impl Display for FindingKind {
             Self::TrimmedDecision => "decision changed by lost coefficients",
             Self::MixedForms => "mixed forms of the approach",
             Self::PairForce => "force of a pair left out or doubled",
+            Self::NoResult => "no next state",
         })
+    }
+}
+
+/// Why a step has no result.
+#[derive(Debug, Clone, Copy)]
+pub struct WithoutResult(pub StepError);
+
+impl Display for WithoutResult {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            StepError::RootSearch { pair, .. } => write!(
+                f,
+                "the root search of {} would never end: a coefficient is not finite, or absurdly small",
+                PairWords(pair)
+            ),
+            StepError::Newton { .. } => f.write_str("Newton's method finds no solution of the implicit equation"),
+            StepError::VortexHessian { .. } => {
+                f.write_str("a vortex force has no Hessian, which implicit integrators need")
+            }
+            StepError::Work { .. } => f.write_str(
+                "up to here, judging took many times the work of the scene's own run, which is as much as a trace may \
+                 ask for",
+            ),
+        }
     }
 }
 

@@ -10,7 +10,7 @@ use super::{
     verdict::Verdict,
 };
 use fosssim_judge::{
-    Outcome, Rules, Ruling, Stop,
+    Book, Outcome, Rules, Ruling, Stop,
     fair::{self, FairRefusal},
     kept::KeptTrace,
 };
@@ -195,7 +195,7 @@ fn reached(ended: &Ended, judged: &Outcome, limits: &RunLimits) -> Reached {
 /// The verdict by the trace alone.
 fn verdict_of_trace(run: &Run<'_>) -> (Verdict, Reason) {
     let Run { judged, rules, trace_bytes, .. } = *run;
-    // States that nothing keeps apart may lead nowhere: the trace is complete all the same.
+    // States that nothing keeps apart may have no next one: the trace is complete all the same.
     let is_complete = !matches!(judged.stop, Some(Stop::Trace { .. }));
     let is_empty = is_complete && bytes_of_nothing(&run.task.scene) == Some(trace_bytes);
     if is_empty && judged.ruling(rules.official()) != Ruling::Accepted {
@@ -208,19 +208,23 @@ fn verdict_of_trace(run: &Run<'_>) -> (Verdict, Reason) {
             let unreadable = BadTrace::Unreadable { frame, step, cause, offset, damage };
             (Verdict::BadTrace, Reason::Trace(unreadable))
         }
-        (Some(Stop::Step(error)), _) => (Verdict::BadTrace, Reason::Trace(BadTrace::NoResult(*error))),
-        (None, Ruling::Accepted) => (Verdict::Accepted, Reason::Right),
-        (None, Ruling::WrongAnswer) => (Verdict::WrongAnswer, Reason::Wrong(wrong(judged, rules))),
-        (None, Ruling::BadTrace) => (Verdict::BadTrace, Reason::Trace(refusal(judged))),
+        (_, Ruling::Accepted) => (Verdict::Accepted, Reason::Right),
+        (_, Ruling::WrongAnswer | Ruling::Undecided) => (Verdict::WrongAnswer, Reason::Wrong(wrong(judged, rules))),
+        (_, Ruling::BadTrace) => (Verdict::BadTrace, Reason::Trace(refusal(judged))),
     }
 }
 
 fn wrong(judged: &Outcome, rules: Rules) -> Wrong {
     let account = judged.findings_by(rules.official());
+    if let (Book::Parity, Some(error)) = (rules.official(), judged.parity.endless) {
+        return Wrong::NoResult(error);
+    }
     match account.first_divergence {
         Some(first) if first.step == 0 && account.wrong_steps == 0 => Wrong::FirstRecord(first.kind()),
         Some(first) => Wrong::Steps { wrong: account.wrong_steps, first: first.step, kind: first.kind() },
         None if judged.damaged_steps > 0 => Wrong::Damaged,
+        None if judged.ruling(rules.official()) == Ruling::Undecided => Wrong::Undecided,
+        None if judged.fair.as_ref().is_some_and(|fair| fair.refusal.is_some()) => Wrong::Borderline,
         None => Wrong::SmallErrors,
     }
 }
@@ -228,11 +232,8 @@ fn wrong(judged: &Outcome, rules: Rules) -> Wrong {
 /// Why the fair rules refuse a trace that the original reads to its end.
 fn refusal(judged: &Outcome) -> BadTrace {
     match judged.fair.as_ref().and_then(|fair| fair.refusal) {
-        Some(FairRefusal::Damaged) => BadTrace::Damaged,
         Some(FairRefusal::TrailingBytes) => BadTrace::TrailingBytes,
-        Some(FairRefusal::Stopped) => BadTrace::NoEnd,
-        Some(FairRefusal::Undecided) => BadTrace::Undecided,
-        None => BadTrace::Unfinished,
+        _ => BadTrace::Damaged,
     }
 }
 

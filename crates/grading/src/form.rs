@@ -6,7 +6,7 @@ use super::{key::Key, result::SceneResult};
 use serde::{Deserialize, Serialize};
 
 /// The version of the form.
-const VERSION: u32 = 5;
+const VERSION: u32 = 6;
 
 /// A result as it is kept: the form's version stands before all that depends on it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -30,8 +30,8 @@ pub struct Budget<'a> {
 }
 
 impl<'a> Budget<'a> {
-    /// For judging a trace of this scene by the original's rules, or also by the fair ones. Who simulates steps
-    /// besides, to explain or to show them, takes as much as the original's rules may.
+    /// For judging a trace of this scene by the original's rules, or by the fair ones: each book has its own. Who
+    /// simulates steps besides, to explain or to show them, takes as much as the original's rules may.
     #[must_use]
     pub fn new(scene: &'a Scene, fair: bool) -> Self {
         let factor = if fair { FAIR } else { PARITY };
@@ -116,6 +116,7 @@ mod tests {
         outcome::{Outcome, Stop},
         parity::Overall,
         replay::judge_within,
+        rules::{Book, Ruling},
         samples::{changed, run, scene, written},
     };
 
@@ -177,18 +178,32 @@ mod tests {
     fn where_judging_is_given_up_does_not_depend_on_threads() {
         let scene = posts(100.0, 2000);
         let trace = squeezed(&scene);
-        for (fair, floor) in [(false, 150_000), (true, 1_500_000)] {
-            let alone = judged(floor, &scene, &trace, fair, 1);
-            let step = given_up(&alone).expect("given up");
-            assert!(step > 2, "{step}");
-            for threads in [2, 5] {
-                let outcome = judged(floor, &scene, &trace, fair, threads);
-                assert_eq!(
-                    (given_up(&outcome), outcome.parity.findings.wrong_steps),
-                    (Some(step), alone.parity.findings.wrong_steps)
-                );
-            }
-        }
+        let of_threads = |threads| {
+            let outcome = judged(150_000, &scene, &trace, false, threads);
+            (given_up(&outcome), outcome.parity.findings.wrong_steps)
+        };
+        let alone = of_threads(1);
+        assert!(alone.0.expect("given up") > 2, "{alone:?}");
+        assert_eq!([of_threads(2), of_threads(5)], [alone, alone]);
+    }
+
+    #[test]
+    fn what_fair_costs_is_nothing_to_parity() {
+        let scene = posts(100.0, 2000);
+        let trace = squeezed(&scene);
+        let alone = judged(1_500_000, &scene, &trace, false, 1);
+        assert_eq!((given_up(&alone), alone.parity.overall), (None, Overall::Failed));
+        let mut ends = [1, 2, 5].map(|threads| {
+            let outcome = judged(1_500_000, &scene, &trace, true, threads);
+            assert_eq!(outcome.steps_judged, scene.steps());
+            assert_eq!(format!("{:?}", outcome.parity), format!("{:?}", alone.parity));
+            assert_eq!(outcome.ruling(Book::Fair), Ruling::WrongAnswer, "by what it has seen");
+            let fair = outcome.fair.expect("asked");
+            (fair.given_up.expect("given up"), format!("{fair:?}"))
+        });
+        assert!((3..scene.steps()).contains(&ends[0].0), "step {}", ends[0].0);
+        ends.sort();
+        assert_eq!(ends[0], ends[2]);
     }
 
     #[test]

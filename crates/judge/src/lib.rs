@@ -45,7 +45,8 @@ mod tally;
 pub use differing::{differing, factor};
 pub use fosssim_findings::{
     Book, BookFindings, Damage, Finding, FindingCounts, FindingDetail, FindingKind, Outcome, Overall, PairWords, Part,
-    PassWords, PolynomialPlace, Power, RecordPart, Rescaled, Residuals, Role, Rules, Ruling, Stop, parity, passes,
+    PassWords, PolynomialPlace, Power, RecordPart, Rescaled, Residuals, Role, Rules, Ruling, Stop, WithoutResult,
+    parity, passes,
 };
 use fosssim_findings::{counts, finding, outcome, rules};
 pub use fosssim_model::trace::Unreadable;

@@ -14,6 +14,7 @@ pub use super::{
 use super::{
     budget::Budget,
     fair::{self, Context, Judging, Reach, Records, StepJudgement},
+    finding::FindingDetail,
     identical::Identical,
     outcome::{Damage, Outcome, Stop},
     rules::Book,
@@ -61,8 +62,11 @@ struct StepSlot {
     beyond_limit: bool,
     /// Whether it was judged to its end.
     is_done: bool,
-    /// The work of judging it, in detection calls.
+    /// The work of judging it by the original's rules, in detection calls.
     work: u64,
+    /// Whether the fair rules have judged it to its end, and their work.
+    is_done_fairly: bool,
+    fair_work: u64,
     /// The number of bytes that were read.
     bytes: usize,
 }
@@ -98,7 +102,7 @@ pub(super) fn judge_within(
     let reader = Lenient::new(trace, Layout::of(scene)).with_limit(memory);
     let mut replay = Replay::new(scene, reader, options.fair, options.root_search);
     if let Some(floor) = floor {
-        replay.budget = replay.budget.with_floor(floor);
+        replay.budgets = replay.budgets.map(|budget| budget.with_floor(floor));
     }
     if options.one_by_one {
         replay.identical.give_up();
@@ -114,7 +118,7 @@ pub(super) fn judge_within(
 struct StepRules<'a> {
     layout: Layout,
     logs_impulses: bool,
-    /// Whether the fair rules are asked, too, and what they need.
+    /// What the fair rules need, as long as they are asked.
     fair: Option<Context<'a>>,
 }
 
@@ -130,8 +134,9 @@ struct Replay<'a, R> {
     steps_read: u32,
     /// The bound beyond which nothing leads anywhere by the fair rules, if they are asked.
     reach: Option<Reach<'a>>,
-    /// The work that is left.
-    budget: Budget<'a>,
+    /// The work that is left to each book: the original's, which are asked always, and the fair one's. What one of them
+    /// costs is nothing to the other.
+    budgets: [Budget<'a>; 2],
     /// Judges what is the reference's byte for byte.
     identical: Identical,
     /// Damage of the record that could not be read at last.
@@ -160,13 +165,17 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             let mut stop_after = None;
             let at_once = !is_last && current.is_waiting() && current.bytes <= LARGE_BATCH_BYTES && workers.has_pool();
             if at_once {
-                let (shape, rest) = (self.shape, self.budget.rest());
+                let (shape, rest) = (self.shape, self.rest());
                 workers.judge_beside(&current, &shape, rest, || stop_after = self.read_batch(&mut next));
             } else if current.is_waiting() {
-                workers.judge(&current, &self.shape, self.budget.rest(), is_last);
+                workers.judge(&current, &self.shape, self.rest(), is_last);
             }
-            if current.work() > self.budget.rest() && self.budget.widen() && current.is_waiting() {
-                workers.judge(&current, &self.shape, self.budget.rest(), is_last);
+            let mut has_more = false;
+            for (budget, work) in self.budgets.iter_mut().zip(current.work()) {
+                has_more |= work > budget.rest() && budget.widen();
+            }
+            if has_more && current.is_waiting() {
+                workers.judge(&current, &self.shape, self.rest(), is_last);
             }
             if self.deliver(&mut current, progress, options) {
                 break;
@@ -212,13 +221,18 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             state_at: 0,
             steps_read: 0,
             reach: fair.then(|| Reach::new(scene)),
-            budget: Budget::new(scene, fair),
+            budgets: [false, true].map(|fair| Budget::new(scene, fair)),
             identical: Identical::new(scene, root_search),
             damage: None,
             damaged: false,
             judging: fair.then(Box::default),
             outcome: Outcome { records_per_step: layout.records_per_step(), ..Outcome::empty(layout.steps) },
         }
+    }
+
+    /// The work that is left to each book.
+    fn rest(&self) -> [u64; 2] {
+        [self.budgets[0].rest(), self.budgets[1].rest()]
     }
 
     fn complete(&self) -> bool {
@@ -281,6 +295,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         slot.error = None;
         slot.beyond_limit = false;
         (slot.is_done, slot.work) = (false, 0);
+        (slot.is_done_fairly, slot.fair_work) = (self.shape.fair.is_none(), 0);
         if self.read_at_once(slot) {
             return Ok(());
         }
@@ -314,7 +329,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
 
     /// Reads a step and judges it, if it is the reference's byte for byte.
     fn read_at_once(&mut self, slot: &mut StepSlot) -> bool {
-        let (context, rest) = (self.shape.fair.as_ref(), self.budget.rest());
+        let (context, rest) = (self.shape.fair.as_ref(), self.budgets[0].rest());
         let Some(found) = self.identical.find(&mut self.reader, slot.place.step, &self.state, context, rest) else {
             return false;
         };
@@ -325,7 +340,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         slot.result.set_identical();
         slot.place.is_own = true;
         slot.fair = found.fair.unwrap_or_default();
-        (slot.bytes, slot.work, slot.is_done) = (found.bytes, found.work, true);
+        (slot.bytes, slot.work, slot.is_done, slot.is_done_fairly) = (found.bytes, found.work, true, true);
         (slot.is_extraordinary, slot.is_put_off) = (false, false);
         true
     }
@@ -335,54 +350,34 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         for slot in &mut batch.slots[..batch.filled] {
             let slot = lock(slot);
             progress.step_begins(slot.place.step);
-            let outcome = &mut self.outcome;
-            if outcome.damage.is_none() && slot.error.is_some() {
-                outcome.damage = not_finite(slot, self.shape.layout);
-            }
-            self.damaged |= slot.damage.is_some();
-            if outcome.damage.is_none() {
-                outcome.damage = slot.damage.take();
-            }
-            if !self.budget.spend(slot.work) {
-                slot.error = Some(StepError::Work { step: slot.place.step });
-            }
-            if let Some(error) = slot.error {
-                outcome.stop = Some(Stop::Step(error));
+            if !self.budgets[0].spend(slot.work) {
+                self.outcome.stop = Some(Stop::Step(StepError::Work { step: slot.place.step }));
                 return true;
             }
             if slot.beyond_limit {
-                outcome.stop = Some(beyond_limit(slot, self.shape.layout));
+                self.outcome.stop = Some(beyond_limit(slot, self.shape.layout));
                 return true;
             }
-            tally::accumulate(&mut outcome.parity.residuals, &slot.result.residuals);
-            outcome.parity.findings.counts += slot.result.counts;
+            self.damaged |= slot.damage.is_some();
+            if self.outcome.damage.is_none() {
+                self.outcome.damage = slot.damage.take();
+            }
+            let parity = &mut self.outcome.parity;
+            parity.endless = parity.endless.or(slot.error);
+            if parity.endless.is_some() {
+                slot.result.clear();
+            }
+            tally::accumulate(&mut parity.residuals, &slot.result.residuals);
+            parity.findings.counts += slot.result.counts;
             // The rest of a damaged record counts for the original, but nobody is to blame for its numbers.
             if !self.damaged {
-                slot.result.firsts.iter().for_each(|first| outcome.parity.findings.keep_first(first));
-                if let (Some(judgement), Some(context), Some(reach)) =
-                    (&mut self.judging, &self.shape.fair, &mut self.reach)
-                {
-                    if slot.is_extraordinary {
-                        let frame = self.shape.layout.end_record(slot.place.step);
-                        let mid = self.shape.layout.polynomials.then_some(&slot.mid);
-                        let (step, before, end) = (slot.place.step, &slot.before, &slot.end);
-                        let records = Records { step, frame, before, mid, end };
-                        let known = (!slot.is_put_off).then(|| std::mem::take(&mut slot.fair));
-                        let identical = slot.result.identical;
-                        let (mut judged, mut work) =
-                            reach.judge(context, records, identical, known, self.budget.rest());
-                        if work > self.budget.rest() && self.budget.widen() {
-                            (judged, work) = reach.judge(context, records, identical, None, self.budget.rest());
-                        }
-                        if !self.budget.spend(work) {
-                            outcome.stop = Some(Stop::Step(StepError::Work { step: slot.place.step }));
-                            return true;
-                        }
-                        slot.fair = judged;
-                    }
-                    judgement.add(&slot.fair);
-                }
+                slot.result.firsts.iter().for_each(|first| parity.findings.keep_first(first));
+                self.deliver_fair(slot);
             }
+            if self.outcome.parity.endless.is_some() && self.shape.fair.is_none() {
+                return true;
+            }
+            let outcome = &mut self.outcome;
             outcome.steps_judged += 1;
             outcome.damaged_steps += u32::from(self.damaged);
             progress.step_judged(slot.place.step, &slot.result.remarks);
@@ -399,7 +394,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             slot.mid.shrink();
             slot.end.shrink();
             let is_hopeless = match options.stop_by {
-                Book::Fair if self.judging.is_some() => !slot.fair.findings.is_empty() || slot.fair.endless,
+                Book::Fair if self.judging.is_some() => !slot.fair.findings.is_empty(),
                 Book::Parity | Book::Fair => slot.result.counts.total() > 0,
             };
             if is_hopeless && options.stop_at_first {
@@ -408,24 +403,41 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         }
         false
     }
-}
 
-/// The first number that is not finite in the state that a step starts from, with its place in the trace.
-fn not_finite(slot: &StepSlot, layout: Layout) -> Option<Damage> {
-    let State { positions, velocities } = &slot.before;
-    let (index, value) = positions.iter().chain(velocities).enumerate().find(|(_, value)| !value.is_finite())?;
-    let (names, place) = match index.checked_sub(positions.len()) {
-        None => (["x", "y"], index),
-        Some(place) => (["velocity x", "velocity y"], place),
-    };
-    let quantity = names[place % 2].into();
-    let step = slot.place.step - 1;
-    Some(Damage {
-        frame: layout.end_record(step),
-        step,
-        offset: slot.place.before + 8 * index as u64,
-        what: Malformation::NotFinite { quantity, particle: place / 2, value: *value },
-    })
+    /// Adds what the fair rules say of a step, until they are given up.
+    fn deliver_fair(&mut self, slot: &mut StepSlot) {
+        let (Some(judging), Some(context), Some(reach)) = (&mut self.judging, &self.shape.fair, &mut self.reach) else {
+            slot.fair = StepJudgement::default();
+            return;
+        };
+        let step = slot.place.step;
+        let budget = &mut self.budgets[1];
+        let mut has_judged = budget.spend(slot.fair_work);
+        let frame = self.shape.layout.end_record(step);
+        let mid = self.shape.layout.polynomials.then_some(&slot.mid);
+        let records = Records { step, frame, before: &slot.before, mid, end: &slot.end };
+        if let Some(error) = slot.error {
+            // Where the scene itself has no result, nobody can say what would be right.
+            has_judged &= reach.has_result(step);
+            slot.fair = StepJudgement::default().also(records, FindingDetail::NoResult { error });
+        } else if has_judged && slot.is_extraordinary {
+            let known = (!slot.is_put_off).then(|| std::mem::take(&mut slot.fair));
+            let identical = slot.result.identical;
+            let (mut judged, mut work) = reach.judge(context, records, identical, known, budget.rest());
+            if work > budget.rest() && budget.widen() {
+                (judged, work) = reach.judge(context, records, identical, None, budget.rest());
+            }
+            has_judged = budget.spend(work);
+            slot.fair = judged;
+        }
+        if has_judged {
+            judging.add(&slot.fair);
+        } else {
+            judging.give_up(step);
+            self.shape.fair = None;
+            slot.fair = StepJudgement::default();
+        }
+    }
 }
 
 /// The stop at an end record that is as long as the reference's, and longer than what was kept.
@@ -443,12 +455,13 @@ fn beyond_limit(slot: &StepSlot, layout: Layout) -> Stop {
 impl Batch {
     /// Whether a step of it is still to be judged.
     fn is_waiting(&mut self) -> bool {
-        self.slots[..self.filled].iter_mut().any(|slot| !lock(slot).is_done)
+        self.slots[..self.filled].iter_mut().map(lock).any(|slot| !slot.is_done || !slot.is_done_fairly)
     }
 
-    /// The work of judging it so far.
-    fn work(&mut self) -> u64 {
-        self.slots[..self.filled].iter_mut().map(|slot| lock(slot).work).sum()
+    /// The work of judging it so far, by each book.
+    fn work(&mut self) -> [u64; 2] {
+        let slots = self.slots[..self.filled].iter_mut().map(lock);
+        slots.fold([0, 0], |[parity, fair], slot| [parity + slot.work, fair + slot.fair_work])
     }
 }
 

@@ -54,7 +54,8 @@ impl StepResult {
         self.identical = true;
     }
 
-    fn clear(&mut self) {
+    /// Of a step of which nothing is said.
+    pub(super) fn clear(&mut self) {
         self.remarks.clear();
         self.firsts.clear();
         self.residuals.clear();

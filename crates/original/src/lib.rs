@@ -17,7 +17,7 @@
 //! ```no_run
 //! use fosssim_original::{Outside, Pictures};
 //! use std::{path::Path, process::ExitCode};
-//! # use fosssim_model::{scene::Scene, sim::StepError};
+//! # use fosssim_model::scene::Scene;
 //!
 //! /// A program that draws no pictures.
 //! struct Plain;
@@ -27,10 +27,6 @@
 //!
 //!     fn pictures(&self, _png: bool, _svg: Option<&Path>, _scene: &Scene) -> Result<Box<dyn Pictures>, String> {
 //!         Err("this program draws no pictures".to_owned())
-//!     }
-//!
-//!     fn step_error(&self, error: &StepError) -> (u32, String) {
-//!         (0, error.to_string())
 //!     }
 //! }
 //!
@@ -51,7 +47,7 @@ mod words;
 
 pub use words::NO_PICTURE_FOLDER;
 
-use fosssim_model::{scene::Scene, sim::StepError};
+use fosssim_model::scene::Scene;
 use std::{
     env,
     ffi::OsString,
@@ -102,9 +98,6 @@ pub trait Outside {
     /// # Errors
     /// The text to print, when a folder is missing.
     fn pictures(&self, png: bool, svg: Option<&Path>, scene: &Scene) -> Result<Box<dyn Pictures>, String>;
-
-    /// The step of a computation without result, and the reason.
-    fn step_error(&self, error: &StepError) -> (u32, String);
 }
 
 /// Draws after each step.

@@ -7,7 +7,7 @@ use crate::{
     words::{INPUT_AND_OUTPUT, NO_VORTEX_HESSIAN, not_opened},
 };
 use fosssim_files::{Identity, open_for_reading, open_for_writing, patient, read_limited};
-use fosssim_judge::{Stop, Unreadable, replay, replay::Progress};
+use fosssim_judge::{Book, Stop, Unreadable, WithoutResult, replay, replay::Progress};
 use fosssim_model::{
     scene::{
         LARGEST_IMPLICIT, LARGEST_SCENE, Scene,
@@ -55,7 +55,7 @@ pub(crate) fn run(arguments: &Arguments, words: &[Vec<u8>], outside: &dyn Outsid
     let mut transcript = Transcript::new(BufWriter::new(io::stdout()), heading);
     match (&arguments.output, &arguments.input) {
         (Some(file), _) => match create(Path::new(file), identity) {
-            Ok(file) => simulate(&scene.scene, file, transcript, pictures, outside),
+            Ok(file) => simulate(&scene.scene, file, transcript, pictures),
             Err(message) => complain(message),
         },
         (None, Some(file)) => {
@@ -65,7 +65,7 @@ pub(crate) fn run(arguments: &Arguments, words: &[Vec<u8>], outside: &dyn Outsid
                 {
                     return complain(message);
                 }
-                return grade(&scene.scene, trace, transcript, outside);
+                return grade(&scene.scene, trace, transcript);
             }
             // The original names the third word of the command line instead of the file.
             let third_word = words.get(2).map(Vec::as_slice).unwrap_or_default();
@@ -74,7 +74,7 @@ pub(crate) fn run(arguments: &Arguments, words: &[Vec<u8>], outside: &dyn Outsid
             drop(transcript.finish());
             FAILED
         }
-        (None, None) => simulate(&scene.scene, io::sink(), transcript, pictures, outside),
+        (None, None) => simulate(&scene.scene, io::sink(), transcript, pictures),
     }
 }
 
@@ -148,7 +148,6 @@ fn simulate<W: Write>(
     file: W,
     mut transcript: Transcript<'_, impl Write>,
     mut pictures: Option<Box<dyn Pictures>>,
-    outside: &dyn Outside,
 ) -> u8 {
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     let mut recorder = Recorder::start(file, Layout::of(scene), simulation.state());
@@ -175,7 +174,7 @@ fn simulate<W: Write>(
     transcript.closes();
     drop(transcript.finish());
     match (stopped, written) {
-        (Some(error), _) => step_failed(&error, outside),
+        (Some(error), _) => step_failed(&error),
         // The original would go on and claim that the trace was saved.
         (None, Err(error)) => complain(format!("the trace could not be written: {error}\n")),
         (None, Ok(_)) => 0,
@@ -202,12 +201,7 @@ fn draw(scene: &Scene, name: &Path, mut pictures: Box<dyn Pictures>) -> Result<(
 }
 
 /// Grades a trace and writes `residual.txt`.
-fn grade(
-    scene: &Scene,
-    trace: Box<dyn Read + Send>,
-    mut transcript: Transcript<'_, impl Write>,
-    outside: &dyn Outside,
-) -> u8 {
+fn grade(scene: &Scene, trace: Box<dyn Read + Send>, mut transcript: Transcript<'_, impl Write>) -> u8 {
     let outcome = replay::judge(scene, trace, &replay::Options::default(), &mut transcript);
     transcript.graded(&outcome);
     drop(transcript.finish());
@@ -217,9 +211,9 @@ fn grade(
         // Like the original, this follows links, truncates, and takes no notice of a failure.
         drop(file.write_all(residuals.as_bytes()));
     }
-    match &outcome.stop {
+    match &outcome.stop_of(Book::Parity) {
         None => 0,
-        Some(Stop::Step(error)) => step_failed(error, outside),
+        Some(Stop::Step(error)) => step_failed(error),
         Some(Stop::Trace { cause: Unreadable::State | Unreadable::Impulses, .. }) => FAILED,
         Some(Stop::Trace {
             cause: Unreadable::Memory | Unreadable::Limit | Unreadable::Io,
@@ -232,12 +226,11 @@ fn grade(
 }
 
 /// Ends a run in which the original computes without end, or gives up.
-fn step_failed(error: &StepError, outside: &dyn Outside) -> u8 {
+fn step_failed(error: &StepError) -> u8 {
     match error {
         StepError::VortexHessian { .. } => complain(NO_VORTEX_HESSIAN),
         StepError::RootSearch { .. } | StepError::Newton { .. } | StepError::Work { .. } => {
-            let (step, words) = outside.step_error(error);
-            complain(format!("step {step} has no result: {words}\n"))
+            complain(format!("step {} has no result: {}\n", error.step(), WithoutResult(*error)))
         }
     }
 }

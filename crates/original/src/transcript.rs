@@ -4,7 +4,7 @@ use crate::{
     words::{BLUE, GREEN, PINK, PLAIN, RED},
 };
 use fosssim_judge::{
-    Outcome, Residuals, Stop, Unreadable,
+    Book, Outcome, Residuals, Stop, Unreadable,
     replay::{Progress, Remark},
 };
 use fosssim_model::scene::{Integrator, Scene};
@@ -96,7 +96,7 @@ impl<'a, W: Write> Transcript<'a, W> {
 
     /// Grading is over: the completion message or the reason for stopping, then the exit handler's lines.
     pub(crate) fn graded(&mut self, outcome: &Outcome) {
-        match &outcome.stop {
+        match &outcome.stop_of(Book::Parity) {
             None => self.completes(),
             Some(Stop::Trace { cause: Unreadable::State, .. }) => {
                 let text = format!("{RED}Error in TwoDSceneSerialized: {PLAIN}Failed to load timestep. Exiting.\n");

@@ -4,7 +4,7 @@ pub mod explanation;
 
 mod located;
 
-use crate::number::counted;
+use crate::{describe::no_result, number::counted};
 pub use located::located;
 
 use fosssim_findings::{
@@ -149,6 +149,11 @@ fn of_wrong(wrong: &Wrong, steps: u32) -> String {
         }
         Wrong::Damaged => "the trace is damaged".to_owned(),
         Wrong::SmallErrors => "small errors add up beyond the tolerance".to_owned(),
+        Wrong::NoResult(error) => no_result(error),
+        Wrong::Borderline => {
+            "most of the trace's decisions are not the reference's, though round-off may flip them".to_owned()
+        }
+        Wrong::Undecided => "nothing is wrong so far, but judging the trace would take too long".to_owned(),
     }
 }
 
@@ -163,14 +168,8 @@ fn of_bad_trace(bad: &BadTrace) -> String {
             };
             format!("{what}: frame {frame} (step {step}), byte {offset}: {damage}")
         }
-        BadTrace::NoResult(error) => format!("the trace's own states lead nowhere: {error}"),
-        BadTrace::NoEnd => "the trace's own polynomials lead into a search without end".to_owned(),
         BadTrace::Damaged => "the trace is damaged".to_owned(),
         BadTrace::TrailingBytes => "bytes follow the trace's last record".to_owned(),
-        BadTrace::Undecided => {
-            "most of the trace's decisions are not the reference's, though round-off may flip them".to_owned()
-        }
-        BadTrace::Unfinished => "the trace was not judged to its end".to_owned(),
     }
 }
 

@@ -88,6 +88,7 @@ fn findings() -> Vec<Finding> {
         FindingDetail::BeyondReach { particle: 0, position: [1e300, 0.0], velocity: [0.0, f64::NEG_INFINITY] },
         FindingDetail::MixedForms { place: last },
         FindingDetail::PairForce { pair: last.pair, is_doubled: true },
+        FindingDetail::NoResult { error: StepError::Newton { step: 7 } },
     ];
     details.into_iter().map(|detail| Finding { step: 7, frame: 14, detail }).collect()
 }
@@ -119,12 +120,8 @@ fn wrong() -> SceneResult {
         ..account.clone()
     };
     let residuals = Residuals { accumulated_position: f64::INFINITY, maximum_position: 0.1, ..Residuals::default() };
-    let damage = Damage {
-        frame: 1,
-        step: 2,
-        offset: 3,
-        what: Malformation::NotFinite { quantity: "x".into(), particle: 1, value: f64::NEG_INFINITY },
-    };
+    let damage =
+        Damage { frame: 1, step: 2, offset: 3, what: Malformation::CountCut { list: List::Impulses, left: 3 } };
     let why = Reason::Wrong(Wrong::Steps { wrong: 3, first: 7, kind: FindingKind::Coefficient });
     SceneResult {
         ended: Some(Ended::Exited(0)),
@@ -196,12 +193,10 @@ fn every_reason_and_every_end_reads_back() {
     let wrong =
         [Wrong::Untold, Wrong::Nothing, Wrong::FirstRecord(FindingKind::Position), Wrong::Damaged, Wrong::SmallErrors];
     reasons.extend(wrong.map(Reason::Wrong));
-    reasons.extend(errors.map(|error| Reason::Trace(BadTrace::NoResult(error))));
+    reasons.extend([Wrong::Borderline, Wrong::Undecided].map(Reason::Wrong));
+    reasons.extend(errors.map(|error| Reason::Wrong(Wrong::NoResult(error))));
     reasons.extend(causes.map(|cause| Reason::Trace(unreadable(cause))));
-    reasons.extend(
-        [BadTrace::NoEnd, BadTrace::Damaged, BadTrace::TrailingBytes, BadTrace::Undecided, BadTrace::Unfinished]
-            .map(Reason::Trace),
-    );
+    reasons.extend([BadTrace::Damaged, BadTrace::TrailingBytes].map(Reason::Trace));
     let total = NotRunReason::Total(Duration::from_secs(600));
     reasons.extend(
         [NotRunReason::Limits { scenes: 3, verdict: Verdict::MemoryLimit }, total, NotRunReason::FailFast]

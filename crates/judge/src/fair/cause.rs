@@ -55,8 +55,6 @@ fn too_lax(outcome: &Outcome, fair: &Judgement) -> Cause {
     match fair.refusal {
         Some(FairRefusal::Damaged) => return Cause::Damage,
         Some(FairRefusal::TrailingBytes) if fair.findings.counts.total() == 0 => return Cause::TrailingBytes,
-        // The original came to its end: it is the trace's own polynomials that lead nowhere.
-        Some(FairRefusal::Stopped) => return Cause::OwnPolynomials,
         _ => {}
     }
     let Some(first) = &fair.findings.first_divergence else { return Cause::SmallErrors };
@@ -68,6 +66,8 @@ fn too_lax(outcome: &Outcome, fair: &Judgement) -> Cause {
         FindingDetail::Position { .. } | FindingDetail::Velocity { .. } if is_mid_record(first, outcome) => {
             Cause::MidRecord
         }
+        // The original came to its end: it is the trace's own polynomials that lead nowhere.
+        FindingDetail::NoResult { .. } => Cause::OwnPolynomials,
         FindingDetail::ContactTime { .. } => Cause::ContactTime,
         FindingDetail::RepeatedCollision { .. } => Cause::RepeatedCollision,
         FindingDetail::ImpossibleLog => Cause::ImpossibleLog,

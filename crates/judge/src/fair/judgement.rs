@@ -5,10 +5,10 @@ use super::{
     step_judgement::StepJudgement,
 };
 use fosssim_findings::{
-    Finding, FindingDetail, FindingKind, Outcome,
+    Finding, FindingDetail, FindingKind, Outcome, Stop,
     fair::{FairRefusal, FairVerdict, Form, Judgement},
 };
-use fosssim_model::sim::{ByKind, PairKind};
+use fosssim_model::sim::{ByKind, PairKind, StepError};
 
 /// The greatest number of examples of borderline decisions that are kept.
 const EXAMPLES: usize = 8;
@@ -60,11 +60,8 @@ impl Judging {
             all.add(new);
         }
         self.said.lost += step.lost;
-        if step.endless {
-            self.said.refusal = Some(FairRefusal::Stopped);
-        }
         self.said.shares.widen(&step.shares);
-        let mut is_wrong = !step.findings.is_empty() || step.endless;
+        let mut is_wrong = !step.findings.is_empty();
         for (form, place) in [(Form::Course, step.course_form), (Form::Right, step.right_form)] {
             let Some(place) = place else { continue };
             if self.said.form == Form::Either {
@@ -154,9 +151,17 @@ impl Judging {
         self.said.borderline >= FEW && self.said.borderline > self.said.decisions / 2
     }
 
+    /// From this step on it judges nothing.
+    pub(crate) fn give_up(&mut self, step: u32) {
+        self.said.given_up = Some(step);
+    }
+
     /// Draws the verdict.
     pub(crate) fn conclude(mut self, outcome: &Outcome) -> Judgement {
-        let refusal = if outcome.stop.is_some() {
+        if let Some(Stop::Step(StepError::Work { step })) = outcome.stop {
+            self.said.given_up.get_or_insert(step);
+        }
+        let refusal = if matches!(outcome.stop, Some(Stop::Trace { .. })) {
             Some(FairRefusal::Stopped)
         } else if outcome.damage.is_some() {
             Some(FairRefusal::Damaged)
@@ -165,7 +170,7 @@ impl Judging {
         } else {
             self.is_undecided().then_some(FairRefusal::Undecided)
         };
-        self.said.refusal = self.said.refusal.or(refusal);
+        self.said.refusal = refusal;
         self.settle_pending();
         let factors = self.scales.values().flatten().filter_map(Factors::range);
         let factor = factors.reduce(|[low, high], [l, h]| [low.min(l), high.max(h)]);
@@ -174,7 +179,7 @@ impl Judging {
         said.findings.conclude();
         said.verdict = if said.refusal.is_some() || said.findings.counts.total() > 0 {
             FairVerdict::Rejected
-        } else if outcome.steps_judged == outcome.steps {
+        } else if outcome.steps_judged == outcome.steps && said.given_up.is_none() {
             FairVerdict::Accepted
         } else {
             FairVerdict::None

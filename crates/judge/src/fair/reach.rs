@@ -70,6 +70,12 @@ impl<'a> Reach<'a> {
         }
     }
 
+    /// Whether the reference's own run gets to the end of this step.
+    pub fn has_result(&mut self, step: u32) -> bool {
+        self.run_to(step);
+        self.run.as_ref().is_some_and(|run| !run.is_lost)
+    }
+
     /// The first particle that is where the reference never comes near.
     fn beyond_reach(&self, records: &Records<'_>) -> Option<FindingDetail> {
         records.states().find_map(|state| {

@@ -27,20 +27,13 @@ pub(crate) fn judge(
     records: Records<'_>,
     identical: bool,
 ) -> StepJudgement {
-    let (step, frame) = (records.step, records.frame);
     let mut judged = if identical {
-        StepJudgement::identical(context, step, records.end.polynomials.len())
+        StepJudgement::identical(context, records.step, records.end.polynomials.len())
     } else {
-        follow(context, simulation, records).unwrap_or_else(|_| StepJudgement {
-            step,
-            frame,
-            endless: true,
-            ..StepJudgement::default()
-        })
+        follow(context, simulation, records)
+            .unwrap_or_else(|error| StepJudgement::default().also(records, FindingDetail::NoResult { error }))
     };
-    if !judged.endless {
-        compare_records(context, records, &mut judged);
-    }
+    compare_records(context, records, &mut judged);
     judged
 }
 

@@ -43,8 +43,6 @@ pub(crate) struct StepJudgement {
     /// Whether anything is said of polynomials at positions that a response or the failsafe has led to, with its
     /// round-off.
     pub hangs: bool,
-    /// The trace's polynomials lead the step into a search without end.
-    pub endless: bool,
 }
 
 impl StepJudgement {
@@ -67,7 +65,7 @@ impl StepJudgement {
     }
 
     /// The same, with one more finding.
-    pub(super) fn also(mut self, records: Records<'_>, detail: FindingDetail) -> Self {
+    pub fn also(mut self, records: Records<'_>, detail: FindingDetail) -> Self {
         (self.step, self.frame) = (records.step, records.frame);
         self.charge(Finding { step: self.step, frame: self.frame, detail });
         self

@@ -1,6 +1,6 @@
 //! Batches and limits, tried from inside.
 use super::*;
-use crate::{finding::FindingKind, samples::changed};
+use crate::{finding::FindingKind, rules::Ruling, samples::changed};
 use fosssim_model::{
     sim::Simulation,
     trace::{Frame, Reader, Recorder, Writer},
@@ -88,5 +88,41 @@ fn a_record_beyond_the_memory_is_wrong_by_its_length_or_not_judged() {
         let wrong = judge(0, &longer);
         assert!(wrong.stop.is_none() && wrong.parity.findings.wrong_steps == 2, "{wrong:?}");
         assert!(wrong.parity.findings.examples[0].to_string().contains("14281 polynomials"), "{wrong:?}");
+    }
+}
+
+/// States from which no next one follows are wrong answers: the rest of the trace is read, and judged by the fair rules.
+#[test]
+fn a_step_without_result_ends_nothing_but_the_originals_rules() {
+    let scene = crate::samples::scene(crate::samples::ZONES);
+    let trace = changed(&scene, |frames| {
+        let layout = Layout::of(&scene);
+        frames[usize::try_from(layout.end_record(1)).expect("small")].state.positions[4] = f64::NAN;
+    });
+    for threads in [1, 2] {
+        let judge = |fair, trace: &[u8]| {
+            judge_within(
+                usize::MAX,
+                None,
+                &scene,
+                &mut { trace },
+                &Options { fair, threads, ..Options::default() },
+                &mut (),
+            )
+        };
+        let both = judge(true, &trace);
+        assert!(matches!(both.parity.endless, Some(StepError::RootSearch { step: 2, .. })), "{both:?}");
+        assert_eq!(
+            (both.steps_judged, [Book::Parity, Book::Fair].map(|book| both.ruling(book))),
+            (3, [Ruling::WrongAnswer; 2])
+        );
+        assert_eq!([Book::Parity, Book::Fair].map(|book| both.judged_by(book)), [1, 3]);
+        let fair = &both.fair.as_ref().expect("asked").findings;
+        assert_eq!((fair.counts.get(FindingKind::NoResult), fair.wrong_steps), (1, 2), "{fair:?}");
+        let parity = judge(false, &trace);
+        assert_eq!(format!("{:?}", parity.parity), format!("{:?}", both.parity));
+        assert_eq!((parity.steps_judged, parity.ruling(Book::Parity)), (1, Ruling::WrongAnswer));
+        // What can't be read is bad, whatever was found before.
+        assert_eq!(judge(true, &trace[..trace.len() - 40]).ruling(Book::Fair), Ruling::BadTrace);
     }
 }

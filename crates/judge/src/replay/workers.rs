@@ -65,7 +65,7 @@ impl<'a> Workers<'a> {
 
     /// Judges a batch, beside which nothing is read; one that is the trace's last on one thread unless more are asked
     /// for.
-    pub(super) fn judge(&mut self, batch: &Batch, shape: &StepRules<'_>, rest: u64, is_last: bool) {
+    pub(super) fn judge(&mut self, batch: &Batch, shape: &StepRules<'_>, rest: [u64; 2], is_last: bool) {
         if is_last && self.threads == 0 && self.pool.is_none() || !self.has_pool() {
             self.grow_to(1);
             judge_batch(batch, &mut self.list[..1], shape, rest);
@@ -79,7 +79,7 @@ impl<'a> Workers<'a> {
         &mut self,
         batch: &Batch,
         shape: &StepRules<'_>,
-        rest: u64,
+        rest: [u64; 2],
         other: impl FnOnce() + Send,
     ) {
         let Some(pool) = &self.pool else { return };
@@ -95,15 +95,18 @@ impl<'a> Workers<'a> {
     }
 }
 
-/// Judges the steps of a batch that are not done, each by the next free worker, until they take more work than is left.
+/// Judges the steps of a batch that are not done, each by the next free worker, by each book until that takes more work
+/// than is left to it. Where nothing is left to the original's rules, the fair ones end as well.
 ///
 /// Steps are begun in their order, and a step that is begun is done, or has alone taken more than is left. So the first
-/// step that the budget does not reach is always among those that were begun, whatever the number of threads.
-fn judge_batch(batch: &Batch, workers: &mut [Worker], shape: &StepRules<'_>, rest: u64) {
+/// step that a budget does not reach is always among those that were begun, whatever the number of threads.
+fn judge_batch(batch: &Batch, workers: &mut [Worker], shape: &StepRules<'_>, [rest, fair_rest]: [u64; 2]) {
     let slots = &batch.slots[..batch.filled];
-    let (next, work) = (AtomicUsize::new(0), AtomicU64::new(0));
+    let (next, work, fair_work) = (AtomicUsize::new(0), AtomicU64::new(0), AtomicU64::new(0));
     let run = |worker: &mut Worker| {
         while work.load(Ordering::Relaxed) <= rest {
+            // Asked before the step is taken: then only steps before it are counted.
+            let is_asked = fair_work.load(Ordering::Relaxed) <= fair_rest;
             let Some(slot) = slots.get(next.fetch_add(1, Ordering::Relaxed)) else { return };
             // Every index is handed out once, so the lock is always free.
             let mut slot = slot.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
@@ -114,7 +117,15 @@ fn judge_batch(batch: &Batch, workers: &mut [Worker], shape: &StepRules<'_>, res
                 slot.work = worker.simulation.work() - begin;
                 slot.is_done = slot.work <= rest;
             }
+            if is_asked && slot.is_done && !slot.is_done_fairly {
+                let begin = worker.simulation.work();
+                worker.simulation.limit_work(begin.saturating_add(fair_rest));
+                judge_fairly(&mut slot, worker, shape);
+                slot.fair_work = worker.simulation.work() - begin;
+                slot.is_done_fairly = slot.fair_work <= fair_rest;
+            }
             work.fetch_add(slot.work, Ordering::Relaxed);
+            fair_work.fetch_add(slot.fair_work, Ordering::Relaxed);
         }
     };
     match workers {
@@ -128,21 +139,10 @@ fn judge_batch(batch: &Batch, workers: &mut [Worker], shape: &StepRules<'_>, res
     }
 }
 
+/// Judges a step by the original's rules.
 fn judge_step(slot: &mut StepSlot, worker: &mut Worker, shape: &StepRules<'_>) {
     let step = slot.place.step;
-    let StepSlot {
-        before,
-        order,
-        mid,
-        end,
-        result,
-        fair: judged,
-        is_extraordinary,
-        is_put_off,
-        error,
-        beyond_limit,
-        ..
-    } = slot;
+    let StepSlot { before, order, mid, end, result, error, beyond_limit, .. } = slot;
     let Worker { simulation, buffers, searches } = worker;
     simulation.state_mut().clone_from(before);
     if let Some(pairs) = simulation.penalty_pairs() {
@@ -164,12 +164,19 @@ fn judge_step(slot: &mut StepSlot, worker: &mut Worker, shape: &StepRules<'_>) {
         }
         Err(cause) => *error = Some(cause),
     }
-    if let (Some(context), None, false) = (&shape.fair, &error, *beyond_limit) {
-        let records = Records { step, frame, before, mid, end };
+}
+
+/// Judges a step that has a result by the fair rules.
+fn judge_fairly(slot: &mut StepSlot, worker: &mut Worker, shape: &StepRules<'_>) {
+    let StepSlot { place, before, mid, end, result, fair: judged, is_extraordinary, is_put_off, .. } = slot;
+    if let (Some(context), None, false) = (&shape.fair, &slot.error, slot.beyond_limit) {
+        let frame = shape.layout.end_record(place.step);
+        let mid = shape.layout.polynomials.then_some(&*mid);
+        let records = Records { step: place.step, frame, before, mid, end };
         *is_extraordinary = !records.states().all(|state| context.ordinary.holds(state));
         *is_put_off = *is_extraordinary && !records.start_ordinarily(context);
         if !*is_put_off {
-            *judged = fair::judge(context, simulation, records, result.identical);
+            *judged = fair::judge(context, &mut worker.simulation, records, result.identical);
         }
     }
 }

@@ -32,3 +32,16 @@ pub enum StepError {
         step: u32,
     },
 }
+
+impl StepError {
+    /// The step, from 1.
+    #[must_use]
+    pub const fn step(&self) -> u32 {
+        match *self {
+            Self::RootSearch { step, .. }
+            | Self::Newton { step }
+            | Self::VortexHessian { step }
+            | Self::Work { step } => step,
+        }
+    }
+}

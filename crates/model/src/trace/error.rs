@@ -196,17 +196,6 @@ pub enum Malformation {
         /// The limit in bytes.
         limit: u64,
     },
-    /// A number that is not finite, in a state that leads nowhere.
-    #[error("{quantity} of particle {particle} is {value}")]
-    NotFinite {
-        /// The coordinate: `x`, `y`, `velocity x` or `velocity y`.
-        quantity: Cow<'static, str>,
-        /// The particle.
-        particle: usize,
-        /// The number.
-        #[serde(with = "fosssim_num::written")]
-        value: f64,
-    },
     /// A record that is as long as it should be, and longer than what is kept of one.
     #[error(
         "the record has {logged} polynomials, as many as it should have, but this program compares the first {kept} of \

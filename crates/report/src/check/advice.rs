@@ -91,6 +91,9 @@ fn of_finding(finding: &Finding) -> &'static [&'static str] {
         FindingDetail::PairForce { is_doubled: true, .. } => {
             &["the search for near pairs: it finds this pair twice, and the force is applied each time"]
         }
+        FindingDetail::NoResult { .. } => &[
+            "the steps before this one: numbers that are not finite or absurdly large, or that grow from step to step",
+        ],
         FindingDetail::MixedForms { .. } => &[
             "the approach polynomial: here it has one of its two accepted forms, elsewhere in this trace the other one",
         ],

@@ -15,8 +15,8 @@ pub fn is_wrong(outcome: &Outcome) -> bool {
 /// Why a scene has no verdict, whatever the trace; `None` for nearly all scenes.
 #[must_use]
 pub fn no_verdict(outcome: &Outcome, scene: &str) -> Option<String> {
-    match &outcome.stop {
-        Some(Stop::Step(StepError::VortexHessian { .. })) => Some(format!(
+    match outcome.parity.endless {
+        Some(StepError::VortexHessian { .. }) => Some(format!(
             "the scene {scene} has a vortexforce, which has no Hessian: choose an integrator that is not implicit"
         )),
         _ => None,

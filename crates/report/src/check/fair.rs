@@ -76,14 +76,14 @@ pub(super) const fn verdict(fair: &Judgement) -> (Look, &'static str) {
     match fair.verdict {
         FairVerdict::Accepted => (Look::Good, "accepted"),
         FairVerdict::Rejected => (Look::Bad, "rejected"),
-        FairVerdict::None => (Look::Notice, "no verdict"),
+        FairVerdict::None => (Look::Notice, "undecided"),
     }
 }
 
 /// The grounds of the fair verdict, in one line.
 pub(super) fn summary(fair: &Judgement, outcome: &Outcome) -> String {
     let refusal = match fair.refusal {
-        Some(FairRefusal::Stopped) => Some("the trace can't be followed to its end"),
+        Some(FairRefusal::Stopped) => Some("the trace can't be read to its end"),
         Some(FairRefusal::Damaged) => Some("the trace is damaged"),
         Some(FairRefusal::TrailingBytes) => Some("bytes follow the last record"),
         Some(FairRefusal::Undecided) => {
@@ -104,12 +104,12 @@ pub(super) fn summary(fair: &Judgement, outcome: &Outcome) -> String {
         };
         wrong + &first
     });
-    match (refusal, found) {
-        (Some(refusal), Some(found)) => format!("{refusal}; {found}"),
-        (Some(refusal), None) => refusal.to_owned(),
-        (None, Some(found)) => found,
-        (None, None) if fair.verdict == FairVerdict::None => "nothing is wrong so far".to_owned(),
-        (None, None) => share::right(outcome.steps, count),
+    let given_up = fair.given_up.map(|step| format!("from step {step} on, judging by these rules would take too long"));
+    let nothing = (fair.verdict == FairVerdict::None).then(|| "nothing is wrong so far".to_owned());
+    let parts = [refusal.map(str::to_owned), found.or(nothing), given_up];
+    match parts.into_iter().flatten().collect::<Vec<_>>() {
+        parts if parts.is_empty() => share::right(outcome.steps, count),
+        parts => parts.join("; "),
     }
 }
 

@@ -26,7 +26,6 @@ pub(crate) use text::{headline, notes, problem};
 
 use super::{
     annotation::annotation,
-    describe::step_error,
     explain::{self, ExplanationView},
     style::Style,
     view::{CHECK_SCHEMA, FindingView, document},
@@ -34,7 +33,7 @@ use super::{
 pub(crate) use fair_view::CauseView;
 use fair_view::{CountedView, FairView};
 use fosssim_findings::{Book, Damage, FindingKind, Outcome, Overall, Residuals, Rules, Ruling, Stop};
-use fosssim_judge::{Unreadable, fair::cause};
+use fosssim_judge::{Unreadable, WithoutResult, fair::cause};
 use fosssim_mistakes::diagnose::Explanation;
 use fosssim_model::sim::SearchCounts;
 use serde::Serialize;
@@ -71,7 +70,7 @@ impl Check<'_> {
         self.outcome.ruling(self.book()) == Ruling::Accepted
     }
 
-    /// The official verdict in words: `accepted`, `wrong answer` or `bad trace`.
+    /// The official verdict in words, such as `wrong answer`.
     #[must_use]
     pub fn verdict(&self) -> &'static str {
         self.outcome.ruling(self.book()).words()
@@ -106,7 +105,7 @@ impl Check<'_> {
         let mut text = String::new();
         let title = format!("{}: {}", self.trace, self.verdict());
         if !self.accepted() {
-            let place = self.outcome.stop.as_ref().map(|stop| stopped(stop, self.outcome));
+            let place = self.outcome.stop_of(self.book()).map(|stop| stopped(&stop, self.outcome));
             let first = first::first(self).map(|first| first.to_string());
             let likely = explain::sentence(self.explanations).filter(|_| !first::is_other_scene(self));
             let words: Vec<String> = [Some(text::headline(self)), place, first, likely].into_iter().flatten().collect();
@@ -150,7 +149,7 @@ impl Check<'_> {
             wrong_steps: account.wrong_steps,
             wrong_step_numbers: steps::numbers(self),
             shown_steps: steps::views(self),
-            problem: outcome.stop.as_ref().map(StopView::from),
+            problem: outcome.stop_of(book).as_ref().map(StopView::from),
             damage: outcome.damage.as_ref().map(DamageView::from),
             trailing_bytes: outcome.trailing_bytes,
             root_searches: self.audit.then_some(outcome.searches),
@@ -196,8 +195,8 @@ pub(crate) struct CheckView<'a> {
     rules: Rules,
     /// The book that gives the verdict, the first divergence, findings and wrong steps.
     official: Book,
-    /// By the official book. Bad trace: it could not be followed to the scene's last step; by the fair rules also: it
-    /// is damaged, or goes on after its last record.
+    /// By the official book. Undecided: nothing is wrong so far, but judging was given up. Bad trace: it could not be
+    /// read to the scene's last step; by the fair rules also: it is damaged, or goes on after its last record.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = Ruling::ALL.map(Ruling::words))))]
     verdict: &'static str,
     /// The reason for the verdict, in one line.
@@ -322,7 +321,7 @@ impl From<&Stop> for StopView {
                 Self { kind, place: DamageView { step: *step, frame, offset, message } }
             }
             Stop::Step(error) => {
-                let (step, message) = step_error(error);
+                let (step, message) = (error.step(), WithoutResult(*error).to_string());
                 Self {
                     kind: StopKind::StepWithoutResult,
                     place: DamageView { step, frame: None, offset: None, message },

@@ -1,7 +1,6 @@
 //! The check report for people: the verdict first, then what leads to it.
 use super::{
     super::{
-        describe::step_error,
         explain,
         number::{count, counted, general},
         style::{Look, Style},
@@ -12,7 +11,7 @@ use super::{
     first::{first, is_other_scene},
     follows, steps,
 };
-use fosssim_judge::{Book, BookFindings, Outcome, Overall, Ruling, Stop, Unreadable, share};
+use fosssim_judge::{Book, BookFindings, Outcome, Overall, Ruling, Stop, Unreadable, WithoutResult, share};
 use fosssim_mistakes::diagnose::Explanation;
 use fosssim_model::sim::StepError;
 use std::{fmt::Display, iter};
@@ -34,8 +33,8 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     if check.is_no_trace() {
         return parts.concat();
     }
-    parts.extend(outcome.stop.as_ref().map(|stop| {
-        let (place, message, advice) = problem(stop, outcome);
+    parts.extend(outcome.stop_of(check.book()).map(|stop| {
+        let (place, message, advice) = problem(&stop, outcome);
         let lines: String = iter::once(&*message).chain(advice).map(|line| format!("  {line}\n")).collect();
         format!("{} {place}\n{lines}", style.paint(Look::Strong, "Stopped at"))
     }));
@@ -124,10 +123,11 @@ pub(crate) fn headline(check: &Check<'_>) -> String {
             share::wrong(outcome.parity.findings.wrong_steps, outcome.steps, count) + &first
         }
         Overall::None => {
-            let judged = count(u64::from(outcome.steps_judged));
-            let end = match &outcome.stop {
+            let judged = count(u64::from(outcome.judged_by(Book::Parity)));
+            let end = match &outcome.stop_of(Book::Parity) {
                 Some(stop) if is_limit(stop) => "a limit of this program ended judging",
-                _ => "the trace could not be followed",
+                Some(Stop::Step(_)) => "the original would compute without end",
+                _ => "the trace could not be read on",
             };
             format!("judged {judged} of {}, then {end}", counted(outcome.steps.into(), "step"))
         }
@@ -164,11 +164,15 @@ fn damaged(outcome: &Outcome) -> String {
     }
 }
 
-/// Where a trace can't be followed any further, and why: one line.
+/// Where judging a trace ended, and why: one line.
 #[must_use]
 pub fn stopped(stop: &Stop, outcome: &Outcome) -> String {
     let (place, message, _) = problem(stop, outcome);
-    format!("the trace can't be followed any further at {place}: {message}")
+    let what = match stop {
+        Stop::Trace { .. } => "the trace can't be read any further at",
+        Stop::Step(_) => "judging ended at",
+    };
+    format!("{what} {place}: {message}")
 }
 
 /// Whether judging ended at a limit of this program, which says nothing about the trace.
@@ -176,7 +180,7 @@ const fn is_limit(stop: &Stop) -> bool {
     matches!(stop, Stop::Trace { cause: Unreadable::Limit, .. } | Stop::Step(StepError::Work { .. }))
 }
 
-/// Where a trace can't be followed any further, what is the matter, and what to look at; nothing where the matter asks.
+/// Where judging a trace ended, what is the matter, and what to look at; nothing where the matter asks.
 pub(crate) fn problem(stop: &Stop, outcome: &Outcome) -> (String, String, Option<&'static str>) {
     let (place, message, advice) = match stop {
         Stop::Trace { frame, step, cause, offset, what } => {
@@ -202,7 +206,7 @@ pub(crate) fn problem(stop: &Stop, outcome: &Outcome) -> (String, String, Option
             (place, what.to_string(), advice)
         }
         Stop::Step(error) => {
-            let (step, message) = step_error(error);
+            let (step, message) = (error.step(), WithoutResult(*error).to_string());
             let advice = if is_limit(stop) { LIMIT } else { ABSURD };
             (format!("step {step} of {}", outcome.steps), message, advice)
         }
@@ -262,13 +266,8 @@ pub(crate) fn notes(check: &Check<'_>) -> Vec<String> {
     let outcome = check.outcome;
     let mut notes = Vec::new();
     if let Some(damage) = &outcome.damage {
-        // Before a step without result it is what leads there.
-        let silence = match outcome.stop {
-            Some(Stop::Step(_)) => "",
-            _ => "; the original reads over this in silence",
-        };
         notes.push(format!(
-            "frame {} (step {}), byte {}: {}{silence}",
+            "frame {} (step {}), byte {}: {}; the original reads over this in silence",
             damage.frame, damage.step, damage.offset, damage.what
         ));
         if outcome.damaged_steps > 0 && outcome.parity.findings.counts.total() > 0 {

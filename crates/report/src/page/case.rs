@@ -104,8 +104,8 @@ impl Case<'_> {
     /// Where the trace can't be followed any further, why, and what to look at.
     fn stopped(&self) -> String {
         let outcome = self.check.outcome;
-        let Some(stop) = &outcome.stop else { return String::new() };
-        let (place, message, advice) = problem(stop, outcome);
+        let Some(stop) = outcome.stop_of(self.check.rules.official()) else { return String::new() };
+        let (place, message, advice) = problem(&stop, outcome);
         let advice = advice.map(|advice| format!("<p>{advice}</p>")).unwrap_or_default();
         format!(
             "<section class=\"card mistake\"><p class=\"label\">Stopped at {}</p><p class=\"lead\">{}</p>{advice}\
