@@ -1,13 +1,16 @@
 //! Findings in words: one sentence that says where, what was expected and what was there.
 //!
 //! Vectors have as many digits as tell them apart; other numbers are written so that reading them back gives the same
-//! value. Reports that lay values out side by side use the fields of [`FindingDetail`] instead.
+//! value, with an exponent where they would be long otherwise. Reports that lay values out side by side use the fields of [`FindingDetail`] instead.
 use super::finding::{Finding, FindingDetail, FindingKind, Part, PolynomialPlace, RecordPart, Role};
 use fosssim_model::{
     sim::{Impulse, Pair, PairKind, Pass, Stage, StepError},
     trace::LoggedImpulse,
 };
-use fosssim_num::vector::{self, Vec2};
+use fosssim_num::{
+    printed::exact,
+    vector::{self, Vec2},
+};
 use std::fmt::{self, Display, Formatter};
 
 impl Display for Finding {
@@ -43,13 +46,13 @@ impl Display for WithoutStep<'_> {
         match self.0.detail {
             FindingDetail::MissedCollision { expected } => {
                 let Impulse { pair, normal, time } = expected;
-                let (pair, [x, y]) = (PairWords(pair), <[f64; 2]>::from(normal));
-                write!(f, "{pair} collide at time {time} with normal ({x}, {y}), the trace misses it")
+                let (pair, time, normal) = (PairWords(pair), Exact(time), Point(normal.into()));
+                write!(f, "{pair} collide at time {time} with normal {normal}, the trace misses it")
             }
             FindingDetail::SuperfluousCollision { actual } => {
                 let LoggedImpulse { normal, time, .. } = actual;
-                let (pair, [x, y]) = (LoggedPair(&actual), <[f64; 2]>::from(normal));
-                write!(f, "the trace has {pair} collide at time {time} with normal ({x}, {y}), they do not")
+                let (pair, time, normal) = (LoggedPair(&actual), Exact(time), Point(normal.into()));
+                write!(f, "the trace has {pair} collide at time {time} with normal {normal}, they do not")
             }
             FindingDetail::WrongNormal { expected, actual, .. } => {
                 let pair = PairWords(expected.pair);
@@ -74,7 +77,7 @@ impl Display for WithoutStep<'_> {
                 write!(f, "{place}: the reference's coefficients all vanish, the trace's do not")
             }
             FindingDetail::Coefficient { place, power, expected, actual, .. } => {
-                write!(f, "{place}, {}: {actual}, expected {expected}", Power(power))
+                write!(f, "{place}, {}: {}, expected {}", Power(power), Exact(actual), Exact(expected))
             }
             FindingDetail::Position { particle, expected, actual, .. } => {
                 write!(f, "particle {particle} {verb} at {}", Apart { expected, actual })
@@ -83,7 +86,8 @@ impl Display for WithoutStep<'_> {
                 write!(f, "particle {particle} {verb} with velocity {}", Apart { expected, actual })
             }
             FindingDetail::ContactTime { expected: Impulse { pair, time, .. }, actual } => {
-                write!(f, "{} collide at time {time}, the trace says {}", PairWords(pair), actual.time)
+                let times = [time, actual.time].map(Exact);
+                write!(f, "{} collide at time {}, the trace says {}", PairWords(pair), times[0], times[1])
             }
             FindingDetail::RepeatedCollision { actual } => {
                 write!(f, "the collision of {} is logged more than once", LoggedPair(&actual))
@@ -101,13 +105,16 @@ impl Display for WithoutStep<'_> {
                 write!(f, "{pair} ({pass}) {outcome}; {LACKING}, and decide otherwise ({DROPPING})")
             }
             FindingDetail::TrimmedTime { place, expected, actual } => {
-                let (pair, pass) = (PairWords(place.pair), PassWords(place.pass));
+                let (pair, pass, [expected, actual]) =
+                    (PairWords(place.pair), PassWords(place.pass), [expected, actual].map(Exact));
                 write!(f, "{pair} ({pass}) collide at time {expected}; {LACKING}, and have time {actual} ({DROPPING})")
             }
-            FindingDetail::BeyondReach { particle, position: [x, y], velocity: [vx, vy] } => write!(
+            FindingDetail::BeyondReach { particle, position, velocity } => write!(
                 f,
-                "the step starts or ends with particle {particle} at ({x}, {y}) with velocity ({vx}, {vy}): no \
-                 run of the scene leads to such states"
+                "the step starts or ends with particle {particle} at {} with velocity {}: no run of the scene leads to \
+                 such states",
+                Point(position),
+                Point(velocity)
             ),
             FindingDetail::MixedForms { place } => write!(f, "{place}: {OTHER_FORM}"),
             FindingDetail::PairForce { pair, is_doubled: false } => write!(f, "{} {LEFT_OUT}", PairWords(pair)),
@@ -147,21 +154,48 @@ impl Display for Apart {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let ([ex, ey], [ax, ay]) = (self.expected, self.actual);
         let distance = vector::length(Vec2::new(ax - ex, ay - ey));
-        let size = [ex, ey, ax, ay].into_iter().fold(0.0_f64, |size, value| size.max(value.abs()));
-        // Two digits of the distance, and six in all at least.
-        let digits =
+        let power =
             |number: f64| format!("{number:e}").split_once('e').and_then(|(_, power)| power.parse::<i32>().ok());
-        let least = digits(size).map(|power| 5 - power);
-        let places = digits(distance).map(|power| 1 - power).max(least).unwrap_or(0).max(0);
-        let short = |value: f64| match usize::try_from(places) {
-            Ok(places @ 0..=15) if value.abs() < 1e9 => format!("{value:.places$}")
-                .parse::<f64>()
-                .map_or_else(|_| value.to_string(), |rounded| rounded.to_string()),
-            _ => value.to_string(),
+        // Two digits of the distance, and six of each vector at least, whatever the other's size.
+        let short = |vector: [f64; 2]| {
+            let size = vector.into_iter().fold(0.0_f64, |size, value| size.max(value.abs()));
+            let least = power(size).map(|power| 5 - power);
+            let places = power(distance).map(|power| 1 - power).max(least).unwrap_or(0);
+            Point(vector.map(|value| rounded(value, places, power(value))))
         };
-        write!(f, "({}, {}), expected ({}, {}), distance ", short(ax), short(ay), short(ex), short(ey))?;
+        write!(f, "{}, expected {}, distance ", short([ax, ay]), short([ex, ey]))?;
         let rounded = format!("{distance:.2e}").parse().unwrap_or(distance);
         if (1e-4..1e6).contains(&distance) { write!(f, "{rounded}") } else { write!(f, "{rounded:e}") }
+    }
+}
+
+/// A value cut to so many places behind the point; before it, where they are negative.
+fn rounded(value: f64, places: i32, power: Option<i32>) -> f64 {
+    // More than seventeen digits say nothing new.
+    let digits = power.map_or(0, |power| (power + places).clamp(0, 16));
+    let text = match (usize::try_from(digits), usize::try_from(places.max(0))) {
+        (Ok(digits), _) if places > 15 || value.abs() >= 1e9 => format!("{value:.digits$e}"),
+        (_, Ok(places)) => format!("{value:.places$}"),
+        _ => value.to_string(),
+    };
+    text.parse().unwrap_or(value)
+}
+
+/// A number in its shortest exact form.
+struct Exact(f64);
+
+impl Display for Exact {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        if self.0.is_finite() { f.write_str(&exact(self.0)) } else { write!(f, "{}", self.0) }
+    }
+}
+
+/// A point or a vector.
+struct Point([f64; 2]);
+
+impl Display for Point {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "({}, {})", Exact(self.0[0]), Exact(self.0[1]))
     }
 }
 
@@ -351,9 +385,15 @@ mod tests {
             words([1.0 / 3.0, 2.0 / 3.0], [0.5, 2.0 / 3.0]),
             "(0.5, 0.666667), expected (0.333333, 0.666667), distance 0.167"
         );
+        assert_eq!(words([1e300, 0.0], [f64::NAN, 0.0]), "(NaN, 0), expected (1e300, 0), distance NaN");
+        // However far one vector is, the other keeps its digits.
         assert_eq!(
-            words([1e300, 0.0], [f64::NAN, 0.0]),
-            "(NaN, 0), expected (1e300, 0), distance NaN".replace("1e300", &1e300.to_string())
+            words([-0.764_179_123, 0.137_576_456], [-6.935_630_093_907_413e130, 2.5e130]),
+            "(-6.93563e130, 2.5e130), expected (-0.764179, 0.137576), distance 7.37e130"
+        );
+        assert_eq!(
+            words([0.528_655_4, 0.000_123_4], [12.0, 3.4e17]),
+            "(12, 3.4e17), expected (0.528655, 0.000123), distance 3.4e17"
         );
     }
 

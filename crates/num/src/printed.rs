@@ -1,4 +1,5 @@
-//! Numbers as C++ streams print them by default: `%g` with six significant digits (`oracle-behaviour.md`, head).
+//! Numbers as C++ streams print them by default, `%g` with six significant digits (`oracle-behaviour.md`, head), and in
+//! the shortest exact form.
 
 /// The number of significant digits of C++ streams.
 const DIGITS: i32 = 6;
@@ -33,6 +34,20 @@ pub fn general(value: f64) -> String {
     }
 }
 
+/// The shortest text that reads back as the same bits, with an exponent where it would be long otherwise: `-0.1875`,
+/// `1e-12`, `nan`, `-nan`, `inf`.
+#[must_use]
+pub fn exact(value: f64) -> String {
+    let magnitude = value.abs();
+    if value.is_finite() && (magnitude == 0.0 || (1e-5..1e9).contains(&magnitude)) {
+        format!("{value}")
+    } else if value.is_finite() {
+        format!("{value:e}")
+    } else {
+        general(value)
+    }
+}
+
 /// The digits `d.ddd` times ten to the `exponent` without an exponent.
 fn positional(digits: &str, exponent: i32) -> String {
     if exponent < 0 {
@@ -50,6 +65,17 @@ fn positional(digits: &str, exponent: i32) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn exact_reads_back_as_the_same_bits() {
+        for value in [0.1 + 0.2, -0.1875, 1e-12, 123_456_789.125, 1e22, -5e-324, 0.0, -0.0] {
+            let text = exact(value);
+            assert_eq!(text.parse::<f64>().unwrap().to_bits(), value.to_bits(), "{text}");
+        }
+        assert_eq!(exact(1e-12), "1e-12");
+        assert_eq!(exact(-0.1875), "-0.1875");
+        assert_eq!(exact(f64::NAN.copysign(-1.0)), "-nan");
+    }
 
     #[test]
     fn general_prints_what_the_c_library_prints() {

@@ -2,21 +2,7 @@
 //!
 //! Pure functions.
 
-pub use fosssim_num::printed::general;
-
-/// The shortest text that reads back as the same bits, with an exponent where it would be long otherwise: `-0.1875`,
-/// `1e-12`, `nan`, `-nan`, `inf`.
-#[must_use]
-pub fn exact(value: f64) -> String {
-    let magnitude = value.abs();
-    if value.is_finite() && (magnitude == 0.0 || (1e-5..1e9).contains(&magnitude)) {
-        format!("{value}")
-    } else if value.is_finite() {
-        format!("{value:e}")
-    } else {
-        general(value)
-    }
-}
+pub use fosssim_num::printed::{exact, general};
 
 /// A count with thin separation of thousands: `1 234 567`; four digits stay together.
 #[must_use]
@@ -85,17 +71,6 @@ fn in_one_notation(expected: f64, actual: f64) -> Option<(String, String)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn exact_reads_back_as_the_same_bits() {
-        for value in [0.1 + 0.2, -0.1875, 1e-12, 123_456_789.125, 1e22, -5e-324, 0.0, -0.0] {
-            let text = exact(value);
-            assert_eq!(text.parse::<f64>().unwrap().to_bits(), value.to_bits(), "{text}");
-        }
-        assert_eq!(exact(1e-12), "1e-12");
-        assert_eq!(exact(-0.1875), "-0.1875");
-        assert_eq!(exact(f64::NAN.copysign(-1.0)), "-nan");
-    }
 
     #[test]
     fn compared_values_have_one_notation_and_end_soon_after_they_part() {
