@@ -130,11 +130,13 @@ pub(super) fn possible_hit(
 }
 
 /// The contact normal at a time, and the tolerance of that vector. Of the whole vector: in axes of another direction
-/// the round-off of one component is that of both.
+/// the round-off of one component is that of both. The assignment asks for the shortest vector: where the round-off of
+/// the time leads beyond an edge's end, that to the end is as right as that to the line.
 fn normal(motion: &BoundedPairMotion, t: f64) -> (Vec2, f64) {
     let normal = motion.normal(t);
     let bound = length(Vec2::new(normal.x.bound, normal.y.bound));
-    (Vec2::new(normal.x.value, normal.y.value), FAIR_UNITS * UNIT_ROUNDOFF * bound)
+    let value = Vec2::new(normal.x.value, normal.y.value);
+    (value, FAIR_UNITS * UNIT_ROUNDOFF * bound + length(motion.to_nearest(t) - value))
 }
 
 /// The tolerance of contact normals that come from positions at once, whose roundings are of the largest one's size.
@@ -160,15 +162,7 @@ fn compare_normal(
 
 /// From a pair's first object to the nearest point of the second at these positions (collisions.md 6).
 fn overlap_normal(context: &Context<'_>, pair: Pair, positions: &[f64]) -> Vec2 {
-    let motion = BoundedPairMotion::of(context.scene, pair, positions, positions);
-    let n = motion.normal(1.0);
-    let [Some(first), Some(second), Some(third)] = context.particles(pair) else {
-        return Vec2::new(n.x.value, n.y.value);
-    };
-    let (x1, x2, x3) = (at(positions, first), at(positions, second), at(positions, third));
-    let along = x3 - x2;
-    let alpha = ((x1 - x2).dot(&along) / along.dot(&along)).clamp(0.0, 1.0);
-    (x2 + alpha * along) - x1
+    BoundedPairMotion::of(context.scene, pair, positions, positions).to_nearest(1.0)
 }
 
 /// How far the state at the end of a step may be off.

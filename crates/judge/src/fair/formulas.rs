@@ -215,6 +215,22 @@ impl BoundedPairMotion {
         one <= 1.0 && other <= 1.0 && ways.iter().all(is_so)
     }
 
+    /// The vector to the nearest point of the second object at time `t`. It differs from [`Self::normal`] beyond the
+    /// ends of an edge, and a time of impact at which the particle comes in over an end may be there by its round-off.
+    pub fn to_nearest(&self, t: f64) -> Vec2 {
+        let place = |way: &BoundedPointMotion| {
+            let place = way.start + Bounded::exact(t) * way.shift;
+            Vec2::new(place.x.value, place.y.value)
+        };
+        let Self::Edge(ways, _) = self else {
+            let normal = self.normal(t);
+            return Vec2::new(normal.x.value, normal.y.value);
+        };
+        let [x1, x2, x3] = [0, 1, 2].map(|way| place(&ways[way]));
+        let along = x3 - x2;
+        x2 + ((x1 - x2).dot(&along) / along.dot(&along)).clamp(0.0, 1.0) * along - x1
+    }
+
     /// The contact normal at time `t`, not normalised.
     pub fn normal(&self, t: f64) -> Bounded2 {
         let t = Bounded::exact(t);

@@ -57,6 +57,7 @@ pub use fosssim_findings::{
     fair::{Borderline, FairRefusal, FairVerdict, Form, Judgement, Shares},
 };
 pub(super) use judgement::Judging;
+pub(super) use probe::{RUNS as PERTURBED_RUNS, perturb};
 pub(super) use reach::Reach;
 pub(super) use step::{judge, judge_initial};
 pub(super) use step_judgement::StepJudgement;

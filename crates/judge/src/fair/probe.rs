@@ -17,7 +17,7 @@ use fosssim_num::{
 };
 
 /// The number of perturbed repetitions.
-const RUNS: u64 = 8;
+pub(crate) const RUNS: u64 = 8;
 
 /// The sensitivity of a step, as far as it was measured: the largest deviations, component by component.
 #[derive(Debug, Clone)]
@@ -102,7 +102,7 @@ fn run(
 }
 
 /// Moves every component by up to [`FAIR_UNITS`] roundings, up or down; seed 0 moves nothing.
-fn perturb(state: &mut State, seed: u64) {
+pub(crate) fn perturb(state: &mut State, seed: u64) {
     if seed == 0 {
         return;
     }
@@ -131,7 +131,7 @@ impl Signs {
 }
 
 impl PerturbedRun<'_> {
-    /// The same hit, a little later or earlier: no root finder is exact.
+    /// The same hit, a little later or earlier, with either vector to an edge's end: no root finder is exact.
     fn late(&self, time: f64) -> Option<Decision> {
         let motion = self.motion.as_ref()?;
         let time = match self.seed {
@@ -140,7 +140,9 @@ impl PerturbedRun<'_> {
             _ => time - FAIR_TIME,
         };
         let normal = motion.normal(time);
-        Some(Decision::Hit { time, normal: Vec2::new(normal.x.value, normal.y.value) })
+        let to_line = Vec2::new(normal.x.value, normal.y.value);
+        let normal = if self.seed % 4 < 2 { to_line } else { motion.to_nearest(time) };
+        Some(Decision::Hit { time, normal })
     }
 }
 

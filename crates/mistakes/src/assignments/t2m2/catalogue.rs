@@ -162,7 +162,6 @@ rows! {
         ParticleEdgeContactAtEnd "pe-contact-at-end": "The contact vector is taken at the end of the step." => "t = 1 stands where the time of impact belongs.";
         ParticleEdgeContactAlphaAtStart "pe-contact-alpha-at-start": "The contact vector uses alpha at the start of the step." => "alpha(0) stands where alpha(t) belongs.";
         ParticleEdgeContactAlphaAtEnd "pe-contact-alpha-at-end": "The contact vector uses alpha at the end of the step." => "alpha(1) stands where alpha(t) belongs.";
-        ParticleEdgeContactClamped "pe-contact-clamped": "alpha is clamped to the edge for the contact vector." => "max(0, min(1, alpha(t))) stands where alpha(t) belongs.";
         ParticleEdgeContactAlphaMiddle "pe-contact-alpha-middle": "The contact vector goes to the middle of the edge." => "1/2 stands where alpha(t) belongs.";
         ParticleEdgeContactFirstEnd "pe-contact-first-end": "The contact vector goes to the first endpoint." => "0 stands where alpha(t) belongs.";
         ParticleEdgeContactSecondEnd "pe-contact-second-end": "The contact vector goes to the second endpoint." => "1 stands where alpha(t) belongs.";
@@ -423,6 +422,7 @@ rows! {
     Variant ContactVector {
         WideArithmetic "wide-arithmetic": "The overlaps are computed with extended precision and rounded at the end." => "106 bits for 53.";
         ContactOtherFormula "contact-other-formula": "The contact vectors come from other, equivalent formulas." => "(x2 - x1) + t (dx2 - dx1) for (x2 + t dx2) - (x1 + t dx1), for example.";
+        ParticleEdgeContactClamped "pe-contact-clamped": "The contact vector goes to the nearest point of the edge, not of its line." => "max(0, min(1, alpha(t))) for alpha(t).";
     }
     Variant Response {
         ResponseInverseMasses "inverse-masses": "The impulses are written with inverse masses, zero for what is fixed." => "1/m1 + 1/m2 for 1 + m1/m2, and so on.";

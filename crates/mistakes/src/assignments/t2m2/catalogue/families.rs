@@ -250,7 +250,6 @@ const ALONE: &[(&str, &str)] = &[
     ("pe-endpoints-swapped", "only an edge has two ends"),
     ("pe-approach-", "only the quintic is supplied"),
     ("pe-contact-alpha-", "only an edge has alpha"),
-    ("pe-contact-clamped", "only an edge has alpha"),
     ("pe-contact-other-end", "only an edge has alpha"),
     ("ph-no-normal-square", "only a half-plane has a normal"),
     ("ph-normal-length", "only a half-plane has a normal"),
