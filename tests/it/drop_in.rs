@@ -148,6 +148,12 @@ fn pictures_are_made_beside_the_usual_output() {
     fs::create_dir(workspace.path("folder")).unwrap();
     let run = workspace.original(["-s", "scene.xml", "-d", "0", "-m", "nowhere"]);
     assert_eq!((run.code, run.err().as_str()), (Some(1), "Failure writing SVG file!\n"));
+    assert!(run.out().ends_with(&format!("{}\n          ", "-".repeat(50))), "{}", run.out());
+    let run = workspace.original(["-s", "scene.xml", "-d", "0", "-m", "nowhere", "-o", "first.bin"]);
+    assert!(run.out().ends_with("Saved simulation to file 'first.bin'.\n"), "{}", run.out());
+    assert_eq!(workspace.read("first.bin").len(), 40, "one record, with two empty lists");
+    let run = workspace.original(GRADE.iter().chain(&["-m", "nowhere"]));
+    assert!(run.out().contains("Maximum Velocity Residual: 0\n"), "{}", run.out());
     // The original aborts here.
     let run = workspace.original(["-s", "scene.xml", "-d", "0", "-g", "1"]);
     assert_eq!((run.code, run.stdout.len()), (Some(1), 0));

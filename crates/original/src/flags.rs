@@ -14,13 +14,25 @@ const fn flag(letter: &'static str, name: &'static str, boolean: bool, help: &'s
     Flag { letter, name, boolean, required: false, help }
 }
 
-/// The flags in the order in which the usage lists them.
+/// The flags in the order in which Theme 2's usage lists them.
 pub(crate) const FLAGS: [Flag; 7] = [
     flag("m", "moviedir", false, "Folder for one SVG picture per step"),
     flag("i", "inputfile", false, "Binary trace to grade"),
     flag("o", "outputfile", false, "Binary trace to record"),
-    flag("g", "generate", true, "1 to write a PNG picture per step, 0 not to"),
     flag("d", "display", true, "1 to simulate in a window, 0 without one"),
+    flag("g", "generate", true, "1 to write a PNG picture per step, 0 not to"),
     flag("p", "paused", true, "1 to start paused, 0 to start running"),
     Flag { required: true, ..flag("s", "scene", false, "XML scene file to simulate") },
 ];
+
+/// The order in which Theme 1's usage lists them.
+const THEME_1: [usize; FLAGS.len()] = [4, 0, 1, 2, 3, 5, 6];
+
+/// The flags in the order in which the usage of a program of this name lists them.
+pub(crate) fn listed(program: &[u8]) -> impl Iterator<Item = &'static Flag> {
+    let is_theme_1 = program.windows(NAME_1.len()).any(|part| part == NAME_1);
+    (0..FLAGS.len()).map(move |place| &FLAGS[if is_theme_1 { THEME_1[place] } else { place }])
+}
+
+/// The beginning of the names of Theme 1's programs.
+const NAME_1: &[u8] = b"FOSSSimOracleT1";

@@ -4,16 +4,16 @@ use crate::{
     arguments::Arguments,
     transcript::{Heading, Task, Transcript},
     verdict::residual_file,
-    words::{INPUT_AND_OUTPUT, NO_VORTEX_HESSIAN, not_opened},
+    words::{INPUT_AND_OUTPUT, NO_PICTURE_FOLDER, NO_VORTEX_HESSIAN, not_opened},
 };
 use fosssim_files::{Identity, open_for_reading, open_for_writing, patient, read_limited};
-use fosssim_judge::{Book, Stop, Unreadable, WithoutResult, replay, replay::Progress};
+use fosssim_judge::{Stop, Unreadable, WithoutResult, replay, replay::Progress};
 use fosssim_model::{
     scene::{
         LARGEST_IMPLICIT, LARGEST_SCENE, Scene,
         original::{self, OriginalScene, Refusal, RefusalKind},
     },
-    sim::{RootSearch, Simulation, StepError},
+    sim::{RootSearch, Simulation, State, StepError},
     trace::{Frame, Layout, Reader, Recorder},
 };
 use std::{
@@ -41,10 +41,6 @@ pub(crate) fn run(arguments: &Arguments, words: &[Vec<u8>], outside: &dyn Outsid
     let wanted = arguments.generate || arguments.movie.is_some();
     let pictures =
         wanted.then(|| outside.pictures(arguments.generate, arguments.movie.as_deref().map(Path::new), &scene.scene));
-    let pictures = match pictures.transpose() {
-        Ok(pictures) => pictures,
-        Err(message) => return complain(message),
-    };
     let task = match (&arguments.output, &arguments.input) {
         (Some(file), _) => Task::Record(file.as_bytes()),
         (None, Some(file)) => Task::Grade(file.as_bytes()),
@@ -53,6 +49,13 @@ pub(crate) fn run(arguments: &Arguments, words: &[Vec<u8>], outside: &dyn Outsid
     let scene_name = arguments.scene.as_bytes();
     let heading = Heading { scene_name, scene: &scene.scene, description: &scene.description, task };
     let mut transcript = Transcript::new(BufWriter::new(io::stdout()), heading);
+    let pictures = match pictures.transpose() {
+        Ok(pictures) => pictures,
+        Err(message) if message == NO_PICTURE_FOLDER => {
+            return without_folder(arguments, identity, &scene.scene, transcript);
+        }
+        Err(message) => return complain(message),
+    };
     match (&arguments.output, &arguments.input) {
         (Some(file), _) => match create(Path::new(file), identity) {
             Ok(file) => simulate(&scene.scene, file, transcript, pictures),
@@ -76,6 +79,25 @@ pub(crate) fn run(arguments: &Arguments, words: &[Vec<u8>], outside: &dyn Outsid
         }
         (None, None) => simulate(&scene.scene, io::sink(), transcript, pictures),
     }
+}
+
+/// Ends a run whose folder for pictures is missing: the original notices it after the first record.
+fn without_folder(
+    arguments: &Arguments,
+    identity: Identity,
+    scene: &Scene,
+    mut transcript: Transcript<'_, impl Write>,
+) -> u8 {
+    if let Some(file) = &arguments.output {
+        match create(Path::new(file), identity) {
+            Ok(file) => drop(Recorder::start(file, Layout::of(scene), &State::of(scene)).finish()),
+            Err(message) => return complain(message),
+        }
+    }
+    transcript.begins();
+    transcript.closes();
+    drop(transcript.finish());
+    complain(NO_PICTURE_FOLDER)
 }
 
 fn complain(text: impl AsRef<[u8]>) -> u8 {
@@ -211,7 +233,10 @@ fn grade(scene: &Scene, trace: Box<dyn Read + Send>, mut transcript: Transcript<
         // Like the original, this follows links, truncates, and takes no notice of a failure.
         drop(file.write_all(residuals.as_bytes()));
     }
-    match &outcome.stop_of(Book::Parity) {
+    if let Some(error) = &outcome.parity.endless {
+        return step_failed(error);
+    }
+    match &outcome.stop {
         None => 0,
         Some(Stop::Step(error)) => step_failed(error),
         Some(Stop::Trace { cause: Unreadable::State | Unreadable::Impulses, .. }) => FAILED,

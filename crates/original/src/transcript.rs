@@ -87,10 +87,15 @@ impl<'a, W: Write> Transcript<'a, W> {
         self.message(&format!("Simulation complete at time {}. Exiting.", general(time)));
     }
 
-    /// The exit handler of a recording: the file is closed. Says nothing otherwise.
+    /// The exit handler of a run without a verdict: the file is closed.
     pub(crate) fn closes(&mut self) {
-        if let Task::Record(file) = self.heading.task {
-            self.message_about("Saved simulation to file '", file, "'.");
+        match self.heading.task {
+            Task::Run => {}
+            Task::Record(file) => self.message_about("Saved simulation to file '", file, "'."),
+            Task::Grade(file) => {
+                self.message_about("Colsing benchmarked simulation file '", file, "'.");
+                self.not_opened();
+            }
         }
     }
 
@@ -280,7 +285,7 @@ mod tests {
             parity: parity::Judgement { overall, residuals, collisions_passed, ..Default::default() },
             steps_judged: 0,
             steps: 0,
-            records_per_step: 1,
+            collisions: fosssim_model::assignments::CollisionType::None,
             stop,
             damage: None,
             damaged_steps: 0,
