@@ -61,6 +61,9 @@ impl Diagnosis {
         let is = if wrong == 1 { "is" } else { "are" };
         let traces = counted(self.cases.len() as u64, "trace");
         let _ = writeln!(text, "{wrong} of {traces} {is} wrong by the fair rules.\n");
+        if wrong == 0 {
+            text += "These scenes show single formulas; a suite has more of them: fosssim-oracle grade PROGRAM\n\n";
+        }
         if let Some(found) = &self.located {
             let heading = style.paint(Look::Strong, "Where it fails");
             let _ = writeln!(text, "{heading}\n  {}\n", one_line(&located(found)));

@@ -16,6 +16,7 @@ use crate::{
         check::stopped,
         diagnosis::{Case, Diagnosis},
         foreign::one_line,
+        number::counted,
         page::{Card, Explained},
         style::Style,
     },
@@ -37,12 +38,16 @@ use std::{
     time::Duration,
 };
 
-/// The number of runs of a program that may end at a limit. Further runs have [`LEAST`]; what they have recorded until
-/// then is read all the same.
-const PATIENCE: usize = 2;
+/// The number of runs of a program that may end at a limit with the time that the suite gives. Further runs have
+/// [`LEAST`]; what they have recorded until then is read all the same.
+const PATIENCE: usize = 1;
 
-/// The time for a program that runs into limits, on scenes of which a right one needs some milliseconds.
-const LEAST: Duration = Duration::from_secs(2);
+/// The time on the processor for a program that runs into limits, on scenes of which a right one needs some
+/// milliseconds, and on the clock.
+const LEAST: [Duration; 2] = [Duration::from_millis(500), Duration::from_secs(2)];
+
+/// The number of runs that may end at a limit at all: the other scenes would say the same.
+const MOST_STOPPED: usize = 4;
 
 pub(super) fn run(arguments: &Explain) -> Result<u8> {
     let target = arguments.output.as_deref().map(|name| Output::create(name, &[])).transpose()?;
@@ -148,9 +153,9 @@ fn program_on_probes(
     let cancellation = cancelled_by_signals();
     let backend = backend(arguments.unsafe_no_sandbox)?;
     let plan = plan::find(arguments.assignment.key())?;
-    let tasks = tasks(arguments.assignment, &plan, scenes)?;
+    let mut tasks = tasks(arguments.assignment, &plan, scenes)?;
     let folders = Folders::default();
-    let short = RunLimits { cpu: plan.limits.cpu.min(LEAST), wall: plan.limits.wall.min(LEAST), ..plan.limits };
+    let short = RunLimits { cpu: plan.limits.cpu.min(LEAST[0]), wall: plan.limits.wall.min(LEAST[1]), ..plan.limits };
     let nowhere = Place::new("", "");
     let runner = |limits| Runner {
         folders: &folders,
@@ -171,6 +176,9 @@ fn program_on_probes(
     let (mut stopped, mut traceless) = (0, 0);
     let bar = console::Bar::of_runs(tasks.len() as u64);
     for task in &tasks {
+        if stopped >= MOST_STOPPED {
+            break;
+        }
         bar.next_run(&task.name);
         let limits = if stopped < PATIENCE { &plan.limits } else { &short };
         let (trace, outcome) = runner(limits).collect(&program, task, LONGEST as usize).map_err(anyhow::Error::msg)?;
@@ -195,6 +203,15 @@ fn program_on_probes(
         ends.push((failing, steps));
     }
     drop(bar);
+    let left_out = tasks.len() - cases.len();
+    tasks.truncate(cases.len());
+    if left_out > 0 {
+        let scenes = counted(left_out as u64, "scene");
+        console::remark(format!(
+            "the program ran into its limits on {stopped} scenes, so it was not run on {scenes} more: look for the \
+             loop that does not end\n"
+        ));
+    }
     if traceless == tasks.len() {
         let others = Assignment::ALL.into_iter().filter(|other| *other != arguments.assignment);
         let others: Vec<&str> = others.map(Assignment::key).collect();
