@@ -1,6 +1,7 @@
 //! The verdict on one trace.
-use super::{fair, parity, rules::Book};
+use super::{fair, parity};
 use fosssim_model::{
+    assignments::CollisionType,
     sim::{SearchCounts, StepError},
     trace::{Malformation, Unreadable},
 };
@@ -39,8 +40,8 @@ pub struct Outcome {
     pub steps_judged: u32,
     /// Steps of the scene.
     pub steps: u32,
-    /// Records per step: 2 where the trace has mid records.
-    pub records_per_step: u32,
+    /// The scene's collision handling.
+    pub collisions: CollisionType,
     /// Why grading stopped early.
     pub stop: Option<Stop>,
     /// The first damage that the original's reading passes over in silence, see [`Damage`].
@@ -63,20 +64,13 @@ impl Outcome {
             fair: None,
             steps_judged: 0,
             steps,
-            records_per_step: 1,
+            collisions: CollisionType::None,
             stop: None,
             damage: None,
             damaged_steps: 0,
             trailing_bytes: false,
             searches: SearchCounts::default(),
         }
-    }
-
-    /// Why judging by a book stopped early, if it did.
-    #[must_use]
-    pub fn stop_of(&self, book: Book) -> Option<Stop> {
-        let is_parity = book == Book::Parity || self.fair.is_none();
-        self.stop.clone().or(self.parity.endless.filter(|_| is_parity).map(Stop::Step))
     }
 
     /// Draws the verdict of the original's rules.

@@ -127,6 +127,13 @@ impl Outcome {
         right.saturating_sub(self.damaged_steps).min(self.steps.saturating_sub(1))
     }
 
+    /// Why judging by a book stopped early, if it did.
+    #[must_use]
+    pub fn stop_of(&self, book: Book) -> Option<Stop> {
+        let is_parity = book == Book::Parity || self.fair.is_none();
+        self.stop.clone().or(self.parity.endless.filter(|_| is_parity).map(Stop::Step))
+    }
+
     /// How many steps a book has judged.
     #[must_use]
     pub fn judged_by(&self, book: Book) -> u32 {

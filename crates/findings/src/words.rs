@@ -1,7 +1,8 @@
 //! Findings in words: one sentence that says where, what was expected and what was there.
 //!
 //! Vectors have as many digits as tell them apart; other numbers are written so that reading them back gives the same
-//! value, with an exponent where they would be long otherwise. Reports that lay values out side by side use the fields of [`FindingDetail`] instead.
+//! value, with an exponent where they would be long otherwise. Reports that lay values out side by side use the fields
+//! of [`FindingDetail`] instead.
 use super::finding::{Finding, FindingDetail, FindingKind, Part, PolynomialPlace, RecordPart, Role};
 use fosssim_model::{
     sim::{Impulse, Pair, PairKind, Pass, Stage, StepError},
@@ -46,12 +47,12 @@ impl Display for WithoutStep<'_> {
         match self.0.detail {
             FindingDetail::MissedCollision { expected } => {
                 let Impulse { pair, normal, time } = expected;
-                let (pair, time, normal) = (PairWords(pair), Exact(time), Point(normal.into()));
+                let (pair, time, normal) = (PairWords(pair), Exact(time), VectorWords(normal.into()));
                 write!(f, "{pair} collide at time {time} with normal {normal}, the trace misses it")
             }
             FindingDetail::SuperfluousCollision { actual } => {
                 let LoggedImpulse { normal, time, .. } = actual;
-                let (pair, time, normal) = (LoggedPair(&actual), Exact(time), Point(normal.into()));
+                let (pair, time, normal) = (LoggedPair(&actual), Exact(time), VectorWords(normal.into()));
                 write!(f, "the trace has {pair} collide at time {time} with normal {normal}, they do not")
             }
             FindingDetail::WrongNormal { expected, actual, .. } => {
@@ -104,17 +105,13 @@ impl Display for WithoutStep<'_> {
                 let (pair, pass) = (PairWords(place.pair), PassWords(place.pass));
                 write!(f, "{pair} ({pass}) {outcome}; {LACKING}, and decide otherwise ({DROPPING})")
             }
-            FindingDetail::TrimmedTime { place, expected, actual } => {
-                let (pair, pass, [expected, actual]) =
-                    (PairWords(place.pair), PassWords(place.pass), [expected, actual].map(Exact));
-                write!(f, "{pair} ({pass}) collide at time {expected}; {LACKING}, and have time {actual} ({DROPPING})")
-            }
+            FindingDetail::TrimmedTime { place, expected, actual } => write_trimmed_time(f, place, [expected, actual]),
             FindingDetail::BeyondReach { particle, position, velocity } => write!(
                 f,
                 "the step starts or ends with particle {particle} at {} with velocity {}: no run of the scene leads to \
                  such states",
-                Point(position),
-                Point(velocity)
+                VectorWords(position),
+                VectorWords(velocity)
             ),
             FindingDetail::MixedForms { place } => write!(f, "{place}: {OTHER_FORM}"),
             FindingDetail::PairForce { pair, is_doubled: false } => write!(f, "{} {LEFT_OUT}", PairWords(pair)),
@@ -124,6 +121,12 @@ impl Display for WithoutStep<'_> {
             }
         }
     }
+}
+
+/// The sentence about a time of impact, the expected one first, that follows from lost coefficients.
+fn write_trimmed_time(f: &mut Formatter<'_>, place: PolynomialPlace, times: [f64; 2]) -> fmt::Result {
+    let (pair, pass, [expected, actual]) = (PairWords(place.pair), PassWords(place.pass), times.map(Exact));
+    write!(f, "{pair} ({pass}) collide at time {expected}; {LACKING}, and have time {actual} ({DROPPING})")
 }
 
 /// The sentence about a part in which a step's two records differ.
@@ -161,7 +164,7 @@ impl Display for Apart {
             let size = vector.into_iter().fold(0.0_f64, |size, value| size.max(value.abs()));
             let least = power(size).map(|power| 5 - power);
             let places = power(distance).map(|power| 1 - power).max(least).unwrap_or(0);
-            Point(vector.map(|value| rounded(value, places, power(value))))
+            VectorWords(vector.map(|value| rounded(value, places, power(value))))
         };
         write!(f, "{}, expected {}, distance ", short([ax, ay]), short([ex, ey]))?;
         let rounded = format!("{distance:.2e}").parse().unwrap_or(distance);
@@ -169,7 +172,7 @@ impl Display for Apart {
     }
 }
 
-/// A value cut to so many places behind the point; before it, where they are negative.
+/// A value cut to a number of places behind the point; before it, where the number is negative.
 fn rounded(value: f64, places: i32, power: Option<i32>) -> f64 {
     // More than seventeen digits say nothing new.
     let digits = power.map_or(0, |power| (power + places).clamp(0, 16));
@@ -191,9 +194,9 @@ impl Display for Exact {
 }
 
 /// A point or a vector.
-struct Point([f64; 2]);
+struct VectorWords([f64; 2]);
 
-impl Display for Point {
+impl Display for VectorWords {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         write!(f, "({}, {})", Exact(self.0[0]), Exact(self.0[1]))
     }

@@ -33,6 +33,7 @@ pub mod fair;
 mod identical;
 pub mod kept;
 mod options;
+pub mod overlap;
 mod progress;
 pub mod recorded;
 pub mod replay;

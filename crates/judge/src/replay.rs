@@ -23,7 +23,7 @@ use super::{
 use fosssim_model::{
     assignments::ImpulseList,
     scene::Scene,
-    sim::{RootSearch, State, StepError, SweepOrder},
+    sim::{RootSearch, Simulation, State, StepError, SweepOrder},
     trace::{Layout, Lenient, LenientFrame, LoggedImpulse, Malformation, TraceError, Unreadable, record_memory},
 };
 use std::{io::Read, sync::Mutex};
@@ -118,7 +118,7 @@ pub(super) fn judge_within(
 struct StepRules<'a> {
     layout: Layout,
     logs_impulses: bool,
-    /// What the fair rules need, as long as they are asked.
+    /// The facts for the fair rules, as long as these are asked.
     fair: Option<Context<'a>>,
 }
 
@@ -183,6 +183,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             if let Some(stop) = stop {
                 if let Stop::Trace { step, .. } = stop {
                     progress.step_begins(step);
+                    self.try_step(step);
                 }
                 self.outcome.damage = self.outcome.damage.take().or(self.damage.take());
                 self.outcome.stop = Some(stop);
@@ -201,6 +202,15 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         self.outcome.searches = self.identical.searches();
         self.outcome.searches += workers.searches();
         self.conclude()
+    }
+
+    /// Tries a step whose records can't be read: the original computes it before it reads them, and may never end.
+    fn try_step(&mut self, step: u32) {
+        let mut simulation = Simulation::new(self.scene, RootSearch::WhereNeeded);
+        simulation.state_mut().clone_from(&self.state);
+        simulation.set_steps_done(step - 1);
+        let error = self.budgets[0].step(&mut simulation, &mut ()).err();
+        self.outcome.parity.endless = self.outcome.parity.endless.or(error);
     }
 
     /// Draws the verdicts.
@@ -226,7 +236,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             damage: None,
             damaged: false,
             judging: fair.then(Box::default),
-            outcome: Outcome { records_per_step: layout.records_per_step(), ..Outcome::empty(layout.steps) },
+            outcome: Outcome { collisions: scene.collision.kind(), ..Outcome::empty(layout.steps) },
         }
     }
 
@@ -417,7 +427,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         let mid = self.shape.layout.polynomials.then_some(&slot.mid);
         let records = Records { step, frame, before: &slot.before, mid, end: &slot.end };
         if let Some(error) = slot.error {
-            // Where the scene itself has no result, nobody can say what would be right.
+            // Nobody can say what would be right if the scene itself has no result.
             has_judged &= reach.has_result(step);
             slot.fair = StepJudgement::default().also(records, FindingDetail::NoResult { error });
         } else if has_judged && slot.is_extraordinary {

@@ -6,7 +6,7 @@ use fosssim_findings::{
     Cause, Finding, FindingDetail, Outcome, Overall, Role,
     fair::{FairRefusal, FairVerdict, Form, Judgement},
 };
-use fosssim_model::sim::PairKind;
+use fosssim_model::{assignments::CollisionType, sim::PairKind};
 
 /// Why the two rule books differ about a trace; `None` where they agree, or one of them has no verdict.
 #[must_use]
@@ -89,7 +89,8 @@ fn too_lax(outcome: &Outcome, fair: &Judgement) -> Cause {
 
 /// Whether what was compared is in a step's mid record, of the two that it has.
 fn is_mid_record(finding: &Finding, outcome: &Outcome) -> bool {
-    outcome.records_per_step == 2 && finding.frame + 1 == 2 * u64::from(finding.step)
+    let has_mid_records = matches!(outcome.collisions, CollisionType::ContinuousTime | CollisionType::Hybrid);
+    has_mid_records && finding.frame + 1 == 2 * u64::from(finding.step)
 }
 
 #[cfg(test)]

@@ -1,10 +1,7 @@
 //! Batches and limits, tried from inside.
 use super::*;
 use crate::{finding::FindingKind, rules::Ruling, samples::changed};
-use fosssim_model::{
-    sim::Simulation,
-    trace::{Frame, Reader, Recorder, Writer},
-};
+use fosssim_model::trace::{Frame, Reader, Recorder, Writer};
 use fosssim_num::vector::Vec2;
 
 /// Enough balls that a pass logs more than the reader's window holds.
@@ -91,7 +88,7 @@ fn a_record_beyond_the_memory_is_wrong_by_its_length_or_not_judged() {
     }
 }
 
-/// States from which no next one follows are wrong answers: the rest of the trace is read, and judged by the fair rules.
+/// States from which no next one follows are wrong answers: the rest of the trace is read and judged by the fair rules.
 #[test]
 fn a_step_without_result_ends_nothing_but_the_originals_rules() {
     let scene = crate::samples::scene(crate::samples::ZONES);
@@ -122,7 +119,7 @@ fn a_step_without_result_ends_nothing_but_the_originals_rules() {
         let parity = judge(false, &trace);
         assert_eq!(format!("{:?}", parity.parity), format!("{:?}", both.parity));
         assert_eq!((parity.steps_judged, parity.ruling(Book::Parity)), (1, Ruling::WrongAnswer));
-        // What can't be read is bad, whatever was found before.
+        // A trace that can't be read is bad, whatever was found before.
         assert_eq!(judge(true, &trace[..trace.len() - 40]).ruling(Book::Fair), Ruling::BadTrace);
     }
 }

@@ -1,0 +1,139 @@
+//! One decision of `simple` handling, looked at closely: overlap and approach at the end of the step (collisions.md 6).
+//!
+//! Judges nothing. A decision is certain if it stays the same in runs from states that are off by some roundings, as
+//! the fair rules try it.
+use crate::fair::{PERTURBED_RUNS, perturb};
+use fosssim_model::{
+    scene::Scene,
+    sim::{Detection, Observer, Pair, PairMotion, PointMotion, RootSearch, Simulation, State, StepError},
+};
+use fosssim_num::vector::{Vec2, at, length};
+
+/// A pair at the end of a step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OverlapStudy {
+    /// The pair, with its motion within the step.
+    pub motion: PairMotion,
+    /// The velocities of its bodies as it is looked at, after the responses to earlier pairs: of the particle, and of
+    /// the second particle or of the nearest point of the edge; a half-plane rests.
+    pub velocities: [Vec2; 2],
+    /// The nearest point of an edge, from 0 at its first end to 1 at its second.
+    pub alpha: Option<f64>,
+    /// From the first object to the nearest point of the second, not normalised.
+    pub normal: Vec2,
+    /// The distance at which the objects touch: the sum of their radii.
+    pub reach: f64,
+    /// Whether the reference answers with a response.
+    pub collides: bool,
+    /// Whether round-off can't change that.
+    pub is_certain: bool,
+}
+
+impl OverlapStudy {
+    /// Looks at a pair in a step that starts from `before`; `None` where the scene never asks about it.
+    ///
+    /// # Errors
+    /// [`StepError`], where the step has no result.
+    pub fn of(scene: &Scene, step: u32, before: &State, pair: Pair) -> Result<Option<Self>, StepError> {
+        let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+        let mut run = |seed| {
+            let mut watch = PairWatch { scene, pair, found: None };
+            simulation.state_mut().clone_from(before);
+            perturb(simulation.state_mut(), seed);
+            simulation.set_steps_done(step - 1);
+            simulation.step(&mut watch)?;
+            Ok(watch.found)
+        };
+        let Some(mut study) = run(0)? else { return Ok(None) };
+        for seed in 1..=PERTURBED_RUNS {
+            study.is_certain &= run(seed)?.is_some_and(|other: Self| other.collides == study.collides);
+        }
+        Ok(Some(study))
+    }
+
+    /// The distance of the objects.
+    #[must_use]
+    pub fn distance(&self) -> f64 {
+        length(self.normal)
+    }
+
+    /// How fast they approach, times the distance: above zero if they do.
+    #[must_use]
+    pub fn approach(&self) -> f64 {
+        (self.velocities[0] - self.velocities[1]).dot(&self.normal)
+    }
+}
+
+/// Notes a pair as it is looked at.
+struct PairWatch<'a> {
+    scene: &'a Scene,
+    pair: Pair,
+    found: Option<OverlapStudy>,
+}
+
+impl Observer for PairWatch<'_> {
+    fn detection(&mut self, detection: &Detection<'_>) {
+        let &Detection { pair, q_start, q_end, velocities, decision, .. } = detection;
+        if pair != self.pair {
+            return;
+        }
+        let motion = PairMotion::between(self.scene, pair, q_start, q_end);
+        let (first, second) = (pair.first as usize, pair.second as usize);
+        let end = |point: PointMotion| point.start + point.shift;
+        let (alpha, normal, reach, other) = match motion {
+            PairMotion::Particles { centres, radii } => {
+                (None, end(centres[1]) - end(centres[0]), radii[0] + radii[1], at(velocities, second))
+            }
+            PairMotion::Edge { centre, ends, radii } => {
+                let [x1, x2, x3] = [centre, ends[0], ends[1]].map(end);
+                let along = x3 - x2;
+                let alpha = ((x1 - x2).dot(&along) / along.dot(&along)).clamp(0.0, 1.0);
+                let edge = &self.scene.edges[second];
+                let [v2, v3] = [edge.first, edge.second].map(|particle| at(velocities, particle));
+                (Some(alpha), x2 + alpha * along - x1, radii[0] + radii[1], v2 + alpha * (v3 - v2))
+            }
+            PairMotion::HalfPlane { centre, radius, point, normal } => {
+                let out = (1.0 / length(normal)) * normal;
+                (None, (point - end(centre)).dot(&out) * out, radius, Vec2::zeros())
+            }
+        };
+        let velocities = [at(velocities, first), other];
+        let collides = decision.collides();
+        self.found = Some(OverlapStudy { motion, velocities, alpha, normal, reach, collides, is_certain: true });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples::scene;
+    use fosssim_model::sim::PairKind;
+
+    /// A ball above an edge that falls by `way` within a step.
+    fn study(way: f64) -> OverlapStudy {
+        let scene = scene(&format!(
+            r#"<scene><duration time="1"/><integrator type="explicit-euler" dt="1"/><collision type="simple" COR="1"/>
+            <particle m="1" px="-1" py="0" vx="0" vy="0" fixed="1"/>
+            <particle m="1" px="3" py="0" vx="0" vy="0" fixed="1"/>
+            <particle m="1" px="0.1" py="0.7" vx="0" vy="-{way}" fixed="0" radius="0.2"/>
+            <edge i="0" j="1" radius="0.1"/></scene>"#
+        ));
+        let pair = Pair { kind: PairKind::ParticleEdge, first: 2, second: 0 };
+        OverlapStudy::of(&scene, 1, &State::of(&scene), pair).expect("a step").expect("asked")
+    }
+
+    #[test]
+    fn a_ball_that_falls_into_an_edge_overlaps_and_approaches() {
+        let deep = study(0.5);
+        assert!((deep.alpha.expect("an edge") - 0.275).abs() < 1e-15, "{deep:?}");
+        assert!((deep.distance() - 0.2).abs() < 1e-15 && deep.reach > 0.29 && deep.approach() > 0.0, "{deep:?}");
+        assert!(deep.collides && deep.is_certain);
+        let high = study(0.3);
+        assert!(!high.collides && high.is_certain && high.distance() > high.reach, "{high:?}");
+    }
+
+    #[test]
+    fn what_ends_at_a_touch_hangs_on_round_off() {
+        assert!(!study(0.4).is_certain);
+    }
+}
