@@ -1,5 +1,9 @@
 //! The report on one detection call: polynomials, zeros, intervals, decision; as text and JSON
 //! (`schemas/detect.schema.json`).
+mod overlap;
+
+pub use overlap::Overlap;
+
 use super::{
     number::exact,
     style::{Look, Style},
@@ -58,10 +62,7 @@ impl Detect<'_> {
                 PairMotion::HalfPlane { .. } => "A particle and a half-plane".to_owned(),
             };
         };
-        let run = place.trace.map_or_else(|| "the reference's run".to_owned(), |trace| format!("the trace {trace}"));
-        let words = PairWords(place.pair).to_string();
-        let (first, rest) = words.split_at(1);
-        format!("{}{rest} in step {} of {run}, scene {}", first.to_uppercase(), place.step, place.scene)
+        title(place.pair, place.step, place.trace, place.scene)
     }
 
     /// The decision in one sentence, whose numbers are written like this.
@@ -162,9 +163,17 @@ impl Detect<'_> {
                 .right_approach
                 .as_ref()
                 .map(|right| RightApproachView { polynomial: (&right.curve).into(), answer: (&right.answer).into() }),
+            overlap: None,
         };
         document(&view)
     }
+}
+
+fn title(pair: Pair, step: u32, trace: Option<&str>, scene: &str) -> String {
+    let run = trace.map_or_else(|| "the reference's run".to_owned(), |trace| format!("the trace {trace}"));
+    let words = PairWords(pair).to_string();
+    let (first, rest) = words.split_at(1);
+    format!("{}{rest} in step {step} of {run}, scene {scene}", first.to_uppercase())
 }
 
 /// A polynomial of the trace, and beside the right one, power by power, where they differ by more than a factor.
@@ -318,7 +327,7 @@ pub(crate) struct DetectView<'a> {
     kind: PairKind,
     /// How its bodies move.
     motion: MotionView,
-    /// In the order of the trace.
+    /// In the order of the trace; none where the scene's collision handling is simple.
     polynomials: Vec<CurveView>,
     /// The reference's decision.
     answer: AnswerView,
@@ -327,6 +336,8 @@ pub(crate) struct DetectView<'a> {
     /// The mathematically right approach polynomial of a particle and an edge, and what follows from it; null where the
     /// course's is the same.
     right_approach: Option<RightApproachView>,
+    /// Overlap and approach at the end of the step, where the scene's collision handling is simple; else null.
+    overlap: Option<overlap::OverlapView>,
 }
 
 /// A place in a scene's run.

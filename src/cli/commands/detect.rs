@@ -8,14 +8,15 @@ use crate::{
         pictures::{DetectArguments, DetectFormat, Points},
     },
     evidence::{self, InspectedPair, Logged},
-    judge::study::Study,
+    judge::{overlap::OverlapStudy, study::Study},
     render::{detection, plot::Embedding},
     report::{
         describe::no_result,
-        detect::{Detect as Report, Place},
+        detect::{Detect as Report, Overlap, Place},
         number::counted,
         style::Style,
     },
+    scene::Collision,
     sim::{PairMotion, RootSearch, Simulation, State},
     trace::{Frame, Layout},
 };
@@ -36,14 +37,32 @@ fn study(motion: &PairMotion) -> Result<Study> {
 }
 
 fn show(arguments: &DetectArguments, study: &Study, place: Option<Place<'_>>, inputs: &[Identity]) -> Result<()> {
-    let target = arguments.output.as_deref().map(|name| Output::create(name, inputs)).transpose()?;
-    let style = if target.is_some() { Style::Plain } else { console::style() };
     let report = Report { study, place };
-    let text = match arguments.format {
+    write(arguments, inputs, |style| match arguments.format {
         DetectFormat::Text => report.text(style),
         DetectFormat::Json => report.json(),
         DetectFormat::Svg => detection::picture(study, &report.title(), Embedding::Alone),
-    };
+    })
+}
+
+/// Prints the report on a decision of `simple` handling.
+fn print(arguments: &DetectArguments, report: &Overlap<'_>, inputs: &[Identity]) -> Result<()> {
+    if arguments.format == DetectFormat::Svg {
+        bail!("a picture shows polynomials, and this scene's detection has none: use --format text or json");
+    }
+    if arguments.pass > 1 {
+        bail!("step {} has 1 detection pass; there is no pass {}", report.step, arguments.pass);
+    }
+    write(arguments, inputs, |style| match arguments.format {
+        DetectFormat::Json => report.json(),
+        _ => report.text(style),
+    })
+}
+
+/// Writes a report where it is wanted.
+fn write(arguments: &DetectArguments, inputs: &[Identity], text: impl FnOnce(Style) -> String) -> Result<()> {
+    let target = arguments.output.as_deref().map(|name| Output::create(name, inputs)).transpose()?;
+    let text = text(if target.is_some() { Style::Plain } else { console::style() });
     match target {
         Some(target) => target.finish_with(text.as_bytes()),
         None if arguments.format == DetectFormat::Text => console::report(&text),
@@ -96,6 +115,14 @@ fn of_scene(arguments: &DetectArguments, name: &Path) -> Result<()> {
         }
         None => (simulated(&scene, step)?, None),
     };
+    if matches!(scene.scene.collision, Collision::Simple { .. }) {
+        let found = OverlapStudy::of(&scene.scene, step, &before, pair);
+        let study =
+            found.map_err(|error| anyhow::Error::msg(no_result(&error)))?.context("nobody asks about this pair")?;
+        let (scene, trace) = (scene.name.as_str(), traced.as_ref().map(|traced| traced.name.as_str()));
+        let logged = traced.as_ref().map(|traced| traced.end.impulses.iter().any(|logged| logged.pair() == Some(pair)));
+        return print(arguments, &Overlap { study: &study, scene, trace, step, pair, logged }, &inputs);
+    }
     let records = traced.as_ref().map(|traced| (&traced.mid, &traced.end.polynomials));
     let InspectedPair { step: inspected, end, failed } = evidence::inspect(&scene.scene, step, &before, records, pair);
     let passes = inspected.calls.len();

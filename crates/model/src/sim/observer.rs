@@ -271,6 +271,8 @@ pub struct Detection<'a> {
     pub q_start: &'a [f64],
     /// Positions at the end of the step as this pass sees them, 2N.
     pub q_end: &'a [f64],
+    /// Velocities as this call sees them, 2N; empty where detection asks polynomials.
+    pub velocities: &'a [f64],
 }
 
 /// How a detection call ended.

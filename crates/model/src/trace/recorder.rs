@@ -123,6 +123,7 @@ mod tests {
             decision,
             q_start: &[],
             q_end: &[],
+            velocities: &[],
         });
         recorder.end_pass(pass, 1);
         recorder.impulse(&IMPULSE);

@@ -3,6 +3,7 @@
 use super::{Check, first};
 use crate::words::explanation;
 use fosssim_judge::{Finding, FindingDetail};
+use fosssim_model::assignments::CollisionType;
 
 /// Places to look at; nothing where the explanations say it themselves: a known mistake says where to look, a
 /// polynomial has its name.
@@ -11,12 +12,44 @@ pub(crate) fn lines(check: &Check<'_>) -> Vec<&'static str> {
     match check.explanations.iter().find(|one| explanation::is_known(one)) {
         Some(known) if known.is_of_stage() => explanation::where_to_look(known).into_iter().collect(),
         Some(_) => Vec::new(),
-        None => of_finding(first).to_vec(),
+        None => of_finding(first, check.outcome.collisions).to_vec(),
     }
 }
 
+/// The advice of milestones whose steps log states only, by their collision handling.
+fn of_milestone(finding: &Finding, collisions: CollisionType) -> Option<&'static [&'static str]> {
+    Some(match (finding.detail, collisions) {
+        (FindingDetail::MissedCollision { .. }, CollisionType::Simple) => &[
+            "the detection of this pair: at the end of the step the two overlap and approach each other",
+            "is the distance compared with the right radii, and are the velocities those where the objects are near?",
+        ],
+        (FindingDetail::SuperfluousCollision { .. }, CollisionType::Simple) => &[
+            "the detection of this pair: at the end of the step the two do not overlap, or do not approach each other",
+            "objects that only touch do not overlap, and objects that keep their distance do not approach",
+        ],
+        (FindingDetail::WrongNormal { .. }, CollisionType::Simple) => &[
+            "the contact normal: from the first object to the nearest point of the second, at the end of the step, not \
+             normalised",
+        ],
+        (FindingDetail::Position { .. } | FindingDetail::Velocity { .. }, CollisionType::None) if finding.step > 0 => {
+            &["the integrator or the forces: the step starts from the trace's own state, so errors of earlier steps \
+               are not to blame"]
+        }
+        (FindingDetail::Position { .. } | FindingDetail::Velocity { .. }, CollisionType::Penalty)
+            if finding.step > 0 =>
+        {
+            &["the integrator or the forces, the penalty force among them: the step starts from the trace's own \
+               state, so errors of earlier steps are not to blame"]
+        }
+        _ => return None,
+    })
+}
+
 /// By the kind of the first finding: what comes later often follows from it.
-fn of_finding(finding: &Finding) -> &'static [&'static str] {
+fn of_finding(finding: &Finding, collisions: CollisionType) -> &'static [&'static str] {
+    if let Some(advice) = of_milestone(finding, collisions) {
+        return advice;
+    }
     match finding.detail {
         _ if finding.step == 0 => &["the first record: the scene's own positions and velocities, before any step"],
         FindingDetail::MissedCollision { .. } => &[
@@ -84,18 +117,23 @@ fn of_finding(finding: &Finding) -> &'static [&'static str] {
             "the factor of your polynomials: the course's library drops leading coefficients below 1e-12",
             "polynomials in the units of the assignment's formulas are not affected",
         ],
-        FindingDetail::PairForce { is_doubled: false, .. } => &[
-            "the search for near pairs: it leaves this pair out",
-            "its bounds have to hold the radii and the thickness, and each body is in every cell that it reaches",
-        ],
-        FindingDetail::PairForce { is_doubled: true, .. } => {
-            &["the search for near pairs: it finds this pair twice, and the force is applied each time"]
-        }
+        FindingDetail::PairForce { is_doubled, .. } => of_pair(is_doubled),
         FindingDetail::NoResult { .. } => &[
             "the steps before this one: numbers that are not finite or absurdly large, or that grow from step to step",
         ],
         FindingDetail::MixedForms { .. } => &[
             "the approach polynomial: here it has one of its two accepted forms, elsewhere in this trace the other one",
         ],
+    }
+}
+
+/// The advice where a pair's force was left out, or applied twice.
+const fn of_pair(is_doubled: bool) -> &'static [&'static str] {
+    match is_doubled {
+        false => &[
+            "the search for near pairs: it leaves this pair out",
+            "its bounds have to hold the radii and the thickness, and each body is in every cell that it reaches",
+        ],
+        true => &["the search for near pairs: it finds this pair twice, and the force is applied each time"],
     }
 }

@@ -20,9 +20,12 @@ use crate::{
 };
 use fosssim_evidence::{Evidence, Focus, InspectedCall};
 use fosssim_findings::{Finding, FindingDetail, Hints};
-use fosssim_judge::{BookFindings, PairWords, fair::cause};
+use fosssim_judge::{Book, BookFindings, PairWords, fair::cause};
 use fosssim_mistakes::diagnose::Explanation;
-use fosssim_num::tolerances::PARITY_MAXIMUM;
+use fosssim_num::{
+    bounded::UNIT_ROUNDOFF,
+    tolerances::{FAIR_UNITS, PARITY_MAXIMUM},
+};
 use fosssim_render::plot::{Embedding, PassPlot, ResidualPlot, STEPS_AXIS, Series};
 use std::fmt::Write;
 
@@ -91,7 +94,7 @@ impl Case<'_> {
         out += &self.side(depth);
         out += "</div>\n";
         if let Some(evidence) = full {
-            out += &plots(evidence, key, self.first().map(|first| first.step));
+            out += &plots(evidence, self.check.rules.official(), key, self.first().map(|first| first.step));
             out += &self.calls(evidence, depth);
         }
         let account = self.check.outcome.findings_by(self.check.rules.official());
@@ -314,7 +317,20 @@ fn books(check: &Check<'_>, heading: &str) -> String {
     format!("<section class=\"card\">{heading}<ul class=\"books\">{lines}</ul></section>\n")
 }
 
-fn plots(evidence: &Evidence, key: &str, first: Option<u32>) -> String {
+/// The bound beyond which a book calls a state wrong. By the fair rules it grows with the numbers; shown is that of the
+/// largest ones.
+fn bound(evidence: &Evidence, book: Book) -> f64 {
+    match book {
+        Book::Parity => PARITY_MAXIMUM,
+        Book::Fair => {
+            let moduli = evidence.reference.values.iter().map(|value| value.abs());
+            FAIR_UNITS * UNIT_ROUNDOFF * moduli.fold(0.0, f64::max)
+        }
+    }
+}
+
+fn plots(evidence: &Evidence, book: Book, key: &str, first: Option<u32>) -> String {
+    let tolerance = bound(evidence, book);
     let steps = evidence.steps.len();
     let positions: Vec<f64> = evidence.steps.iter().map(|step| step.position).collect();
     let velocities: Vec<f64> = evidence.steps.iter().map(|step| step.velocity).collect();
@@ -322,7 +338,7 @@ fn plots(evidence: &Evidence, key: &str, first: Option<u32>) -> String {
     let residuals = ResidualPlot {
         title: "How far each step ends from where it should",
         series: &series,
-        tolerance: PARITY_MAXIMUM,
+        tolerance,
         mark: first.map(|step| (step, "first divergence")),
     };
     let expected: Vec<u32> = evidence.steps.iter().map(|step| step.expected_passes).collect();
@@ -336,7 +352,7 @@ fn plots(evidence: &Evidence, key: &str, first: Option<u32>) -> String {
     };
     let mut out = String::new();
     // Flat curves show nothing.
-    if evidence.steps.iter().any(|step| !(step.position.max(step.velocity) <= PARITY_MAXIMUM)) {
+    if evidence.steps.iter().any(|step| !(step.position.max(step.velocity) <= tolerance)) {
         out += &figure(&residuals.svg(Embedding::Inline));
     }
     let differ = evidence.steps.iter().any(|step| step.actual_passes != Some(step.expected_passes));

@@ -193,7 +193,7 @@ impl Detector {
         let decision = match observer.wanted() {
             Wanted::Calls => {
                 let decision = observer.steers().map_or(decision, |steer| steer.decide(pair, decision));
-                observer.detection(&Detection { pass, pair, polynomials, decision, q_start, q_end });
+                observer.detection(&Detection { pass, pair, polynomials, decision, q_start, q_end, velocities: &[] });
                 decision
             }
             Wanted::Bytes(bytes) => {

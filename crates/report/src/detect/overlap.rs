@@ -1,0 +1,142 @@
+//! The report on a decision of `simple` handling: overlap, approach, and what follows.
+use super::{AnswerView, DETECT_SCHEMA, DetectView, PlaceView, motion, title};
+use crate::{
+    number::exact,
+    style::{Look, Style},
+    view::{Number, document},
+};
+use fosssim_judge::overlap::OverlapStudy;
+use fosssim_model::sim::Pair;
+use fosssim_num::{vector::Vec2, written::Written};
+use serde::Serialize;
+
+/// A decision to be shown, and where in a scene's run it is.
+#[derive(Debug, Clone, Copy)]
+pub struct Overlap<'a> {
+    /// The computation.
+    pub study: &'a OverlapStudy,
+    /// The scene as typed.
+    pub scene: &'a str,
+    /// The trace as typed; `None` for the reference's own run.
+    pub trace: Option<&'a str>,
+    /// The step, from 1.
+    pub step: u32,
+    /// The pair.
+    pub pair: Pair,
+    /// Whether the trace has the collision, if there is a trace.
+    pub logged: Option<bool>,
+}
+
+impl Overlap<'_> {
+    /// For people.
+    #[must_use]
+    pub fn text(&self, style: Style) -> String {
+        let study = self.study;
+        let heading = |words: &str| format!("\n{}\n", style.paint(Look::Strong, words));
+        let vector = |v: Vec2| format!("({}, {})", exact(v.x), exact(v.y));
+        let mut text = style.paint(Look::Strong, &title(self.pair, self.step, self.trace, self.scene)) + "\n";
+        text += "  simple collisions: the positions at the end of the step count, and the velocities there\n";
+        text += &motion(&study.motion, style);
+        text += &heading("At the end of the step");
+        if let Some(alpha) = study.alpha {
+            let along = "the nearest point of the edge, from 0 at its first end to 1 at its second";
+            text += &format!("  alpha {}: {along}\n", exact(alpha));
+        }
+        let (overlap, approach) = (self.overlaps(), self.approaches());
+        text +=
+            &format!("  normal {}: from the first object to the nearest point of the second\n", vector(study.normal));
+        text += &format!(
+            "  distance {}, radii together {}: they {}overlap\n",
+            exact(study.distance()),
+            exact(study.reach),
+            not(overlap)
+        );
+        let [one, other] = study.velocities.map(vector);
+        text += &format!(
+            "  velocities {one} and {other}, their difference times the normal {}: they {}approach\n",
+            exact(study.approach()),
+            not(approach)
+        );
+        text += &heading("Decision");
+        let (look, words) = match study.collides {
+            true => (Look::Notice, "they collide, and the response changes their velocities"),
+            false => (Look::Good, "no collision: objects collide if they overlap and approach each other"),
+        };
+        text += &format!("  {}\n", style.paint(look, words));
+        text += match study.is_certain {
+            true => "  certain: round-off can't change this\n",
+            false => "  borderline: a correct program with other round-off may decide otherwise\n",
+        };
+        if let Some(logged) = self.logged {
+            let look = if logged == study.collides { Look::Good } else { Look::Bad };
+            let words = format!("the trace has {} collision of this pair", if logged { "a" } else { "no" });
+            text += &format!("  {}\n", style.paint(look, &words));
+        }
+        text
+    }
+
+    /// For programs: one JSON object, indented, with a line feed at its end.
+    #[must_use]
+    pub fn json(&self) -> String {
+        let &Self { study, scene, trace, step, pair, .. } = self;
+        let time = Number(if study.collides { 0.0 } else { f64::INFINITY });
+        let normal = study.collides.then(|| study.normal.write());
+        document(&DetectView {
+            schema: DETECT_SCHEMA,
+            place: Some(PlaceView { scene, trace, step, pair, pass: None, passes: 1, logged: None }),
+            kind: study.motion.kind(),
+            motion: (&study.motion).into(),
+            polynomials: Vec::new(),
+            answer: AnswerView { positive: Vec::new(), collides: study.collides, time, normal },
+            certain: study.is_certain.then_some(study.collides),
+            right_approach: None,
+            overlap: Some(OverlapView {
+                alpha: study.alpha.map(Number),
+                normal: study.normal.write(),
+                distance: Number(study.distance()),
+                radii_together: Number(study.reach),
+                overlaps: self.overlaps(),
+                velocities: study.velocities.map(|velocity| velocity.write()),
+                approach: Number(study.approach()),
+                approaches: self.approaches(),
+                logged: self.logged,
+            }),
+        })
+    }
+
+    fn overlaps(&self) -> bool {
+        self.study.distance() < self.study.reach
+    }
+
+    fn approaches(&self) -> bool {
+        self.study.approach() > 0.0
+    }
+}
+
+const fn not(is: bool) -> &'static str {
+    if is { "" } else { "do not " }
+}
+
+/// A pair at the end of a step, as simple collision handling looks at it.
+#[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+pub(super) struct OverlapView {
+    /// The nearest point of an edge, from 0 at its first end to 1 at its second; null without an edge.
+    alpha: Option<Number>,
+    /// From the first object to the nearest point of the second, not normalised.
+    normal: [Number; 2],
+    /// The length of the normal.
+    distance: Number,
+    /// The sum of the radii.
+    radii_together: Number,
+    /// Whether the distance is below the sum of the radii.
+    overlaps: bool,
+    /// Of the first object, and of the second at its nearest point.
+    velocities: [[Number; 2]; 2],
+    /// The difference of the velocities times the normal.
+    approach: Number,
+    /// Whether it is above zero.
+    approaches: bool,
+    /// Whether the trace has a collision of this pair; null for the reference's run.
+    logged: Option<bool>,
+}
