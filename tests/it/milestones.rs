@@ -17,17 +17,25 @@ use fosssim_oracle::{
     suite::plan,
 };
 
-/// Whether both books accept the trace.
-fn accepts(scene: &Scene, trace: &[u8]) -> bool {
+/// Whether the fair rules accept the trace, and the original's.
+fn verdicts(scene: &Scene, trace: &[u8]) -> [bool; 2] {
     let outcome = judge(scene, trace, &Options { threads: 1, fair: true, ..Options::default() }, &mut ());
     let fair = outcome.fair.expect("the fair rules were asked").verdict == FairVerdict::Accepted;
-    assert_eq!(fair, outcome.parity.overall == Overall::Passed);
+    [fair, outcome.parity.overall == Overall::Passed]
+}
+
+/// Whether both books accept the trace.
+fn accepts(scene: &Scene, trace: &[u8]) -> bool {
+    let [fair, parity] = verdicts(scene, trace);
+    assert_eq!(fair, parity);
     fair
 }
 
+/// The scenes of a suite, without those that are large so that they can be timed.
 fn scenes(assignment: Assignment) -> Vec<(String, Scene)> {
     let plan = plan::find(assignment.key()).unwrap_or_else(|error| panic!("{assignment:?}: {error}"));
-    plan.scenes().map(|task| (task.name.clone(), task.scene.clone())).collect()
+    let tasks = plan.scenes().filter(|task| task.scene.particles.len() < 1_000);
+    tasks.map(|task| (task.name.clone(), task.scene.clone())).collect()
 }
 
 #[test]
@@ -47,7 +55,8 @@ fn a_right_program_is_accepted_on_every_scene_of_its_milestone() {
     for assignment in [T1M1, T1M2, T1M3, T2M1, T2M3] {
         for (name, scene) in scenes(assignment) {
             let trace = student::trace(&scene, Student::default()).expect("a trace");
-            assert!(trace == simulate(&scene), "{name}: bit for bit");
+            // The order of a contest's sums goes on from step to step in the reference alone.
+            assert!(assignment == T2M3 || trace == simulate(&scene), "{name}: bit for bit");
             assert!(accepts(&scene, &trace), "{name}");
         }
     }
@@ -108,14 +117,15 @@ fn extra_points_are_reported_beside_the_others() {
     assert_eq!(run.code, Some(0), "{}", run.shown());
 }
 
-/// The contest's programs may sum their forces in any order; one that leaves a pair out is refused.
+/// The contest's programs may sum their forces in any order, and find layers that the original leaves out; one that
+/// leaves a pair out is refused.
 #[test]
 fn forces_of_the_contest_may_be_summed_in_any_order() {
     for (name, scene) in scenes(T2M3) {
         let Collision::Penalty { stiffness, thickness, .. } = scene.collision else { panic!("{name}") };
         let other = Collision::Penalty { stiffness, thickness, detection: CollisionDetection::AllPairs };
         let trace = simulate(&Scene { collision: other, ..scene.clone() });
-        assert!(accepts(&scene, &trace), "{name}");
+        assert_eq!(verdicts(&scene, &trace), [true, thickness == 0.0], "{name}");
         let mut fewer = scene.clone();
         fewer.edges.clear();
         fewer.half_planes.clear();
@@ -159,7 +169,7 @@ fn a_suite_says_which_known_mistakes_no_scene_of_it_shows() {
         let numbers: Vec<usize> = line.split(' ').filter_map(|word| word.parse().ok()).collect();
         (numbers[0], numbers[1])
     };
-    let contest = check("t2m3");
+    let contest = check("t2m3@1");
     for name in ["penalty", "near-pairs"] {
         let (seen, all) = part(&contest, name);
         assert!(seen == all && all > 10, "{contest}");
@@ -184,7 +194,7 @@ fn a_grade_names_what_its_scenes_show_together() {
     let Some(workspace) = grading::workspace() else { return };
     let cases = [
         ("penalty-first-half-plane-only", "t2m1", "The penalty force looks at the first half-plane only."),
-        ("near-pairs-half-planes-doubled", "t2m3", "Each pair of a particle and a half-plane is reported twice."),
+        ("near-pairs-half-planes-doubled", "t2m3@1", "Each pair of a particle and a half-plane is reported twice."),
         ("jacobian-drag-missing", "t1m3", "Drag has no derivatives by velocities."),
         ("gravitation-no-masses,spring-no-rest-length", "t1m3", "The gravitational force ignores the masses."),
         ("integrator-velocities-empty", "t1m1", "Or, with the same traces: Integrator: Velocities never change."),

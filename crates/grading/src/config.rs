@@ -236,6 +236,7 @@ struct RawSpeed {
     points: Option<f64>,
     full_at: Option<f64>,
     none_at: Option<f64>,
+    second: Option<f64>,
     runs: Option<f64>,
 }
 
@@ -394,7 +395,16 @@ fn read_group(text: &str, problems: &mut Vec<Problem>, raw: RawGroup, hints: Hin
 fn read_speed(problems: &mut Vec<Problem>, raw: Spanned<RawSpeed>) -> SpeedMarking {
     let span = raw.span();
     let raw = raw.into_inner();
-    let (full_at, none_at) = (raw.full_at.unwrap_or(1.0), raw.none_at.unwrap_or(10.0));
+    let (full_at, none_at) = match (raw.full_at, raw.none_at, raw.second) {
+        (Some(full_at), Some(none_at), None) => (full_at, none_at),
+        // The course gives all points for a second, and none for a minute.
+        (None, None, Some(second)) => (second, 60.0 * second),
+        _ => {
+            let text = "speed needs full_at and none_at, or second alone";
+            problems.push((span.clone(), text.to_owned()));
+            (1.0, 60.0)
+        }
+    };
     if none_at <= full_at {
         let text = format!("speed.none_at ({none_at}) has to be greater than speed.full_at ({full_at})");
         problems.push((span, text));

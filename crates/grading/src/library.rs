@@ -3,7 +3,7 @@
 //! They lie in a folder per assignment. A scene's name is `Group/name`, and no two assignments have one in common;
 //! written in full, `t2m2/Group/name`, it is understood as well. Recordings are zstd files; `steps` are the digests of
 //! a recording's steps.
-use super::assignments::version;
+use super::assignments::{MadeScene, TIMING, version};
 use fosssim_model::assignments::Assignment;
 use glob::Pattern;
 use include_dir::{Dir, File, include_dir};
@@ -14,15 +14,30 @@ static ASSETS: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/../../assets");
 #[cfg(target_os = "linux")]
 static REFERENCES: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/../../references");
 
+/// The assignment of scenes that are made.
+const MADE_OF: Assignment = Assignment::T2M3;
+
 /// The names of all embedded scenes, in alphabetical order.
 pub fn names() -> impl Iterator<Item = &'static str> {
     stems(&ASSETS, ".xml")
 }
 
+/// The names of all scenes that come with the program: those that are embedded, and those that are made when they are
+/// asked for, which have no recordings.
+pub fn all_names() -> impl Iterator<Item = &'static str> {
+    names().chain(TIMING.iter().map(|made| made.name))
+}
+
 /// The XML of a scene.
 #[must_use]
 pub fn scene(name: &str) -> Option<&'static [u8]> {
-    contents(&ASSETS, &format!("{name}.xml"))
+    contents(&ASSETS, &format!("{name}.xml")).or_else(|| made(name).map(MadeScene::xml))
+}
+
+/// The scene of this name, or name in full, that is made.
+fn made(name: &str) -> Option<&'static MadeScene> {
+    let short = name.strip_prefix(MADE_OF.key()).and_then(|rest| rest.strip_prefix('/')).unwrap_or(name);
+    TIMING.iter().find(|made| made.name == short)
 }
 
 /// The recording of a scene, compressed with zstd.
@@ -55,6 +70,9 @@ pub fn reference(path: &str) -> Option<&'static [u8]> {
 /// The assignment in whose folder a scene lies.
 #[must_use]
 pub fn assignment(name: &str) -> Option<Assignment> {
+    if made(name).is_some() {
+        return Some(MADE_OF);
+    }
     let path = file(&ASSETS, &format!("{name}.xml"))?.path();
     Assignment::named(path.components().next()?.as_os_str().to_str()?)
 }
@@ -132,10 +150,10 @@ mod tests {
 
     #[test]
     fn a_scene_is_found_by_its_name_and_by_its_name_in_full() {
-        for name in names() {
+        for name in all_names() {
             let full = format!("{}/{name}", assignment(name).expect("an assignment").key());
             assert!(scene(name).is_some() && scene(name) == scene(&full), "{name}");
-            assert!(recording(name).is_some() && recording(name) == recording(&full), "{name}");
+            assert!(recording(name) == recording(&full), "{name}");
             assert_eq!(assignment(&full), assignment(name));
         }
         assert!(scene("NoSuchTests/none").is_none() && scene("t2m2/SimpleTests/one-ball-into-two").is_none());

@@ -161,7 +161,7 @@ pub fn load_by(text: &str, files: &mut dyn FnMut(&str) -> Result<Found, String>)
 
 fn embedded(pattern: &str) -> Result<Found, String> {
     let glob = glob::Pattern::new(pattern).map_err(|error| format!("pattern asset:{pattern}: {error}"))?;
-    let found: Found = library::names()
+    let found: Found = library::all_names()
         .filter(|name| library::takes(&glob, name))
         .filter_map(|name| Some((name.to_owned(), library::scene(name)?.to_vec())))
         .collect();
@@ -186,7 +186,7 @@ mod tests {
             assert_eq!(plan.rules, fosssim_judge::Rules::Fair, "{name}");
             assert_eq!(plan.name, format!("{} ({name})", assignment.definition().title));
             let is_own = |name: &&str| library::assignment(name) == Some(assignment) && version.has(name);
-            let own: BTreeSet<&str> = library::names().filter(is_own).collect();
+            let own: BTreeSet<&str> = library::all_names().filter(is_own).collect();
             let planned: BTreeSet<&str> = plan.scenes().map(|task| task.name.as_str()).collect();
             assert_eq!(planned, own, "{name} grades what lies in its folder");
             let all = format!("schema = 1\nname = \"x\"\n[[group]]\nname = \"a\"\nscenes = [\"asset:{name}/*\"]\n");

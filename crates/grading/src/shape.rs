@@ -79,8 +79,9 @@ const GROUP: &[Key] = &[
 
 const SPEED: &[Key] = &[
     Key("points", ValueKind::Number("speed.", MOST_POINTS), true),
-    Key("full_at", ValueKind::Number("speed.", 0.001..1e6), true),
-    Key("none_at", ValueKind::Number("speed.", 0.001..1e6), true),
+    Key("full_at", ValueKind::Number("speed.", 0.001..1e6), false),
+    Key("none_at", ValueKind::Number("speed.", 0.001..1e6), false),
+    Key("second", ValueKind::Number("speed.", 0.001..1e4), false),
     Key("runs", ValueKind::Number("speed.", 1.0..101.0), false),
 ];
 

@@ -43,7 +43,7 @@ fn show(name: &str) -> Result<()> {
         return console::print(xml);
     }
     // A name without its group is as good when there is only one of it.
-    let same: Vec<_> = library::names().filter(|known| known.rsplit('/').next() == Some(name)).collect();
+    let same: Vec<_> = library::all_names().filter(|known| known.rsplit('/').next() == Some(name)).collect();
     match (same[..].first().and_then(|only| library::scene(only)), same.len()) {
         (Some(xml), 1) => console::print(xml),
         _ => bail!("no scene {name} comes with the program; `fosssim-oracle scene list` lists those that do"),
@@ -88,7 +88,7 @@ fn holds(place: &Place, bytes: &[u8]) -> Option<bool> {
 
 /// The names of the embedded scenes that these patterns select.
 fn matching(patterns: &[String]) -> Result<Vec<&'static str>> {
-    let names: Vec<_> = library::names().collect();
+    let names: Vec<_> = library::all_names().collect();
     let selection = Selection::new(patterns, &names)?;
     Ok(names.into_iter().filter(|name| selection.takes(name)).collect())
 }

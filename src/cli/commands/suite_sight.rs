@@ -11,6 +11,9 @@ use rayon::prelude::*;
 /// A step of a program that goes on for ever has more polynomials than this.
 const MOST_POLYNOMIALS: usize = 1 << 20;
 
+/// Larger scenes, which are there to be timed, are left out: smaller ones show what they show.
+const MOST_PARTICLES: usize = 2_000;
+
 /// A part of a program's work, of which the scenes show something.
 #[derive(Debug)]
 pub(super) struct SeenPart {
@@ -33,6 +36,7 @@ pub(super) fn seen_parts(plan: &Plan) -> Vec<SeenPart> {
         student::trace_within(scene, student, MOST_POLYNOMIALS).unwrap_or_else(|(bytes, _)| bytes)
     };
     let mut scenes: Vec<&Scene> = plan.scenes().map(|task| &task.scene).collect();
+    scenes.retain(|scene| scene.particles.len() <= MOST_PARTICLES);
     // Small ones first: most mistakes show in the first scenes.
     scenes.sort_by_key(|scene| u64::from(scene.steps()) * (scene.particles.len() as u64).pow(2));
     let right: Vec<Vec<u8>> = scenes.par_iter().map(|scene| written(scene, Student::default())).collect();

@@ -33,7 +33,7 @@ pub(super) fn asset(name: &Path) -> Option<&str> {
 }
 
 fn no_asset(what: &str, name: &str) -> String {
-    let near = near::nearest(name.strip_suffix(".xml").unwrap_or(name), library::names(), 3).join(", ");
+    let near = near::nearest(name.strip_suffix(".xml").unwrap_or(name), library::all_names(), 3).join(", ");
     let name = one_line(name);
     format!("no embedded {what} is called `{name}`; the nearest are {near} (`fosssim-oracle scene list` lists all)")
 }
@@ -41,7 +41,9 @@ fn no_asset(what: &str, name: &str) -> String {
 /// A file that is not there, but would be what comes with the program, had it `asset:` before its name.
 fn or_asset(name: &Path, error: io::Error) -> anyhow::Error {
     let known = name.to_str().map(|name| name.strip_suffix(".xml").unwrap_or(name));
-    match known.filter(|known| error.kind() == io::ErrorKind::NotFound && library::names().any(|name| name == *known)) {
+    match known
+        .filter(|known| error.kind() == io::ErrorKind::NotFound && library::all_names().any(|name| name == *known))
+    {
         Some(known) => anyhow::anyhow!("there is no such file; the scene that comes with the program is asset:{known}"),
         None => error.into(),
     }

@@ -1,0 +1,116 @@
+//! The contest's timing scenes, of the size of the course's. They are made when they are asked for: as files they would
+//! be megabytes.
+use std::{fmt::Write, sync::OnceLock};
+
+/// A scene that is made.
+pub struct MadeScene {
+    /// Its name, as that of an embedded scene.
+    pub name: &'static str,
+    make: fn() -> String,
+    text: OnceLock<String>,
+}
+
+/// All of them, in alphabetical order.
+pub static TIMING: [MadeScene; 2] = [
+    MadeScene { name: "TimingTests/box-of-balls", make: box_of_balls, text: OnceLock::new() },
+    MadeScene { name: "TimingTests/pile-of-ribbons", make: pile_of_ribbons, text: OnceLock::new() },
+];
+
+impl MadeScene {
+    /// Its XML.
+    pub fn xml(&'static self) -> &'static [u8] {
+        self.text.get_or_init(self.make).as_bytes()
+    }
+}
+
+/// Whole numbers below 1000 that look drawn (a linear congruential generator).
+struct Drawn(u32);
+
+impl Drawn {
+    fn next(&mut self) -> i32 {
+        self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (self.0 >> 8).cast_signed() % 1000
+    }
+}
+
+/// A number of thousandths.
+fn thousandths(number: i32) -> String {
+    format!("{}{}.{:03}", if number < 0 { "-" } else { "" }, number.abs() / 1000, number.abs() % 1000)
+}
+
+fn begin(description: &str, stiffness: u32) -> String {
+    format!(
+        "<scene>\n<description text=\"{description}\"/>\n<duration time=\"0.2\"/>\n\
+         <integrator type=\"forward-backward-euler\" dt=\"0.01\"/>\n\
+         <collision type=\"penalty\" k=\"{stiffness}\" thickness=\"0\"/>\n<collisiondetection type=\"contest\"/>\n"
+    )
+}
+
+/// Adds a particle; places and velocities in thousandths.
+fn particle(text: &mut String, place: [i32; 2], velocity: [i32; 2], radius: i32, fixed: bool) {
+    let ([px, py], [vx, vy]) = (place.map(thousandths), velocity.map(thousandths));
+    let (radius, fixed) = (thousandths(radius), u8::from(fixed));
+    let _ = writeln!(
+        text,
+        "<particle m=\"1\" px=\"{px}\" py=\"{py}\" vx=\"{vx}\" vy=\"{vy}\" fixed=\"{fixed}\" radius=\"{radius}\"/>"
+    );
+}
+
+/// 15,000 balls in a box of four edges, each near its neighbours; a few of them go fast.
+fn box_of_balls() -> String {
+    let mut text = begin("15,000 balls in a box of four edges. The time that it takes counts.", 100);
+    let mut drawn = Drawn(1);
+    for corner in [[-400, -400], [30_400, -400], [30_400, 20_400], [-400, 20_400]] {
+        particle(&mut text, corner, [0; 2], 400, true);
+    }
+    for index in 0..15_000 {
+        let (column, row) = (index % 150, index / 150);
+        let place = [200 * column + 100 + drawn.next() / 20, 200 * row + 100 + drawn.next() / 20];
+        let haste = if drawn.next() < 10 { 20 } else { 1 };
+        let velocity = [haste * (drawn.next() - 500), haste * (drawn.next() - 500)];
+        particle(&mut text, place, velocity, 80 + drawn.next() / 50, false);
+    }
+    for edge in 0..4 {
+        let _ = writeln!(text, "<edge i=\"{edge}\" j=\"{}\" radius=\"0.4\"/>", (edge + 1) % 4);
+    }
+    text + "</scene>\n"
+}
+
+/// 120 ribbons of 40 particles on a half-plane, one above the other.
+fn pile_of_ribbons() -> String {
+    let (ribbons, length) = (120, 40);
+    let mut text = begin("120 ribbons fall onto each other and onto a half-plane. The time that it takes counts.", 200);
+    let mut drawn = Drawn(2);
+    let mut edges = String::new();
+    for ribbon in 0..ribbons {
+        let left = 2 * drawn.next();
+        for link in 0..length {
+            let place = [left + 150 * link, 60 + 90 * ribbon + drawn.next() / 40];
+            particle(&mut text, place, [drawn.next() / 4, -drawn.next()], 40, false);
+            if link > 0 {
+                let second = ribbon * length + link;
+                let edge = ribbon * (length - 1) + link - 1;
+                let _ = writeln!(edges, "<edge i=\"{}\" j=\"{second}\" radius=\"0.03\"/>", second - 1);
+                let _ = writeln!(edges, "<springforce edge=\"{edge}\" k=\"100\" l0=\"0.15\" b=\"0.1\"/>");
+            }
+        }
+    }
+    text + &edges
+        + "<halfplane px=\"0\" py=\"0\" nx=\"0.1\" ny=\"2\"/>\n<simplegravity fx=\"0\" fy=\"-9.8\"/>\n</scene>\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fosssim_model::{assignments::Assignment, scene};
+
+    #[test]
+    fn timing_scenes_are_of_the_courses_size() {
+        for (made, [particles, edges]) in TIMING.iter().zip([[15_004, 4], [4800, 4680]]) {
+            let scene = scene::read(made.name, made.xml()).expect("a sound scene").scene;
+            assert_eq!((scene.assignment(), scene.steps()), (Assignment::T2M3, 20));
+            assert_eq!([scene.particles.len(), scene.edges.len()], [particles, edges]);
+        }
+        assert_eq!([0, -5, 1203, -12_000].map(thousandths), ["0.000", "-0.005", "1.203", "-12.000"]);
+    }
+}
