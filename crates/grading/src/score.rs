@@ -2,6 +2,7 @@
 use super::{
     config::{Credit, MOST_POINTS, Marking},
     grade::{Grade, GroupGrade, SceneGrade},
+    library,
     plan::{Plan, PlannedGroup},
     result::SceneResult,
     verdict::Verdict,
@@ -47,7 +48,7 @@ pub fn group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) ->
 /// The grade of the results of all scenes, in the plan's order, as if nothing had been run: no build, no sandbox, no
 /// time. `is_timed` says whether speed counts.
 pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Vec<(SceneResult, bool)>) -> Grade {
-    let mut results = results.into_iter();
+    let mut results = as_written(results).into_iter();
     let of_group = |planned: &PlannedGroup| {
         let marking = Marking { speed: planned.marking.speed.filter(|_| is_timed), ..planned.marking };
         group(&planned.name, marking, results.by_ref().take(planned.scenes.len()).collect())
@@ -71,6 +72,18 @@ pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Ve
         wall: Duration::ZERO,
         located: None,
     }
+}
+
+/// The results as those of one submission: where a trace of it shows anything, one that shows nothing is wrong as others
+/// are, and does not say that nothing is written.
+fn as_written(mut results: Vec<(SceneResult, bool)>) -> Vec<(SceneResult, bool)> {
+    let shows = |(result, _): &(SceneResult, bool)| matches!(result.verdict, Verdict::Accepted | Verdict::WrongAnswer);
+    if results.iter().any(shows) {
+        for (result, _) in results.iter_mut().filter(|(result, _)| result.verdict == Verdict::Unwritten) {
+            result.verdict = Verdict::WrongAnswer;
+        }
+    }
+    results
 }
 
 /// The points of the scenes and of their speed.
@@ -147,9 +160,9 @@ const WITNESSES: usize = 12;
 /// Likely mistakes that accepted scenes speak against; the smallest of these are asked.
 fn refuted(plan: &Plan, groups: &[GroupGrade]) -> Vec<String> {
     let graded = || groups.iter().flat_map(|group| &group.scenes).zip(plan.scenes());
-    let wrong: Vec<&[Explanation]> = graded()
-        .map(|(graded, _)| graded.explanations.as_slice())
-        .filter(|explanations| !explanations.is_empty())
+    let wrong: Vec<(&Scene, &[Explanation])> = graded()
+        .map(|(graded, task)| (&task.scene, graded.explanations.as_slice()))
+        .filter(|(_, explanations)| !explanations.is_empty())
         .collect();
     if wrong.is_empty() {
         return Vec::new();
@@ -160,7 +173,10 @@ fn refuted(plan: &Plan, groups: &[GroupGrade]) -> Vec<String> {
         .collect();
     right.sort_by_key(|scene| u64::from(scene.steps()) * (scene.particles.len() * scene.particles.len()) as u64);
     right.truncate(WITNESSES);
-    diagnose::refuted(&wrong, &right)
+    // Bundled scenes lie in their milestone's folder; of others, their contents tell it.
+    let bundled = plan.scenes().filter_map(|task| library::assignment(&task.name)).max();
+    let whose = bundled.or_else(|| diagnose::milestone(plan.scenes().map(|task| &task.scene)));
+    diagnose::refuted(whose, &wrong, &right)
 }
 
 #[cfg(target_os = "linux")]

@@ -43,19 +43,19 @@ pub struct Rated {
 /// The explanations of a program after it has run on the probe scenes.
 #[must_use]
 pub fn told_of(student: Student) -> Vec<Explanation> {
-    let (mut explained, mut right): (Vec<Vec<Explanation>>, Vec<Scene>) = (Vec::new(), Vec::new());
+    let (mut explained, mut right): (Vec<(Scene, Vec<Explanation>)>, Vec<Scene>) = (Vec::new(), Vec::new());
     for (_, scene) in probe_scenes(Assignment::DEFAULT) {
         let trace = trace(&scene, student);
         let examined = examine(&scene, &trace[..], Keep::All, &options(true), &mut ());
         if is_accepted(&examined.outcome) {
             right.push(scene.clone());
         } else {
-            explained.push(examined.explain());
+            explained.push((scene.clone(), examined.explain()));
         }
     }
-    let traces: Vec<&[Explanation]> = explained.iter().map(Vec::as_slice).collect();
-    let refuted = refuted(&traces, &right.iter().collect::<Vec<_>>());
-    several(traces, &refuted)
+    let wrong: Vec<(&Scene, &[Explanation])> = explained.iter().map(|(scene, list)| (scene, list.as_slice())).collect();
+    let refuted = refuted(Some(Assignment::DEFAULT), &wrong, &right.iter().collect::<Vec<_>>());
+    several(explained.iter().map(|(_, list)| list.as_slice()), &refuted)
 }
 
 /// Asks about mutants that are wanted, by number or by themselves, several at a time. The answers come in the mutants'

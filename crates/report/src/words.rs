@@ -139,10 +139,7 @@ fn number(count: u64) -> String {
 fn of_wrong(wrong: &Wrong, steps: u32) -> String {
     match wrong {
         Wrong::Untold => "the trace is wrong".to_owned(),
-        Wrong::Nothing => {
-            "the trace holds no polynomial and no collision: detection asks the course's root finder about no pair"
-                .to_owned()
-        }
+        Wrong::Nothing => "the trace holds no polynomial and no collision: no pair is tested".to_owned(),
         Wrong::FirstRecord(kind) => format!("the first record is wrong: {kind}"),
         Wrong::Steps { wrong, first, kind } => {
             format!("{}, first step {first}: {kind}", share::wrong(*wrong, steps, number))

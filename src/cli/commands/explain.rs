@@ -218,9 +218,9 @@ fn program_on_probes(
         console::remark(format!("if this program is of another milestone: --assignment {}\n", others.join(", ")));
     }
     let located = located(&tasks, &ends);
-    let common = likely(&cases, &tasks);
+    let (common, refuted) = likely(arguments.assignment, &cases, &tasks);
     for case in &mut cases {
-        case.explanations = diagnose::settled(&case.explanations, &common).explanations;
+        case.explanations = diagnose::settled(&case.explanations, &common, &refuted).explanations;
     }
     Ok(Some((Diagnosis { cases, common, located }, cards)))
 }
@@ -245,14 +245,14 @@ fn located(tasks: &[SceneTask], ends: &[(Option<Failing>, u32)]) -> Option<Locat
     locate(&tried.collect::<Vec<_>>())
 }
 
-/// The likely mistakes of the wrong traces together, without those that right traces of the same program speak against.
-fn likely(cases: &[Case], tasks: &[SceneTask]) -> Vec<Explanation> {
-    let wrong: Vec<&[Explanation]> =
-        cases.iter().filter(|case| !case.accepted).map(|case| case.explanations.as_slice()).collect();
-    let right: Vec<&Scene> =
-        cases.iter().zip(tasks).filter(|(case, _)| case.accepted).map(|(_, task)| &task.scene).collect();
-    let refuted = diagnose::refuted(&wrong, &right);
-    diagnose::several(wrong, &refuted)
+/// The likely mistakes of the wrong traces together, and the keys of those that are ruled out.
+fn likely(whose: Assignment, cases: &[Case], tasks: &[SceneTask]) -> (Vec<Explanation>, Vec<String>) {
+    let (right, wrong): (Vec<_>, Vec<_>) = cases.iter().zip(tasks).partition(|(case, _)| case.accepted);
+    let wrong: Vec<(&Scene, &[Explanation])> =
+        wrong.into_iter().map(|(case, task)| (&task.scene, case.explanations.as_slice())).collect();
+    let right: Vec<&Scene> = right.into_iter().map(|(_, task)| &task.scene).collect();
+    let refuted = diagnose::refuted(Some(whose), &wrong, &right);
+    (diagnose::several(wrong.into_iter().map(|(_, explanations)| explanations), &refuted), refuted)
 }
 
 /// The scenes to run: the probe scenes of the milestone, its suite's where these show what the probe scenes do not, and

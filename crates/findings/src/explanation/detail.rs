@@ -64,6 +64,11 @@ pub enum PolynomialDetail {
         /// The one that belongs there.
         belongs: Subject,
     },
+    /// The coefficients of two powers of t stand in each other's places.
+    Exchanged {
+        /// The powers.
+        powers: [usize; 2],
+    },
     /// Only this number of coefficients is there, the last ones.
     LastOnly(usize),
     /// Only this number of coefficients is there, the first ones.

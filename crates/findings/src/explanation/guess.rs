@@ -76,6 +76,8 @@ pub enum ListGuess {
     Negated,
     /// The lowest power comes first, and all have the wrong sign.
     ReversedNegated,
+    /// Two of them stand in each other's places.
+    TwoExchanged,
     /// A zero follows them.
     TrailingZero,
     /// They are those of another polynomial of the pair.
@@ -104,6 +106,7 @@ impl ListGuess {
             Self::Reversed => "reversed",
             Self::Negated => "negated",
             Self::ReversedNegated => "reversed-negated",
+            Self::TwoExchanged => "two-exchanged",
             Self::TrailingZero => "trailing-zero",
             Self::OtherPolynomial => "other-polynomial",
             Self::OtherPolynomialNegated => "other-polynomial-negated",

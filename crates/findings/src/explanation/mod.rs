@@ -143,7 +143,8 @@ impl Explanation {
     #[must_use]
     pub fn said(&self) -> String {
         match &self.about {
-            About::Polynomials { found: OfPolynomials::Guess(guess), .. } if !guess.is_general() => {
+            About::Polynomials { found: OfPolynomials::Guess(guess), .. } if guess.is_general() => guess.word(),
+            About::Polynomials { found: OfPolynomials::Guess(_), .. } => {
                 self.claims.first().unwrap_or(&self.key).clone()
             }
             About::Stage(fault) => format!("{}/{fault:?}", self.key),

@@ -7,7 +7,7 @@
 use anyhow::Context;
 use fosssim_lab::runs::{Watched, judged, trace};
 use fosssim_oracle::{
-    diagnose::{Explanation, common, known},
+    diagnose::{Explanation, known, several},
     student::{CATALOGUE, Row, RowKind, Student},
 };
 use rayon::prelude::*;
@@ -105,7 +105,8 @@ fn count(wrong: &[(&Row, &Vec<ExplainedTrace>)]) {
 fn together(wrong: &[(&Row, &Vec<ExplainedTrace>)]) {
     let mut confused = Vec::new();
     for (row, outcomes) in wrong {
-        match common(outcomes.iter().map(|(.., explanations)| explanations.as_slice())) {
+        let traces = outcomes.iter().map(|(.., explanations)| explanations.as_slice());
+        match several(traces, &[]).into_iter().next() {
             Some(first) if first.key == row.id => {}
             Some(first) if first.same_as.iter().any(|id| id == row.id) => {
                 confused.push(format!("    {}: can't be told from {}", row.id, first.key));

@@ -195,7 +195,7 @@ fn the_first_wrong_stage_is_told_with_what_its_results_have_in_common() {
             "loop-at-most-two",
             "rounds-enough",
             "Impulse loop or detection: The loop makes fewer rounds",
-            "2 detection passes where",
+            "2 detection passes instead of",
         ),
         ("rigid-half-turn", "zones-turn-little-and-far", "Rigid failsafe: Zones do not turn as far", "they turn 0."),
         ("rigid-shrinks", "zones-turn-little-and-far", "Rigid failsafe: ", ""),

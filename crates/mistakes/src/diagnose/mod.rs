@@ -4,6 +4,7 @@
 //! mistake reproduces them, and yields [`Explanation`]s, the likeliest first: values, of which reports make sentences.
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
+mod evidence;
 mod explain;
 mod fitted;
 mod heads;
@@ -11,9 +12,11 @@ mod known;
 mod naming;
 mod not_finite;
 pub mod polynomial;
+mod ruled_out;
 mod sampling;
 mod settled;
 mod stages;
+mod written;
 
 pub use crate::{assignments::probe_scenes, plain::formula_in};
 pub use explain::{explain, explain_kept, explain_stages};
@@ -24,11 +27,13 @@ pub use fosssim_findings::explanation::{
     WrongNumber, WrongPositions, WrongResponses, WrongVectors, WrongWeight, WrongZoneRounds, WrongZones,
 };
 use fosssim_findings::explanation::{about, fault, force, guess};
-pub use heads::{common, refuted, several};
+pub use heads::several;
 pub use known::{can_show, known, shows};
 pub use naming::is_named_in;
 pub use not_finite::not_finite;
+pub use ruled_out::refuted;
 pub use settled::{Settled, settled};
+pub use written::milestone;
 
 #[cfg(test)]
 mod tests;

@@ -1,7 +1,8 @@
 //! Whether explanations speak of the same mistake.
 use super::about::{About, OfPolynomials};
-use crate::student::{Row, find};
+use crate::student::{Row, all_rows, find};
 use fosssim_findings::explanation::{Detail, Explanation};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The explanation of the same steps by this known mistake instead.
 pub(super) fn as_row(one: &Explanation, row: &Row, same_as: Vec<String>) -> Explanation {
@@ -33,32 +34,30 @@ pub fn is_named_in(mistake: &Explanation, explanations: &[Explanation]) -> bool 
         return explanations.iter().any(|one| is_about(one) && says_so(one));
     }
     let said = mistake.said();
-    explanations.iter().any(|one| bears_out(one, &said, Some(mistake)))
+    explanations.iter().any(|one| alternatives(one).contains_key(&said))
 }
 
-/// Whether a trace's explanation speaks for what is said, as told by another one: it says the same, or something
-/// that it can't tell apart, or its polynomials are those that it would make.
-pub(super) fn bears_out(one: &Explanation, said: &str, told: Option<&Explanation>) -> bool {
-    let is_same = one.said() == said || one.same_as.iter().any(|key| key == said);
-    let is_in_other_words = || find(said).is_some_and(|row| is_in_other_words(one, row) && one.is_complete());
-    is_same || is_in_other_words() || is_made_by(one, said, told)
-}
-
-/// Whether all its polynomials are those that this would make.
-pub(super) fn is_made_by(one: &Explanation, said: &str, told: Option<&Explanation>) -> bool {
-    let claims = one.claims_by_subject();
-    let is_made = |own: &dyn Fn(&str, &str) -> bool| {
-        !claims.is_empty() && claims.values().all(|of| of.iter().any(|(guess, claim)| own(guess, claim)))
-    };
-    match told.map(|told| &told.about) {
-        None | Some(About::Mistake) => find(said).is_some() && is_made(&|guess, _| guess == said),
-        Some(About::Polynomials { found: OfPolynomials::Guess(guess), .. }) if guess.is_general() => {
-            let word = guess.word();
-            is_made(&|own, _| own == word)
-        }
-        Some(About::Polynomials { found: OfPolynomials::Guess(_), .. }) => is_made(&|_, claim| claim == said),
-        _ => false,
+/// The words ([`Explanation::said`]) that explain as much as this explanation of a trace: its own, those that it can't
+/// tell apart, and all that would make its polynomials as they are. Each with whether it explains all that this is
+/// about.
+pub(super) fn alternatives(one: &Explanation) -> BTreeMap<String, bool> {
+    let is_known = |key: &&String| find(key).is_some();
+    let mut all: BTreeMap<String, bool> = BTreeMap::from([(one.said(), one.is_settled())]);
+    all.extend(one.same_as.iter().filter(is_known).map(|key| (key.clone(), one.is_settled())));
+    if one.is_complete() {
+        all.extend(all_rows().filter(|row| is_in_other_words(one, row)).map(|row| (row.id.to_owned(), true)));
     }
+    // What makes one polynomial makes all of them only where it would make each: a known mistake, or a general guess.
+    let made = one.claims_by_subject().into_values().map(|claims| {
+        let words = claims.into_iter().map(|(guess, claim)| {
+            let is_of_all = find(guess).is_some() || claim.ends_with('/');
+            if is_of_all { guess } else { claim }
+        });
+        words.map(str::to_owned).collect::<BTreeSet<String>>()
+    });
+    let made = made.reduce(|one, other| one.intersection(&other).cloned().collect());
+    all.extend(made.into_iter().flatten().map(|word| (word, true)));
+    all
 }
 
 /// Whether this, found in the polynomials of one kind alone, is this known mistake: `radii-squared-apart` of
@@ -67,9 +66,4 @@ pub(super) fn is_in_other_words(one: &Explanation, row: &Row) -> bool {
     let is_called_so = row.id.split_once('-').is_some_and(|(_, own)| own == one.key);
     let About::Polynomials { subjects, .. } = &one.about else { return false };
     is_called_so && subjects.first().is_some_and(|first| Some(first.kind()) == row.kind_of_pair())
-}
-
-/// Whether it speaks for what is said with all that it is about.
-pub(super) fn bears_out_wholly(one: &Explanation, said: &str, told: Option<&Explanation>) -> bool {
-    is_made_by(one, said, told) || (one.is_settled() && bears_out(one, said, told))
 }

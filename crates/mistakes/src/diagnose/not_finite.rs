@@ -168,17 +168,12 @@ fn pair_at(scene: &Scene, index: usize) -> Option<(usize, Pair)> {
     })
 }
 
-/// Explanations with the one that says where numbers end: first, unless a proven mistake is the cause. That mistake
-/// then reproduces the faults before the end, and mending it comes first, as do other proven mistakes.
-pub(super) fn with_end(
-    end: Option<Explanation>,
-    mut found: Vec<Explanation>,
-    is_cause: impl Fn(&Explanation) -> bool,
-) -> Vec<Explanation> {
+/// Explanations with the one that says where numbers end: behind the mistakes that are proven, whose mending comes first,
+/// and before all that is only seen.
+pub(super) fn with_end(end: Option<Explanation>, mut found: Vec<Explanation>) -> Vec<Explanation> {
     if let Some(end) = end {
-        let proven = found.iter().take_while(|one| one.is_proven()).count();
-        let place = if found.first().is_some_and(is_cause) { proven } else { 0 };
-        found.insert(place, end);
+        let proven = found.iter().take_while(|one| one.is_proven() || one.is_unfinished()).count();
+        found.insert(proven, end);
     }
     found
 }

@@ -1,5 +1,6 @@
 //! One trace's own explanations, in the light of what all traces of its program say together.
-use super::{About, Explanation, is_named_in, not_finite::with_end};
+use super::{About, Explanation, is_named_in, naming::as_row, not_finite::with_end};
+use crate::student::find;
 
 /// The explanations of one trace, once all traces of its program have been heard.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -12,18 +13,28 @@ pub struct Settled {
 
 /// Settles a trace's own explanations by those of all traces together ([`several`](super::several)). Where any of these
 /// explains the trace, they are all that is said: in the place of the trace's own ones, which can't tell as much, but
-/// with its counts and its example. Else the trace keeps its own.
+/// with its counts and its example. Else the trace keeps its own, without those that are `refuted`.
 #[must_use]
-pub fn settled(own: &[Explanation], likely: &[Explanation]) -> Settled {
+pub fn settled(own: &[Explanation], likely: &[Explanation], refuted: &[String]) -> Settled {
     let of_all = likely.iter().filter(|one| !one.is_not_finite()).flat_map(|one| agreed(own, one));
     let explanations: Vec<Explanation> = of_all.collect();
     if explanations.is_empty() {
-        return Settled { explanations: own.to_vec(), agreed: 0 };
+        return Settled { explanations: own.iter().filter_map(|one| without(one, refuted)).collect(), agreed: 0 };
     }
     // Where numbers end each trace says for itself.
     let end = own.iter().find(|one| one.is_not_finite()).cloned();
-    let explanations = with_end(end, explanations, |_| true);
+    let explanations = with_end(end, explanations);
     Settled { agreed: explanations.len(), explanations }
+}
+
+/// The explanation without what is refuted; nothing where that is all of it.
+fn without(one: &Explanation, refuted: &[String]) -> Option<Explanation> {
+    let mut same_as = one.same_as.iter().filter(|key| !refuted.contains(key)).cloned();
+    if !refuted.contains(&one.key) || one.is_not_finite() {
+        return Some(Explanation { same_as: same_as.collect(), ..one.clone() });
+    }
+    let row = find(&same_as.next()?)?;
+    Some(as_row(one, row, same_as.collect()))
 }
 
 /// This explanation as the trace shows it; nothing where the trace's own ones do not name it.
@@ -75,13 +86,16 @@ mod tests {
         let traces = [vec![alone.clone()], vec![short.clone()], vec![short.clone()]];
         let likely = several(traces.iter().map(Vec::as_slice), &[]);
         assert_eq!(likely.iter().map(|one| one.key.as_str()).collect::<Vec<_>>(), ["loop-one-fewer"]);
-        let of_first = settled(&traces[0], &likely);
+        let of_first = settled(&traces[0], &likely, &[]);
         assert_eq!((of_first.agreed, of_first.explanations.len()), (1, 1));
         let told = &of_first.explanations[0];
         assert_eq!((told.key.as_str(), told.reproduced, told.samples), ("loop-one-fewer", 2, 2));
         // A trace that they do not explain keeps its own explanations.
-        assert_eq!(settled(std::slice::from_ref(&other), &likely), Settled { explanations: vec![other], agreed: 0 });
-        assert_eq!(settled(&[], &likely), Settled::default());
+        assert_eq!(
+            settled(std::slice::from_ref(&other), &likely, &[]),
+            Settled { explanations: vec![other], agreed: 0 }
+        );
+        assert_eq!(settled(&[], &likely, &[]), Settled::default());
     }
 
     #[test]
@@ -89,7 +103,7 @@ mod tests {
         let traces = [vec![named("pp-empty", &[], (3, 3))], vec![named("ph-empty", &[], (3, 3))]];
         let likely = several(traces.iter().map(Vec::as_slice), &[]);
         assert_eq!(likely[0].key, Explanation::UNFINISHED);
-        let of_second = settled(&traces[1], &likely);
+        let of_second = settled(&traces[1], &likely, &[]);
         assert_eq!((of_second.agreed, of_second.explanations), (1, traces[1].clone()));
     }
 }

@@ -33,7 +33,7 @@ impl Student {
     }
 
     /// The mistakes, which stand before all free places.
-    fn mistakes(&self) -> impl Iterator<Item = Mistake> {
+    pub(super) fn mistakes(&self) -> impl Iterator<Item = Mistake> {
         self.mistakes.iter().map_while(|mistake| *mistake)
     }
 
@@ -52,6 +52,11 @@ impl Student {
     /// one counts.
     pub fn mistake_in(self, areas: &[Area]) -> Option<Mistake> {
         areas.iter().find_map(|area| self.mistakes().find(|mistake| mistake.area() == *area))
+    }
+
+    /// The first of these mistakes that the student makes.
+    pub(super) fn mistake_among(self, rows: &[Mistake]) -> Option<Mistake> {
+        self.mistakes().find(|mistake| rows.contains(mistake))
     }
 
     /// The same student, who has put the supplied particle-edge approach right (collisions.md 2). That is correct, too,

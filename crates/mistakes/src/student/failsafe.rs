@@ -6,6 +6,7 @@ use fosssim_num::{
 
 use super::{
     Area, Mistake,
+    author::Student,
     hooks::{Change, Place, ZoneTurn},
     objects::{State, Zone},
     rounding::single,
@@ -15,9 +16,25 @@ use super::{
 /// The parts of the assignment whose mistakes are made here.
 const HERE: &[Area] = &[Area::Failsafe];
 
+/// The mistakes in zones that stop, or should; others are made in zones that move.
+const STOPS: &[Mistake] = &[
+    Mistake::FailsafeFixedForgotten,
+    Mistake::FailsafeHalfPlaneForgotten,
+    Mistake::FailsafeAllFixedOnly,
+    Mistake::FailsafeAlwaysStops,
+    Mistake::FailsafeStopsFixedOnly,
+    Mistake::FailsafeStopKeepsPosition,
+    Mistake::FailsafeStopKeepsVelocity,
+];
+
+/// The mistake in how a zone moves.
+fn mistake_of_motion(student: Student) -> Option<Mistake> {
+    student.mistakes().find(|mistake| HERE.contains(&mistake.area()) && !STOPS.contains(mistake))
+}
+
 /// Replaces the end of the step for the zone's particles by that of a rigid body with their momentum.
 pub fn perform(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
-    let mistake = world.student.mistake_in(HERE);
+    let mistake = mistake_of_motion(world.student);
     if mistake == Some(Mistake::FailsafeEmpty) {
         return;
     }
@@ -36,13 +53,12 @@ pub fn perform(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
 
 /// Whether something in the zone cannot move.
 fn stops(world: &World, zone: &Zone) -> bool {
-    let mistake = world.student.mistake_in(HERE);
     let student = world.student;
     let asked = particles(world, Place::AskedWhetherFixed, zone);
     let fixed = student.holds(Place::FixedHolds, asked.into_iter().any(|particle| world.fixed(particle)));
     let half_plane = student.holds(Place::HalfPlaneHolds, zone.half_plane);
-    let half_plane = half_plane && mistake != Some(Mistake::FailsafeHalfPlaneForgotten);
-    match mistake {
+    let half_plane = half_plane && !student.makes(Mistake::FailsafeHalfPlaneForgotten);
+    match student.mistake_among(STOPS) {
         Some(Mistake::FailsafeFixedForgotten) => half_plane,
         Some(Mistake::FailsafeAllFixedOnly) => {
             half_plane || zone.particles.iter().all(|&particle| world.fixed(particle))
@@ -54,16 +70,19 @@ fn stops(world: &World, zone: &Zone) -> bool {
 
 /// The particles of a zone in the order in which a loop goes through them.
 fn particles(world: &World, place: Place, zone: &Zone) -> Vec<usize> {
-    world.student.items(place, zone.particles.iter().copied().collect())
+    let all = match (zone.particles.first(), zone.particles.last()) {
+        (Some(&first), Some(&last)) if world.student.makes(Mistake::FailsafeRange) => (first..=last).collect(),
+        _ => zone.particles.iter().copied().collect(),
+    };
+    world.student.items(place, all)
 }
 
 fn stop(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
-    let mistake = world.student.mistake_in(HERE);
     for particle in particles(world, Place::StoppedParticles, zone) {
-        if mistake == Some(Mistake::FailsafeStopsFixedOnly) && !world.fixed(particle) {
+        if world.student.makes(Mistake::FailsafeStopsFixedOnly) && !world.fixed(particle) {
             continue;
         }
-        let keeps = |place, row| world.student.is_stale(place) || mistake == Some(row);
+        let keeps = |place, row| world.student.is_stale(place) || world.student.makes(row);
         if !keeps(Place::StoppedPosition, Mistake::FailsafeStopKeepsPosition) {
             put(&mut state.x, particle, at(q_start, particle));
         }
@@ -124,7 +143,7 @@ impl<'a> Rigid<'a> {
     }
 
     fn mistake(&self) -> Option<Mistake> {
-        self.world.student.mistake_in(HERE)
+        mistake_of_motion(self.world.student)
     }
 
     /// The mass of a particle, which is the one with this number in its zone.
@@ -154,7 +173,7 @@ impl<'a> Rigid<'a> {
             let moved = at(&state.x, particle) - start;
             let position = if self.mistake() == Some(Mistake::FailsafeCentreAtEnd) { start + moved } else { start };
             let weight = |forgotten| if is_unweighted(forgotten) { 1.0 } else { mass };
-            let motion = match student.mistake_in(HERE) {
+            let motion = match self.mistake() {
                 Some(Mistake::FailsafeMomentumVelocity) => at(&state.v, particle),
                 _ => student.fresh(Place::SumMotion, moved, h * at(&state.v, particle)),
             };
@@ -246,6 +265,7 @@ impl<'a> Rigid<'a> {
     fn carry_out(&self, zone: &Zone, state: &mut State) {
         let (cosine, sine) = match self.mistake() {
             Some(Mistake::FailsafeSmallAngle) => (1.0, self.angle),
+            Some(Mistake::FailsafeCosineSine) => (elementary::sin(self.angle), elementary::cos(self.angle)),
             Some(Mistake::FailsafeSeries) => {
                 let square = self.angle * self.angle;
                 (1.0 - square / 2.0, self.angle - square * self.angle / 6.0)
@@ -273,6 +293,7 @@ impl<'a> Rigid<'a> {
             };
             let mut x = match self.mistake() {
                 Some(Mistake::FailsafeNoCentre) => self.shift + cosine * arm + sine * across,
+                Some(Mistake::FailsafeShiftTwice) => self.centre + 2.0 * self.shift + cosine * arm + sine * across,
                 Some(Mistake::FailsafeRotationMatrix) => {
                     let turned = Vec2::new(cosine * arm.x - sine * arm.y, sine * arm.x + cosine * arm.y);
                     self.centre + (self.shift + turned)

@@ -35,7 +35,11 @@ pub fn handle(
         *state = prediction;
     }
     if world.student.holds(Place::NeedsZones, !resolved) && !world.student.makes(Mistake::GeometricEmpty) {
+        let before = world.student.makes(Mistake::GeometricVelocitiesKept).then(|| state.v.clone());
         geometric(world, q_start, state, log)?;
+        if let Some(before) = before {
+            state.v = before;
+        }
     }
     Ok(())
 }
@@ -44,6 +48,7 @@ pub fn handle(
 fn geometric(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLog) -> Result<(), StepFailure> {
     let student = world.student;
     let prediction = state.clone();
+    log.prediction = Some(prediction.x.clone());
     let contacts = student.items(Place::FirstZoneContacts, detection::pass(world, q_start, &state.x, log)?);
     let mut zones = zones::merge(student, contacts.iter().map(|contact| zones::zone_of(world, contact)).collect());
     let most_rounds = if let Some(Change::GeometricRounds(most)) = student.change { *most } else { u32::MAX };

@@ -24,11 +24,16 @@ pub fn apply(
 ) -> Result<bool, StepFailure> {
     let student = world.student;
     let prediction = state.clone();
+    log.prediction = Some(prediction.x.clone());
     let mut start = q_start.to_vec();
     let mut rounds = 0;
     match student.mistake_in(&[Area::ImpulseLoop]) {
         Some(Mistake::ImpulsesEmpty) => return Ok(false),
         Some(Mistake::ImpulsesEmptySuccess) => return Ok(true),
+        Some(Mistake::ImpulsesTestBefore) if detection::pass(world, q_start, &state.x, log)?.is_empty() => {
+            return Ok(true);
+        }
+        Some(Mistake::ImpulsesDetectBefore) => drop(detection::pass(world, q_start, &state.x, log)?),
         Some(Mistake::ImpulsesPassWhenZero) if max_iterations <= 0 => {
             detection::pass(world, q_start, &state.x, log)?;
             return Ok(false);
@@ -46,6 +51,7 @@ pub fn apply(
         let is_old = student.makes(Mistake::ImpulsesDetectPrediction) || student.is_stale(Place::RoundPrediction);
         let q_end = if is_old { &prediction.x } else { &state.x };
         let found = student.items(Place::RoundContacts, detection::pass(world, &start, q_end, log)?);
+        let is_as_before = rounds > 0 && found.len() == list.len();
         if !student.makes(Mistake::ImpulsesListKept) && !student.is_stale(Place::RoundContactsKept) {
             list.clear();
         }
@@ -60,9 +66,17 @@ pub fn apply(
             let succeeds = !matches!(fails, Some(Mistake::ImpulsesAlwaysFail | Mistake::ImpulsesInverted));
             return Ok(student.holds(Place::LoopSucceeds, succeeds));
         }
-        resolve(world, &start, contacts, &prediction, state, log);
+        if is_as_before && student.makes(Mistake::ImpulsesSameCountFails) {
+            return Ok(false);
+        }
+        let follows = student.makes(Mistake::ImpulsesStartFollows);
+        let detected_to = follows.then(|| state.x.clone());
+        resolve(world, if follows { q_start } else { &start }, contacts, &prediction, state, log);
         if student.makes(Mistake::ImpulsesStartAdvances) {
             start.clone_from(&state.x);
+        }
+        if let Some(end) = detected_to {
+            start = end;
         }
         rounds += if student.makes(Mistake::ImpulsesCountContacts) {
             i32::try_from(contacts.len()).unwrap_or(i32::MAX)
@@ -130,6 +144,7 @@ fn resolve(
     if student.makes(Mistake::ImpulsesPredictedVelocities) {
         state.v.clone_from(&prediction.v);
     }
+    let start = if student.makes(Mistake::ImpulsesFromEnd) { &before.x } else { start };
     for contact in chosen {
         if student.makes(Mistake::ImpulsesOneByOne) {
             let current = state.clone();
@@ -145,6 +160,11 @@ fn resolve(
     match student.mistake_in(&[Area::ImpulseLoop, Area::Trace]) {
         Some(Mistake::ImpulsesCapped) => cap(world, &before, state),
         Some(Mistake::ImpulsesPositionsRestored) => state.x.clone_from(&prediction.x),
+        Some(Mistake::ImpulsesPositionsFromVelocities) => {
+            for particle in 0..world.scene.particles.len() {
+                put(&mut state.x, particle, at(start, particle) + world.scene.time_step * at(&state.v, particle));
+            }
+        }
         Some(Mistake::LogHybridImpulses) => log.impulses.extend_from_slice(contacts),
         _ => {}
     }

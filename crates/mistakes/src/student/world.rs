@@ -38,6 +38,8 @@ pub struct StepLog<'a> {
     pub guard: Option<Guard<'a>>,
     /// The steps of root searches that took longer than usual.
     pub long_searches: u64,
+    /// The integrator's prediction, once the impulse rounds have begun.
+    pub prediction: Option<Vec<f64>>,
 }
 
 /// Says whether a step may go on after this polynomial (index in the step's log, coefficients highest power first). A
@@ -152,7 +154,10 @@ impl<'a> OfParticle<'a> {
                 || self.student.holds(Place::OwnSecondEnd, edge.second == particle);
             let is_still = [particle, edge.first, edge.second].into_iter().all(is_fixed);
             let is_left_out = (is_endpoint && !self.student.makes(Mistake::PairsEndpointsToo))
-                || (is_still && self.student.makes(Mistake::PairsFixedSkipped));
+                || (is_still && self.student.makes(Mistake::PairsFixedSkipped))
+                || (is_fixed(edge.first)
+                    && is_fixed(edge.second)
+                    && self.student.makes(Mistake::PairsFixedEdgesSkipped));
             (!is_left_out).then_some(Pair { particle, object: Object::Edge(index) })
         })
     }

@@ -93,7 +93,7 @@ pub fn settle(grade: &mut Grade) {
     let likely = if speak_together { likely_mistakes(grade) } else { Vec::new() };
     let likely: Vec<Explanation> = likely.into_iter().map(|(one, _)| one).collect();
     for scene in grade.groups.iter_mut().flat_map(|group| &mut group.scenes) {
-        let of_scene = settled(&scene.result.explanations, &likely);
+        let of_scene = settled(&scene.result.explanations, &likely, &grade.refuted);
         (scene.settled, scene.agreed) = (of_scene.explanations, of_scene.agreed);
     }
 }

@@ -36,6 +36,9 @@ rows! {
         ParticleParticleFirstStill "pp-first-still": "The first particle's displacement is forgotten." => "d21 = dx2 stands where d21 = dx2 - dx1 belongs.";
         ParticleParticleSecondStill "pp-second-still": "The second particle's displacement is forgotten." => "d21 = -dx1 stands where d21 = dx2 - dx1 belongs.";
         ParticleParticleEndForDisplacement "pp-end-for-displacement": "End positions stand where displacements belong." => "dx = qe stands where dx = qe - qs belongs.";
+        ParticleParticleDisplacementsSwapped "pp-displacements-swapped": "The displacements of the two particles are exchanged, or both have the wrong sign." => "d21 = dx1 - dx2 is used instead of d21 = dx2 - dx1.";
+        ParticleParticlePositionIndex "pp-position-index": "Positions are read at the particle's number, although each particle has two coordinates." => "x[i] is used instead of x[2 i], and likewise for j.";
+        ParticleParticleNextRadius "pp-next-radius": "The radius of the next particle in the list is used." => "radius[j + 1] is used instead of radius[j], and likewise for i.";
         ParticleParticleXOnly "pp-x-only": "The dot products of the moving terms leave the second component out." => "d21.d21 and x21.d21 have their x products only; the y products are missing.";
         ParticleParticleTinyError "pp-tiny-error": "The constant coefficient is wrong by a tiny factor." => "1: (r1 + r2)^2 - x21.x21 is multiplied by 1 + 1e-9.";
         ParticleParticleOverlapNegated "pp-overlap-negated": "The overlap polynomial is negative where the objects overlap." => "All three coefficients have the wrong sign.";
@@ -67,6 +70,10 @@ rows! {
         ParticleEdgeEdgeRadiusTwice "pe-edge-radius-twice": "The edge's radius is used for both objects." => "(re + re)^2 stands where (r1 + re)^2 belongs.";
         ParticleEdgeDiameters "pe-diameters": "The diameters stand where the radii belong." => "(2 r1 + 2 re)^2 stands where (r1 + re)^2 belongs.";
         ParticleEdgeFirstEdgeRadius "pe-first-edge-radius": "The first edge's radius is used for all edges." => "radius[0] stands where the radius of edge e, radius[e], belongs.";
+        ParticleEdgeFirstEndRadius "pe-first-end-radius": "The radius of the edge's first end particle is used instead of the edge's own." => "radius[j] of particle j is used instead of the radius of edge e, j being its first end.";
+        ParticleEdgeSecondEndRadius "pe-second-end-radius": "The radius of the edge's second end particle is used instead of the edge's own." => "radius[k] of particle k is used instead of the radius of edge e, k being its second end.";
+        ParticleEdgeRadiusIndex "pe-radius-index": "The particle's radius is read at the edge's number." => "radius[e] is used instead of radius[i].";
+        ParticleEdgePositionIndex "pe-position-index": "Positions are read at the particle's number, although each particle has two coordinates." => "x[i] is used instead of x[2 i], and likewise for the edge's ends.";
         ParticleEdgeRadiusUnscaled "pe-radius-unscaled": "The radii are not multiplied by the edge's squared length when the denominator is cleared." => "(r1 + re)^2 stands where (r1 + re)^2 (x32 + t d32).(x32 + t d32) belongs.";
         ParticleEdgeQuarticNegated "pe-quartic-negated": "The overlap polynomial is negative where the objects overlap." => "All five coefficients have the wrong sign.";
         ParticleEdgeThreeTerms "pe-three-terms": "The overlap polynomial is cut to its last three terms." => "The coefficients of t^4 and t^3 are missing.";
@@ -76,7 +83,7 @@ rows! {
         ParticleEdgeCubicOneBc "pe-cubic-one-bc": "A product in the cubic coefficient of the overlap lacks its factor." => "t^3 has b c where 2 b c belongs, with b = (x1-x2).d32 + (dx1-dx2).x32 and c = (dx1-dx2).d32.";
         ParticleEdgeCubicOneEi "pe-cubic-one-ei": "A product in the cubic coefficient of the overlap lacks its factor." => "t^3 has -e i where -2 e i belongs, with e = d21.x21 and i = d32.d32.";
         ParticleEdgeCubicNoFh "pe-cubic-no-fh": "A product is missing in the cubic coefficient of the overlap." => "t^3 lacks -2 f h, with f = d21.d21 and h = d32.x32.";
-        ParticleEdgeCubicParentheses "pe-cubic-parentheses": "Lost parentheses give a product in the cubic coefficient of the overlap the wrong sign." => "t^3 has +2 f h where -2 f h belongs, with f = d21.d21 and h = d32.x32.";
+        ParticleEdgeCubicParentheses "pe-cubic-parentheses": "A product in the cubic coefficient of the overlap has the wrong sign." => "t^3 has +2 f h where -2 f h belongs, with f = d21.d21 and h = d32.x32.";
         ParticleEdgeSquareNoEh "pe-square-no-eh": "A product is missing in the quadratic coefficient of the overlap." => "t^2 lacks -4 e h, with e = d21.x21 and h = d32.x32.";
         ParticleEdgeSquareTwoEh "pe-square-two-eh": "A product in the quadratic coefficient of the overlap has half its factor." => "t^2 has -2 e h where -4 e h belongs, with e = d21.x21 and h = d32.x32.";
         ParticleEdgeSquareNoBb "pe-square-no-bb": "A square is missing in the quadratic coefficient of the overlap." => "t^2 lacks b^2, with b = (x1-x2).d32 + (dx1-dx2).x32.";
@@ -122,6 +129,7 @@ rows! {
         HalfPlaneRadiusNotSquared "ph-radius-not-squared": "The radius is not squared." => "1: r (n.n) stands where r^2 (n.n) belongs.";
         HalfPlaneNoRadius "ph-no-radius": "The radius is forgotten." => "1: r^2 (n.n) is missing.";
         HalfPlaneDiameter "ph-diameter": "The diameter stands where the radius belongs." => "1: (2 r)^2 (n.n) stands where r^2 (n.n) belongs.";
+        HalfPlaneRadiusIndex "ph-radius-index": "The radius is read at the half-plane's number." => "radius[p] is used instead of radius[i], p being the half-plane.";
         HalfPlaneNoTwo "ph-no-two": "The linear coefficient of the overlap lacks a factor." => "t: ((p-x).n) (dx.n) stands where 2 ((p-x).n) (dx.n) belongs.";
         HalfPlaneLinearSign "ph-linear-sign": "The linear coefficient of the overlap has the wrong sign." => "t: -2 ((p-x).n) (dx.n) stands where 2 ((p-x).n) (dx.n) belongs.";
         HalfPlaneQuadraticSign "ph-quadratic-sign": "The quadratic coefficient of the overlap has the wrong sign." => "t^2: (dx.n)^2 stands where -(dx.n)^2 belongs.";
@@ -129,16 +137,21 @@ rows! {
         HalfPlaneConstantSign "ph-constant-sign": "The distance is added to the radius instead of subtracted." => "1: +((p-x).n)^2 stands where -((p-x).n)^2 belongs.";
         HalfPlaneOffsetNotSquared "ph-offset-not-squared": "The constant coefficient has the distance where its square belongs." => "1: -((p-x).n) stands where -((p-x).n)^2 belongs.";
         HalfPlaneOverlapNegated "ph-overlap-negated": "The overlap polynomial is negative where the particle overlaps." => "All three coefficients have the wrong sign.";
+        HalfPlaneOverlapSigned "ph-overlap-signed": "The overlap is a signed distance, which is right on one side of the boundary only." => "-(dx.n) t + r |n| + (p-x).n is used instead of r^2 (n.n) - ((p-x).n - t (dx.n))^2.";
+        HalfPlaneFirst "ph-first-half-plane": "The first half-plane is used instead of the one that is asked about." => "p and n of half-plane 0 are used instead of those of the pair's half-plane.";
+        HalfPlanePositionIndex "ph-position-index": "Positions are read at the particle's number, although each particle has two coordinates." => "x[i] is used instead of x[2 i].";
         HalfPlaneNoPoint "ph-no-point": "The half-plane's point is forgotten, as if it went through the origin." => "-x stands where p - x belongs.";
         HalfPlaneEndPosition "ph-end-position": "The formulas start from the position at the end of the step." => "x is taken from qe; it belongs to qs.";
         HalfPlaneEndForDisplacement "ph-end-for-displacement": "The end position stands where the displacement belongs." => "dx = qe stands where dx = qe - qs belongs.";
         HalfPlaneReversedOffset "ph-reversed-offset": "The vector from the particle to the half-plane is taken the other way round." => "x - p stands where p - x belongs.";
         HalfPlaneApproachNoSpeed "ph-approach-no-speed": "The approach lacks a factor, so it is right on one side only." => "-(dx.n) t + ((p-x).n) lacks the factor (dx.n).";
+        HalfPlaneApproachConstantNoSpeed "ph-approach-constant-no-speed": "The constant term of the approach lacks a factor." => "1: ((p-x).n) is used instead of ((p-x).n) (dx.n).";
         HalfPlaneApproachNegated "ph-approach-negated": "The approach has the wrong sign, so only separating particles collide." => "(dx.n)^2 t - ((p-x).n) (dx.n) stands where -(dx.n)^2 t + ((p-x).n) (dx.n) belongs.";
         HalfPlaneApproachSlopeSign "ph-approach-slope-sign": "The approach's slope has the wrong sign." => "t: (dx.n)^2 stands where -(dx.n)^2 belongs.";
         HalfPlaneApproachSlopeTwice "ph-approach-slope-twice": "The approach's slope has a factor that its constant term lacks." => "t: -2 (dx.n)^2 stands where -(dx.n)^2 belongs.";
         HalfPlaneApproachAtStart "ph-approach-at-start": "The approach is tested at the start of the step only." => "The term -(dx.n)^2 t is missing; only ((p-x).n) (dx.n) is there.";
         HalfPlaneApproachSpeedOnly "ph-approach-speed-only": "The approach looks at the velocity alone, not at the side." => "The constant (dx.n) stands where -(dx.n)^2 t + ((p-x).n) (dx.n) belongs.";
+        HalfPlaneApproachClosingOnly "ph-approach-closing-only": "The approach looks at the velocity alone, as if the particle were always in front." => "The constant -(dx.n) is used instead of -(dx.n)^2 t + ((p-x).n) (dx.n).";
         HalfPlaneNoApproach "ph-no-approach": "The approach is not tested: a constant stands in its place." => "The polynomial 1 stands where -(dx.n)^2 t + ((p-x).n) (dx.n) belongs.";
     }
     Wrong Handover {
@@ -158,6 +171,8 @@ rows! {
         ParticleParticleContactReversed "pp-contact-reversed": "The contact vector points from the second particle to the first." => "n = (x1 + t dx1) - (x2 + t dx2) stands where n = (x2 + t dx2) - (x1 + t dx1) belongs.";
         ParticleParticleContactFirstStill "pp-contact-first-still": "The contact vector forgets that the first particle moves." => "n = (x2 + t dx2) - x1 stands where n = (x2 + t dx2) - (x1 + t dx1) belongs.";
         ParticleParticleContactSecondStill "pp-contact-second-still": "The contact vector forgets that the second particle moves." => "n = x2 - (x1 + t dx1) stands where n = (x2 + t dx2) - (x1 + t dx1) belongs.";
+        ParticleParticleContactFirstAtEnd "pp-contact-first-at-end": "The contact vector takes the first particle at the end of the step." => "n = (x2 + t dx2) - (x1 + dx1) is used instead of n = (x2 + t dx2) - (x1 + t dx1).";
+        ParticleParticleContactSecondAtEnd "pp-contact-second-at-end": "The contact vector takes the second particle at the end of the step." => "n = (x2 + dx2) - (x1 + t dx1) is used instead of n = (x2 + t dx2) - (x1 + t dx1).";
         ParticleEdgeContactAtStart "pe-contact-at-start": "The contact vector is taken at the start of the step." => "t = 0 stands where the time of impact belongs.";
         ParticleEdgeContactAtEnd "pe-contact-at-end": "The contact vector is taken at the end of the step." => "t = 1 stands where the time of impact belongs.";
         ParticleEdgeContactAlphaAtStart "pe-contact-alpha-at-start": "The contact vector uses alpha at the start of the step." => "alpha(0) stands where alpha(t) belongs.";
@@ -169,6 +184,9 @@ rows! {
         ParticleEdgeContactReversed "pe-contact-reversed": "The contact vector points from the edge to the particle." => "n is negated; expected is x2(t) + alpha (x3(t) - x2(t)) - x1(t).";
         ParticleEdgeContactParticleStill "pe-contact-particle-still": "The contact vector forgets that the particle moves." => "x1 stands where x1 + t dx1 belongs.";
         ParticleEdgeContactEdgeStill "pe-contact-edge-still": "The contact vector forgets that the edge moves." => "x2 and x3 stand where x2 + t dx2 and x3 + t dx3 belong.";
+        ParticleEdgeContactParticleAtEnd "pe-contact-particle-at-end": "The contact vector takes the particle at the end of the step." => "x1 + dx1 is used instead of x1 + t dx1.";
+        ParticleEdgeContactEdgeAtEnd "pe-contact-edge-at-end": "The contact vector takes the edge at the end of the step." => "x2 + dx2 and x3 + dx3 are used instead of x2 + t dx2 and x3 + t dx3.";
+        ParticleEdgeContactNearestEnd "pe-contact-nearest-end": "The contact vector goes to the nearer endpoint, not to the closest point of the edge." => "0 or 1, whichever is nearer, is used instead of alpha(t).";
         HalfPlaneContactUndivided "ph-contact-undivided": "The contact vector ignores the normal's length, which is right for unit normals only." => "((p - x(t)).n) n stands where ((p - x(t)).n) / (n.n) n belongs.";
         HalfPlaneContactDividedByLength "ph-contact-divided-by-length": "The contact vector is divided by the normal's length, not by its square." => "((p - x(t)).n) / |n| n stands where ((p - x(t)).n) / (n.n) n belongs.";
         HalfPlaneContactIsNormal "ph-contact-is-normal": "The half-plane's normal is returned as the contact vector." => "n stands where ((p - x(t)).n) / (n.n) n belongs.";
@@ -199,10 +217,15 @@ rows! {
         DecisionAlphaMargin "decision-alpha-margin": "Rejects impacts close to the edge's ends." => "0.05 <= alpha(t) <= 0.95 is tested besides time <= 1.";
         DecisionApproachMargin "decision-approach-margin": "Objects that approach each other very slowly are let through." => "(dx1 - dx2).n > 1e-6 is tested besides time <= 1.";
         DecisionHalfPlaneOneSided "decision-half-plane-one-sided": "A half-plane stops particles from the side of its normal's back only." => "(x - p).n >= 0 rejects the impact; time <= 1 decides alone.";
+        DecisionFixedEdges "decision-fixed-edges": "Edges with two fixed ends never collide." => "isFixed(j) && isFixed(k) rejects the impact; time <= 1 decides alone.";
+        ParticleParticlePrediction "pp-detects-prediction": "Every round detects on the integrator's prediction, for pairs of particles only." => "scene.getX() is used instead of qe.";
+        ParticleEdgePrediction "pe-detects-prediction": "Every round detects on the integrator's prediction, for pairs of a particle and an edge only." => "scene.getX() is used instead of qe.";
+        HalfPlanePrediction "ph-detects-prediction": "Every round detects on the integrator's prediction, for half-planes only." => "scene.getX() is used instead of qe.";
         PairsBothOrders "pairs-both-orders": "Each pair of particles is looked at twice." => "The inner loop begins at j = 0; it begins at j = i + 1.";
         PairsNeighboursOnly "pairs-neighbours-only": "A particle is tested only against the next one in the list." => "The inner loop ends at j = i + 1; it runs to the last particle.";
         PairsEndpointsToo "pairs-endpoints-too": "Edges are tested against their own endpoints." => "The test i != edge.first && i != edge.second is missing.";
         PairsFixedSkipped "pairs-fixed-skipped": "Pairs of fixed objects are skipped, so their polynomials are missing." => "isFixed(i) && isFixed(j) leaves a pair out; every pair is tested.";
+        PairsFixedEdgesSkipped "pairs-fixed-edges-skipped": "Edges whose ends are both fixed are skipped, so their polynomials are missing." => "isFixed(j) && isFixed(k) leaves a pair out; every pair is tested.";
         PairsConnectedSkipped "pairs-connected-skipped": "Two particles that an edge connects are not tested against each other, so their polynomials are missing." => "A test for an edge between i and j leaves the pair out; every pair is tested.";
         PairsPruned "pairs-pruned": "Distant particles are sorted out by bounding circles, so their polynomials are missing." => "|x21| > r1 + r2 + |dx1| + |dx2| leaves a pair out; every pair is tested.";
         PairsFirstHalfPlaneOnly "pairs-first-half-plane-only": "Only the first half-plane is looked at." => "The loop over half-planes ends after index 0.";
@@ -250,6 +273,8 @@ rows! {
         ImpulsesDouble "loop-double": "The loop makes twice as many rounds as maxiters allows." => "2 maxiters rounds stand where maxiters belong.";
         ImpulsesCountContacts "loop-counts-contacts": "Contacts are counted against maxiters, not rounds." => "i += collisions.size() stands where i += 1 belongs.";
         ImpulsesDetectAfterLast "loop-detects-after-last": "A pass after the last round decides whether it succeeded." => "Round maxiters + 1 detects once more; after maxiters rounds with collisions the loop fails without another pass.";
+        ImpulsesDetectBefore "loop-detects-before": "A detection pass is made before the first round, too, whatever maxiters is." => "detectCollisions runs maxiters + 1 times at most; it runs maxiters times at most.";
+        ImpulsesTestBefore "loop-tests-before": "A detection pass is made before the first round, too, and ends the loop with success when it finds nothing." => "detectCollisions runs before round 1; the pass of round 1 is the first, and with maxiters = 0 there is none.";
         ImpulsesPassWhenZero "loop-pass-when-zero": "A detection pass is made although maxiters is zero." => "With maxiters = 0 there is no pass at all in the loop.";
         ImpulsesTestWhenZero "loop-test-when-zero": "With maxiters at zero the loop looks for collisions and reports success when it finds none." => "With maxiters = 0 the loop makes no pass and returns false.";
         ImpulsesSuccessWhenZero "loop-success-when-zero": "With maxiters at zero the loop reports success, so the geometric part never runs." => "With maxiters = 0 the loop returns false.";
@@ -271,6 +296,10 @@ rows! {
         ImpulsesListKept "loop-list-kept": "The list of collisions is never emptied, so that every round resolves those of the rounds before again." => "collisions.clear() is missing before detectCollisions.";
         ImpulsesDetectPrediction "loop-detects-prediction": "Every round detects on the integrator's prediction, not on the positions that the last round left." => "detectCollisions(qs, qe) stands where detectCollisions(qs, qm) belongs.";
         ImpulsesStartAdvances "loop-start-advances": "Later rounds detect from the last round's positions, not from the start of the step." => "detectCollisions(qe_i, qe_i+1) stands where detectCollisions(qs, qe_i+1) belongs.";
+        ImpulsesStartFollows "loop-start-follows": "Later rounds detect from where the round before detected to, not from the start of the step." => "detectCollisions(qe_i-1, qe_i) is used instead of detectCollisions(qs, qe_i).";
+        ImpulsesFromEnd "loop-from-end": "Impulses are computed as if the step began where it ends, so that contacts change nothing." => "applyImpulses(qe, qe, ...) is used instead of applyImpulses(qs, qe, ...).";
+        ImpulsesPositionsFromVelocities "loop-positions-from-velocities": "After a round positions are computed anew from the velocities." => "qm = qs + dt qdotm is used instead of qm += dt I / m.";
+        ImpulsesSameCountFails "loop-same-count-fails": "The loop gives up when a round finds as many contacts as the one before." => "return false stands before round maxiters is over.";
         ImpulsesCapped "loop-capped": "Changes of velocity are capped." => "min(|dv|, 0.5) stands where |dv| belongs.";
         ImpulsesReset "loop-reset": "When the rounds run out, positions and velocities are reset to the prediction." => "qefinal = qe and qdotefinal = qdote stand where the last round's result belongs.";
         ImpulsesVelocityRestored "loop-velocity-restored": "The loop keeps its positions but restores the predicted velocities." => "qdotefinal = qdote stands where the last round's velocities belong.";
@@ -293,6 +322,7 @@ rows! {
         GeometricMovesPrediction "geometric-moves-prediction": "The geometric part moves what the integrator predicted, not what the impulse rounds left." => "qm = qe of the integrator stands where qm = qe of the impulse rounds belongs.";
         GeometricNewZonesOnly "geometric-new-zones-only": "Zones that a round leaves as they were are not moved again." => "performFailsafe runs for zones of Z' that are not in Z; it runs for all of Z'.";
         GeometricGrownStay "geometric-grown-stay": "Zones that have grown are not moved again." => "performFailsafe runs for zones without a particle that was moved before; it runs for all of Z'.";
+        GeometricVelocitiesKept "geometric-velocities-kept": "The velocities that zones get are not taken over." => "qdotm = qdote of the impulse rounds is used instead of the zones' own velocities.";
         ZonesOneEndpoint "zones-one-endpoint": "A zone of a particle and an edge holds only one of the endpoints." => "{i, j} stands where {i, j, k} belongs.";
         ZonesOtherEndpoint "zones-other-endpoint": "A zone of a particle and an edge holds the second endpoint only, not the first." => "{i, k} stands where {i, j, k} belongs.";
         ZonesNextParticle "zones-next-particle": "A zone of a particle and an edge holds the first endpoint and the particle behind it in the list, as if that were the second one." => "{i, j, j + 1} stands where {i, j, k} belongs.";
@@ -323,6 +353,8 @@ rows! {
         FailsafeMomentumVelocity "failsafe-momentum-velocity": "The momentum is made of velocities where displacements belong." => "sum(m v) stands where sum(m dx) belongs.";
         FailsafeAngularVelocity "failsafe-angular-velocity": "The angular momentum is made of velocities where displacements belong." => "L = sum(m (xs - x_cm) x v) stands where L = sum(m (xs - x_cm) x (dx - dx_cm)) belongs.";
         FailsafeNoTranslation "failsafe-no-translation": "The centre of mass does not move." => "dx_cm is missing in x_cm + dx_cm + R (xs - x_cm).";
+        FailsafeShiftTwice "failsafe-shift-twice": "The centre of mass moves twice as far as it should." => "x_cm + 2 dx_cm + R (xs - x_cm) is used instead of x_cm + dx_cm + R (xs - x_cm).";
+        FailsafeRange "failsafe-range": "All particles between a zone's first and last one in the list are moved with it." => "The loop runs from the smallest to the largest number of Z, not over its members.";
         FailsafeAngularUnweighted "failsafe-angular-unweighted": "The angular momentum is not weighted with the masses." => "m is missing in L = sum(m (xs - x_cm) x (dx - dx_cm)).";
         FailsafeAngularOverwritten "failsafe-angular-overwritten": "The angular momentum is overwritten instead of summed." => "L = ... stands where L += ... belongs.";
         FailsafeAngularDoubled "failsafe-angular-doubled": "The angular momentum is overwritten, then doubled." => "L = ...; L += L stands where L += ... belongs.";
@@ -347,6 +379,7 @@ rows! {
         FailsafeDegrees "failsafe-degrees": "The angle is converted to degrees before sine and cosine." => "cos(w 180 / pi) stands where cos(w) belongs, and likewise sin.";
         FailsafeAnglePerStep "failsafe-angle-per-step": "The angle is multiplied by the step size once too often." => "w dt stands where w belongs.";
         FailsafePerpendicular "failsafe-perpendicular": "The perpendicular vector has its components exchanged without a change of sign." => "(b, a) stands where (-b, a) belongs.";
+        FailsafeCosineSine "failsafe-cos-sin": "Sine and cosine are exchanged." => "sin(w) and cos(w) stand in each other's places.";
         FailsafeTurnsEnd "failsafe-turns-end": "The predicted end positions are turned, not the start positions." => "xe - x_cm - dx_cm stands where xs - x_cm belongs.";
         FailsafeMassIndex "failsafe-mass-index": "The mass is read at the particle's index, although the array holds every mass twice." => "m[i] stands where m[2 i] belongs.";
         FailsafeMassCounter "failsafe-mass-counter": "The masses are read in the order of the zone, not of its particles." => "m[2 k] stands where m[2 i] belongs, i being the k-th particle of the zone.";

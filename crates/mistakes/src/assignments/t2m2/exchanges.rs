@@ -122,6 +122,11 @@ exchanges! {
         => "Half the radius is used" => "(R/2)^2 stands for R^2";
     "no-point" [PH] 4.0: |inputs| inputs.x[1] = NOTHING
         => "The half-plane's point is forgotten, as if the boundary went through the origin" => "-x stands for p - x";
+    "point-and-normal-swapped" [PH] 4.2: |inputs| {
+        inputs.x.swap(1, 2);
+        inputs.normal_square = inputs.normal().dot(inputs.normal());
+    }
+        => "The half-plane's point and its normal are exchanged" => "p and n stand in each other's places";
     "no-normal-square" [PH] 2.6: |inputs| inputs.normal_square = Bounded::exact(1.0)
         => "The radius term is right for unit normals only" => "r^2 stands for r^2 (n.n)";
     "normal-length" [PH] 2.7: |inputs| inputs.normal_square = root(inputs.normal_square)

@@ -5,7 +5,7 @@
 //! of bodies that have nothing to do with one another stand far apart in one scene, so that few runs show much.
 //!
 //! Where particles start and how far they go in a step are integers or small dyadic fractions, and the step is half a
-//! second, in the large ones a quarter. So the first step's polynomials have coefficients that can be checked by hand;
+//! second, in the large ones a quarter; in three it is no power of two, which tells velocities from displacements. So the first step's polynomials have coefficients that can be checked by hand;
 //! in the `drift` scenes those of every step have, because particles that are fixed and move are never pushed from
 //! their way (simulation.md 1). Gaps and displacements of the narrow ones are a half and about four of a millionth:
 //! whatever a program adds to a time or to the approach as a margin shows.
@@ -17,6 +17,7 @@ pub(crate) const PROBES: &[(&str, &str)] = &[
     ("drift-of-particles", include_str!("probes/drift-of-particles.xml")),
     ("drift-of-edges", include_str!("probes/drift-of-edges.xml")),
     ("slanted-half-planes", include_str!("probes/slanted-half-planes.xml")),
+    ("half-planes-all-around", include_str!("probes/half-planes-all-around.xml")),
     ("particles-meet", include_str!("probes/particles-meet.xml")),
     ("edges-struck", include_str!("probes/edges-struck.xml")),
     ("struck-while-falling", include_str!("probes/struck-while-falling.xml")),
@@ -29,6 +30,7 @@ pub(crate) const PROBES: &[(&str, &str)] = &[
     ("rounds-run-out", include_str!("probes/rounds-run-out.xml")),
     ("rounds-run-out-on-one", include_str!("probes/rounds-run-out-on-one.xml")),
     ("one-round-only", include_str!("probes/one-round-only.xml")),
+    ("rounds-of-equal-number", include_str!("probes/rounds-of-equal-number.xml")),
     ("rounds-under-a-constant-force", include_str!("probes/rounds-under-a-constant-force.xml")),
     ("tiny-edges", include_str!("probes/tiny-edges.xml")),
     ("zones-of-all-kinds", include_str!("probes/zones-of-all-kinds.xml")),
@@ -38,5 +40,6 @@ pub(crate) const PROBES: &[(&str, &str)] = &[
     ("zones-collect-rows", include_str!("probes/zones-collect-rows.xml")),
     ("zones-of-long-edges", include_str!("probes/zones-of-long-edges.xml")),
     ("zones-turn-little-and-far", include_str!("probes/zones-turn-little-and-far.xml")),
+    ("zones-in-other-steps", include_str!("probes/zones-in-other-steps.xml")),
     ("zones-under-drag", include_str!("probes/zones-under-drag.xml")),
 ];

@@ -1,6 +1,6 @@
 //! Misunderstandings that have a formula of their own.
-use super::{Inputs, Subject, formulas::readings};
-use fosssim_num::bounded::Bounded;
+use super::{Inputs, Subject, formulas::readings, inputs::root};
+use fosssim_num::bounded::{Bounded, Bounded2};
 
 /// A wrong polynomial, highest power first.
 pub struct Special {
@@ -33,6 +33,16 @@ pub const SPECIALS: &[Special] = &[
     },
     Special {
         subject: Subject::EdgeOverlap,
+        key: "overlap-constant-alpha",
+        sentence: "alpha is taken for constant in the overlap, so that the point of the edge that is closest at the start counts",
+        detail: "alpha is (x12.x32)/(x32.x32) at the start of the step and does not depend on t",
+        polynomial: |inputs| {
+            let (closing, n) = closest_at_start(inputs);
+            vec![-closing.dot(closing), 2.0 * closing.dot(n), inputs.square - n.dot(n)]
+        },
+    },
+    Special {
+        subject: Subject::EdgeOverlap,
         key: "radius-unscaled",
         sentence: "The radii are not multiplied by the edge's squared length when the denominator is cleared",
         detail: "R^2 stands for R^2 (x32 + t d32).(x32 + t d32)",
@@ -51,6 +61,16 @@ pub const SPECIALS: &[Special] = &[
         polynomial: |inputs| {
             let (w0, w1, e0, e1) = (inputs.x12(), inputs.d12(), inputs.x32(), inputs.d32());
             vec![-w1.dot(e1), -(w0.dot(e1) + w1.dot(e0)), Bounded::exact(1.0) - w0.dot(e0)]
+        },
+    },
+    Special {
+        subject: Subject::HalfPlaneOverlap,
+        key: "signed-distance",
+        sentence: "The overlap is a signed distance, which is right on one side of the boundary only",
+        detail: "the polynomial is -(dx.n) t + r |n| + (p-x).n, the difference of two lengths, expected that of their squares",
+        polynomial: |inputs| {
+            let n = inputs.normal();
+            vec![-inputs.d[0].dot(n), inputs.radii[0] * root(n.dot(n)) + inputs.x21().dot(n)]
         },
     },
     Special {
@@ -74,9 +94,14 @@ pub const SPECIALS: &[Special] = &[
 
 /// The approach of the particle and the point of the edge that was closest at the start.
 fn constant_alpha(inputs: &Inputs) -> Vec<Bounded> {
+    let (closing, n) = closest_at_start(inputs);
+    vec![-closing.dot(closing), closing.dot(n)]
+}
+
+/// Of the particle and the point of the edge that was closest at the start: how they close in on each other, and the
+/// vector from the one to the other.
+fn closest_at_start(inputs: &Inputs) -> (Bounded2, Bounded2) {
     let along = inputs.x32();
     let alpha = inputs.x12().dot(along) / along.dot(along);
-    let closing = inputs.d12() - alpha * inputs.d32();
-    let n = alpha * along - inputs.x12();
-    vec![-closing.dot(closing), closing.dot(n)]
+    (inputs.d12() - alpha * inputs.d32(), alpha * along - inputs.x12())
 }

@@ -16,9 +16,13 @@ pub(super) fn denied(scene: &Scene, scan: &Scan) -> Vec<String> {
     let kinds: Vec<PairKind> = samples().flat_map(|sample| right_kinds(scene, sample)).collect();
     let is_hybrid = matches!(scene.collision, Collision::Hybrid { .. });
     let is_done = |row: &&Row| match row.mistake {
-        Mistake::ParticleParticleEmpty | Mistake::ParticleEdgeEmpty | Mistake::HalfPlaneEmpty => {
-            row.kind_of_pair().is_some_and(|kind| kinds.contains(&kind))
-        }
+        Mistake::ParticleParticleEmpty
+        | Mistake::ParticleEdgeEmpty
+        | Mistake::HalfPlaneEmpty
+        | Mistake::ParticleParticleZero
+        | Mistake::ParticleEdgeZero
+        | Mistake::HalfPlaneZero => row.kind_of_pair().is_some_and(|kind| kinds.contains(&kind)),
+        Mistake::HandoverZeros => !kinds.is_empty(),
         Mistake::ImpulsesEmpty | Mistake::ImpulsesEmptySuccess => is_hybrid && samples().any(has_rounds),
         Mistake::GeometricEmpty => is_hybrid && samples().any(|sample| has_passes(sample) || moves(sample)),
         Mistake::FailsafeEmpty => is_hybrid && samples().any(moves),

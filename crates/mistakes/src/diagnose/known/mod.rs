@@ -181,6 +181,10 @@ fn plausibility(row: &Row) -> u8 {
         Mistake::ParticleParticleEmpty
         | Mistake::ParticleEdgeEmpty
         | Mistake::HalfPlaneEmpty
+        | Mistake::ParticleParticleZero
+        | Mistake::ParticleEdgeZero
+        | Mistake::HalfPlaneZero
+        | Mistake::HandoverZeros
         | Mistake::ImpulsesEmpty
         | Mistake::ImpulsesEmptySuccess
         | Mistake::GeometricEmpty

@@ -186,9 +186,21 @@ impl<'a> Search<'a> {
         best.1
     }
 
-    /// The rows of empty stages that the scene can show.
+    /// The rows of empty stages that the scene can show. A detection that is not written hands over nothing, or zeros.
     fn stages(&self) -> Vec<&'static Row> {
-        applicable(self.scene).filter(|row| is_empty_stage(row)).collect()
+        // The approach of bodies that do not move is zero, too, but never the overlap before it.
+        let logs_zeros = self.scan.wrong.iter().any(|kept| {
+            let are_zero = |list: &[f64]| list.iter().all(|&coefficient| coefficient == 0.0);
+            let all: Vec<bool> = kept.records.end.polynomials.iter().map(are_zero).collect();
+            all.windows(2).any(|two| two == [true, true])
+        });
+        let is_asked = |row: &&Row| match row.mistake {
+            Mistake::ParticleParticleEmpty | Mistake::ParticleEdgeEmpty | Mistake::HalfPlaneEmpty => !logs_zeros,
+            Mistake::ParticleParticleZero | Mistake::ParticleEdgeZero | Mistake::HalfPlaneZero => logs_zeros,
+            Mistake::HandoverZeros => false,
+            _ => is_empty_stage(row),
+        };
+        applicable(self.scene).filter(is_asked).collect()
     }
 
     /// The row that carries the set furthest beyond `reached`, how far, and those that do as well.

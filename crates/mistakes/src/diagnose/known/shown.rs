@@ -1,7 +1,10 @@
 //! Which rows of the catalogue a scene can show at all: no others are tried on it.
-use crate::student::{Area, Mistake, Row, RowKind, StepMistake, all_rows};
+use crate::{
+    diagnose::written::force_kinds,
+    student::{Area, Mistake, Row, RowKind, StepMistake, all_rows},
+};
 use fosssim_model::{
-    scene::{Collision, Force, Integrator, Scene},
+    scene::{Collision, Integrator, Scene},
     sim::{ByKind, PairKind, pairs},
     trace::Layout,
 };
@@ -51,16 +54,7 @@ fn shows(scene: &Scene, counts: &ByKind<usize>, row: &Row) -> bool {
 fn shows_in_states(scene: &Scene, counts: &ByKind<usize>, row: &Row) -> bool {
     let is_linear = scene.integrator == Integrator::LinearizedImplicitEuler;
     let is_implicit = is_linear || scene.integrator == Integrator::ImplicitEuler;
-    let has = |is_of_sort: fn(&Force) -> bool| scene.forces.iter().any(is_of_sort);
-    let has_force = |name: &str| match name {
-        "gravity" => has(|force| matches!(force, Force::SimpleGravity { .. })),
-        "constant" => has(|force| matches!(force, Force::Constant { .. })),
-        "drag" => has(|force| matches!(force, Force::Drag { .. })),
-        "gravitation" => has(|force| matches!(force, Force::Gravitation { .. })),
-        "vortex" => has(|force| matches!(force, Force::Vortex { .. })),
-        "spring" | "elastic" | "damping" | "velocity" => has(|force| matches!(force, Force::Spring { .. })),
-        _ => has(|force| matches!(force, Force::Spring { .. } | Force::Gravitation { .. })),
-    };
+    let has_force = |name: &str| scene.forces.iter().any(|force| force_kinds(name).contains(&force.kind()));
     let mut words = row.id.split('-');
     let (first, second) = (words.next().unwrap_or_default(), words.next().unwrap_or_default());
     let has_kind = |name: &str| match name {

@@ -68,6 +68,13 @@ impl Dictionary {
         same.fold(0.0, |sum, term| sum + term.weight)
     }
 
+    /// The two letters of a product, as products of their own; none of another one.
+    pub fn factors(&self, product: usize) -> Option<[usize; 2]> {
+        let &[one, two] = &self.products[product].letters[..] else { return None };
+        let alone = |letter: usize| self.products.iter().position(|entry| entry.letters == [letter]);
+        Some([alone(one)?, alone(two)?])
+    }
+
     /// The names of a product's letters, such as `e` and `h`.
     pub fn names(&self, product: usize) -> Vec<Cow<'static, str>> {
         self.products[product].letters.iter().map(|&index| self.letters[index].name.into()).collect()

@@ -25,7 +25,7 @@ pub use super::sampling::Sample;
 use super::{
     Detail, Explanation, PolynomialDetail, Weight,
     about::{About, OfPolynomials},
-    guess::{Guess, digest},
+    guess::{CoefficientGuess, Guess, digest},
     sampling::{ROUND_OFF, same_polynomial},
 };
 use crate::assignments::t2m2::{
@@ -40,7 +40,7 @@ use std::collections::BTreeMap;
 use study::{Candidate, PolynomialStudy};
 
 /// The greatest number of guesses about a polynomial that are kept besides the one that is told.
-const MOST_CLAIMS: usize = 32;
+const MOST_CLAIMS: usize = 128;
 
 /// The greatest number of other keys that an explanation tells.
 const MOST_OTHERS: usize = 5;
@@ -118,7 +118,7 @@ impl Suspect<'_> {
     /// nothing.
     fn claims<'a>(&self, guesses: impl Iterator<Item = &'a Candidate>) -> Vec<String> {
         let subject = self.study.subject;
-        let guesses = guesses.map(|guess| claim(subject, guess)).take(MOST_CLAIMS);
+        let guesses = guesses.flat_map(|guess| claims(subject, guess)).take(MOST_CLAIMS);
         let all: Vec<String> = guesses.chain(known_makers(&self.study)).collect();
         if all.is_empty() { vec![format!("{subject:?}//")] } else { all }
     }
@@ -126,7 +126,8 @@ impl Suspect<'_> {
     /// The explanation of this polynomial for itself; it has a guess.
     fn alone(&self) -> Explanation {
         let (best, others) = (&self.candidates[0], self.full());
-        let claims = std::iter::once(claim(self.study.subject, best)).chain(self.claims(others));
+        let first = claims(self.study.subject, best).swap_remove(0);
+        let claims = std::iter::once(first).chain(self.claims(others));
         let samples = self.study.cases.len() as u64;
         let equal = |other: &&Candidate| {
             let is_likely = other.cost <= best.cost + AS_LIKELY;
@@ -148,25 +149,30 @@ impl Suspect<'_> {
     }
 }
 
-/// The claim of a guess about a polynomial, in one word ([`Explanation::claims`]). The digest is of what the program
-/// does, without what it should do.
-fn claim(subject: Subject, candidate: &Candidate) -> String {
-    let guess = candidate.guess.word();
+/// The claims of a guess about a polynomial, one word each ([`Explanation::claims`]): one for each exact form that it
+/// may have. The digest is of what the program does, without what it should do.
+fn claims(subject: Subject, candidate: &Candidate) -> Vec<String> {
     if candidate.guess.is_general() {
-        return format!("{subject:?}/{guess}/");
+        return vec![format!("{subject:?}/{}/", candidate.guess.word())];
     }
-    let bare = |weight: &Weight| Weight { expected: 0.0, ..weight.clone() };
-    let form: Vec<PolynomialDetail> = candidate
-        .details
-        .iter()
-        .map(|detail| match detail {
-            PolynomialDetail::Weight(weight) => PolynomialDetail::Weight(bare(weight)),
-            PolynomialDetail::Alternative(weights) => PolynomialDetail::Alternative(weights.iter().map(bare).collect()),
-            other => other.clone(),
-        })
-        .collect();
+    let only = std::slice::from_ref(&candidate.details);
+    let forms = if candidate.forms.is_empty() { only } else { &candidate.forms };
+    forms.iter().map(|form| form_claim(subject, &candidate.guess, form)).collect()
+}
+
+/// The claim of one exact form. What is said of coefficients follows from it.
+pub(super) fn form_claim(subject: Subject, guess: &Guess, form: &[PolynomialDetail]) -> String {
+    let guess = match guess {
+        Guess::Coefficients { .. } => Guess::Coefficients { powers: Vec::new(), wrong: CoefficientGuess::Several },
+        other => other.clone(),
+    };
+    let bare = |detail: &PolynomialDetail| match detail {
+        PolynomialDetail::Weight(weight) => PolynomialDetail::Weight(Weight { expected: 0.0, ..weight.clone() }),
+        other => other.clone(),
+    };
+    let form: Vec<PolynomialDetail> = form.iter().map(bare).collect();
     // Factors are rounded, which measured ones need.
-    format!("{subject:?}/{guess}/{:016x}", digest(&format!("{:?} {form:.5?}", candidate.guess)))
+    format!("{subject:?}/{}/{:016x}", guess.word(), digest(&format!("{guess:?} {form:.5?}")))
 }
 
 /// The known mistakes of this kind's formulas, or of handing them over, that make this polynomial as it was logged, in
@@ -222,6 +228,7 @@ fn exchanged_inputs(study: &PolynomialStudy) -> Vec<Candidate> {
         Some(Candidate {
             guess: Guess::Exchange(exchange.key.into()),
             details: vec![PolynomialDetail::Exchange { key: exchange.key.into(), of_edges: false }],
+            forms: Vec::new(),
             cost: exchange.cost + if scaled { 1.5 } else { 0.0 },
             reproduced,
         })
@@ -236,6 +243,7 @@ fn misunderstandings(study: &PolynomialStudy) -> Vec<Candidate> {
         Some(Candidate {
             guess: Guess::Special(special.key.into()),
             details: vec![PolynomialDetail::Special(special.key.into())],
+            forms: Vec::new(),
             cost: if scaled { 3.5 } else { 2.5 },
             reproduced,
         })

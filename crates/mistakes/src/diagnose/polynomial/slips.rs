@@ -90,6 +90,7 @@ fn in_formula(study: &PolynomialStudy, formula: &Formula, reading: Reading) -> V
             found.push(Candidate {
                 guess: Guess::Quantity(trial.guess()),
                 details: vec![PolynomialDetail::StandsFor { reading, letter: letter.name.into(), stand }],
+                forms: Vec::new(),
                 cost: trial.cost() + if rescaled { 2.0 } else { 0.0 } + 0.1 * reading.number as f64,
                 reproduced,
             });

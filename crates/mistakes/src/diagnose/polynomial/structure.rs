@@ -28,7 +28,7 @@ pub(super) fn candidates(study: &PolynomialStudy) -> Vec<Candidate> {
 
 fn general(guess: ListGuess, detail: Option<PolynomialDetail>, cost: f64, reproduced: usize) -> Candidate {
     let details = detail.into_iter().collect();
-    Candidate { guess: Guess::List(guess), details, cost, reproduced }
+    Candidate { guess: Guess::List(guess), details, forms: Vec::new(), cost, reproduced }
 }
 
 /// Properties that need no prediction.
@@ -106,6 +106,17 @@ fn rearrangements(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     check(ListGuess::Negated, 1.0, &negated);
     check(ListGuess::ReversedNegated, 2.5, &|list| negated(&reversed(list)));
     check(ListGuess::TrailingZero, 2.5, &|list| list.iter().copied().chain([Bounded::exact(0.0)]).collect());
+    for degree in 1..=study.subject.degree() {
+        for other in 0..degree {
+            let detail = Some(PolynomialDetail::Exchanged { powers: [degree, other] });
+            let places = [degree, other].map(|power| study.subject.degree() - power);
+            found.extend(predicted(study, ListGuess::TwoExchanged, detail, 3.0, |case| {
+                let mut list = case.expected.clone();
+                list.swap(places[0], places[1]);
+                list
+            }));
+        }
+    }
 }
 
 /// Polynomials of the same detection in each other's places.

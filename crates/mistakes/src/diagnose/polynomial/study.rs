@@ -60,6 +60,8 @@ pub(super) struct Candidate {
     pub guess: Guess,
     /// Its exact form.
     pub details: Vec<PolynomialDetail>,
+    /// All exact forms that reproduce as much, the likeliest first; none where there is only one.
+    pub forms: Vec<Vec<PolynomialDetail>>,
     /// How unlikely it is: 1 to 3 for a change of the whole list, about 3 for one factor or sign, 4 for one wrong
     /// input, 5 and more for wrong letters and foreign terms; edits add up.
     pub cost: f64,

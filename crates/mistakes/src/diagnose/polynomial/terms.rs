@@ -27,6 +27,9 @@ const LARGEST_WEIGHT: f64 = 64.0;
 /// The greatest number of other explanations of a coefficient that are told.
 const MOST_ALTERNATIVES: usize = 3;
 
+/// The greatest number of forms of a polynomial that are compared with those of other traces.
+const MOST_FORMS: usize = 64;
+
 /// The cost of a coefficient that nothing explains.
 const UNKNOWN: f64 = 20.0;
 
@@ -40,12 +43,16 @@ enum Edit {
     Unknown,
 }
 
-/// A guess about one coefficient.
+/// The guesses about one coefficient, the likeliest first; at least one.
 struct FormulaGuess {
     power: usize,
-    edit: Edit,
-    cost: f64,
-    alternatives: Vec<Vec<(usize, f64)>>,
+    edits: Vec<(Edit, f64)>,
+}
+
+impl FormulaGuess {
+    fn edit(&self) -> &Edit {
+        &self.edits[0].0
+    }
 }
 
 /// The reasons for each wrong coefficient, where at least one of them can be explained.
@@ -58,13 +65,13 @@ fn candidate(study: &PolynomialStudy, formula: &'static Formula, reading: Readin
     let wrong = (0..=formula.degree).rev().filter(|&power| fitting.is_wrong(power));
     let guesses: Vec<FormulaGuess> = wrong.map(|power| fitting.explain(power)).collect();
     // A polynomial of which nothing is known needs no candidate.
-    guesses.iter().find(|guess| !matches!(guess.edit, Edit::Unknown))?;
+    guesses.iter().find(|guess| !matches!(guess.edit(), Edit::Unknown))?;
     let holds = |index: usize| {
         let case = &study.cases[index];
         case.logged.len() <= formula.degree + 1
             && (0..=formula.degree).all(|power| {
                 let guess = guesses.iter().find(|guess| guess.power == power);
-                let predicted = fitting.predicted(index, power, guess.map(|guess| &guess.edit));
+                let predicted = fitting.predicted(index, power, guess.map(FormulaGuess::edit));
                 coefficient_matches(predicted, logged_at(case.logged, power), case.scale)
             })
     };
@@ -75,7 +82,8 @@ fn candidate(study: &PolynomialStudy, formula: &'static Formula, reading: Readin
             wrong: fitting.wrong(&guesses),
         },
         details: guesses.iter().flat_map(|guess| fitting.details(guess)).collect(),
-        cost: guesses.iter().map(|guess| guess.cost).sum::<f64>() + 0.1 * reading.number as f64,
+        forms: fitting.forms(&guesses),
+        cost: guesses.iter().map(|guess| guess.edits[0].1).sum::<f64>() + 0.1 * reading.number as f64,
         reproduced,
     })
 }
@@ -130,23 +138,16 @@ impl<'a> Fitting<'a> {
         (0..self.study.cases.len()).all(|index| self.holds(index, power, self.predicted(index, power, Some(edit))))
     }
 
-    /// The likeliest explanation of a coefficient that holds for all samples.
+    /// The explanations of a coefficient that hold for all samples.
     fn explain(&self, power: usize) -> FormulaGuess {
-        let factor = self.factor(power);
-        let mut all = self.term_changes(power);
-        all.sort_by(|one, two| one.1.total_cmp(&two.1));
-        let mut all = all.into_iter();
-        let terms = all.next();
-        match (factor, terms) {
-            (Some((factor, cost)), terms) if terms.as_ref().is_none_or(|(_, other)| cost < *other) => {
-                FormulaGuess { power, edit: Edit::Factor(factor), cost, alternatives: Vec::new() }
-            }
-            (_, Some((changes, cost))) => {
-                let alternatives = all.take(MOST_ALTERNATIVES).map(|(changes, _)| changes).collect();
-                FormulaGuess { power, edit: Edit::Terms(changes), cost, alternatives }
-            }
-            (_, None) => FormulaGuess { power, edit: Edit::Unknown, cost: UNKNOWN, alternatives: Vec::new() },
+        let terms = self.term_changes(power).into_iter().map(|(changes, cost)| (Edit::Terms(changes), cost));
+        let factor = self.factor(power).map(|(factor, cost)| (Edit::Factor(factor), cost));
+        let mut edits: Vec<(Edit, f64)> = terms.chain(factor).collect();
+        edits.sort_by(|one, two| one.1.total_cmp(&two.1));
+        if edits.is_empty() {
+            edits.push((Edit::Unknown, UNKNOWN));
         }
+        FormulaGuess { power, edits }
     }
 
     /// A constant factor of the coefficient.
@@ -201,7 +202,17 @@ impl<'a> Fitting<'a> {
             }
             holds
         });
-        found
+        if found.is_empty() { self.lost_products(power) } else { found }
+    }
+
+    /// Terms whose letters are added instead of multiplied.
+    fn lost_products(&self, power: usize) -> Vec<(Vec<(usize, f64)>, f64)> {
+        let sums = (0..self.dictionary.products.len()).filter_map(|product| {
+            let weight = self.dictionary.weight(self.formula, power, product);
+            let letters = self.dictionary.factors(product)?;
+            (weight != 0.0).then(|| vec![(product, -weight), (letters[0], weight), (letters[1], weight)])
+        });
+        sums.filter(|sum| self.explains_all(power, &Edit::Terms(sum.clone()))).map(|sum| (sum, 6.0)).collect()
     }
 
     /// The degree in the displacements that the terms of a coefficient have.
@@ -267,15 +278,15 @@ impl Fitting<'_> {
     }
 
     fn wrong(&self, guesses: &[FormulaGuess]) -> CoefficientGuess {
-        let [FormulaGuess { power, edit, .. }] = guesses else { return CoefficientGuess::Several };
-        match edit {
+        let [guess] = guesses else { return CoefficientGuess::Several };
+        match guess.edit() {
             Edit::Factor(factor) if factor.value == 0.0 => CoefficientGuess::Zero,
             Edit::Factor(factor) if factor.value == -1.0 => CoefficientGuess::Sign,
             Edit::Factor(_) => CoefficientGuess::Factor,
             // A coefficient that nothing explains is no guess of its own (see `candidate`).
             Edit::Unknown => CoefficientGuess::Several,
             Edit::Terms(changes) => match changes[..] {
-                [change] => match self.weights(*power, change) {
+                [change] => match self.weights(guess.power, change) {
                     (0.0, _) => CoefficientGuess::TermForeign,
                     (_, 0.0) => CoefficientGuess::TermMissing,
                     (expected, actual) if expected == -actual => CoefficientGuess::TermSign,
@@ -286,17 +297,39 @@ impl Fitting<'_> {
         }
     }
 
+    /// All polynomials that the guesses make, the likeliest first.
+    fn forms(&self, guesses: &[FormulaGuess]) -> Vec<Vec<PolynomialDetail>> {
+        guesses.iter().fold(vec![Vec::new()], |forms, guess| {
+            let of_edit = |(edit, _): &(Edit, f64)| self.lines(guess.power, edit);
+            let edits: Vec<Vec<PolynomialDetail>> = guess.edits.iter().map(of_edit).collect();
+            let with = |form: &Vec<PolynomialDetail>| {
+                edits.iter().map(|lines| [form.as_slice(), lines].concat()).collect::<Vec<_>>()
+            };
+            forms.iter().flat_map(with).take(MOST_FORMS).collect()
+        })
+    }
+
+    fn lines(&self, power: usize, edit: &Edit) -> Vec<PolynomialDetail> {
+        match edit {
+            Edit::Factor(factor) => vec![PolynomialDetail::Factor { power, factor: factor.value }],
+            Edit::Unknown => vec![PolynomialDetail::Unknown { power }],
+            Edit::Terms(changes) => {
+                changes.iter().map(|change| PolynomialDetail::Weight(self.weight(power, *change))).collect()
+            }
+        }
+    }
+
     fn details(&self, guess: &FormulaGuess) -> Vec<PolynomialDetail> {
-        let power = guess.power;
-        let changes = match &guess.edit {
-            Edit::Factor(factor) => return vec![PolynomialDetail::Factor { power, factor: factor.value }],
-            Edit::Unknown => return vec![PolynomialDetail::Unknown { power }],
-            Edit::Terms(changes) => changes,
+        let as_well = |(edit, _): &(Edit, f64)| match edit {
+            Edit::Terms(changes) => {
+                let weights = changes.iter().map(|change| self.weight(guess.power, *change)).collect();
+                Some(PolynomialDetail::Alternative(weights))
+            }
+            _ => None,
         };
-        let weight = |change: &(usize, f64)| self.weight(power, *change);
-        let own = changes.iter().map(|change| PolynomialDetail::Weight(weight(change)));
-        let all = |changes: &Vec<(usize, f64)>| PolynomialDetail::Alternative(changes.iter().map(weight).collect());
-        own.chain(guess.alternatives.iter().map(all)).collect()
+        let is_of_terms = matches!(guess.edit(), Edit::Terms(_));
+        let others = guess.edits[1..].iter().filter(|_| is_of_terms).filter_map(as_well);
+        self.lines(guess.power, guess.edit()).into_iter().chain(others.take(MOST_ALTERNATIVES)).collect()
     }
 
     fn weight(&self, power: usize, change: (usize, f64)) -> Weight {

@@ -3,8 +3,8 @@ use crate::{
     assignments::t2m2::Subject,
     diagnose::is_named_in,
     diagnose::{
-        About, Detail, Explanation, Guess, NanStage, NotFinite, OfPolynomials, QuantityGuess, StageFault, WrongMotion,
-        WrongVectors, settled, several,
+        About, Detail, Explanation, Guess, ListGuess, NanStage, NotFinite, OfPolynomials, QuantityGuess, StageFault,
+        WrongMotion, WrongVectors, settled, several,
     },
 };
 use fosssim_model::sim::PairKind;
@@ -94,7 +94,7 @@ fn what_is_named_is_tried_on_all_traces_before_a_second_is() {
     assert_eq!(heads(&traces), words(&[(&half, 7)]));
     // Each of them says so.
     let likely = several(traces.iter().map(Vec::as_slice), &[]);
-    assert_eq!(settled(&traces[6], &likely).explanations[0].said(), half.said());
+    assert_eq!(settled(&traces[6], &likely, &[]).explanations[0].said(), half.said());
     // And a mistake of the catalogue explains polynomials that are as it makes them, whatever they look like alone.
     let mut like = letter(Subject::ParticleOverlap, "other");
     like.claims.push("ParticleOverlap/pp-one-radius/".to_owned());
@@ -139,7 +139,7 @@ fn forms_that_differ_have_their_polynomial_in_common() {
     let About::Polynomials { subjects, found } = &likely[0].about else { panic!("{likely:?}") };
     assert_eq!(*subjects, [Subject::HalfPlaneOverlap]);
     assert_eq!(*found, OfPolynomials::Guess(Guess::Quantity(QuantityGuess::Other)));
-    assert_eq!(settled(&traces[1], &likely).explanations[0].said(), forms[1].said());
+    assert_eq!(settled(&traces[1], &likely, &[]).explanations[0].said(), forms[1].said());
 }
 
 /// Polynomials that are told beside something else are not told again.
@@ -172,6 +172,62 @@ fn what_a_trace_needs_besides_is_told() {
     assert_eq!(heads(&traces), words(&[(&spring, 4), (&drag, 1)]));
 }
 
+/// Two mistakes are rivals where they explain the same traces, not as many.
+#[test]
+fn mistakes_of_different_traces_are_no_rivals() {
+    let (one, other) = (row("loop-one-more", &[]), row("failsafe-no-rotation", &[]));
+    let told = several([&[one.clone()][..], std::slice::from_ref(&other)], &[]);
+    assert_eq!(told.len(), 2, "{told:#?}");
+    assert!(told.iter().all(|one| one.same_as.is_empty()), "{told:#?}");
+    // Nor are mistakes that explain a trace together only.
+    let told = several([[one.clone(), other.clone()].as_slice()], &[]);
+    assert!(told.len() == 2 && told.iter().all(|one| one.same_as.is_empty()), "{told:#?}");
+    // Each trace that allows both leaves them side by side.
+    let both = Explanation { same_as: vec![other.key.clone()], ..one.clone() };
+    let told = several([std::slice::from_ref(&both); 3], &[]);
+    assert_eq!((told[0].key.as_str(), &told[0].same_as[..]), ("loop-one-more", std::slice::from_ref(&other.key)));
+    let told = several([&[both][..], std::slice::from_ref(&one)], &[]);
+    assert_eq!((told.len(), told[0].same_as.len()), (1, 0), "one trace knows which: {told:#?}");
+}
+
+/// What each trace allows among others is what all of them say together.
+#[test]
+fn forms_are_intersected_over_traces() {
+    let of = |forms: [&str; 2]| {
+        let claims = forms.map(|form| format!("EdgeOverlap/terms/{form}"));
+        let found = OfPolynomials::Guess(Guess::Quantity(QuantityGuess::Other));
+        let about = About::Polynomials { subjects: vec![Subject::EdgeOverlap], found };
+        said("letter", about, (5, 5), &claims.each_ref().map(String::as_str))
+    };
+    let traces = [of(["a", "b"]), of(["c", "b"]), of(["b", "d"])].map(|one| vec![one]);
+    let told = several(traces.iter().map(Vec::as_slice), &[]);
+    assert_eq!(told.iter().map(Explanation::said).collect::<Vec<_>>(), ["EdgeOverlap/terms/b"]);
+    assert!(traces.iter().all(|list| is_named_in(&told[0], list)));
+}
+
+/// Detections of which every coefficient is zero are not written yet, as the loop is.
+#[test]
+fn what_the_starter_leaves_is_not_written_yet() {
+    let zero = |subjects: &[Subject]| {
+        let found = OfPolynomials::Guess(Guess::List(ListGuess::AllZero));
+        said("all-zero", About::Polynomials { subjects: subjects.to_vec(), found }, (5, 5), &[])
+    };
+    let planes = [Subject::HalfPlaneOverlap, Subject::HalfPlaneApproach];
+    let traces = [vec![row("loop-empty-succeeds", &[])], vec![zero(&planes)], vec![zero(&planes)]];
+    let told = several(traces.iter().map(Vec::as_slice), &[]);
+    assert!(told.len() == 1 && told[0].is_unfinished(), "{told:#?}");
+    assert_eq!(told[0].same_as, ["ph-zero", "loop-empty-succeeds"]);
+}
+
+/// A stage that may be empty, or mistaken in another way by all traces, is told as both.
+#[test]
+fn an_empty_stage_has_rivals_too() {
+    let rival = "loop-always-succeeds".to_owned();
+    let trace = [Explanation { same_as: vec![rival.clone()], ..row("geometric-empty", &[]) }];
+    let told = several([&trace[..]; 3], &[]);
+    assert_eq!((told.len(), told[0].key.as_str(), &told[0].same_as[..]), (1, "geometric-empty", &[rival][..]));
+}
+
 /// A mistake that right traces speak against makes room for another one, with the exact form of that.
 #[test]
 fn another_mistake_has_its_own_exact_form() {
@@ -187,7 +243,7 @@ fn another_mistake_has_its_own_exact_form() {
 }
 
 #[test]
-fn where_numbers_end_comes_first() {
+fn where_numbers_end_comes_behind_what_is_proven() {
     let end = |step, stage| {
         let found = NotFinite { step: Some(step), stage, is_nan: true, ends: false };
         said(Explanation::NOT_FINITE, About::NotFinite(found), (0, 0), &[])
@@ -199,8 +255,8 @@ fn where_numbers_end_comes_first() {
         vec![end(9, NanStage::Zones)],
     ];
     let told = several(traces.iter().map(Vec::as_slice), &[]);
-    assert_eq!(told.iter().map(Explanation::said).collect::<Vec<_>>(), [end(1, NanStage::Zones).said(), first.said()]);
-    assert!(matches!(told[0].about, About::NotFinite(NotFinite { step: None, .. })));
-    let of_third = settled(&traces[2], &told).explanations;
+    assert_eq!(told.iter().map(Explanation::said).collect::<Vec<_>>(), [first.said(), end(1, NanStage::Zones).said()]);
+    assert!(matches!(told[1].about, About::NotFinite(NotFinite { step: None, .. })));
+    let of_third = settled(&traces[2], &told, &[]).explanations;
     assert!(matches!(of_third[0].about, About::NotFinite(NotFinite { step: Some(9), .. })), "{of_third:?}");
 }

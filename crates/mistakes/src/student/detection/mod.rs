@@ -38,6 +38,18 @@ fosssim_model::drops_leading!();
 /// The parts of the assignment whose mistakes are made in contact vectors.
 const VECTORS: &[Area] = &[Area::ContactVector, Area::Handover];
 
+/// The mistakes that reject a contact whose time is right.
+const REJECTIONS: &[Mistake] = &[
+    Mistake::DecisionOverlapAtEnd,
+    Mistake::DecisionOverlapAtStart,
+    Mistake::DecisionAlphaAtStart,
+    Mistake::DecisionAlphaAtEnd,
+    Mistake::DecisionAlphaMargin,
+    Mistake::DecisionApproachMargin,
+    Mistake::DecisionHalfPlaneOneSided,
+    Mistake::DecisionFixedEdges,
+];
+
 /// The steps that the root searches of one pair usually take at most.
 const USUAL_SEARCH: u64 = 128;
 
@@ -50,11 +62,21 @@ impl Encounter {
         let (student, all) = (world.student, world.scene.particles.len());
         let (kind, _) = pair.object.numbers();
         let other = if let Object::Particle(other) = pair.object { other } else { pair.particle };
+        let slip = IndexSlip::of(student, kind);
         let body = |role: usize, index: usize| {
-            let start = frame.point(at(q_start, index), at(q_start, pair.particle));
-            let end = frame.point(at(q_end, index), at(q_end, pair.particle));
+            let place = |list: &[f64]| {
+                if slip.is_single { Vec2::new(list[index], list[index + 1]) } else { at(list, index) }
+            };
+            let start = frame.point(place(q_start), at(q_start, pair.particle));
+            let end = frame.point(place(q_end), at(q_end, pair.particle));
             let partner = if role == 0 { other } else { pair.particle };
             let radius = student.index(Place::SeenRadius { kind, role }, index, partner, all);
+            let (_, number) = pair.object.numbers();
+            let radius = match slip.radius {
+                Some(RadiusSlip::Next) => (radius + 1) % all,
+                Some(RadiusSlip::OfObject) if role == 0 => number % all,
+                _ => radius,
+            };
             let displacement = student.vector(Place::SeenMotion { kind, role }, end - start);
             MovingBody { start, displacement, radius: world.scene.particles[radius].radius }
         };
@@ -69,9 +91,16 @@ impl Encounter {
                 let second = student.index(Place::SeenEnd { role: 2 }, edge.second, edge.first, all);
                 let measured = if student.makes(Mistake::ParticleEdgeFirstEdgeRadius) { 0 } else { index };
                 let measured = student.index(Place::SeenRadius { kind, role: 1 }, measured, 0, world.scene.edges.len());
-                Self::Edge([particle, body(1, first), body(2, second)], world.scene.edges[measured].radius)
+                let bodies = [particle, body(1, first), body(2, second)];
+                let radius = match student.mistake_in(&[Area::ParticleEdge]) {
+                    Some(Mistake::ParticleEdgeFirstEndRadius) => bodies[1].radius,
+                    Some(Mistake::ParticleEdgeSecondEndRadius) => bodies[2].radius,
+                    _ => world.scene.edges[measured].radius,
+                };
+                Self::Edge(bodies, radius)
             }
             Object::HalfPlane(index) => {
+                let index = if student.makes(Mistake::HalfPlaneFirst) { 0 } else { index };
                 let index = student.index(Place::SeenHalfPlane, index, 0, world.scene.half_planes.len());
                 let plane = world.scene.half_planes[index];
                 let point = frame.point(plane.point, at(q_start, pair.particle));
@@ -123,6 +152,46 @@ impl Encounter {
     }
 }
 
+/// The lists that a program reads at a wrong index for pairs of a kind.
+struct IndexSlip {
+    /// Positions at the particle's number, as if each had one coordinate.
+    is_single: bool,
+    radius: Option<RadiusSlip>,
+}
+
+/// The index at which a radius is read.
+enum RadiusSlip {
+    /// The next particle's.
+    Next,
+    /// The number of the other object.
+    OfObject,
+}
+
+impl IndexSlip {
+    fn of(student: Student, kind: usize) -> Self {
+        let area = [Area::ParticleParticle, Area::ParticleEdge, Area::ParticleHalfPlane][kind];
+        let (is_single, radius) = match student.mistake_in(&[area]) {
+            Some(
+                Mistake::ParticleParticlePositionIndex
+                | Mistake::ParticleEdgePositionIndex
+                | Mistake::HalfPlanePositionIndex,
+            ) => (true, None),
+            Some(Mistake::ParticleParticleNextRadius) => (false, Some(RadiusSlip::Next)),
+            Some(Mistake::ParticleEdgeRadiusIndex | Mistake::HalfPlaneRadiusIndex) => {
+                (false, Some(RadiusSlip::OfObject))
+            }
+            _ => (false, None),
+        };
+        Self { is_single, radius }
+    }
+}
+
+/// Whether pairs of this kind are looked at on the integrator's prediction.
+fn is_on_prediction(student: Student, kind: usize) -> bool {
+    let all = [Mistake::ParticleParticlePrediction, Mistake::ParticleEdgePrediction, Mistake::HalfPlanePrediction];
+    student.makes(all[kind])
+}
+
 /// The coordinates for this pair. A half-plane that moves has no formulas, so nobody moves along with its particle.
 fn axes_of(student: Student, pair: Pair) -> Axes {
     match (Axes::of(student), pair.object) {
@@ -160,7 +229,9 @@ pub fn detect(
     log: &mut StepLog,
 ) -> Result<Option<Contact>, StepFailure> {
     let student = world.student;
-    let encounter = Encounter::new(world, pair, q_start, q_end);
+    let is_old = is_on_prediction(student, pair.object.numbers().0);
+    let prediction = if is_old { log.prediction.clone() } else { None };
+    let encounter = Encounter::new(world, pair, q_start, prediction.as_deref().unwrap_or(q_end));
     if student.makes(Mistake::PairsPruned) && out_of_reach(&encounter) {
         return Ok(None);
     }
@@ -215,7 +286,7 @@ pub fn detect(
     if matches!(encounter, Encounter::Edge(..)) && length(n) == 0.0 {
         return Ok(None);
     }
-    if rejected(student, &encounter, time) {
+    if rejected(student, &encounter, time) || (student.makes(Mistake::DecisionFixedEdges) && is_held(world, pair)) {
         return Ok(None);
     }
     match student.mistake_in(&[Area::ContactVector]) {
@@ -251,7 +322,9 @@ pub fn pass(world: &World, q_start: &[f64], q_end: &[f64], log: &mut StepLog) ->
 
 /// Whether a time of impact lies within the step.
 fn within_step(student: Student, time: f64, time_step: f64) -> bool {
-    match student.mistake_in(&[Area::Decision, Area::Process]) {
+    let is_of_time =
+        |mistake: &Mistake| [Area::Decision, Area::Process].contains(&mistake.area()) && !REJECTIONS.contains(mistake);
+    match student.mistakes().find(is_of_time) {
         Some(Mistake::DecisionOpenEnd) => time < 1.0,
         Some(Mistake::DecisionOpenStart) => 0.0 < time && time <= 1.0,
         Some(Mistake::DecisionOpenInterval) => 0.0 < time && time < 1.0,
@@ -267,7 +340,7 @@ fn within_step(student: Student, time: f64, time_step: f64) -> bool {
 
 /// The further tests that some programs make, and should not.
 fn rejected(student: Student, encounter: &Encounter, time: f64) -> bool {
-    match (student.mistake_in(&[Area::Decision, Area::Process]), encounter) {
+    match (student.mistake_among(REJECTIONS), encounter) {
         (Some(Mistake::DecisionOverlapAtEnd), _) => length(encounter.contact_vector(student, 1.0)) >= encounter.reach(),
         (Some(Mistake::DecisionOverlapAtStart), _) => {
             time == 0.0 && length(encounter.contact_vector(student, 0.0)) < encounter.reach()
@@ -283,6 +356,13 @@ fn rejected(student: Student, encounter: &Encounter, time: f64) -> bool {
         }
         _ => false,
     }
+}
+
+/// Whether the pair's edge has two fixed ends.
+fn is_held(world: &World, pair: Pair) -> bool {
+    let Object::Edge(index) = pair.object else { return false };
+    let edge = world.scene.edges[index];
+    world.fixed(edge.first) && world.fixed(edge.second)
 }
 
 /// Whether the particles' paths stay far apart, judged by bounding circles. Nobody asked for this.

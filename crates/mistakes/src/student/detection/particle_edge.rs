@@ -220,7 +220,14 @@ fn alpha_below_one(student: Student, bodies: &[MovingBody; 3], dots: DotProducts
 /// From the particle to the closest point of the line at time `t`.
 pub fn contact_vector(student: Student, bodies: &[MovingBody; 3], t: f64) -> Vec2 {
     let mistake = student.mistake_in(VECTORS);
-    let [one, two, three] = bodies;
+    let held = |body: MovingBody| MovingBody { start: body.end(), displacement: Vec2::zeros(), ..body };
+    let [mut one, mut two, mut three] = *bodies;
+    match mistake {
+        Some(Mistake::ParticleEdgeContactParticleAtEnd) => one = held(one),
+        Some(Mistake::ParticleEdgeContactEdgeAtEnd) => (two, three) = (held(two), held(three)),
+        _ => {}
+    }
+    let bodies = &[one, two, three];
     let t = match mistake {
         Some(Mistake::ParticleEdgeContactAtStart) => 0.0,
         Some(Mistake::ParticleEdgeContactAtEnd) => 1.0,
@@ -232,6 +239,7 @@ pub fn contact_vector(student: Student, bodies: &[MovingBody; 3], t: f64) -> Vec
         Some(Mistake::ParticleEdgeContactAlphaAtEnd) => alpha(bodies, 1.0),
         Some(Mistake::ParticleEdgeContactAlphaMiddle) => 0.5,
         Some(Mistake::ParticleEdgeContactFromOtherEnd) => 1.0 - alpha(bodies, t),
+        Some(Mistake::ParticleEdgeContactNearestEnd) => f64::from(u8::from(alpha(bodies, t) > 0.5)),
         Some(Mistake::ParticleEdgeContactClamped) => alpha(bodies, t).clamp(0.0, 1.0),
         Some(Mistake::ParticleEdgeContactFirstEnd) => 0.0,
         Some(Mistake::ParticleEdgeContactSecondEnd) => 1.0,

@@ -34,6 +34,7 @@ pub fn polynomials(student: Student, one: &MovingBody, point: Vec2, normal: Vec2
     let overlap = match mistake {
         Some(Mistake::WideArithmetic) => arithmetic::particle_half_plane::<Wide>(one, point, normal).swap_remove(0),
         Some(Mistake::RearrangedHalfPlane) => rearranged_overlap(one, s, w, q),
+        Some(Mistake::HalfPlaneOverlapSigned) => vec![-s, one.radius * q.dot(&q).sqrt() + w],
         _ => overlap(student, one.radius, s, w, q),
     };
     vec![overlap, approach(student, s, w)]
@@ -87,7 +88,9 @@ fn approach(student: Student, s: f64, w: f64) -> Vec<f64> {
         Some(Mistake::HalfPlaneApproachSlopeSign) => vec![s * s, w * s],
         Some(Mistake::HalfPlaneApproachSlopeTwice) => vec![-2.0 * s * s, w * s],
         Some(Mistake::HalfPlaneApproachAtStart) => vec![w * s],
+        Some(Mistake::HalfPlaneApproachConstantNoSpeed) => vec![-s * s, w],
         Some(Mistake::HalfPlaneApproachSpeedOnly) => vec![s],
+        Some(Mistake::HalfPlaneApproachClosingOnly) => vec![-s],
         Some(Mistake::HalfPlaneNoApproach) => vec![1.0],
         _ => vec![-s * s, w * s],
     }

@@ -31,10 +31,15 @@ pub fn polynomials(student: Student, one: &MovingBody, two: &MovingBody) -> Vec<
         Some(Mistake::ParticleParticleFirstStill) => two.displacement,
         Some(Mistake::ParticleParticleSecondStill) => -one.displacement,
         Some(Mistake::ParticleParticleEndForDisplacement) => two.end() - one.end(),
+        Some(Mistake::ParticleParticleDisplacementsSwapped) => one.displacement - two.displacement,
         _ => two.displacement - one.displacement,
     };
     let e = match mistake {
-        Some(Mistake::RearrangedParticleParticle | Mistake::ParticleParticleSecondStill) => -d,
+        Some(
+            Mistake::RearrangedParticleParticle
+            | Mistake::ParticleParticleSecondStill
+            | Mistake::ParticleParticleDisplacementsSwapped,
+        ) => -d,
         _ => one.displacement - two.displacement,
     };
     let overlap = match mistake {
@@ -116,6 +121,8 @@ pub fn contact_vector(student: Student, one: &MovingBody, two: &MovingBody, t: f
         Some(Mistake::ParticleParticleContactReversed) => one.at(t) - two.at(t),
         Some(Mistake::ParticleParticleContactFirstStill) => two.at(t) - one.start,
         Some(Mistake::ParticleParticleContactSecondStill) => two.start - one.at(t),
+        Some(Mistake::ParticleParticleContactFirstAtEnd) => two.at(t) - one.end(),
+        Some(Mistake::ParticleParticleContactSecondAtEnd) => two.end() - one.at(t),
         Some(Mistake::ExtendedPrecision) => arithmetic::between_particles::<Wide>(one, two, t),
         Some(Mistake::FusedArithmetic) => arithmetic::between_particles::<Fused>(one, two, t),
         Some(Mistake::ContactOtherFormula) => (two.start - one.start) + t * (two.displacement - one.displacement),

@@ -65,7 +65,7 @@ pub fn details(explanation: &Explanation) -> Vec<String> {
             Detail::Look(area) => Some(look(*area).to_owned()),
             Detail::Letters(kinds) => letters::of(&lines, kinds),
             Detail::Polynomial(detail) => Some(polynomials::detail(detail)),
-            Detail::Stage(detail) => Some(stages::detail(detail)),
+            Detail::Stage(detail) => stages::detail(detail),
             Detail::Force { term, weight } => Some(forces::detail(*term, *weight)),
         };
         lines.extend(line);
@@ -103,6 +103,10 @@ fn empty_stage(row: &Row) -> &'static str {
         Mistake::ParticleParticleEmpty => "the particle-particle detection, which logs nothing",
         Mistake::ParticleEdgeEmpty => "the particle-edge detection, which logs nothing",
         Mistake::HalfPlaneEmpty => "the particle-half-plane detection, which logs nothing",
+        Mistake::ParticleParticleZero => "the particle-particle detection, whose coefficients are all zero",
+        Mistake::ParticleEdgeZero => "the particle-edge detection, whose coefficients are all zero",
+        Mistake::HalfPlaneZero => "the particle-half-plane detection, whose coefficients are all zero",
+        Mistake::HandoverZeros => "all detections, whose coefficients are zero",
         Mistake::ImpulsesEmpty | Mistake::ImpulsesEmptySuccess => "the impulse loop",
         Mistake::GeometricEmpty => "the geometric part",
         _ => "the rigid failsafe",

@@ -47,6 +47,7 @@ const fn of_list(guess: ListGuess) -> &'static str {
         ListGuess::Reversed => "The coefficients are in the wrong order, lowest power first",
         ListGuess::Negated => "The whole polynomial has the wrong sign",
         ListGuess::ReversedNegated => "The coefficients are in the wrong order and have the wrong sign",
+        ListGuess::TwoExchanged => "Two coefficients stand in each other's places",
         ListGuess::TrailingZero => "A zero is appended, which raises the degree by one",
         ListGuess::OtherPolynomial => "Polynomials of a pair stand in each other's places",
         ListGuess::OtherPolynomialNegated => {
@@ -113,6 +114,9 @@ pub(super) fn detail(detail: &PolynomialDetail) -> String {
         PolynomialDetail::SinglePrecision => "every value is a float".to_owned(),
         PolynomialDetail::InPlaceOf { stands, belongs } => {
             format!("the {} polynomial stands where {} belongs", stands.name(), belongs.name())
+        }
+        PolynomialDetail::Exchanged { powers: [one, other] } => {
+            format!("the coefficients of t^{one} and t^{other} stand in each other's places")
         }
         PolynomialDetail::LastOnly(1) => "only the constant coefficient is there".to_owned(),
         PolynomialDetail::LastOnly(length) => format!("only the last {length} coefficients are there"),

@@ -212,9 +212,9 @@ const fn plural(quantity: Quantity) -> &'static str {
     }
 }
 
-/// A line of the exact form.
-pub(super) fn detail(detail: &StageDetail) -> String {
-    match detail {
+/// A line of the exact form; nothing where a number would say nothing.
+pub(super) fn detail(detail: &StageDetail) -> Option<String> {
+    Some(match detail {
         StageDetail::Order => {
             "per particle: the particles behind it, the edges that it is no end of, the half-planes".to_owned()
         }
@@ -224,6 +224,9 @@ pub(super) fn detail(detail: &StageDetail) -> String {
         StageDetail::Impacts { right: true, count, low, high } => {
             format!("of those that are right ({count}): {low:.4} to {high:.4}")
         }
+        StageDetail::Vectors(Ratios::All(ratio)) if is(*ratio, 1.0) => return None,
+        StageDetail::Vectors(Ratios::All(ratio)) if is(*ratio, -1.0) => "it points the opposite way".to_owned(),
+        StageDetail::Vectors(Ratios::Between(..)) => "its length differs from contact to contact".to_owned(),
         StageDetail::Vectors(ratios) => format!("{} as long along the right one", times(*ratios)),
         StageDetail::VectorsOff(part) => format!("off by at most {part:.1e} of its length"),
         StageDetail::Times(ratios) => format!("{} what they should be", times(*ratios)),
@@ -232,7 +235,8 @@ pub(super) fn detail(detail: &StageDetail) -> String {
             "the time of impact goes into contact vector and response as the root finder returns it".to_owned()
         }
         StageDetail::Passes { expected, actual, most } => {
-            format!("{actual} detection passes where {expected} belong, with maxiters {most}")
+            let passes = if *actual == 1 { "pass" } else { "passes" };
+            format!("{actual} detection {passes} instead of {expected}, with maxiters {most}")
         }
         StageDetail::Change { changed, amount, across, wrong, of } => {
             let amount = match amount {
@@ -245,13 +249,25 @@ pub(super) fn detail(detail: &StageDetail) -> String {
             let body = body(changed);
             format!("{place}: the {quantity} of {body} changes {amount}{across} (in {wrong} of {of} isolated contacts)")
         }
-        StageDetail::OfZones { count, of } => format!("so it is with {count} of {of} zones of first rounds"),
+        StageDetail::OfZones { count, of } => format!("in {count} of {of} zones of the first round"),
+        StageDetail::Stopped(Ratios::All(ratio)) if is(*ratio, 1.0) => "they keep the velocity from before".to_owned(),
         StageDetail::Stopped(ratios) => format!("{} their velocity before", times(*ratios)),
+        StageDetail::CentreMoves(Ratios::All(ratio)) if is(*ratio, 0.0) => "it does not move".to_owned(),
+        StageDetail::CentreMoves(Ratios::Between(..)) => "how far it moves differs from zone to zone".to_owned(),
         StageDetail::CentreMoves(ratios) => format!("it moves {} as far", times(*ratios)),
         StageDetail::CentreDirection => "its direction is wrong, too".to_owned(),
+        StageDetail::Turns(Ratios::All(ratio) | Ratios::Between(_, ratio)) if ratio.abs() < 1e-3 => {
+            "they hardly turn".to_owned()
+        }
+        StageDetail::Turns(Ratios::Between(..)) => "how far they turn differs from zone to zone".to_owned(),
         StageDetail::Turns(ratios) => format!("they turn {} as far", times(*ratios)),
         StageDetail::Velocities(ratios) => format!("{} the motion over the step size", times(*ratios)),
-    }
+    })
+}
+
+/// Whether a measured ratio is this one.
+fn is(ratio: f64, value: f64) -> bool {
+    (ratio - value).abs() < 1e-9
 }
 
 /// Ratios in words: "1.5 times" where they agree, else their range.

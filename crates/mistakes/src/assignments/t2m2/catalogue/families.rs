@@ -34,6 +34,15 @@ const ONE_IS_ENOUGH: FamilyCell = No("it holds a tolerance of the rules, for whi
 const PAIRS: MistakeFamily = MistakeFamily {
     sides: &["pp-", "pe-", "ph-"],
     rows: &[
+        (
+            "displacements reversed",
+            &[
+                Is("pp-displacements-swapped"),
+                No("told by what it makes of all inputs"),
+                No("told by what it makes of all inputs"),
+            ],
+        ),
+        ("positions' index", &[Is("pp-position-index"), Is("pe-position-index"), Is("ph-position-index")]),
         ("left empty", &[Is("pp-empty"), Is("pe-empty"), Is("ph-empty")]),
         ("all zero", &[Is("pp-zero"), Is("pe-zero"), Is("ph-zero")]),
         ("end positions", &[Is("pp-end-positions"), Is("pe-end-positions"), Is("ph-end-position")]),
@@ -60,14 +69,7 @@ const PAIRS: MistakeFamily = MistakeFamily {
         ("diameters", &[Is("pp-diameters"), Is("pe-diameters"), Is("ph-diameter")]),
         ("first radius forgotten", &[Is("pp-no-first-radius"), Is("pe-no-particle-radius"), Is("ph-no-radius")]),
         ("second radius forgotten", &[Is("pp-one-radius"), Is("pe-no-edge-radius"), ONE_RADIUS]),
-        (
-            "another one's radius",
-            &[
-                No("the loops over particles already have their indices"),
-                Is("pe-first-edge-radius"),
-                No("the loop over particles already has its index"),
-            ],
-        ),
+        ("another one's radius", &[Is("pp-next-radius"), Is("pe-first-edge-radius"), Is("ph-radius-index")]),
         ("overlap negated", &[Is("pp-overlap-negated"), Is("pe-quartic-negated"), Is("ph-overlap-negated")]),
         (
             "distance not squared",
@@ -110,6 +112,15 @@ const PAIRS: MistakeFamily = MistakeFamily {
                 No("the same as at the start, where nothing else moves"),
             ],
         ),
+        (
+            "contact, first body at its end",
+            &[
+                Is("pp-contact-first-at-end"),
+                Is("pe-contact-particle-at-end"),
+                No("the same as at the end, where nothing else moves"),
+            ],
+        ),
+        ("contact, second body at its end", &[Is("pp-contact-second-at-end"), Is("pe-contact-edge-at-end"), AT_REST]),
         ("contact, second body still", &[Is("pp-contact-second-still"), Is("pe-contact-edge-still"), AT_REST]),
     ],
 };
@@ -119,6 +130,7 @@ const ENDS: MistakeFamily = MistakeFamily {
     rows: &[
         ("still", &[Is("pe-first-end-still"), Is("pe-second-end-still")]),
         ("displacement for both", &[Is("pe-one-displacement"), Is("pe-other-displacement")]),
+        ("its particle's radius", &[Is("pe-first-end-radius"), Is("pe-second-end-radius")]),
         ("contact vector to it", &[Is("pe-contact-first-end"), Is("pe-contact-second-end")]),
         ("alone in the zone", &[Is("zones-one-endpoint"), Is("zones-other-endpoint")]),
         ("not pushed", &[No("who forgets one forgets the last"), Is("response-one-endpoint")]),
@@ -251,12 +263,18 @@ const ALONE: &[(&str, &str)] = &[
     ("pe-approach-", "only the quintic is supplied"),
     ("pe-contact-alpha-", "only an edge has alpha"),
     ("pe-contact-other-end", "only an edge has alpha"),
+    ("pe-contact-nearest-end", "only an edge has ends"),
+    ("pe-radius-index", "another one's radius, beside that of the first edge"),
+    ("ph-overlap-signed", "only a half-plane has sides"),
+    ("ph-first-half-plane", "the loops over particles and edges already have their indices"),
     ("ph-no-normal-square", "only a half-plane has a normal"),
     ("ph-normal-length", "only a half-plane has a normal"),
     ("ph-no-point", "only a half-plane has a point"),
     ("ph-reversed-offset", "only a half-plane has a point"),
     ("ph-approach-no-speed", "only this approach is a product of two numbers"),
     ("ph-approach-speed-only", "only this approach is a product of two numbers"),
+    ("ph-approach-constant-no-speed", "only this approach is a product of two numbers"),
+    ("ph-approach-closing-only", "only this approach is a product of two numbers"),
     ("ph-contact-undivided", "only a half-plane has a normal"),
     ("ph-contact-divided-by-length", "only a half-plane has a normal"),
     ("ph-contact-is-normal", "only a half-plane has a normal"),

@@ -1,0 +1,230 @@
+//! What speaks for a mistake: the symptoms of all traces that it would explain.
+//!
+//! Each explanation of a trace is a symptom with its alternatives: all words ([`Explanation::said`]) that would explain
+//! it as well. The word that the most traces allow is the likeliest. Words that exactly the same symptoms allow can't
+//! be told apart; a word that other traces with wrong polynomials of the same sort do not allow is none of them.
+use super::{
+    Detail, Explanation, PolynomialDetail, Weight,
+    about::{About, OfPolynomials},
+    explain::is_formula,
+    naming::{alternatives, as_row},
+    polynomial::form_claim,
+};
+use crate::student::find;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// An explanation of a trace, and the words that would do as well, each with whether it explains all of it.
+#[derive(Clone)]
+pub(super) struct Symptom {
+    pub(super) one: Explanation,
+    pub(super) allowed: BTreeMap<String, bool>,
+}
+
+/// A trace, and what is not explained of it yet.
+pub(super) struct OpenTrace {
+    pub(super) symptoms: Vec<Symptom>,
+    /// Whether something that is told explains a part of it.
+    pub(super) is_covered: bool,
+}
+
+impl OpenTrace {
+    pub(super) fn allows(&self, said: &str) -> bool {
+        self.symptoms.iter().any(|symptom| symptom.allowed.contains_key(said))
+    }
+
+    pub(super) fn allows_wholly(&self, said: &str) -> bool {
+        self.symptoms.iter().any(|symptom| symptom.allowed.get(said) == Some(&true))
+    }
+
+    /// Whether it needs this mistake beside others: they reproduce it together, and neither does alone.
+    pub(super) fn needs(&self, said: &str) -> bool {
+        self.symptoms.iter().any(|symptom| symptom.one.is_complete() && symptom.one.key == said)
+    }
+}
+
+/// The symptoms of a trace without the words that something speaks against.
+pub(super) fn symptoms(list: &[Explanation], is_refuted: &impl Fn(&String) -> bool) -> Vec<Symptom> {
+    let of_one = |one: &Explanation| {
+        if is_refuted(&one.key) && find(&one.key).is_none() {
+            return None;
+        }
+        let mut allowed = alternatives(one);
+        allowed.retain(|word, _| !is_refuted(word));
+        let mut same_as: Vec<String> = one.same_as.iter().filter(|key| !is_refuted(key)).cloned().collect();
+        let is_told = allowed.contains_key(&one.said());
+        let one = match same_as.iter().position(|key| find(key).is_some()) {
+            _ if is_told => Explanation { same_as, ..one.clone() },
+            Some(place) => as_row(one, find(&same_as.remove(place))?, same_as),
+            None => {
+                let row = allowed.keys().find_map(|word| find(word))?;
+                as_row(one, row, same_as)
+            }
+        };
+        Some(Symptom { one, allowed })
+    };
+    list.iter().filter(|one| one.is_vote() || !one.claims.is_empty()).filter_map(of_one).collect()
+}
+
+/// All that speaks for one word.
+#[derive(Default)]
+struct Evidence<'a> {
+    /// The symptoms that allow it: the trace, and the place in its list.
+    symptoms: BTreeSet<(usize, usize)>,
+    traces: usize,
+    complete: usize,
+    /// Traces that tell it first.
+    first: usize,
+    /// Of what is seen of a stage: traces in which the same is wrong, in whatever way.
+    kin: usize,
+    /// Traces in which the same polynomials are wrong in another way.
+    against: usize,
+    /// The explanation in these words that says most.
+    told: Option<&'a Explanation>,
+}
+
+impl Evidence<'_> {
+    /// Whether as many traces speak against a guess about polynomials as for it.
+    fn is_denied(&self) -> bool {
+        self.against > 0 && self.against >= self.complete
+    }
+
+    /// Of a stage, all that is seen says that it is wrong; what most of it says is wrong with it.
+    fn weight(&self) -> (usize, usize, usize) {
+        (self.complete.max(self.kin), self.traces.max(self.kin), self.complete)
+    }
+}
+
+fn evidence(open: &[OpenTrace]) -> BTreeMap<&str, Evidence<'_>> {
+    let mut all: BTreeMap<&str, Evidence<'_>> = BTreeMap::new();
+    for (number, trace) in open.iter().enumerate() {
+        for (place, symptom) in trace.symptoms.iter().enumerate().filter(|(_, symptom)| symptom.one.is_vote()) {
+            let said = symptom.one.said();
+            for word in symptom.allowed.keys() {
+                let evidence = all.entry(word.as_str()).or_default();
+                evidence.symptoms.insert((number, place));
+                evidence.first += usize::from(place == 0 && *word == said);
+                // Of those in the same words, the one whose exact form says most.
+                let rank_of = |one: &Explanation| (one.is_settled(), !one.details.is_empty());
+                let says_more = |told: &Explanation| rank_of(told) < rank_of(&symptom.one);
+                if *word == said && evidence.told.is_none_or(says_more) {
+                    evidence.told = Some(&symptom.one);
+                }
+            }
+        }
+    }
+    for (word, evidence) in &mut all {
+        for trace in open {
+            let told = evidence.told;
+            let is_kin = |one: &&Explanation| trace.symptoms.iter().any(|other| other.one.key == one.key);
+            evidence.kin += usize::from(told.filter(|told| told.is_of_stage()).is_some_and(|told| is_kin(&told)));
+            evidence.complete += usize::from(trace.allows_wholly(word));
+            if trace.allows(word) {
+                evidence.traces += 1;
+            } else if told.is_some_and(|told| trace.symptoms.iter().any(|one| speaks_against(&one.one, told))) {
+                evidence.against += 1;
+            }
+        }
+    }
+    all
+}
+
+/// Whether a trace's explanation, which does not allow it, speaks against what is told of polynomials: the same ones
+/// are wrong.
+fn speaks_against(one: &Explanation, told: &Explanation) -> bool {
+    let is_of_formula = match &told.about {
+        About::Polynomials { found, .. } => matches!(found, OfPolynomials::Guess(_)),
+        About::Mistake => find(&told.key).is_some_and(|row| row.kind_of_pair().is_some() && is_formula(row.area)),
+        _ => false,
+    };
+    let subjects = told.subjects();
+    is_of_formula && one.subjects().iter().any(|subject| subjects.contains(subject))
+}
+
+/// The likeliest mistake behind what is open: the one that the most traces allow. Ties go to mistakes of the catalogue,
+/// then to the one that is told first more often, then to the one that is told earlier.
+pub(super) fn likeliest(open: &[OpenTrace]) -> Option<Explanation> {
+    let all = evidence(open);
+    let is_known = |word: &str| find(word).is_some();
+    let is_likely = |(word, one): &(&&str, &Evidence<'_>)| !one.is_denied() && (one.told.is_some() || is_known(word));
+    let (&word, best) = all.iter().filter(is_likely).max_by(|(word, a), (other, b)| {
+        let known = is_known(word).cmp(&is_known(other));
+        let order = b.symptoms.first().cmp(&a.symptoms.first());
+        a.weight().cmp(&b.weight()).then(known).then(a.first.cmp(&b.first)).then(order)
+    })?;
+    // What the same symptoms allow can't be told apart.
+    let is_rival = |(other, rival): &(&&str, &Evidence<'_>)| {
+        **other != word && is_known(other) && rival.symptoms == best.symptoms && rival.weight() == best.weight()
+    };
+    let mut rivals: Vec<(&&str, &Evidence<'_>)> = all.iter().filter(is_rival).collect();
+    rivals.sort_by_key(|(_, rival)| std::cmp::Reverse(rival.first));
+    let same_as = rivals.into_iter().map(|(other, _)| (*other).to_owned()).collect();
+    let Some(told) = best.told else {
+        let &(trace, place) = best.symptoms.first()?;
+        return Some(as_row(&open[trace].symptoms[place].one, find(word)?, same_as));
+    };
+    Some(Explanation { same_as, ..united(told, open) })
+}
+
+/// An explanation with the polynomials of all traces that say the same of others, and with no other exact form than
+/// those that all of them allow.
+fn united(told: &Explanation, open: &[OpenTrace]) -> Explanation {
+    let mut told = told.clone();
+    let said = told.said();
+    // Of what speaks against it, nothing is reproduced.
+    let against = open.iter().filter(|trace| !trace.allows(&said)).flat_map(|trace| &trace.symptoms);
+    told.samples +=
+        against.filter(|symptom| speaks_against(&symptom.one, &told)).map(|symptom| symptom.one.samples).sum::<u64>();
+    let About::Polynomials { subjects, found } = &mut told.about else { return told };
+    let agreeing: Vec<&Symptom> =
+        open.iter().flat_map(|trace| &trace.symptoms).filter(|one| one.allowed.contains_key(&said)).collect();
+    for symptom in agreeing.iter().filter(|symptom| symptom.one.said() == said) {
+        if let About::Polynomials { subjects: theirs, .. } = &symptom.one.about {
+            subjects.extend(theirs);
+        }
+    }
+    subjects.sort_unstable();
+    subjects.dedup();
+    if let ([subject], OfPolynomials::Guess(guess)) = (&subjects[..], found) {
+        let forms = other_forms(&told.details);
+        let is_allowed = |form: &Vec<PolynomialDetail>| {
+            let word = form_claim(*subject, guess, form);
+            agreeing.iter().all(|symptom| symptom.allowed.contains_key(&word))
+        };
+        let mut keep = forms.iter().map(is_allowed);
+        told.details.retain(|detail| !is_alternative(detail) || keep.next() == Some(true));
+    }
+    told
+}
+
+const fn is_alternative(detail: &Detail) -> bool {
+    matches!(detail, Detail::Polynomial(PolynomialDetail::Alternative(_)))
+}
+
+/// For each alternative in an exact form, the whole form with it.
+fn other_forms(details: &[Detail]) -> Vec<Vec<PolynomialDetail>> {
+    let polynomial = |detail: &Detail| match detail {
+        Detail::Polynomial(detail) => Some(detail.clone()),
+        _ => None,
+    };
+    let all: Vec<PolynomialDetail> = details.iter().filter_map(polynomial).collect();
+    let alternatives = all.iter().filter_map(|detail| match detail {
+        PolynomialDetail::Alternative(weights) => Some(weights),
+        _ => None,
+    });
+    let with = |weights: &Vec<Weight>| {
+        let power = weights.first().map(|weight| weight.power);
+        let mut own = Some(weights.iter().cloned().map(PolynomialDetail::Weight));
+        let mut form = Vec::new();
+        for detail in &all {
+            match detail {
+                PolynomialDetail::Alternative(_) => {}
+                PolynomialDetail::Weight(weight) if Some(weight.power) == power => {
+                    form.extend(own.take().into_iter().flatten());
+                }
+                other => form.push(other.clone()),
+            }
+        }
+        form
+    };
+    alternatives.map(with).collect()
+}

@@ -1,0 +1,83 @@
+//! Which mistakes are none of a program, whatever its wrong traces say.
+use super::{
+    Explanation, about::About, heads::several, known::shows_within, naming::alternatives, not_finite::of_source,
+    sampling::Source, written::is_written,
+};
+use crate::student::{Area, Student, find, trace_within};
+use fosssim_model::{
+    assignments::{Assignment, Part},
+    scene::Scene,
+};
+use std::{cell::Cell, collections::BTreeMap};
+
+/// The greatest number of traces in which it is asked whether a mistake makes numbers end.
+const MOST_ENDS: usize = 6;
+
+/// And the number of polynomials in a step after which a program goes on for ever.
+const MOST_POLYNOMIALS: usize = 200_000;
+
+/// Keys that are named, of mistakes in code that a student of this milestone does not write.
+fn supplied(whose: Assignment, wrong: &[(&Scene, &[Explanation])]) -> Vec<String> {
+    let mut named: BTreeMap<String, bool> = BTreeMap::new();
+    for (scene, list) in wrong {
+        for key in list.iter().flat_map(|one| alternatives(one).into_keys().chain([one.key.clone()])) {
+            let is_own = match find(&key) {
+                Some(row) => is_written(row, whose, scene.integrator),
+                None if key == Explanation::FORCES => {
+                    let parts = whose.definition().student;
+                    parts.iter().any(|part| matches!(part, Part::Force(_) | Part::Penalty(_)))
+                }
+                None => continue,
+            };
+            *named.entry(key).or_default() |= is_own;
+        }
+    }
+    named.into_iter().filter(|(_, is_own)| !is_own).map(|(key, _)| key).collect()
+}
+
+/// Whether each trace in which numbers end does so, too, when a program makes one of these mistakes alone.
+fn make_its_end(likely: &[Explanation], wrong: &[(&Scene, &[Explanation])]) -> bool {
+    let mistakes = likely.iter().filter(|one| one.is_proven()).filter_map(|one| find(&one.key));
+    let students: Vec<Student> = mistakes.map(|row| Student::new(Some(row.mistake))).collect();
+    let ends = |scene: &Scene, student: Student| match trace_within(scene, student, MOST_POLYNOMIALS) {
+        Ok(trace) | Err((trace, _)) => !of_source(scene, Source::whole(&trace[..])).is_empty(),
+    };
+    let mut of_end = wrong.iter().filter(|(_, list)| list.iter().any(Explanation::is_not_finite)).take(MOST_ENDS);
+    of_end.all(|(scene, _)| students.iter().any(|student| ends(scene, *student)))
+}
+
+/// Keys of mistakes that [`several`] would tell, or name as what can't be told apart, and that are none: in code that a
+/// student of this milestone does not write, or such that right scenes speak against them. The program was right there,
+/// and with the mistake it would not have been ([`shows`](super::known::shows)). Each integrator has a file of its own,
+/// so that of its mistakes only scenes of the same one know anything. Where numbers end is among the keys if the
+/// mistakes that are told make that end themselves.
+#[must_use]
+pub fn refuted(whose: Option<Assignment>, wrong: &[(&Scene, &[Explanation])], right: &[&Scene]) -> Vec<String> {
+    let traces = || wrong.iter().map(|(_, list)| *list);
+    let is_asked = |scene: &Scene, key: &str| {
+        let is_named = |list: &[Explanation]| list.iter().any(|one| alternatives(one).contains_key(key));
+        find(key).is_none_or(|row| row.area != Area::Integrator)
+            || wrong.iter().any(|(other, list)| other.integrator == scene.integrator && is_named(list))
+    };
+    let is_denied =
+        |key: &str, work: &Cell<u64>| right.iter().any(|scene| is_asked(scene, key) && shows_within(scene, key, work));
+    let mut refuted: Vec<String> = whose.map_or_else(Vec::new, |whose| supplied(whose, wrong));
+    loop {
+        let likely = several(traces(), &refuted);
+        // An explanation of unfinished work stands for its stages.
+        let stages = likely.iter().filter(|one| one.is_unfinished()).flat_map(|one| &one.same_as);
+        let mut keys = likely.iter().map(|one| &one.key).chain(stages).filter(|key| !refuted.contains(key));
+        match keys.find(|key| is_denied(key, &Cell::new(0))).cloned() {
+            Some(key) => refuted.push(key),
+            None => {
+                let work = Cell::new(0);
+                let rivals = likely.iter().filter(|one| one.about == About::Mistake).flat_map(|one| &one.same_as);
+                refuted.extend(rivals.filter(|key| is_denied(key, &work)).cloned().collect::<Vec<_>>());
+                if likely.iter().any(Explanation::is_not_finite) && make_its_end(&likely, wrong) {
+                    refuted.push(Explanation::NOT_FINITE.to_owned());
+                }
+                return refuted;
+            }
+        }
+    }
+}
