@@ -170,22 +170,22 @@ fn a_suite_says_which_known_mistakes_no_scene_of_it_shows() {
         (numbers[0], numbers[1])
     };
     let contest = check("t2m3@1");
-    for name in ["penalty", "near-pairs"] {
-        let (seen, all) = part(&contest, name);
-        assert!(seen == all && all > 10, "{contest}");
+    let (seen, all) = part(&contest, "near-pairs");
+    let seen_by_all = seen;
+    assert!(seen == all && all > 10, "{contest}");
+    for other in ["jacobians", "penalty"] {
+        assert!(!contest.contains(other), "of what students do not write it says nothing: {contest}");
     }
-    assert!(!contest.contains("jacobians"), "of what a suite does not ask for it says nothing: {contest}");
     let implicit = check("t1m3");
     assert!(!implicit.contains("log-") && part(&implicit, "together").1 > 100, "{implicit}");
     let (seen, all) = part(&implicit, "jacobians");
-    assert_eq!(seen, all, "{implicit}");
+    assert!(10 * seen > 9 * all, "{implicit}");
     // One scene shows less.
     let scene = "ContestTests/two-balls-of-different-size";
     let text = format!("schema = 1\nname = \"one\"\n[[group]]\nname = \"one\"\nscenes = [\"asset:t2m3@1/{scene}\"]\n");
     workspace.write("one.toml", text);
     let one = check("one.toml");
-    assert!(part(&one, "penalty").0 < part(&contest, "penalty").0 && one.contains("not shown: "), "{one}");
-    assert!(one.contains("penalty-first-half-plane-only"), "{one}");
+    assert!(part(&one, "near-pairs").0 < seen_by_all && one.contains("not shown: "), "{one}");
 }
 
 /// Scenes that are right speak, too, and a mistake that only one scene shows is told beside the one that most show.
@@ -195,9 +195,9 @@ fn a_grade_names_what_its_scenes_show_together() {
     let cases = [
         ("penalty-first-half-plane-only", "t2m1", "The penalty force looks at the first half-plane only."),
         ("near-pairs-half-planes-doubled", "t2m3@1", "Each pair of a particle and a half-plane is reported twice."),
-        ("jacobian-drag-missing", "t1m3", "Drag has no derivatives by velocities."),
+        ("jacobian-drag-missing", "t1m3", "The derivative of drag by velocities is not written yet, or adds nothing."),
         ("gravitation-no-masses,spring-no-rest-length", "t1m3", "The gravitational force ignores the masses."),
-        ("integrator-velocities-empty", "t1m1", "Or, with the same traces: Integrator: Velocities never change."),
+        ("gravity-missing", "t1m1", "The change of velocity in explicit Euler is missing."),
     ];
     let paths = grading::submit(&workspace, &cases.map(|(mistake, ..)| mistake));
     for ((mistake, suite, sentence), path) in cases.into_iter().zip(paths) {

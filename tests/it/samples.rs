@@ -79,8 +79,8 @@ fn catalogue() -> Vec<Row> {
 /// Whether a mistake is one of forces, integrators and what follows from them, which `crates/mistakes` tests on its own
 /// probe scenes.
 fn is_of_states(row: &Row) -> bool {
-    let areas = ["forces", "jacobians", "integrator", "penalty", "near-pairs"];
-    areas.contains(&row.area.as_str()) || row.id.starts_with("simple-")
+    let areas = ["forces", "jacobians", "integrator", "penalty", "near-pairs", "simple-detection"];
+    areas.contains(&row.area.as_str()) || row.id.starts_with("respond-")
 }
 
 /// All built-in scenes, in order.

@@ -1,6 +1,6 @@
 //! `suite check --mistakes`: the known mistakes that no scene of a suite shows.
 use crate::{
-    diagnose::can_show,
+    diagnose::{can_show, is_written},
     scene::Scene,
     student::{self, Area, Row, RowKind, Student, all_rows},
     suite::plan::Plan,
@@ -40,7 +40,8 @@ pub(super) fn seen_parts(plan: &Plan) -> Vec<SeenPart> {
     // Small ones first: most mistakes show in the first scenes.
     scenes.sort_by_key(|scene| u64::from(scene.steps()) * (scene.particles.len() as u64).pow(2));
     let right: Vec<Vec<u8>> = scenes.par_iter().map(|scene| written(scene, Student::default())).collect();
-    let rows: Vec<_> = all_rows().filter(|row| row.kind == RowKind::Wrong).collect();
+    let is_theirs = |row: &&Row| scenes.iter().any(|scene| is_written(row, scene.assignment()));
+    let rows: Vec<_> = all_rows().filter(|row| row.kind == RowKind::Wrong).filter(is_theirs).collect();
     let logs_polynomials = scenes.iter().any(|scene| Layout::of(scene).polynomials);
     // Most mistakes of writing a trace are about what logs of states do not hold.
     let concerns =

@@ -27,6 +27,8 @@ pub enum Area {
     ContactVector,
     /// Which times count, and which pairs are looked at.
     Decision,
+    /// When bodies that overlap at the end of a step collide, and the vector between them.
+    SimpleDetection,
     /// The impulse of one contact.
     Response,
     /// The single pass of `continuous-time`.

@@ -16,10 +16,8 @@ pub enum ForceTerm {
     Constant,
     /// Drag.
     Drag,
-    /// The part of vortex forces across the line of the particles.
-    VortexTurning,
-    /// The part of vortex forces along the relative velocity.
-    VortexVelocity,
+    /// The vortex force.
+    Vortex,
     /// The penalty force between particles.
     PenaltyParticles,
     /// The penalty force of edges.
@@ -30,15 +28,14 @@ pub enum ForceTerm {
 
 impl ForceTerm {
     /// All terms, in the order in which they act.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 10] = [
         Self::SpringElastic,
         Self::SpringDamping,
         Self::Gravity,
         Self::Gravitation,
         Self::Constant,
         Self::Drag,
-        Self::VortexTurning,
-        Self::VortexVelocity,
+        Self::Vortex,
         Self::PenaltyParticles,
         Self::PenaltyEdges,
         Self::PenaltyHalfPlanes,

@@ -1,13 +1,13 @@
 //! All rows of all tables.
 use super::{
-    states::STEPS,
+    states::{EDITS, STEPS},
     t2m2::{CATALOGUE, Mistake, Row},
 };
 use std::sync::LazyLock;
 
 /// The rows of what the milestones before collisions have in common with those behind them.
 static STATES: LazyLock<Vec<Row>> =
-    LazyLock::new(|| STEPS.iter().map(|row| row.of(Mistake::Step(row.mistake))).collect());
+    LazyLock::new(|| EDITS.iter().chain(STEPS).map(|row| row.of(Mistake::Step(row.mistake))).collect());
 
 /// All rows, in the order of the assignments: forces and integrators come first.
 pub fn all_rows() -> impl Iterator<Item = &'static Row> {

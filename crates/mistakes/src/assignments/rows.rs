@@ -82,7 +82,7 @@ impl<M> RowOf<M> {
             (_, Area::ParticleHalfPlane) => "Particle-half-plane",
             (_, Area::Handover) => "Hand-over to the root finder",
             (_, Area::ContactVector) => "Contact vector",
-            (_, Area::Decision) => "Detection",
+            (_, Area::Decision | Area::SimpleDetection) => "Detection",
             (_, Area::Response) => "Collision response",
             (_, Area::ContinuousTime) => "Continuous-time pass",
             (_, Area::ImpulseLoop) => "Impulse loop",

@@ -11,12 +11,12 @@ use super::{
     force::{ForceTerm, WrongWeight},
     sampling::{KeptStep, Scan},
 };
-use crate::student::{Area, Mistake, StepMistake, Student, World, force_gradient};
+use crate::student::{Area, Edit, Mistake, Slip, Student, Term, World, force_gradient};
 use fosssim_model::{
     scene::{Collision, Force, Integrator, Scene},
     sim::State,
 };
-use std::sync::Arc;
+use std::{collections::BTreeMap, sync::Arc};
 
 /// Steps that are looked at.
 const MOST_STEPS: usize = 24;
@@ -44,8 +44,7 @@ pub(super) fn explain(scene: &Scene, scan: &Scan) -> Option<Explanation> {
         return None;
     }
     // For each term that the scene has, a program with nothing else.
-    let programs: Vec<(ForceTerm, World)> =
-        ForceTerm::ALL.into_iter().filter_map(|term| Some((term, program(scene, term)?))).collect();
+    let programs = programs(scene);
     let steps: Vec<&KeptStep> =
         scan.wrong.iter().take(MOST_STEPS).chain(scan.right.iter().take(MOST_STEPS / 4)).collect();
     // One step is no evidence.
@@ -55,11 +54,15 @@ pub(super) fn explain(scene: &Scene, scan: &Scan) -> Option<Explanation> {
     let mut rows = FitRows { terms: vec![Vec::new(); programs.len()], forces: Vec::new(), bounds: Vec::new() };
     steps.iter().for_each(|step| rows.add(scene, &programs, step));
     let weights = rows.fit()?;
-    let wrong: Vec<(ForceTerm, f64)> = programs
-        .iter()
-        .zip(weights)
-        .filter_map(|((term, _), weight)| weight.filter(|weight| (weight - 1.0).abs() > ALIKE).map(|w| (*term, w)))
-        .collect();
+    let of_elements = programs.iter().zip(weights).filter_map(|((term, _), weight)| Some((*term, weight?)));
+    let mut of_terms: BTreeMap<ForceTerm, Vec<f64>> = BTreeMap::new();
+    of_elements.for_each(|(term, weight)| of_terms.entry(term).or_default().push(weight));
+    // A weight that differs from element to element is no factor of the force.
+    if of_terms.values().any(|weights| weights.iter().any(|weight| (weight - weights[0]).abs() > ALIKE)) {
+        return None;
+    }
+    let of_terms = of_terms.into_iter().map(|(term, weights)| (term, weights[0]));
+    let wrong: Vec<(ForceTerm, f64)> = of_terms.filter(|(_, weight)| (weight - 1.0).abs() > ALIKE).collect();
     if wrong.is_empty() {
         return None;
     }
@@ -85,46 +88,41 @@ fn simple(weight: f64) -> WrongWeight {
     }
 }
 
-/// The program with nothing but this term; nothing where the scene does not have it.
-fn program(scene: &Scene, term: ForceTerm) -> Option<World> {
-    let only = |change: fn(&Force) -> Option<Force>| {
-        let forces: Vec<Force> = scene.forces.iter().filter_map(change).collect();
-        let alone = || Scene { forces: forces.clone(), collision: Collision::None, ..scene.clone() };
-        (!forces.is_empty()).then(|| World::new(Arc::new(alone()), Student::default()))
+/// For each term of each element of the scene, a program with nothing else.
+fn programs(scene: &Scene) -> Vec<(ForceTerm, World)> {
+    let alone = |force: Force| {
+        let bare = Scene { forces: vec![force], collision: Collision::None, ..scene.clone() };
+        World::new(Arc::new(bare), Student::default())
     };
-    let without = |others: [StepMistake; 2]| {
-        let alone = Scene { forces: Vec::new(), ..scene.clone() };
-        let student = others.into_iter().fold(Student::default(), |one, other| one.and(Some(Mistake::Step(other))));
-        matches!(scene.collision, Collision::Penalty { .. }).then(|| World::new(Arc::new(alone), student))
+    let of = |force: &Force| -> Vec<(ForceTerm, Force)> {
+        match *force {
+            Force::Spring { edge, stiffness, rest_length, damping } => {
+                let elastic = Force::Spring { edge, stiffness, rest_length, damping: 0.0 };
+                let damped = Force::Spring { edge, stiffness: 0.0, rest_length, damping };
+                let parts = [(ForceTerm::SpringElastic, elastic), (ForceTerm::SpringDamping, damped)];
+                parts.into_iter().filter(|(term, _)| *term == ForceTerm::SpringElastic || damping != 0.0).collect()
+            }
+            Force::SimpleGravity { .. } => vec![(ForceTerm::Gravity, *force)],
+            Force::Gravitation { .. } => vec![(ForceTerm::Gravitation, *force)],
+            Force::Constant { .. } => vec![(ForceTerm::Constant, *force)],
+            Force::Drag { .. } => vec![(ForceTerm::Drag, *force)],
+            Force::Vortex { .. } => vec![(ForceTerm::Vortex, *force)],
+        }
     };
-    match term {
-        ForceTerm::SpringElastic => only(|force| match *force {
-            Force::Spring { edge, stiffness, rest_length, .. } => {
-                Some(Force::Spring { edge, stiffness, rest_length, damping: 0.0 })
-            }
-            _ => None,
-        }),
-        ForceTerm::SpringDamping => only(|force| match *force {
-            Force::Spring { edge, rest_length, damping, .. } if damping != 0.0 => {
-                Some(Force::Spring { edge, stiffness: 0.0, rest_length, damping })
-            }
-            _ => None,
-        }),
-        ForceTerm::Gravity => only(|force| matches!(force, Force::SimpleGravity { .. }).then_some(*force)),
-        ForceTerm::Gravitation => only(|force| matches!(force, Force::Gravitation { .. }).then_some(*force)),
-        ForceTerm::Constant => only(|force| matches!(force, Force::Constant { .. }).then_some(*force)),
-        ForceTerm::Drag => only(|force| matches!(force, Force::Drag { .. }).then_some(*force)),
-        ForceTerm::VortexTurning => only(|force| matches!(force, Force::Vortex { .. }).then_some(*force)),
-        ForceTerm::VortexVelocity => only(|force| match *force {
-            Force::Vortex { first, second, coupling, .. } => {
-                Some(Force::Vortex { first, second, strength: 0.0, coupling })
-            }
-            _ => None,
-        }),
-        ForceTerm::PenaltyParticles => without([StepMistake::PenaltyNoEdges, StepMistake::PenaltyNoHalfPlanes]),
-        ForceTerm::PenaltyEdges => without([StepMistake::PenaltyNoParticles, StepMistake::PenaltyNoHalfPlanes]),
-        ForceTerm::PenaltyHalfPlanes => without([StepMistake::PenaltyNoParticles, StepMistake::PenaltyNoEdges]),
-    }
+    let forces = scene.forces.iter().flat_map(of).map(|(term, force)| (term, alone(force)));
+    let kinds = [
+        (ForceTerm::PenaltyParticles, [Term::PenaltyEdges, Term::PenaltyHalfPlanes]),
+        (ForceTerm::PenaltyEdges, [Term::PenaltyParticles, Term::PenaltyHalfPlanes]),
+        (ForceTerm::PenaltyHalfPlanes, [Term::PenaltyParticles, Term::PenaltyEdges]),
+    ];
+    let has_penalty = matches!(scene.collision, Collision::Penalty { .. });
+    let penalties = kinds.into_iter().filter(|_| has_penalty).map(|(term, others)| {
+        let bare = Scene { forces: Vec::new(), ..scene.clone() };
+        let without = |term| Some(Mistake::Step(Edit { term, slip: Slip::Missing }.into()));
+        let student = others.into_iter().fold(Student::default(), |one, other| one.and(without(other)));
+        (term, World::new(Arc::new(bare), student))
+    });
+    forces.chain(penalties).collect()
 }
 
 /// Whether the positions at the end of a step follow from the velocities as this integrator says, and fixed particles
@@ -154,14 +152,7 @@ struct FitRows {
 impl FitRows {
     fn add(&mut self, scene: &Scene, programs: &[(ForceTerm, World)], kept: &KeptStep) {
         let (x, v) = (&kept.before.positions, &kept.before.velocities);
-        let still = vec![0.0; v.len()];
-        let terms: Vec<Vec<f64>> = programs
-            .iter()
-            .map(|(term, program)| {
-                let v = if *term == ForceTerm::VortexTurning { &still } else { v };
-                force_gradient(program, x, v)
-            })
-            .collect();
+        let terms: Vec<Vec<f64>> = programs.iter().map(|(_, program)| force_gradient(program, x, v)).collect();
         for k in (0..x.len()).filter(|k| !scene.particles[k / 2].fixed) {
             let per_step = scene.particles[k / 2].mass / scene.time_step;
             let (before, after) = (v[k], kept.records.end.state.velocities[k]);

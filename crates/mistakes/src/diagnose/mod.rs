@@ -33,7 +33,7 @@ pub use naming::is_named_in;
 pub use not_finite::not_finite;
 pub use ruled_out::refuted;
 pub use settled::{Settled, settled};
-pub use written::milestone;
+pub use written::{is_written, milestone};
 
 #[cfg(test)]
 mod tests;

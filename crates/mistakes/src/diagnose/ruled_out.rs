@@ -19,10 +19,10 @@ const MOST_POLYNOMIALS: usize = 200_000;
 /// Keys that are named, of mistakes in code that a student of this milestone does not write.
 fn supplied(whose: Assignment, wrong: &[(&Scene, &[Explanation])]) -> Vec<String> {
     let mut named: BTreeMap<String, bool> = BTreeMap::new();
-    for (scene, list) in wrong {
+    for (_, list) in wrong {
         for key in list.iter().flat_map(|one| alternatives(one).into_keys().chain([one.key.clone()])) {
             let is_own = match find(&key) {
-                Some(row) => is_written(row, whose, scene.integrator),
+                Some(row) => is_written(row, whose),
                 None if key == Explanation::FORCES => {
                     let parts = whose.definition().student;
                     parts.iter().any(|part| matches!(part, Part::Force(_) | Part::Penalty(_)))

@@ -1,47 +1,44 @@
 //! Which mistakes a student of a milestone can make: those in the parts that the student writes.
-use crate::student::{Area, Mistake, Row};
+use crate::student::{Area, Mistake, Row, StepMistake, Term};
 use fosssim_model::{
-    assignments::{Assignment, ForceKind, Part},
-    scene::{Integrator, Scene},
+    assignments::{Assignment, Part},
+    scene::Scene,
 };
 
-/// Whether a student of this milestone writes the code in which the mistake is made. Each integrator has a file of its
-/// own; what is written to a trace, and how a program ends, may be anybody's.
-pub(super) fn is_written(row: &Row, whose: Assignment, integrator: Integrator) -> bool {
-    let (is_simple, mut words) = (matches!(row.mistake, Mistake::Step(_)), row.id.split('-'));
-    let (first, second) = (words.next().unwrap_or_default(), words.next().unwrap_or_default());
+/// Whether a student of this milestone writes the code in which the mistake is made, or hands in its file; what is
+/// written to a trace, and how a program ends, may be anybody's.
+#[must_use]
+pub fn is_written(row: &Row, whose: Assignment) -> bool {
     let is_of = |part: &Part| match (row.area, *part) {
-        (Area::Trace | Area::Process, _) => true,
-        (Area::Forces, Part::Force(kind)) => force_kinds(first).contains(&kind),
-        (Area::Jacobians, Part::Jacobians(kind)) => force_kinds(second).contains(&kind),
-        (Area::Integrator, Part::Integrator(_)) => part.file() == Part::Integrator(integrator).file(),
-        (Area::Penalty, Part::Penalty(_)) | (Area::NearPairs, Part::NearPairs) => true,
-        (Area::Decision | Area::Response, Part::SimpleDetection(_) | Part::SimpleResponse(_)) => true,
-        (Area::Response | Area::ImpulseLoop, Part::Impulses) => !is_simple,
+        (Area::Trace | Area::Process, _) | (Area::NearPairs, Part::NearPairs) => true,
+        (Area::NearPairs, _) => false,
+        _ if matches!(row.mistake, Mistake::Step(_)) => part.file() == term(row).row().part.file(),
+        (Area::Response | Area::ImpulseLoop, Part::Impulses) => true,
         (Area::ImpactZones, Part::Zones) | (Area::Failsafe, Part::Failsafe) => true,
-        (area, Part::Detection(_)) => {
-            let others = [Area::ImpulseLoop, Area::ImpactZones, Area::Failsafe];
-            !(is_simple || is_of_states(area) || others.contains(&area))
-        }
+        (area, Part::Detection(_)) => ![Area::ImpulseLoop, Area::ImpactZones, Area::Failsafe].contains(&area),
         _ => false,
     };
     whose.definition().student.iter().any(is_of)
 }
 
-const fn is_of_states(area: Area) -> bool {
-    matches!(area, Area::Forces | Area::Jacobians | Area::Integrator | Area::Penalty | Area::NearPairs)
-}
-
-/// The forces of which a row speaks whose name has this word.
-pub(super) const fn force_kinds(word: &str) -> &'static [ForceKind] {
-    match word.as_bytes() {
-        b"gravity" => &[ForceKind::SimpleGravity],
-        b"constant" => &[ForceKind::Constant],
-        b"drag" => &[ForceKind::Drag],
-        b"gravitation" => &[ForceKind::Gravitation],
-        b"vortex" => &[ForceKind::Vortex],
-        b"spring" | b"elastic" | b"damping" | b"velocity" => &[ForceKind::Spring],
-        _ => &[ForceKind::Spring, ForceKind::Gravitation],
+/// The quantity in which a mistake of forces, integrators and what follows from them is made: a row's name begins with
+/// it.
+pub(super) fn term(row: &Row) -> Term {
+    if let Mistake::Step(StepMistake::Edit(edit)) = row.mistake {
+        return edit.term;
+    }
+    let mut words = row.id.split('-');
+    match (row.area, words.next().unwrap_or_default(), words.next().unwrap_or_default()) {
+        (Area::Forces, "drag", _) => Term::Drag,
+        (Area::Forces, "gravitation", _) => Term::Gravitation,
+        (Area::Forces, ..) => Term::Spring,
+        (Area::Jacobians, _, "gravitation") => Term::JacobianGravitation,
+        (Area::Jacobians, ..) => Term::JacobianSpring,
+        (Area::Integrator, "linear", _) => Term::Linear,
+        (Area::Integrator, ..) => Term::Implicit,
+        (_, "penalty", "both") => Term::PenaltyParticles,
+        (_, "penalty", "first") => Term::PenaltyHalfPlanes,
+        _ => Term::Penalty,
     }
 }
 
@@ -63,22 +60,18 @@ mod tests {
 
     #[test]
     fn only_the_students_own_code_is_accused() {
-        let writes = |id: &str, whose, integrator| is_written(find(id).expect("a row"), whose, integrator);
-        let (explicit, symplectic) = (Integrator::ExplicitEuler, Integrator::SymplecticEuler);
-        assert!(writes("integrator-no-mass", Assignment::T1M1, explicit));
-        assert!(!writes("integrator-no-mass", Assignment::T1M2, explicit));
-        assert!(writes("integrator-no-mass", Assignment::T1M2, symplectic));
-        assert!(
-            writes("drag-missing", Assignment::T1M2, explicit) && !writes("drag-missing", Assignment::T1M3, explicit)
-        );
-        assert!(!writes("vortex-missing", Assignment::T1M2, symplectic));
-        assert!(writes("penalty-missing", Assignment::T2M1, explicit));
+        let writes = |id: &str, whose| is_written(find(id).expect("a row"), whose);
+        assert!(writes("explicit-velocities-mass", Assignment::T1M1));
+        assert!(!writes("explicit-velocities-mass", Assignment::T1M2));
+        assert!(writes("symplectic-velocities-mass", Assignment::T1M2));
+        assert!(writes("drag-missing", Assignment::T1M2) && !writes("drag-missing", Assignment::T2M1));
+        assert!(writes("penalty-sign", Assignment::T2M1));
         for row in all_rows() {
             // The contest's student writes the search for pairs.
             let is_own = matches!(row.area, Area::NearPairs | Area::Trace | Area::Process);
-            assert_eq!(is_written(row, Assignment::T2M3, symplectic), is_own, "{}", row.id);
-            let is_of_collisions = !is_of_states(row.area) && !matches!(row.mistake, Mistake::Step(_));
-            assert_eq!(is_written(row, Assignment::T2M2, symplectic), is_of_collisions, "{}", row.id);
+            assert_eq!(is_written(row, Assignment::T2M3), is_own, "{}", row.id);
+            let is_of_collisions = !matches!(row.mistake, Mistake::Step(_));
+            assert_eq!(is_written(row, Assignment::T2M2), is_of_collisions, "{}", row.id);
         }
     }
 }

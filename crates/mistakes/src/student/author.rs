@@ -33,8 +33,8 @@ impl Student {
     }
 
     /// The mistakes, which stand before all free places.
-    pub(super) fn mistakes(&self) -> impl Iterator<Item = Mistake> {
-        self.mistakes.iter().map_while(|mistake| *mistake)
+    pub(super) fn mistakes(self) -> impl Iterator<Item = Mistake> {
+        self.mistakes.into_iter().map_while(|mistake| mistake)
     }
 
     /// Whether the student makes this mistake.

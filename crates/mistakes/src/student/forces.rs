@@ -3,8 +3,9 @@ use fosssim_model::scene::{Collision, CollisionDetection, Force};
 use fosssim_num::vector::{Vec2, at, length, over};
 
 use super::{
-    StepMistake,
+    Slip, StepMistake, Term,
     author::Student,
+    edited::TermPart,
     penalty::{self, PenaltyLayer},
     world::{World, add, subtract},
 };
@@ -24,62 +25,26 @@ pub fn gradient(world: &World, x: &[f64], v: &[f64]) -> Vec<f64> {
     g
 }
 
-impl Student {
-    /// The weight of the first of these mistakes that the student makes, else 1.
-    pub fn weight(self, weights: &[(StepMistake, f64)]) -> f64 {
-        weights.iter().find(|(mistake, _)| self.makes(*mistake)).map_or(1.0, |(_, weight)| *weight)
-    }
-
-    /// The value with such a weight.
-    fn weighted(self, value: Vec2, weights: &[(StepMistake, f64)]) -> Vec2 {
-        self.weight(weights) * value
-    }
-
-    /// Adds opposite forces to the two particles: `push` is the gradient's part of the second one. The mistakes: only
-    /// the first one gets it, only the second one does, both get the same.
-    fn add_opposite(self, g: &mut [f64], (a, b): (usize, usize), push: Vec2, mistakes: [Option<StepMistake>; 3]) {
-        let [first_only, second_only, same_sign] = mistakes.map(|one| one.is_some_and(|one| self.makes(one)));
-        if !second_only {
-            subtract(g, a, push);
-        }
-        if !first_only {
-            add(g, b, if same_sign { -push } else { push });
-        }
-    }
-}
-
 fn add_gradient(world: &World, force: &Force, x: &[f64], v: &[f64], g: &mut [f64]) {
     let (student, count) = (world.student, world.scene.particles.len());
+    let subtracted = |term, particle| TermPart { is_negative: true, ..TermPart::of(term, particle) };
     match *force {
         Force::Spring { .. } => spring(world, force, x, v, g),
         Force::SimpleGravity { acceleration } => {
-            let last = count - usize::from(student.makes(StepMistake::GravityLastMissing)).min(count);
-            for i in 0..last {
-                let mass = if student.makes(StepMistake::GravityNoMass) { 1.0 } else { world.masses[2 * i] };
-                let weights = [(StepMistake::GravityMissing, 0.0), (StepMistake::GravitySign, -1.0)];
-                subtract(g, i, student.weighted(mass * acceleration, &weights));
+            for i in 0..count {
+                world.contribute(g, subtracted(Term::Gravity, i), world.masses[2 * i] * acceleration);
             }
         }
         Force::Gravitation { first, second, constant } => gravitation(world, (first, second), constant, x, g),
-        Force::Constant { force } => {
-            for i in 0..count {
-                let force = if student.makes(StepMistake::ConstantMass) { world.masses[2 * i] * force } else { force };
-                let weights = [(StepMistake::ConstantMissing, 0.0), (StepMistake::ConstantSign, -1.0)];
-                subtract(g, i, student.weighted(force, &weights));
-            }
-        }
+        Force::Constant { force } => (0..count).for_each(|i| subtract(g, i, force)),
         Force::Drag { coefficient } => {
+            let of = if student.makes(StepMistake::DragOfPositions) { x } else { v };
             for i in 0..count {
-                let weights = [
-                    (StepMistake::DragMissing, 0.0),
-                    (StepMistake::DragSign, -1.0),
-                    (StepMistake::DragMass, world.masses[2 * i]),
-                    (StepMistake::DragQuadratic, length(at(v, i))),
-                ];
-                add(g, i, student.weighted(coefficient * at(v, i), &weights));
+                let speed = if student.makes(StepMistake::DragQuadratic) { length(at(v, i)) } else { 1.0 };
+                world.contribute(g, TermPart::of(Term::Drag, i), speed * (coefficient * at(of, i)));
             }
         }
-        Force::Vortex { .. } => vortex(world, force, x, v, g),
+        Force::Vortex { .. } => vortex(force, x, v, g),
     }
 }
 
@@ -91,51 +56,47 @@ fn spring(world: &World, force: &Force, x: &[f64], v: &[f64], g: &mut [f64]) {
     let (a, b) = (edge.first, edge.second);
     let d = at(x, b) - at(x, a);
     let l = length(d);
-    let n = over(d, l);
     let is_long = makes(StepMistake::SpringDirection) || makes(StepMistake::SpringDirectionEverywhere);
-    let along = if is_long || makes(StepMistake::SpringElasticDirection) { d } else { n };
+    let n = if is_long { d } else { over(d, l) };
     let stiffness = if makes(StepMistake::SpringNoStiffness) { 1.0 } else { stiffness };
     let stretch = match () {
         () if makes(StepMistake::SpringNoRestLength) => l,
         () if makes(StepMistake::SpringRestLengthSign) => l + rest_length,
-        () if makes(StepMistake::SpringStretchSquared) => 0.5 * (l - rest_length) * (l - rest_length),
+        () if makes(StepMistake::SpringStrain) => (l - rest_length) / rest_length,
         () => l - rest_length,
     };
-    let weights = [
-        (StepMistake::SpringMissing, 0.0),
-        (StepMistake::SpringElasticMissing, 0.0),
-        (StepMistake::SpringElasticSign, -1.0),
-        (StepMistake::SpringElasticHalved, 0.5),
-        (StepMistake::SpringElasticDoubled, 2.0),
-    ];
-    let ends = [StepMistake::SpringFirstOnly, StepMistake::SpringSecondOnly, StepMistake::SpringSameSign].map(Some);
-    student.add_opposite(g, (a, b), student.weighted(stiffness * stretch * along, &weights), ends);
+    let tension = amended(student, Term::SpringElastic, stiffness * stretch, stretch);
+    world.contribute_opposite(g, Term::SpringElastic, (a, b), tension * n, l);
 
-    let along = if is_long || makes(StepMistake::SpringDampingDirection) { d } else { n };
     let damping = if makes(StepMistake::SpringDampingNoCoefficient) { 1.0 } else { damping };
     let w = match () {
         () if makes(StepMistake::SpringDampingOneVelocity) => at(v, b),
+        () if makes(StepMistake::SpringDampingFirstVelocity) => -at(v, a),
         () if makes(StepMistake::SpringDampingVelocitySum) => at(v, b) + at(v, a),
         () => at(v, b) - at(v, a),
     };
-    let damped =
-        if makes(StepMistake::SpringDampingAllDirections) { damping * w } else { damping * along.dot(&w) * along };
-    let weights = [
-        (StepMistake::SpringMissing, 0.0),
-        (StepMistake::SpringDampingMissing, 0.0),
-        (StepMistake::SpringDampingSign, -1.0),
-    ];
-    let damped = student.weighted(damped, &weights);
-    if makes(StepMistake::SpringDampingFirstOnly) {
-        subtract(g, a, damped);
+    let damped = if makes(StepMistake::SpringDampingAllDirections) {
+        damping * w
     } else {
-        student.add_opposite(g, (a, b), damped, ends);
+        let speed = n.dot(&w);
+        amended(student, Term::SpringDamping, damping * speed, speed) * n
+    };
+    world.contribute_opposite(g, Term::SpringDamping, (a, b), damped, l);
+}
+
+/// The number that stands before a direction, of a student who takes its modulus, or a square as in the energy;
+/// `factor` is what is squared in it.
+fn amended(student: Student, term: Term, value: f64, factor: f64) -> f64 {
+    match () {
+        () if student.slips_by(term, Slip::Absolute) => value.abs(),
+        () if student.slips_by(term, Slip::Squared) => value * factor,
+        () if student.slips_by(term, Slip::SquaredHalf) => 0.5 * value * factor,
+        () => value,
     }
 }
 
 fn gravitation(world: &World, (first, second): (usize, usize), constant: f64, x: &[f64], g: &mut [f64]) {
-    let student = world.student;
-    let makes = |mistake: StepMistake| student.makes(mistake);
+    let makes = |mistake: StepMistake| world.student.makes(mistake);
     let d = at(x, second) - at(x, first);
     let r = length(d);
     let n = over(d, r);
@@ -143,44 +104,21 @@ fn gravitation(world: &World, (first, second): (usize, usize), constant: f64, x:
     let (m1, m2) = match () {
         () if makes(StepMistake::GravitationNoMasses) => (1.0, 1.0),
         () if makes(StepMistake::GravitationOwnMass) => (world.masses[2 * first], world.masses[2 * first]),
+        () if makes(StepMistake::GravitationOtherMass) => (world.masses[2 * second], world.masses[2 * second]),
         () => (world.masses[2 * second], world.masses[2 * first]),
     };
-    let distances = match () {
-        () if makes(StepMistake::GravitationDistanceOnce) => r,
-        () if makes(StepMistake::GravitationDistanceCubed) => r * r * r,
-        () => r * r,
-    };
-    let weights = [(StepMistake::GravitationMissing, 0.0), (StepMistake::GravitationSign, -1.0)];
-    let ends =
-        [StepMistake::GravitationFirstOnly, StepMistake::GravitationSecondOnly, StepMistake::GravitationSameSign];
-    let pull = student.weighted(constant * m1 * m2 / distances * n, &weights);
-    student.add_opposite(g, (first, second), pull, ends.map(Some));
+    let pull = constant * m1 * m2 / (r * r) * n;
+    world.contribute_opposite(g, Term::Gravitation, (first, second), pull, r);
 }
 
-fn vortex(world: &World, force: &Force, x: &[f64], v: &[f64], g: &mut [f64]) {
+/// The library's own force.
+fn vortex(force: &Force, x: &[f64], v: &[f64], g: &mut [f64]) {
     let Force::Vortex { first, second, strength, coupling } = *force else { return };
-    let student = world.student;
-    let makes = |mistake: StepMistake| student.makes(mistake);
     let d = at(x, second) - at(x, first);
     let r = length(d);
-    let n = if makes(StepMistake::VortexDirection) { d } else { over(d, r) };
-    let along = strength * n;
-    let turning = match () {
-        () if makes(StepMistake::VortexTurn) => Vec2::new(along.y, -along.x),
-        () if makes(StepMistake::VortexAlong) => along,
-        () => Vec2::new(-along.y, along.x),
-    };
-    let w = at(v, second) - at(v, first);
-    let weights = [(StepMistake::VortexNoVelocity, 0.0), (StepMistake::VortexVelocitySign, -1.0)];
-    let around = turning - student.weighted(w, &weights);
-    let shared = match () {
-        () if makes(StepMistake::VortexDistanceOnce) => over(around, r),
-        () if makes(StepMistake::VortexNoDistance) => around,
-        () if makes(StepMistake::VortexStrengthDivided) => over(turning, r * r) - w,
-        () => over(around, r * r),
-    };
-    let weights = [(StepMistake::VortexMissing, 0.0), (StepMistake::VortexSign, -1.0)];
-    let push = student.weighted(coupling * shared, &weights);
-    let ends = [Some(StepMistake::VortexFirstOnly), None, Some(StepMistake::VortexSameSign)];
-    student.add_opposite(g, (first, second), -push, ends);
+    let along = strength * over(d, r);
+    let around = Vec2::new(-along.y, along.x) - (at(v, second) - at(v, first));
+    let push = -(coupling * over(around, r * r));
+    subtract(g, first, push);
+    add(g, second, push);
 }

@@ -1,8 +1,8 @@
 //! The matrix of the implicit integrators: mass, and the second derivatives of the forces (simulation.md 3 and 4).
-use fosssim_model::scene::Force;
+use fosssim_model::scene::{Force, Integrator};
 use fosssim_num::vector::{at, length, over};
 
-use super::{StepMistake, author::Student, step_failure::StepFailure, world::World};
+use super::{Slip, StepMistake, Term, step_failure::StepFailure, world::World};
 
 /// A 2 x 2 block, `block[row][column]`.
 type Matrix2 = [[f64; 2]; 2];
@@ -13,42 +13,31 @@ const IDENTITY: Matrix2 = [[1.0, 0.0], [0.0, 1.0]];
 /// those of the identity.
 pub fn system_matrix(world: &World, x: &[f64], v: &[f64]) -> Result<Vec<f64>, StepFailure> {
     let (size, h) = (x.len(), world.scene.time_step);
-    let makes = |mistake: StepMistake| world.student.makes(mistake);
-    let mut a = vec![0.0; size * size];
-    let scale = |a: &mut [f64], by: f64| a.iter_mut().for_each(|entry| *entry *= by);
-    let add_velocities = |a: &mut [f64]| {
-        world.scene.forces.iter().for_each(|force| add_velocity_hessian(world, force, x, a));
+    let is_linear = world.scene.integrator == Integrator::LinearizedImplicitEuler;
+    let [whole, mass, of_x, of_v] = if is_linear {
+        [Term::Linear, Term::LinearMass, Term::LinearHx, Term::LinearHv]
+    } else {
+        [Term::Implicit, Term::ImplicitMass, Term::ImplicitHx, Term::ImplicitHv]
     };
-    for force in &world.scene.forces {
-        add_position_hessian(world, force, x, v, &mut a)?;
+    let makes = |slip: Slip| world.student.slips_by(whole, slip);
+    let sign = if makes(Slip::MatrixSign) { -1.0 } else { 1.0 };
+    let mut matrix = HessianSum { world, size, entries: vec![0.0; size * size], is_of_velocities: false, weight: 1.0 };
+    for (is_of_velocities, term) in [(false, of_x), (true, of_v)] {
+        (matrix.is_of_velocities, matrix.weight) = (is_of_velocities, sign * world.weight(term, 1.0));
+        for force in &world.scene.forces {
+            matrix.add_force(force, x, v)?;
+        }
+        matrix.entries.iter_mut().for_each(|entry| *entry *= h);
     }
-    if makes(StepMistake::MatrixNoPositions) {
-        a.fill(0.0);
+    let mut a = matrix.entries;
+    let has_unit_mass = world.student.slips_by(mass, Slip::Mass(-1));
+    let weight = if has_unit_mass { 1.0 } else { world.weight(mass, 1.0) };
+    for k in 0..size {
+        a[k * size + k] += weight * if has_unit_mass { 1.0 } else { world.masses[k] };
     }
-    if makes(StepMistake::MatrixVelocitiesSquared) {
-        add_velocities(&mut a);
-    }
-    if !makes(StepMistake::MatrixPositionsOnce) {
-        scale(&mut a, h);
-    }
-    let is_elsewhere =
-        [StepMistake::MatrixNoVelocities, StepMistake::MatrixVelocitiesSquared, StepMistake::MatrixVelocitiesUnscaled];
-    if !is_elsewhere.into_iter().any(makes) {
-        add_velocities(&mut a);
-    }
-    scale(&mut a, h);
-    if makes(StepMistake::MatrixVelocitiesUnscaled) {
-        add_velocities(&mut a);
-    }
-    if makes(StepMistake::MatrixSigns) {
-        scale(&mut a, -1.0);
-    }
-    if !makes(StepMistake::MatrixNoMass) {
-        (0..size).for_each(|k| a[k * size + k] += world.masses[k]);
-    }
-    let keeps_rows = makes(StepMistake::MatrixRowsOfFixed) || makes(StepMistake::IntegratorFixedForgotten);
+    let keeps_rows = makes(Slip::RowsOfFixed) || makes(Slip::FixedForgotten);
     for k in (0..size).filter(|k| world.fixed(k / 2) && !keeps_rows) {
-        for other in 0..size {
+        for other in (0..size).filter(|_| !makes(Slip::DiagonalOfFixed)) {
             a[k * size + other] = 0.0;
             a[other * size + k] = 0.0;
         }
@@ -57,20 +46,100 @@ pub fn system_matrix(world: &World, x: &[f64], v: &[f64]) -> Result<Vec<f64>, St
     Ok(a)
 }
 
-/// Adds `block` on the diagonal blocks of particles `a` and `b`, and subtracts it beside the diagonal.
-fn add_pair(student: Student, matrix: &mut [f64], size: usize, (a, b): (usize, usize), block: &Matrix2) {
-    let beside = match () {
-        () if student.makes(StepMistake::JacobianDiagonalOnly) => [0.0, 0.0],
-        () if student.makes(StepMistake::JacobianOffDiagonalSign) => [1.0, 1.0],
-        () if student.makes(StepMistake::JacobianOneHalf) => [-1.0, 0.0],
-        () => [-1.0, -1.0],
-    };
-    let second = if student.makes(StepMistake::JacobianFirstOnly) { 0.0 } else { 1.0 };
-    for (row_particle, column_particle, sign) in [(a, a, 1.0), (b, b, second), (a, b, beside[0]), (b, a, beside[1])] {
-        for (row, entries) in block.iter().enumerate() {
-            for (column, entry) in entries.iter().enumerate() {
-                matrix[(2 * column_particle + column) * size + 2 * row_particle + row] += sign * entry;
+/// The second derivatives, as far as they have come.
+struct HessianSum<'a> {
+    world: &'a World,
+    size: usize,
+    entries: Vec<f64>,
+    /// Whether derivatives by velocities are added, not those by positions.
+    is_of_velocities: bool,
+    weight: f64,
+}
+
+impl HessianSum<'_> {
+    /// Adds what a force has in the matrix of this turn.
+    fn add_force(&mut self, force: &Force, x: &[f64], v: &[f64]) -> Result<(), StepFailure> {
+        let world = self.world;
+        match *force {
+            Force::Spring { edge, .. } => {
+                let edge = world.scene.edges[edge];
+                let ends = (edge.first, edge.second);
+                let l = length(at(x, edge.second) - at(x, edge.first));
+                if self.takes(Term::JacobianSpring, false) {
+                    self.add_pair(Term::JacobianElastic, ends, &elastic_block(world, force, x), l);
+                    self.add_pair(Term::JacobianDamping, ends, &damping_block(world, force, x, v), l);
+                }
+                if self.takes(Term::JacobianVelocity, true) {
+                    self.add_pair(Term::JacobianVelocity, ends, &velocity_block(world, force, x), l);
+                }
             }
+            Force::Gravitation { first, second, .. } if self.takes(Term::JacobianGravitation, false) => {
+                let r = length(at(x, second) - at(x, first));
+                self.add_pair(Term::JacobianGravitation, (first, second), &gravitation_block(world, force, x), r);
+            }
+            Force::Drag { coefficient } if self.takes(Term::JacobianDrag, true) => {
+                for particle in 0..x.len() / 2 {
+                    self.add_drag(particle, coefficient);
+                }
+            }
+            Force::Vortex { .. } if !self.is_of_velocities => return Err(StepFailure::VortexHessian),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Whether a derivative is added in this turn, in this student's program.
+    fn takes(&self, term: Term, is_of_velocities: bool) -> bool {
+        let is_other = self.world.student.slips_by(term, Slip::OtherMatrix);
+        self.is_of_velocities == (is_of_velocities != is_other)
+    }
+
+    /// Adds `block` on the diagonal blocks of particles `a` and `b`, and subtracts it beside the diagonal.
+    fn add_pair(&mut self, term: Term, (a, b): (usize, usize), block: &Matrix2, length: f64) {
+        let student = self.world.student;
+        for (index, (row, column)) in [(a, a), (b, b), (a, b), (b, a)].into_iter().enumerate() {
+            let is_left_out = |slip: Slip| match slip {
+                Slip::SecondOnly => index == 0,
+                Slip::FirstOnly => index == 1,
+                Slip::DiagonalOnly => index > 1,
+                Slip::OneHalf => index == 3,
+                _ => false,
+            };
+            if student.slips(term).any(is_left_out) {
+                continue;
+            }
+            let is_beside = index > 1;
+            let sign =
+                if is_beside != (is_beside && student.slips_by(term, Slip::OffDiagonalSign)) { -1.0 } else { 1.0 };
+            let weight = self.weight * sign * self.world.whole_weight(term, row, length);
+            let is_assigned = student.slips_by(term, Slip::Assigned);
+            for (r, entries) in block.iter().enumerate() {
+                for (c, entry) in entries.iter().enumerate() {
+                    let place = &mut self.entries[(2 * column + c) * self.size + 2 * row + r];
+                    *place = if is_assigned { weight * entry } else { *place + weight * entry };
+                }
+            }
+        }
+    }
+
+    fn add_drag(&mut self, particle: usize, coefficient: f64) {
+        let last = self.world.scene.particles.len() - 1;
+        for axis in 0..2 {
+            let is_left_out = |slip: Slip| match slip {
+                Slip::FirstOut => particle == 0,
+                Slip::LastOut => particle == last,
+                Slip::OnlyFirst => particle > 0,
+                Slip::XOnly => axis == 1,
+                Slip::YOnly => axis == 0,
+                _ => false,
+            };
+            let student = self.world.student;
+            if student.slips(Term::JacobianDrag).any(is_left_out) {
+                continue;
+            }
+            let value = self.weight * self.world.whole_weight(Term::JacobianDrag, particle, 1.0) * coefficient;
+            let place = &mut self.entries[(2 * particle + axis) * (self.size + 1)];
+            *place = if student.slips_by(Term::JacobianDrag, Slip::Assigned) { value } else { *place + value };
         }
     }
 }
@@ -79,55 +148,23 @@ fn block(entry: impl Fn(usize, usize) -> f64) -> Matrix2 {
     [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]]
 }
 
-impl Student {
-    /// The block with the weight of the first of these mistakes that the student makes.
-    fn weighted_block(self, value: Matrix2, weights: &[(StepMistake, f64)]) -> Matrix2 {
-        let weight = self.weight(weights);
-        block(|r, c| weight * value[r][c])
-    }
-}
-
-fn add_position_hessian(
-    world: &World,
-    force: &Force,
-    x: &[f64],
-    v: &[f64],
-    matrix: &mut [f64],
-) -> Result<(), StepFailure> {
+fn gravitation_block(world: &World, force: &Force, x: &[f64]) -> Matrix2 {
+    let Force::Gravitation { first, second, constant } = *force else { return Matrix2::default() };
     let student = world.student;
-    match *force {
-        Force::Spring { edge, .. } => {
-            let edge = world.scene.edges[edge];
-            let ends = (edge.first, edge.second);
-            add_pair(student, matrix, x.len(), ends, &elastic_block(world, force, x));
-            add_pair(student, matrix, x.len(), ends, &damping_block(world, force, x, v));
-        }
-        Force::Gravitation { first, second, constant } => {
-            let d = at(x, second) - at(x, first);
-            let r = length(d);
-            let n = if student.makes(StepMistake::JacobianGravitationDirection) { d } else { over(d, r) };
-            let cube = if student.makes(StepMistake::JacobianGravitationDistance) { r * r } else { r * r * r };
-            let scale = constant * world.masses[2 * second] * world.masses[2 * first] / cube;
-            let weights =
-                [(StepMistake::JacobianGravitationNoThree, 1.0), (StepMistake::JacobianGravitationNoOuter, 0.0)];
-            let three = weights.iter().find(|(mistake, _)| student.makes(*mistake)).map_or(3.0, |(_, weight)| *weight);
-            let pull = block(|row, column| (IDENTITY[row][column] - three * n[row] * n[column]) * scale);
-            let weights =
-                [(StepMistake::JacobianGravitationMissing, 0.0), (StepMistake::JacobianGravitationSign, -1.0)];
-            let pull = student.weighted_block(pull, &weights);
-            add_pair(student, matrix, x.len(), (first, second), &pull);
-        }
-        Force::Vortex { .. } => return Err(StepFailure::VortexHessian),
-        Force::SimpleGravity { .. } | Force::Constant { .. } | Force::Drag { .. } => {}
-    }
-    Ok(())
+    let d = at(x, second) - at(x, first);
+    let r = length(d);
+    let n = if student.makes(StepMistake::JacobianGravitationDirection) { d } else { over(d, r) };
+    let scale = constant * world.masses[2 * second] * world.masses[2 * first] / (r * r * r);
+    let three = if student.makes(StepMistake::JacobianGravitationNoThree) { 1.0 } else { 3.0 };
+    let three = world.weight(Term::JacobianGravitationAlong, r) * three;
+    let all = world.weight(Term::JacobianGravitationAll, r);
+    block(|row, column| (all * IDENTITY[row][column] - three * n[row] * n[column]) * scale)
 }
 
 /// The second derivatives of a spring's elastic part.
 fn elastic_block(world: &World, force: &Force, x: &[f64]) -> Matrix2 {
     let Force::Spring { edge, stiffness, rest_length, .. } = *force else { return Matrix2::default() };
-    let student = world.student;
-    let makes = |mistake: StepMistake| student.makes(mistake);
+    let makes = |mistake: StepMistake| world.student.makes(mistake);
     let edge = world.scene.edges[edge];
     let d = at(x, edge.second) - at(x, edge.first);
     let l = length(d);
@@ -135,27 +172,19 @@ fn elastic_block(world: &World, force: &Force, x: &[f64]) -> Matrix2 {
     let n = if is_long { d } else { over(d, l) };
     let outer = block(|r, c| n[r] * n[c]);
     let stretch = if makes(StepMistake::JacobianElasticNoRestLength) { l } else { l - rest_length };
-    let inverse = if makes(StepMistake::JacobianElasticNoLength) { 1.0 } else { 1.0 / l };
+    let is_positive = world.student.slips_by(Term::JacobianElasticAcross, Slip::Absolute);
+    let stretch = if is_positive { stretch.abs() } else { stretch };
+    let inverse = if makes(StepMistake::JacobianElasticStrain) { 1.0 / rest_length } else { 1.0 / l };
     let removed = if makes(StepMistake::JacobianElasticNoProjection) { Matrix2::default() } else { outer };
-    let tangent = student
-        .weight(&[(StepMistake::JacobianElasticNoTangent, 0.0), (StepMistake::JacobianElasticTangentSign, -1.0)]);
-    let along = student.weight(&[(StepMistake::JacobianElasticNoOuter, 0.0)]);
-    let elastic = block(|r, c| {
-        (along * outer[r][c] + tangent * (stretch * (IDENTITY[r][c] - removed[r][c]) * inverse)) * stiffness
-    });
-    let weights = [
-        (StepMistake::JacobianElasticMissing, 0.0),
-        (StepMistake::JacobianElasticSign, -1.0),
-        (StepMistake::JacobianElasticDoubled, 2.0),
-    ];
-    student.weighted_block(elastic, &weights)
+    let across = world.weight(Term::JacobianElasticAcross, l);
+    let along = world.weight(Term::JacobianElasticAlong, l);
+    block(|r, c| (along * outer[r][c] + across * (stretch * (IDENTITY[r][c] - removed[r][c]) * inverse)) * stiffness)
 }
 
 /// The derivatives of a spring's damping by positions.
 fn damping_block(world: &World, force: &Force, x: &[f64], v: &[f64]) -> Matrix2 {
     let Force::Spring { edge, damping, .. } = *force else { return Matrix2::default() };
-    let student = world.student;
-    let makes = |mistake: StepMistake| student.makes(mistake);
+    let makes = |mistake: StepMistake| world.student.makes(mistake);
     let edge = world.scene.edges[edge];
     let (a, b) = (edge.first, edge.second);
     let d = at(x, b) - at(x, a);
@@ -164,45 +193,24 @@ fn damping_block(world: &World, force: &Force, x: &[f64], v: &[f64]) -> Matrix2 
     let n = if is_long { d } else { over(d, l) };
     let outer = block(|r, c| n[r] * n[c]);
     let w = at(v, b) - at(v, a);
-    let mut damped =
-        if makes(StepMistake::JacobianDampingNoOuter) { Matrix2::default() } else { block(|r, c| n[r] * w[c]) };
-    if !makes(StepMistake::JacobianDampingNoScalar) {
-        damped[0][0] += n.dot(&w);
-        damped[1][1] += n.dot(&w);
-    }
-    let factor = if makes(StepMistake::JacobianDampingNoLength) { -damping } else { -damping / l };
+    let of_outer = world.weight(Term::JacobianDampingOuter, l);
+    let mut damped = block(|r, c| of_outer * (n[r] * w[c]));
+    let scalar = world.weight(Term::JacobianDampingScalar, l) * n.dot(&w);
+    damped[0][0] += scalar;
+    damped[1][1] += scalar;
+    let factor = -damping / l;
     let removed = if makes(StepMistake::JacobianDampingNoProjection) { Matrix2::default() } else { outer };
-    let damped = block(|r, c| (damped[r][c] - (damped[r][0] * removed[0][c] + damped[r][1] * removed[1][c])) * factor);
-    let weights = [(StepMistake::JacobianDampingMissing, 0.0), (StepMistake::JacobianDampingSign, -1.0)];
-    student.weighted_block(block(|r, c| -damped[r][c]), &weights)
+    block(|r, c| -((damped[r][c] - (damped[r][0] * removed[0][c] + damped[r][1] * removed[1][c])) * factor))
 }
 
-fn add_velocity_hessian(world: &World, force: &Force, x: &[f64], matrix: &mut [f64]) {
-    let student = world.student;
-    let makes = |mistake: StepMistake| student.makes(mistake);
-    match *force {
-        Force::Spring { edge, damping, .. } => {
-            let edge = world.scene.edges[edge];
-            let d = at(x, edge.second) - at(x, edge.first);
-            let is_long =
-                makes(StepMistake::JacobianVelocityDirection) || makes(StepMistake::SpringDirectionEverywhere);
-            let n = if is_long { d } else { over(d, length(d)) };
-            let along = if makes(StepMistake::JacobianVelocityIdentity) {
-                block(|r, c| damping * IDENTITY[r][c])
-            } else {
-                block(|r, c| damping * n[r] * n[c])
-            };
-            let weights = [(StepMistake::JacobianVelocityMissing, 0.0), (StepMistake::JacobianVelocitySign, -1.0)];
-            let along = student.weighted_block(along, &weights);
-            add_pair(student, matrix, x.len(), (edge.first, edge.second), &along);
-        }
-        Force::Drag { coefficient } => {
-            let weights = [(StepMistake::JacobianDragMissing, 0.0), (StepMistake::JacobianDragSign, -1.0)];
-            let coefficient = coefficient * student.weight(&weights);
-            for k in 0..x.len() {
-                matrix[k * x.len() + k] += coefficient;
-            }
-        }
-        _ => {}
+/// The derivatives of a spring's damping by velocities.
+fn velocity_block(world: &World, force: &Force, x: &[f64]) -> Matrix2 {
+    let Force::Spring { edge, damping, .. } = *force else { return Matrix2::default() };
+    let edge = world.scene.edges[edge];
+    let d = at(x, edge.second) - at(x, edge.first);
+    let n = if world.student.makes(StepMistake::SpringDirectionEverywhere) { d } else { over(d, length(d)) };
+    if world.student.makes(StepMistake::JacobianVelocityIdentity) {
+        return block(|r, c| damping * IDENTITY[r][c]);
     }
+    block(|r, c| damping * n[r] * n[c])
 }

@@ -13,6 +13,7 @@
 mod author;
 mod continuous_time;
 mod detection;
+mod edited;
 mod encounter;
 mod failsafe;
 mod forces;
@@ -37,7 +38,7 @@ mod zones;
 pub use crate::assignments::{
     all::{all_rows, find},
     rows::{Area, RowKind},
-    states::StepMistake,
+    states::{Edit, Slip, StepMistake, TERMS, Term},
     t2m2::{CATALOGUE, Mistake, Row},
 };
 pub use author::Student;

@@ -6,9 +6,7 @@ use fosssim_model::{
 use fosssim_num::vector::{Vec2, at, length, unit};
 
 use super::{
-    Area, StepMistake,
-    near_pairs::NearPairSearch,
-    world::{World, add, subtract},
+    Area, Slip, StepMistake, Term, author::Student, edited::TermPart, near_pairs::NearPairSearch, world::World,
 };
 
 /// The layer around bodies that repels others.
@@ -32,9 +30,6 @@ pub fn add_gradient(world: &World, layer: PenaltyLayer, x: &[f64], v: &[f64], g:
         return PenaltyPairs::new(&world.scene, layer.h, layer.detection)
             .visit(x, |pair| force.add(pair.kind, (pair.first as usize, pair.second as usize)));
     }
-    if student.makes(StepMistake::PenaltyMissing) {
-        return;
-    }
     let near = NearPairSearch::new(world, layer.h, x, v);
     let mut visit = |kind: PairKind, (one, other): (usize, usize)| {
         for _ in 0..near.times(kind, one, other) {
@@ -45,7 +40,7 @@ pub fn add_gradient(world: &World, layer: PenaltyLayer, x: &[f64], v: &[f64], g:
         }
     };
     // Such a force reaches pairs that are apart.
-    if student.makes(StepMistake::PenaltyAlways) || student.makes(StepMistake::PenaltyEdgeUnclamped) {
+    if PairKind::ALL.into_iter().any(|kind| student.slips(term(kind)).any(|slip| !slip.keeps_distance())) {
         for pair in world.pairs() {
             let (kind, other) = pair.object.numbers();
             visit(PairKind::ALL[kind], (pair.particle, other));
@@ -53,6 +48,14 @@ pub fn add_gradient(world: &World, layer: PenaltyLayer, x: &[f64], v: &[f64], g:
     } else {
         PenaltyPairs::new(&world.scene, layer.h, layer.detection)
             .visit(x, |pair| visit(pair.kind, (pair.first as usize, pair.second as usize)));
+    }
+}
+
+const fn term(kind: PairKind) -> Term {
+    match kind {
+        PairKind::ParticleParticle => Term::PenaltyParticles,
+        PairKind::ParticleEdge => Term::PenaltyEdges,
+        PairKind::ParticleHalfPlane => Term::PenaltyHalfPlanes,
     }
 }
 
@@ -65,113 +68,119 @@ struct PenaltySum<'a> {
 }
 
 impl PenaltySum<'_> {
-    fn makes(&self, mistake: StepMistake) -> bool {
-        self.world.student.makes(mistake)
-    }
-
     fn add(&mut self, kind: PairKind, pair: (usize, usize)) {
         match kind {
-            PairKind::ParticleParticle if !self.makes(StepMistake::PenaltyNoParticles) => self.particle_particle(pair),
-            PairKind::ParticleEdge if !self.makes(StepMistake::PenaltyNoEdges) => self.particle_edge(pair),
-            PairKind::ParticleHalfPlane if !self.makes(StepMistake::PenaltyNoHalfPlanes) => {
-                self.particle_half_plane(pair);
-            }
-            _ => {}
+            PairKind::ParticleParticle => self.particle_particle(pair),
+            PairKind::ParticleEdge => self.particle_edge(pair),
+            PairKind::ParticleHalfPlane => self.particle_half_plane(pair),
         }
-    }
-
-    fn repels(&self, distance: f64, reach: f64) -> bool {
-        let is_near = distance < reach || self.makes(StepMistake::PenaltyAlways);
-        is_near && !(self.layer.detection == CollisionDetection::Contest && distance == 0.0)
     }
 
     /// `k` times how deep the layers of two bodies overlap, a negative number; none where they do not.
-    fn depth(&self, distance: f64, [first, second]: [f64; 2]) -> Option<[f64; 2]> {
-        let PenaltyLayer { k, h, .. } = self.layer;
-        let makes = |mistake: StepMistake| self.makes(mistake);
-        let (mut first, mut second) = (first, second);
-        if makes(StepMistake::PenaltyNoRadii) {
-            (first, second) = (0.0, 0.0);
-        }
-        if makes(StepMistake::PenaltyFirstRadiusOnly) {
-            second = 0.0;
-        }
-        let is_bare = makes(StepMistake::PenaltyNoThickness);
-        let of_test = if is_bare || makes(StepMistake::PenaltyThicknessInDepthOnly) { 0.0 } else { h };
-        if !self.repels(distance, first + second + of_test) {
+    fn depth(&self, term: Term, distance: f64, [first, second]: [f64; 2]) -> Option<[f64; 2]> {
+        let PenaltyLayer { k, h, detection } = self.layer;
+        let makes = |slip: Slip| self.world.student.slips_by(term, slip);
+        let first = if makes(Slip::NoRadii) { 0.0 } else { first };
+        let second = if makes(Slip::NoRadii) || makes(Slip::NoOtherRadius) { 0.0 } else { second };
+        let of_test = if makes(Slip::NoThickness) || makes(Slip::ThicknessInDepth) { 0.0 } else { h };
+        let is_near = distance < first + second + of_test || makes(Slip::Always);
+        if !is_near || (detection == CollisionDetection::Contest && distance == 0.0) {
             return None;
         }
-        let h = if is_bare || makes(StepMistake::PenaltyThicknessInTestOnly) { 0.0 } else { h };
-        let k = if makes(StepMistake::PenaltyNoStiffness) { 1.0 } else { k };
-        let k = if makes(StepMistake::PenaltySign) { -k } else { k };
+        let h = if makes(Slip::NoThickness) || makes(Slip::ThicknessInTest) { 0.0 } else { h };
+        let k = if makes(Slip::NoFactor) { 1.0 } else { k };
         let depth = distance - first - second - h;
-        Some([k, if makes(StepMistake::PenaltyDepthSquared) { depth * depth } else { depth }])
+        let power = match () {
+            () if makes(Slip::Squared) => depth * depth,
+            () if makes(Slip::SquaredAway) => depth * depth.abs(),
+            () => depth,
+        };
+        Some([k, power])
     }
 
-    fn unit(&self, n: Vec2) -> Vec2 {
-        if self.makes(StepMistake::PenaltyDirection) { n } else { unit(n) }
-    }
-
-    /// Adds to the gradient of a body that is not the pair's first.
-    fn add_other(&mut self, particle: usize, push: Vec2) {
-        if self.makes(StepMistake::PenaltySameSign) {
-            subtract(self.g, particle, push);
-        } else if !self.makes(StepMistake::PenaltyFirstOnly) {
-            add(self.g, particle, push);
-        }
+    /// Adds a body's part to the gradient.
+    fn push(&mut self, term: Term, (role, particle): (usize, usize), length: f64, push: Vec2) {
+        self.world.contribute(
+            self.g,
+            TermPart { role, length, is_negative: role == 0, ..TermPart::of(term, particle) },
+            push,
+        );
     }
 
     fn particle_particle(&mut self, (i, j): (usize, usize)) {
+        let term = Term::PenaltyParticles;
         let particles = &self.world.scene.particles;
         let n = at(self.x, j) - at(self.x, i);
-        let Some([k, depth]) = self.depth(length(n), [particles[i].radius, particles[j].radius]) else { return };
+        let Some([k, depth]) = self.depth(term, length(n), [particles[i].radius, particles[j].radius]) else { return };
         // In the contest the original's direction is normalised twice.
         let is_contest = self.layer.detection == CollisionDetection::Contest;
-        let u = if is_contest { self.unit(self.unit(n)) } else { self.unit(n) };
-        let push = k * depth * u;
-        subtract(self.g, i, push);
-        self.add_other(j, push);
+        let u = if is_contest { unit(unit(n)) } else { unit(n) };
+        self.push(term, (0, i), length(n), k * depth * u);
+        self.push(term, (1, j), length(n), k * depth * u);
     }
 
     fn particle_edge(&mut self, (i, edge): (usize, usize)) {
-        let edge = self.world.scene.edges[edge];
+        let term = Term::PenaltyEdges;
+        let world = self.world;
+        let makes = |slip: Slip| world.student.slips_by(term, slip);
+        let edge = world.scene.edges[edge];
         let (x1, x2, x3) = (at(self.x, i), at(self.x, edge.first), at(self.x, edge.second));
         let alpha = (x1 - x2).dot(&(x3 - x2)) / (x3 - x2).dot(&(x3 - x2));
         // A NaN stays one here, unlike in the responses.
-        let alpha = match () {
-            () if self.makes(StepMistake::PenaltyEdgeUnclamped) => alpha,
-            () if self.makes(StepMistake::PenaltyEdgeMiddle) => 0.5,
-            () => alpha.clamp(0.0, 1.0),
-        };
+        let alpha = closest(world.student, term, alpha, |alpha| alpha.clamp(0.0, 1.0));
         let n = x2 + alpha * (x3 - x2) - x1;
-        let radius = if self.makes(StepMistake::PenaltyEdgeNoRadius) { 0.0 } else { edge.radius };
-        let Some([k, depth]) = self.depth(length(n), [self.world.scene.particles[i].radius, radius]) else { return };
-        let u = self.unit(n);
+        let particles = &world.scene.particles;
+        let radius = if makes(Slip::EndRadius) { particles[edge.first].radius } else { edge.radius };
+        let Some([k, depth]) = self.depth(term, length(n), [particles[i].radius, radius]) else { return };
+        let u = unit(n);
         let [first, second] = match () {
-            () if self.makes(StepMistake::PenaltyEdgeSharesSwapped) => [alpha, 1.0 - alpha],
-            () if self.makes(StepMistake::PenaltyEdgeEqualShares) => [0.5, 0.5],
-            () if self.makes(StepMistake::PenaltyEdgeFullShares) => [1.0, 1.0],
+            () if makes(Slip::SharesExchanged) => [alpha, 1.0 - alpha],
+            () if makes(Slip::EqualShares) => [0.5, 0.5],
+            () if makes(Slip::FullShares) => [1.0, 1.0],
             () => [1.0 - alpha, alpha],
         };
-        subtract(self.g, i, k * depth * u);
-        self.add_other(edge.first, k * first * depth * u);
-        if !self.makes(StepMistake::PenaltyEdgeOneEnd) {
-            self.add_other(edge.second, k * second * depth * u);
-        }
+        self.push(term, (0, i), length(n), k * depth * u);
+        self.push(term, (1, edge.first), length(n), k * first * depth * u);
+        self.push(term, (2, edge.second), length(n), k * second * depth * u);
     }
 
     fn particle_half_plane(&mut self, (i, plane): (usize, usize)) {
-        if plane > 0 && self.makes(StepMistake::PenaltyFirstHalfPlaneOnly) {
+        if plane > 0 && self.world.student.makes(StepMistake::PenaltyFirstHalfPlaneOnly) {
             return;
         }
+        let term = Term::PenaltyHalfPlanes;
+        let makes = |slip: Slip| self.world.student.slips_by(term, slip);
         let plane = self.world.scene.half_planes[plane];
         let q = plane.normal;
-        let along = (plane.point - at(self.x, i)).dot(&q);
-        let is_undivided = self.makes(StepMistake::PenaltyNormalUndivided);
-        let n = if is_undivided { along * q } else { along / q.dot(&q) * q };
-        let Some([k, depth]) = self.depth(length(n), [self.world.scene.particles[i].radius, 0.0]) else { return };
-        let u = self.unit(n);
-        let push = if is_undivided { k * depth * u } else { k * depth * u.dot(&q) / q.dot(&q) * q };
-        subtract(self.g, i, if self.makes(StepMistake::PenaltyHalfPlaneSign) { -push } else { push });
+        let to_point = plane.point - at(self.x, i);
+        let n = match () {
+            () if makes(Slip::ToPoint) => to_point,
+            () if makes(Slip::Undivided) => to_point.dot(&q) * q,
+            () => to_point.dot(&q) / q.dot(&q) * q,
+        };
+        let Some([k, depth]) = self.depth(term, length(n), [self.world.scene.particles[i].radius, 0.0]) else { return };
+        let u = unit(n);
+        let push = match () {
+            () if makes(Slip::ToPoint) || makes(Slip::Undivided) => k * depth * u,
+            () if makes(Slip::OneSided) => k * depth * unit(q),
+            () if makes(Slip::OneSidedLong) => k * depth * q,
+            () if makes(Slip::OneSidedBack) => k * depth * -unit(q),
+            () => k * depth * u.dot(&q) / q.dot(&q) * q,
+        };
+        self.push(term, (0, i), length(n), push);
     }
+}
+
+/// The closest point of an edge in this student's formulas, which should be kept between its ends as `limited` does.
+pub fn closest(student: Student, term: Term, alpha: f64, limited: impl Fn(f64) -> f64) -> f64 {
+    student
+        .slips(term)
+        .fold(None, |found, slip| match slip {
+            Slip::Unclamped => Some(alpha),
+            Slip::Mirrored => Some(limited(1.0 - alpha)),
+            Slip::Negated => Some(limited(-alpha)),
+            Slip::Middle => Some(0.5),
+            _ => found,
+        })
+        .unwrap_or_else(|| limited(alpha))
 }

@@ -1,25 +1,23 @@
 //! Collision type `simple`: one pass over the positions at the end of the step, changing velocities (collisions.md 6).
-use fosssim_num::vector::{Vec2, at, length, put, unit};
+use fosssim_model::scene::Collision;
+use fosssim_num::vector::{Vec2, at, length, unit};
 
 use super::{
-    Mistake, StepMistake,
+    Slip, Term,
     author::Student,
+    edited::TermPart,
     objects::{Contact, Object, State},
-    response::{bounce, clamped, masses, share_of_second},
-    world::{StepLog, World, add},
+    penalty::closest,
+    response::clamped,
+    world::{StepLog, World},
 };
 
 /// Handles all pairs in order; each sees the velocities that the pairs before it left.
 pub fn handle(world: &World, state: &mut State, log: &mut StepLog) {
-    let student = world.student;
-    let start = student.makes(StepMistake::SimpleAllFromStart).then(|| state.v.clone());
-    let pass = SimplePass { world, bounce: bounce(world), start };
+    let pass = SimplePass { world, start: state.v.clone() };
     for pair in world.pairs() {
         let one = pair.particle;
         let n = match pair.object {
-            Object::Particle(_) if student.makes(StepMistake::SimpleNoParticles) => None,
-            Object::Edge(_) if student.makes(StepMistake::SimpleNoEdges) => None,
-            Object::HalfPlane(_) if student.makes(StepMistake::SimpleNoHalfPlanes) => None,
             Object::Particle(other) => pass.particle_particle(state, one, other),
             Object::Edge(edge) => pass.particle_edge(state, one, edge),
             Object::HalfPlane(plane) => pass.particle_half_plane(state, one, plane),
@@ -30,120 +28,226 @@ pub fn handle(world: &World, state: &mut State, log: &mut StepLog) {
 
 struct SimplePass<'a> {
     world: &'a World,
-    bounce: f64,
-    /// The velocities before the pass, of a student who computes all impulses from them.
-    start: Option<Vec<f64>>,
+    /// The velocities before the pass, for a student who computes impulses from them.
+    start: Vec<f64>,
 }
 
+/// The functions and quantities of one kind of pair.
+struct SimpleKind {
+    detection: Term,
+    overlap: Term,
+    approach: Term,
+    normal: Term,
+    response: Term,
+}
+
+const PARTICLES: SimpleKind = SimpleKind {
+    detection: Term::DetectParticles,
+    overlap: Term::OverlapParticles,
+    approach: Term::ApproachParticles,
+    normal: Term::NormalParticles,
+    response: Term::RespondParticles,
+};
+const EDGES: SimpleKind = SimpleKind {
+    detection: Term::DetectEdges,
+    overlap: Term::OverlapEdges,
+    approach: Term::ApproachEdges,
+    normal: Term::NormalEdges,
+    response: Term::RespondEdges,
+};
+const HALF_PLANES: SimpleKind = SimpleKind {
+    detection: Term::DetectHalfPlanes,
+    overlap: Term::OverlapHalfPlanes,
+    approach: Term::ApproachHalfPlanes,
+    normal: Term::NormalHalfPlanes,
+    response: Term::RespondHalfPlanes,
+};
+
 impl SimplePass<'_> {
-    fn makes(&self, mistake: impl Into<Mistake>) -> bool {
-        self.world.student.makes(mistake)
+    fn makes(&self, term: Term, slip: Slip) -> bool {
+        self.world.student.slips_by(term, slip)
     }
 
-    fn velocity(&self, state: &State, particle: usize) -> Vec2 {
-        at(self.start.as_ref().unwrap_or(&state.v), particle)
-    }
-
-    /// Whether bodies at this distance that approach at this speed collide.
-    fn collides(&self, n: Vec2, reach: f64, approach: f64) -> bool {
-        let is_near = match () {
-            () if self.makes(StepMistake::SimpleAlways) => true,
-            () if self.makes(StepMistake::SimpleTouching) => length(n) <= reach,
-            () => length(n) < reach,
+    /// Whether bodies with these radii collide, whose contact vector is `n`, with the relative velocity `w`.
+    fn collides(&self, kind: &SimpleKind, n: Vec2, radii: [f64; 2], w: Vec2) -> bool {
+        let [first, second] = radii;
+        let reach = match () {
+            () if self.makes(kind.overlap, Slip::FirstOnly) => first,
+            () if self.makes(kind.overlap, Slip::SecondOnly) => second,
+            () => first + second,
         };
-        let approaches = match () {
-            () if self.makes(StepMistake::SimpleSeparating) => true,
-            () if self.makes(StepMistake::SimpleApproachSign) => approach < 0.0,
-            () => approach > 0.0,
+        let holds = |term: Term, small: f64, large: f64| match () {
+            () if self.makes(term, Slip::Missing) => true,
+            () if self.makes(term, Slip::Sign) => small > large,
+            () if self.makes(term, Slip::NotStrict) => small <= large,
+            () => small < large,
         };
-        is_near && approaches
+        !self.makes(kind.detection, Slip::Missing)
+            && holds(kind.overlap, length(n), reach)
+            && holds(kind.approach, 0.0, w.dot(&n))
     }
 
-    /// The distance at which a particle and a body of this radius touch.
-    fn reach(&self, particle: usize, other: f64) -> f64 {
-        let radius = self.world.scene.particles[particle].radius;
-        if self.makes(StepMistake::SimpleFirstRadiusOnly) { radius } else { radius + other }
+    /// The contact vector as the program returns it.
+    fn returned(&self, kind: &SimpleKind, n: Vec2) -> Vec2 {
+        self.world.student.slips(kind.normal).fold(n, |n, slip| match slip {
+            Slip::Sign => -n,
+            Slip::Unit => unit(n),
+            Slip::Doubled => 2.0 * n,
+            Slip::Halved => 0.5 * n,
+            _ => n,
+        })
     }
 
-    fn unit(&self, n: Vec2) -> Vec2 {
-        if self.makes(Mistake::ResponseNotNormalised) { n } else { unit(n) }
+    /// `1 + COR`.
+    fn bounce(&self, kind: &SimpleKind) -> f64 {
+        let Collision::Simple { restitution } = self.world.scene.collision else { return 2.0 };
+        match () {
+            () if self.makes(kind.response, Slip::NoFactor) => 2.0,
+            () if self.makes(kind.response, Slip::Inelastic) => 1.0,
+            () if self.makes(kind.response, Slip::RestitutionOnly) => restitution,
+            // In the order of the reference: twice the half of it.
+            () => 2.0 * ((1.0 + restitution) / 2.0),
+        }
     }
 
-    fn push(&self, state: &mut State, particle: usize, change: Vec2) {
-        if !self.world.fixed(particle) || self.makes(Mistake::ResponseMovesFixed) {
-            let change = if self.makes(Mistake::ResponseSign) { -change } else { change };
-            add(&mut state.v, particle, change);
+    /// The velocity from which an impulse is computed.
+    fn velocity(&self, kind: &SimpleKind, state: &State, particle: usize) -> Vec2 {
+        let from_start = self.makes(kind.response, Slip::StartVelocity);
+        at(if from_start { &self.start } else { &state.v }, particle)
+    }
+
+    /// The mass of a body of the pair: infinite where it is fixed.
+    fn mass(&self, kind: &SimpleKind, particle: usize) -> f64 {
+        let is_finite = [Slip::FixedFinite, Slip::FixedAsFree].into_iter().any(|slip| self.makes(kind.response, slip));
+        match () {
+            () if self.makes(kind.response, Slip::EqualMasses) && !self.world.fixed(particle) => 1.0,
+            () if self.world.fixed(particle) && !is_finite => f64::INFINITY,
+            () => self.world.masses[2 * particle],
+        }
+    }
+
+    /// Changes the velocity of a body of the pair, which `role` tells.
+    fn push(&self, kind: &SimpleKind, state: &mut State, (role, particle): (usize, usize), n: Vec2, change: Vec2) {
+        if !self.world.fixed(particle) || self.makes(kind.response, Slip::FixedAsFree) {
+            let part = TermPart { role, length: length(n), ..TermPart::of(kind.response, particle) };
+            self.world.contribute(&mut state.v, part, change);
         }
     }
 
     fn particle_particle(&self, state: &mut State, one: usize, two: usize) -> Option<Vec2> {
+        let kind = &PARTICLES;
         let n = at(&state.x, two) - at(&state.x, one);
-        let (v1, v2) = (self.velocity(state, one), self.velocity(state, two));
-        if !self.collides(n, self.reach(one, self.world.scene.particles[two].radius), (v1 - v2).dot(&n)) {
+        let [v1, v2] = self.seen(kind, [at(&state.v, one), at(&state.v, two)]);
+        let radii = [one, two].map(|particle| self.world.scene.particles[particle].radius);
+        if !self.collides(kind, n, radii, v1 - v2) {
             return None;
         }
-        let u = self.unit(n);
-        let impulse = self.bounce * (v2 - v1).dot(&u);
-        let (m1, m2) = (self.world.collision_mass(0, 0, one), self.world.collision_mass(0, 1, two));
-        let (m1, m2) = masses(self.world.student, m1, m2);
-        self.push(state, one, impulse / (1.0 + m1 / m2) * u);
-        if !self.makes(Mistake::ResponseFirstOnly) {
-            self.push(state, two, -(impulse / (m2 / m1 + 1.0) * u));
-        }
+        let n = self.returned(kind, n);
+        let (u, bounce) = (unit(n), self.bounce(kind));
+        let impulse = |pass: &Self, state: &State| {
+            bounce * (pass.velocity(kind, state, two) - pass.velocity(kind, state, one)).dot(&u)
+        };
+        let (m1, m2) = (self.mass(kind, one), self.mass(kind, two));
+        let (m1, m2) = if self.makes(kind.response, Slip::SwappedMasses) { (m2, m1) } else { (m1, m2) };
+        let first = impulse(self, state);
+        self.push(kind, state, (0, one), n, first / (1.0 + m1 / m2) * u);
+        let second = if self.makes(kind.response, Slip::Sequential) { impulse(self, state) } else { first };
+        self.push(kind, state, (1, two), n, -(second / (m2 / m1 + 1.0) * u));
         Some(n)
+    }
+
+    /// The velocities of two bodies as the test of approach takes them into account.
+    fn seen(&self, kind: &SimpleKind, [first, second]: [Vec2; 2]) -> [Vec2; 2] {
+        match () {
+            () if self.makes(kind.approach, Slip::FirstOnly) => [first, Vec2::zeros()],
+            () if self.makes(kind.approach, Slip::SecondOnly) => [Vec2::zeros(), second],
+            () => [first, second],
+        }
     }
 
     fn particle_edge(&self, state: &mut State, one: usize, index: usize) -> Option<Vec2> {
+        let (kind, student) = (&EDGES, self.world.student);
         let edge = self.world.scene.edges[index];
         let (two, three) = (edge.first, edge.second);
         let [x1, x2, x3] = [one, two, three].map(|particle| at(&state.x, particle));
-        let [v1, v2, v3] = [one, two, three].map(|particle| self.velocity(state, particle));
-        let alpha = (x1 - x2).dot(&(x3 - x2)) / (x3 - x2).dot(&(x3 - x2));
-        let alpha =
-            if self.makes(StepMistake::SimpleEdgeUnclamped) { alpha } else { clamped(Student::default(), alpha) };
+        let [v1, v2, v3] = [one, two, three].map(|particle| at(&state.v, particle));
+        let on_line = (x1 - x2).dot(&(x3 - x2)) / (x3 - x2).dot(&(x3 - x2));
+        let limited = |alpha: f64| clamped(Student::default(), alpha);
+        let alpha = closest(student, Term::ClosestPoint, on_line, limited);
         let n = x2 + alpha * (x3 - x2) - x1;
-        if !self.collides(n, self.reach(one, edge.radius), (v1 - v2 - alpha * (v3 - v2)).dot(&n)) {
+        let seen = match () {
+            () if self.makes(kind.approach, Slip::Middle) => 0.5,
+            () if self.makes(kind.approach, Slip::Mirrored) => 1.0 - alpha,
+            () => alpha,
+        };
+        let [of_particle, of_first] = self.seen(kind, [v1, v2]);
+        let turning = if self.makes(kind.approach, Slip::FirstOnly) { Vec2::zeros() } else { seen * (v3 - v2) };
+        let particles = &self.world.scene.particles;
+        let radius = if self.makes(kind.overlap, Slip::EndRadius) { particles[two].radius } else { edge.radius };
+        let is_off = self.makes(Term::ClosestPoint, Slip::EndsOut) && !(0.0..=1.0).contains(&on_line);
+        if is_off || !self.collides(kind, n, [particles[one].radius, radius], of_particle - of_first - turning) {
             return None;
         }
-        let alpha = share_of_second(self.world.student, alpha);
-        let u = self.unit(n);
-        let of_edge = if self.makes(Mistake::ResponseEdgeStill) { Vec2::zeros() } else { v2 + alpha * (v3 - v2) };
-        let impulse = self.bounce * (of_edge - v1).dot(&u);
-        let beta = 1.0 - alpha;
-        let [m1, m2, m3] = [(0, one), (1, two), (2, three)].map(|(role, one)| self.world.collision_mass(1, role, one));
-        let (low, high) =
-            if self.makes(StepMistake::SimpleEdgeWeights) { (beta, alpha) } else { (beta * beta, alpha * alpha) };
-        self.push(state, one, impulse / (1.0 + low * m1 / m2 + high * m1 / m3) * u);
-        if self.makes(Mistake::ResponseFirstOnly) {
-            return Some(n);
-        }
-        self.push(state, two, -(beta * impulse / (m2 / m1 + low + high * m2 / m3) * u));
-        if !self.makes(Mistake::ResponseOneEndpoint) {
-            self.push(state, three, -(alpha * impulse / (m3 / m1 + low * m3 / m2 + high) * u));
-        }
+        let n = self.returned(kind, n);
+        self.push_edge(state, [one, two, three], n, closest(student, kind.response, on_line, limited));
         Some(n)
     }
 
+    fn push_edge(&self, state: &mut State, [one, two, three]: [usize; 3], n: Vec2, alpha: f64) {
+        let kind = &EDGES;
+        let (u, bounce, beta) = (unit(n), self.bounce(kind), 1.0 - alpha);
+        let impulse = |pass: &Self, state: &State| {
+            let [v1, v2, v3] = [one, two, three].map(|particle| pass.velocity(kind, state, particle));
+            let of_edge = match () {
+                () if pass.makes(Term::RespondEdgeStill, Slip::Missing) => Vec2::zeros(),
+                () if pass.makes(Term::RespondEdgeStill, Slip::Middle) => v2 + 0.5 * (v3 - v2),
+                () => v2 + alpha * (v3 - v2),
+            };
+            bounce * (of_edge - v1).dot(&u)
+        };
+        let mut masses = [one, two, three].map(|particle| self.mass(kind, particle));
+        if self.makes(kind.response, Slip::SwappedMasses) {
+            masses.swap(1, 2);
+        }
+        let [m1, m2, m3] = masses;
+        let is_plain = self.makes(kind.response, Slip::Unsquared);
+        let (low, high) = if is_plain { (beta, alpha) } else { (beta * beta, alpha * alpha) };
+        let [of_two, of_three] = match () {
+            () if self.makes(kind.response, Slip::FullShares) => [1.0, 1.0],
+            () if self.makes(kind.response, Slip::EqualShares) => [0.5, 0.5],
+            () if self.makes(kind.response, Slip::SharesExchanged) => [alpha, beta],
+            () => [beta, alpha],
+        };
+        let is_sequential = self.makes(kind.response, Slip::Sequential);
+        let first = impulse(self, state);
+        self.push(kind, state, (0, one), n, first / (1.0 + low * m1 / m2 + high * m1 / m3) * u);
+        let second = if is_sequential { impulse(self, state) } else { first };
+        self.push(kind, state, (1, two), n, -(of_two * second / (m2 / m1 + low + high * m2 / m3) * u));
+        let third = if is_sequential { impulse(self, state) } else { first };
+        self.push(kind, state, (2, three), n, -(of_three * third / (m3 / m1 + low * m3 / m2 + high) * u));
+    }
+
+    /// A fixed particle is changed, too.
     fn particle_half_plane(&self, state: &mut State, one: usize, index: usize) -> Option<Vec2> {
+        let kind = &HALF_PLANES;
         let plane = self.world.scene.half_planes[index];
-        let q = if self.makes(StepMistake::SimpleNormalLength) { plane.normal } else { unit(plane.normal) };
-        let n = (plane.point - at(&state.x, one)).dot(&q) * q;
-        let v = self.velocity(state, one);
-        if !self.collides(n, self.world.scene.particles[one].radius, v.dot(&n)) {
+        let to_point = plane.point - at(&state.x, one);
+        let q = if self.makes(kind.normal, Slip::Undivided) { plane.normal } else { unit(plane.normal) };
+        let n = if self.makes(kind.normal, Slip::ToPoint) { to_point } else { to_point.dot(&q) * q };
+        let seen = at(&state.v, one);
+        let is_behind = self.makes(kind.overlap, Slip::OneSided) && to_point.dot(&q) > 0.0;
+        let reach = if is_behind { f64::INFINITY } else { self.world.scene.particles[one].radius };
+        if !self.collides(kind, n, [reach, 0.0], seen) {
             return None;
         }
-        if self.world.fixed(one) && self.makes(Mistake::ResponseHalfPlaneSparesFixed) {
+        let n = self.returned(kind, n);
+        if self.world.fixed(one) && self.makes(kind.response, Slip::FixedSpared) {
             return Some(n);
         }
-        let u = self.unit(n);
-        let change = self.bounce * v.dot(&u) * u;
-        let sign = match () {
-            () if self.makes(Mistake::ResponseSign) => -1.0,
-            () if self.makes(Mistake::ResponseHalfPlaneHalved) => 0.5,
-            () => 1.0,
-        };
-        let before = at(&state.v, one);
-        put(&mut state.v, one, before - sign * change);
+        let (u, bounce, v) = (unit(n), self.bounce(kind), self.velocity(kind, state, one));
+        let change = if self.makes(kind.response, Slip::Whole) { bounce * v } else { bounce * v.dot(&u) * u };
+        let part = TermPart { length: length(n), is_negative: true, ..TermPart::of(kind.response, one) };
+        self.world.contribute(&mut state.v, part, change);
         Some(n)
     }
 }

@@ -65,5 +65,5 @@ pub fn step(
 
 /// The cost of one solve of an implicit integrator's system, in polynomials: some thousand operations each.
 fn solve_work(world: &World) -> u64 {
-    (2 * world.scene.particles.len() as u64).pow(3) / 1500
+    10 + (2 * world.scene.particles.len() as u64).pow(3) / 1500
 }

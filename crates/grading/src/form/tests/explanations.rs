@@ -25,7 +25,7 @@ pub(super) fn all() -> Vec<Explanation> {
     let found = found.chain([OfPolynomials::Missing, OfPolynomials::NearlyRight, OfPolynomials::Nothing]);
     let subjects = vec![Subject::EdgeOverlap, Subject::HalfPlaneApproach];
     let of_polynomials = found.map(|found| About::Polynomials { subjects: subjects.clone(), found });
-    let terms = vec![(ForceTerm::VortexTurning, WrongWeight::Half), (ForceTerm::Drag, WrongWeight::Other)];
+    let terms = vec![(ForceTerm::Vortex, WrongWeight::Half), (ForceTerm::Drag, WrongWeight::Other)];
     let others = [About::Mistake, About::Unfinished, About::Scene { has_length: false }, About::Forces(terms)];
     let stages = [NanStage::Detection(Some(PairKind::ParticleEdge)), NanStage::FirstRecord, NanStage::Zones];
     let ends = stages.map(|stage| About::NotFinite(NotFinite { step: Some(7), stage, is_nan: true, ends: false }));

@@ -1,15 +1,25 @@
 //! Probe scenes of the milestones that log states: they show what the scenes of their suites leave open.
 use fosssim_model::assignments::Assignment;
 
+macro_rules! probes {
+    ($($name:literal),*) => { &[$(($name, include_str!(concat!("probes/", $name, ".xml")))),*] };
+}
+
 /// Names and texts of those of a milestone.
 pub(in crate::assignments) const fn of(milestone: Assignment) -> &'static [(&'static str, &'static str)] {
     match milestone {
-        Assignment::T1M3 => &[("linear-with-drag", include_str!("probes/linear-with-drag.xml"))],
-        Assignment::T2M1 => &[
-            ("exact-touches", include_str!("probes/exact-touches.xml")),
-            ("layers-of-half-planes", include_str!("probes/layers-of-half-planes.xml")),
+        Assignment::T1M1 => probes!["two-fields-and-a-fixed-particle"],
+        Assignment::T1M2 => probes!["springs-share-a-particle", "drag-and-pull-of-unequal-masses", "drag-alone"],
+        Assignment::T1M3 => probes!["linear-with-drag", "newton-with-all-forces"],
+        Assignment::T2M1 => probes![
+            "balls-meet",
+            "balls-meet-edges",
+            "balls-meet-half-planes",
+            "exact-touches",
+            "layers-of-balls-and-edges",
+            "layers-of-half-planes"
         ],
-        Assignment::T2M3 => &[("contest-of-corners", include_str!("probes/contest-of-corners.xml"))],
-        _ => &[],
+        Assignment::T2M3 => probes!["contest-of-corners"],
+        Assignment::T2M2 => &[],
     }
 }

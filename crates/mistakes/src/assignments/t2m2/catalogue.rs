@@ -414,7 +414,7 @@ rows! {
         LogMidIsEnd "log-mid-is-end": "The record in the middle of a step already holds its end." => "Record 2 of each step equals record 1; the first one belongs before the geometric part.";
         LogNoMid "log-no-mid": "The record in the middle of a step is missing." => "1 record per step stands where 2 belong.";
         LogNoInitial "log-no-initial": "The initial record is missing." => "Record 0, the state before the first step, belongs at the beginning.";
-        LogSinglePrecision "log-single-precision": "Positions and velocities are logged as float." => "float holds 24 bits; double, with 53, is expected.";
+        LogSinglePrecision "log-single-precision": "Positions or velocities are kept or logged as float." => "float holds 24 bits; double, with 53, is expected.";
         LogPadded "log-padded": "Every logged polynomial has a leading zero, which the course's library never writes." => "Leading coefficients below 1e-12 are dropped before logging.";
     }
     Variant Handover {

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     diagnose::sampling::{KeptStep, Reference, Scan},
-    student::{Mistake, Row},
+    student::{Edit, Mistake, Row, Slip, StepMistake},
 };
 use fosssim_model::scene::Scene;
 
@@ -113,6 +113,9 @@ impl<'a> Candidates<'a> {
             Mistake::LogImpulsesKept if sample.difference.is_some() => return sample.context.impulses_kept,
             Mistake::LogNan | Mistake::LogNanContacts if sample.context.logs_nan => return logs_nan(row, sample),
             Mistake::LogSinglePrecision if sample.difference.is_some() => return sample.context.single_precision,
+            Mistake::Step(StepMistake::Edit(Edit { slip: Slip::NotCleared, .. })) if sample.difference.is_some() => {
+                return sample.context.forces_kept;
+            }
             _ => {}
         }
         self.trials.reached(program, sample) >= 1.0

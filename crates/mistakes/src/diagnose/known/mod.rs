@@ -29,7 +29,7 @@ use super::{
     about::About,
     sampling::{ROUND_OFF, Reference, Sampled, Scan, Source, first_difference, sampled},
 };
-use crate::student::{Mistake, Row, RowKind, StepLog, World, find};
+use crate::student::{Mistake, Row, RowKind, StepLog, StepMistake, World, find};
 use candidates::Candidates;
 use fosssim_model::{scene::Scene, trace::Layout};
 use resimulate::{Correct, resimulate};
@@ -189,6 +189,7 @@ fn plausibility(row: &Row) -> u8 {
         | Mistake::ImpulsesEmptySuccess
         | Mistake::GeometricEmpty
         | Mistake::FailsafeEmpty => 0,
+        Mistake::Step(StepMistake::Edit(edit)) if edit.is_empty_function() => 0,
         Mistake::ImpulsesPassWhenZero
         | Mistake::ImpulsesTestWhenZero
         | Mistake::ImpulsesSuccessWhenZero

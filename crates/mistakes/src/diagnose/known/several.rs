@@ -12,6 +12,8 @@ use fosssim_model::{scene::Scene, sim::pairs, trace::Layout};
 
 /// The greatest number of mistakes in a set, besides empty stages.
 const MOST: usize = 3;
+/// The greatest number of sets of empty stages that are tried.
+const MOST_SETS: usize = 1 << 8;
 /// Polynomials that may be computed in all; about a microsecond each.
 const WORK: u64 = 700_000;
 
@@ -31,7 +33,7 @@ pub(super) struct Several {
 pub(super) fn several(reference: &Reference<'_>, scene: &Scene, scan: &Scan, correct: Correct) -> Option<Several> {
     let search = Search::new(reference, scene, scan, correct);
     if !Layout::of(scene).polynomials {
-        return search.pair();
+        return search.together();
     }
     let mut found = search.starts().into_iter().find_map(|start| search.from(start))?;
     // A stage that is not written may look like a mistake in one that is.
@@ -105,37 +107,62 @@ impl<'a> Search<'a> {
         Some(Several { rows: set, same_as: alike, rivals: Vec::new(), samples })
     }
 
-    /// Two mistakes of a program whose steps log states: neither carries a step further, both together do. None where
-    /// two sets that have nothing in common do.
-    fn pair(&self) -> Option<Several> {
-        let probe = *self.probes.first()?;
+    /// Mistakes of a program whose steps log states: none carries a step further, all together do. Functions that are
+    /// not written come first, then one mistake beside such functions, then two mistakes; none where two sets that have
+    /// nothing in common do.
+    fn together(&self) -> Option<Several> {
         let is_asked = |row: &&Row| row.kind == RowKind::Wrong && row.area != Area::Trace;
         let rows: Vec<&'static Row> = applicable(self.scene).filter(is_asked).collect();
-        let mut sets: Vec<[&'static Row; 2]> = Vec::new();
-        for (index, &one) in rows.iter().enumerate() {
-            for &other in &rows[index + 1..] {
-                if self.trials.exceed(WORK) {
-                    return None;
-                }
-                let set = [one, other];
-                if self.trials.reached(&self.trials.program(&set), probe) >= 1.0
-                    && self.progress(&set) >= self.goal()
-                    && self.is_needed(&set)
-                    && self.confirmed(&set).is_some()
-                {
-                    sets.push(set);
-                }
+        let mut empty = subsets(&self.stages());
+        let most = empty.len().min(MOST_SETS);
+        empty.truncate(most);
+        let explains = |set: &Vec<&'static Row>| self.explains(set);
+        if let Some(rows) = empty.iter().filter(|set| set.len() > 1).find(|set| explains(set)) {
+            let same_as = rows.iter().map(|_| Vec::new()).collect();
+            return Some(Several { rows: rows.clone(), same_as, rivals: Vec::new(), samples: self.confirmed(rows)? });
+        }
+        let with = |set: &Vec<&'static Row>, row| set.iter().copied().chain([row]).collect();
+        let beside = |size: usize| {
+            let sets = empty.iter().filter(move |set| set.len() == size);
+            sets.flat_map(|set| rows.iter().filter(|row| !is_empty_stage(row)).map(|row| with(set, row)))
+        };
+        let of_two = rows.iter().enumerate().flat_map(|(index, &one)| {
+            rows[index + 1..].iter().filter(move |_| !is_empty_stage(one)).map(move |&other| vec![one, other])
+        });
+        self.only(beside(1)).or_else(|| self.only(beside(2))).or_else(|| self.only(of_two))
+    }
+
+    /// The one of these sets that reproduces everything, with the rows that do as well in the place of one of its own.
+    fn only(&self, sets: impl Iterator<Item = Vec<&'static Row>>) -> Option<Several> {
+        let mut found: Vec<Vec<&'static Row>> = Vec::new();
+        for set in sets {
+            if self.trials.exceed(WORK) {
+                return None;
+            }
+            if self.explains(&set) {
+                found.push(set);
             }
         }
-        let &[first, second] = sets.first()?;
-        let samples = self.confirmed(&[first, second])?;
-        let beside = |kept: &Row| -> Vec<&'static Row> {
-            let with = sets[1..].iter().filter(|set| set.iter().any(|row| row.id == kept.id));
-            with.flatten().filter(|row| row.id != kept.id).copied().collect()
+        let first = found.first()?.clone();
+        let samples = self.confirmed(&first)?;
+        let is_in = |set: &[&Row], row: &Row| set.iter().any(|other| other.id == row.id);
+        let instead = |own: &&'static Row| -> Vec<&'static Row> {
+            let others: Vec<&Row> = first.iter().copied().filter(|row| row.id != own.id).collect();
+            let alike = found[1..].iter().filter(|set| others.iter().all(|row| is_in(set, row)));
+            alike.flatten().filter(|row| !is_in(&first, row)).copied().collect()
         };
-        let same_as = vec![beside(second), beside(first)];
-        let is_told = sets.len() == 1 + same_as.iter().map(Vec::len).sum::<usize>();
-        is_told.then(|| Several { rows: vec![first, second], same_as, rivals: Vec::new(), samples })
+        let same_as: Vec<Vec<&'static Row>> = first.iter().map(instead).collect();
+        let is_told = found.len() == 1 + same_as.iter().map(Vec::len).sum::<usize>();
+        is_told.then(|| Several { rows: first, same_as, rivals: Vec::new(), samples })
+    }
+
+    /// Whether these reproduce everything, and none of them can be left out.
+    fn explains(&self, set: &[&'static Row]) -> bool {
+        let Some(probe) = self.probes.first() else { return false };
+        self.trials.reached(&self.trials.program(set), probe) >= 1.0
+            && self.progress(set) >= self.goal()
+            && self.is_needed(set)
+            && self.confirmed(set).is_some()
     }
 
     /// Sets of empty stages to begin with: the one that carries furthest, and those detections without which the

@@ -1,25 +1,22 @@
 //! Which rows of the catalogue a scene can show at all: no others are tried on it.
 use crate::{
-    diagnose::written::force_kinds,
-    student::{Area, Mistake, Row, RowKind, StepMistake, all_rows},
+    diagnose::written::{is_written, term},
+    student::{Area, Mistake, Row, RowKind, Term, all_rows},
 };
 use fosssim_model::{
-    scene::{Collision, Integrator, Scene},
-    sim::{ByKind, PairKind, pairs},
-    trace::Layout,
+    assignments::{ForceKind, Integrator, Part},
+    scene::{Collision, Scene},
+    sim::{ByKind, pairs},
 };
 
-/// The rows that may explain a trace of this scene, in the order of the catalogue. Where steps log polynomials, the
-/// course supplies forces and integrators, so that their rows come last. Records that are missing are looked for
-/// elsewhere.
+/// The rows that may explain a trace of this scene, in the order of the catalogue: mistakes in what the student of the
+/// scene's assignment writes. Records that are missing are looked for elsewhere.
 pub(super) fn applicable(scene: &Scene) -> impl Iterator<Item = &'static Row> {
     let is_tried =
         |row: &&Row| row.kind != RowKind::Hostile && !matches!(row.mistake, Mistake::LogNoInitial | Mistake::LogNoMid);
-    let counts = pairs(scene).counts();
-    let mut rows: Vec<_> = all_rows().filter(is_tried).filter(|row| shows(scene, &counts, row)).collect();
-    let logs_polynomials = Layout::of(scene).polynomials;
-    rows.sort_by_key(|row| logs_polynomials && is_of_states(row));
-    rows.into_iter()
+    let (counts, assignment) = (pairs(scene).counts(), scene.assignment());
+    let is_theirs = move |row: &&Row| is_written(row, assignment);
+    all_rows().filter(is_tried).filter(is_theirs).filter(move |row| shows(scene, &counts, row))
 }
 
 /// Whether the mistake is one of forces, integrators, penalties or simple responses.
@@ -41,7 +38,7 @@ fn shows(scene: &Scene, counts: &ByKind<usize>, row: &Row) -> bool {
     let has_stage = match (&scene.collision, row.area) {
         (_, Area::Trace | Area::Process) => true,
         (Collision::None | Collision::Penalty { .. }, _) => false,
-        (Collision::Simple { .. }, area) => matches!(area, Area::Decision | Area::Response),
+        (Collision::Simple { .. }, area) => area == Area::Decision,
         (Collision::ContinuousTime { .. }, area) => {
             !matches!(area, Area::ImpulseLoop | Area::ImpactZones | Area::Failsafe)
         }
@@ -50,50 +47,22 @@ fn shows(scene: &Scene, counts: &ByKind<usize>, row: &Row) -> bool {
     has_stage && row.kind_of_pair().is_none_or(|kind| counts[kind] > 0)
 }
 
-/// The same of mistakes of forces, integrators and what follows from them: a row's name begins with what it is about.
+/// The same of mistakes of forces, integrators and what follows from them.
 fn shows_in_states(scene: &Scene, counts: &ByKind<usize>, row: &Row) -> bool {
-    let is_linear = scene.integrator == Integrator::LinearizedImplicitEuler;
-    let is_implicit = is_linear || scene.integrator == Integrator::ImplicitEuler;
-    let has_force = |name: &str| scene.forces.iter().any(|force| force_kinds(name).contains(&force.kind()));
-    let mut words = row.id.split('-');
-    let (first, second) = (words.next().unwrap_or_default(), words.next().unwrap_or_default());
-    let has_kind = |name: &str| match name {
-        "particles" => counts[PairKind::ParticleParticle] > 0,
-        "edge" | "edges" => counts[PairKind::ParticleEdge] > 0,
-        "half" | "normal" => counts[PairKind::ParticleHalfPlane] > 0,
-        _ => true,
-    };
-    match row.area {
-        Area::Forces => has_force(first),
-        Area::Jacobians => is_implicit && has_force(second),
-        Area::Integrator => match (first, row.mistake) {
-            ("linear", _) => is_linear,
-            ("matrix" | "right", _) | (_, Mistake::Step(StepMistake::ImplicitPositionWithoutChange)) => is_implicit,
-            ("implicit", _) => scene.integrator == Integrator::ImplicitEuler,
-            (_, Mistake::Step(StepMistake::IntegratorVelocityFirst)) => scene.integrator == Integrator::ExplicitEuler,
-            (_, Mistake::Step(StepMistake::IntegratorPositionFirst)) => {
-                matches!(scene.integrator, Integrator::SymplecticEuler | Integrator::ForwardBackwardEuler)
-            }
-            (_, Mistake::Step(mistake)) if is_of_acceleration(mistake) => !is_implicit,
-            _ => true,
-        },
-        Area::Penalty | Area::NearPairs => {
-            matches!(scene.collision, Collision::Penalty { .. } | Collision::Hybrid { .. }) && has_kind(second)
-        }
-        _ => matches!(scene.collision, Collision::Simple { .. }),
+    let term = term(row);
+    let has = |kind: ForceKind| scene.forces.iter().any(|force| force.kind() == kind);
+    let is_implicit = matches!(scene.integrator, Integrator::LinearizedImplicitEuler | Integrator::ImplicitEuler);
+    let is_simple = matches!(scene.collision, Collision::Simple { .. });
+    let has_penalty = matches!(scene.collision, Collision::Penalty { .. } | Collision::Hybrid { .. });
+    match term.row().part {
+        _ if term == Term::Penalty => has_penalty,
+        Part::Force(kind) => has(kind),
+        Part::Jacobians(kind) => is_implicit && has(kind),
+        Part::Integrator(integrator) => scene.integrator == integrator,
+        Part::Penalty(kind) => has_penalty && counts[kind] > 0,
+        Part::SimpleDetection(kind) | Part::SimpleResponse(kind) => is_simple && counts[kind] > 0,
+        _ => false,
     }
-}
-
-/// Whether a mistake is made where forces become accelerations, which implicit integrators do in their system.
-const fn is_of_acceleration(mistake: StepMistake) -> bool {
-    matches!(
-        mistake,
-        StepMistake::IntegratorForceBehindPositions
-            | StepMistake::IntegratorForceSign
-            | StepMistake::IntegratorNoMass
-            | StepMistake::IntegratorMassMultiplied
-            | StepMistake::IntegratorNoStepForVelocities
-    )
 }
 
 #[cfg(test)]

@@ -70,7 +70,7 @@ impl<'a> Trials<'a> {
         };
         let mut log = StepLog { guard: Some(&guard), ..StepLog::default() };
         let records = resimulate(&program.world, &kept.before, &mut log);
-        self.work.set(self.work.get() + asked.get());
+        self.work.set(self.work.get() + asked.get() + log.long_searches);
         self.left.set(self.left.get().saturating_sub(asked.get() + log.long_searches));
         let share = |index: usize| 0.5 * index as f64 / (logged.len() + 1) as f64;
         let Some(records) = records else { return failed.get().map_or(0.0, share) };

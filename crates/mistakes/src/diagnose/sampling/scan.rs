@@ -12,6 +12,7 @@ use fosssim_model::{
     sim::State,
     trace::{Layout, LenientFrame},
 };
+use fosssim_num::tolerances::KNOWN_STATE;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Steps that are kept, wrong and right.
@@ -53,8 +54,10 @@ pub struct Context {
     pub impulses_kept: bool,
     /// Right, though NaN stands in its lists: contacts were found and resolved that NaN can't lead to.
     pub logs_nan: bool,
-    /// All numbers of its states are those of single precision, and apart from that it is right.
+    /// All positions or all velocities are numbers of single precision, and apart from that it is right.
     pub single_precision: bool,
+    /// Velocities change by what they should and by their change in the step before.
+    pub forces_kept: bool,
 }
 
 /// The parts of a trace on which the rows of the catalogue are tried.
@@ -93,6 +96,8 @@ pub struct Scanner {
     scan: Scan,
     seen: BTreeMap<(bool, u64), u32>,
     memory: usize,
+    /// The number of the step before, and the change of its velocities.
+    last: Option<(u32, Vec<f64>)>,
 }
 
 impl Scanner {
@@ -105,6 +110,7 @@ impl Scanner {
             scan: Scan::default(),
             seen: BTreeMap::new(),
             memory: 0,
+            last: None,
         }
     }
 
@@ -129,6 +135,8 @@ impl Scanner {
         }
         let difference = first_difference(&self.capture.records, &actual, &self.round_off);
         let signature = self.signature(difference, &actual);
+        let change = before.state.velocities.iter().zip(&actual.end.state.velocities).map(|(old, new)| new - old);
+        let last = self.last.replace((step, change.collect())).filter(|(number, _)| number + 1 == step);
         let count = self.seen.entry((difference.is_some(), signature)).or_default();
         let number = *count;
         *count += 1;
@@ -141,7 +149,10 @@ impl Scanner {
         if !wanted || (self.memory > MEMORY && !self.scan.wrong.is_empty()) {
             return;
         }
-        let context = difference.map_or(Context::default(), |_| Context { logs_nan, ..self.context(before, &actual) });
+        let context = difference.map_or(Context::default(), |_| Context {
+            logs_nan,
+            ..self.context(before, &actual, last.as_ref().map(|(_, change)| change.as_slice()))
+        });
         let kept = KeptStep { step, before: before.state.clone(), records: actual, difference, context, signature };
         self.memory += kept.bytes();
         if difference.is_some() { self.scan.wrong.push(kept) } else { self.scan.right.push(kept) }
@@ -169,8 +180,11 @@ impl Scanner {
         u64::from(self.capture.events) | first << 32 | logged << 48
     }
 
-    fn context(&self, before: &LenientFrame, actual: &StepRecords) -> Context {
+    fn context(&self, before: &LenientFrame, actual: &StepRecords, last: Option<&[f64]>) -> Context {
         let expected = &self.capture.records;
+        let (ours, theirs) = (&expected.end.state, &actual.end.state);
+        let is_single = (single(&theirs.positions) && !single(&ours.positions))
+            || (single(&theirs.velocities) && !single(&ours.velocities));
         Context {
             polynomials_kept: self.right_without(before, actual, |records, previous| {
                 let kept = previous.polynomials.len();
@@ -193,9 +207,14 @@ impl Scanner {
                 begins
             }),
             logs_nan: false,
-            single_precision: single(&actual.end.state)
-                && !single(&expected.end.state)
-                && first_difference(expected, actual, &SINGLE_PRECISION).is_none(),
+            single_precision: is_single && first_difference(expected, actual, &SINGLE_PRECISION).is_none(),
+            forces_kept: last.is_some_and(|last| {
+                let changes = before.state.velocities.iter().zip(&expected.end.state.velocities).zip(last);
+                let mut kept = changes.zip(&actual.end.state.velocities);
+                kept.all(|(((_, expected), last), end)| {
+                    (expected + last - end).abs() <= KNOWN_STATE * (1.0 + expected.abs() + last.abs())
+                })
+            }),
         }
     }
 
@@ -239,9 +258,9 @@ impl KeptStep {
     }
 }
 
-/// Whether all numbers of a state are those of single precision.
-fn single(state: &State) -> bool {
+/// Whether all numbers are those of single precision.
+fn single(numbers: &[f64]) -> bool {
     #[expect(clippy::cast_possible_truncation, reason = "whether it loses anything is the question")]
     let exact = |value: &f64| f64::from(*value as f32).to_bits() == value.to_bits();
-    state.positions.iter().chain(&state.velocities).all(exact)
+    numbers.iter().all(exact)
 }

@@ -232,12 +232,12 @@ fn an_empty_stage_has_rivals_too() {
 #[test]
 fn another_mistake_has_its_own_exact_form() {
     let all = Explanation {
-        details: vec![Detail::Term("penalty-missing".into())],
+        details: vec![Detail::Term("penalty-half-planes-missing".into())],
         same_as: vec!["penalty-first-half-plane-only".to_owned()],
-        ..row("penalty-missing", &[])
+        ..row("penalty-half-planes-missing", &[])
     };
     let traces = [vec![all]];
-    let told = several(traces.iter().map(Vec::as_slice), &["penalty-missing".to_owned()]);
+    let told = several(traces.iter().map(Vec::as_slice), &["penalty-half-planes-missing".to_owned()]);
     assert_eq!(told[0].key, "penalty-first-half-plane-only");
     assert_eq!(told[0].details, [Detail::Term("penalty-first-half-plane-only".into())]);
 }

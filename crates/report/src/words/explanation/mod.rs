@@ -11,7 +11,7 @@ mod stages;
 
 use fosssim_mistakes::{
     diagnose::{About, Detail, Explanation, OfPolynomials, PolynomialDetail, formula_in},
-    student::{Area, Mistake, Row, find},
+    student::{Area, Mistake, Row, StepMistake, find},
 };
 
 pub(crate) use places::place;
@@ -93,13 +93,16 @@ pub(crate) fn known(key: &str) -> Option<String> {
 
 /// The stages that are not written yet, in a few words each.
 fn unfinished(keys: &[String]) -> String {
-    let stages: Vec<&str> = keys.iter().filter_map(|key| find(key)).map(empty_stage).collect();
+    let stages: Vec<String> = keys.iter().filter_map(|key| find(key)).map(empty_stage).collect();
     stages.join(", ")
 }
 
 /// A stage of which nothing is there.
-fn empty_stage(row: &Row) -> &'static str {
-    match row.mistake {
+fn empty_stage(row: &Row) -> String {
+    let name = match row.mistake {
+        Mistake::Step(StepMistake::Edit(edit)) => {
+            return edit.term.row().subject[..1].to_lowercase() + &edit.term.row().subject[1..];
+        }
         Mistake::ParticleParticleEmpty => "the particle-particle detection, which logs nothing",
         Mistake::ParticleEdgeEmpty => "the particle-edge detection, which logs nothing",
         Mistake::HalfPlaneEmpty => "the particle-half-plane detection, which logs nothing",
@@ -110,21 +113,27 @@ fn empty_stage(row: &Row) -> &'static str {
         Mistake::ImpulsesEmpty | Mistake::ImpulsesEmptySuccess => "the impulse loop",
         Mistake::GeometricEmpty => "the geometric part",
         _ => "the rigid failsafe",
-    }
+    };
+    name.to_owned()
 }
 
 /// The same of a mistake in a step without collisions: the row's name says what it is about.
 fn look_at_step(key: &str) -> &'static str {
-    match key.split('-').next() {
-        _ if key.contains("fixed") => "Look at what a step does with fixed particles.",
-        Some("matrix") => "Look at how the system matrix is built.",
-        Some("right") => "Look at how the right-hand side of the system is built.",
-        Some("implicit") => "Look at Newton's method: what each iteration computes from what, and when it ends.",
-        Some("linear") => {
+    let has = |words: &[&str]| words.iter().any(|word| key.contains(word));
+    match () {
+        () if has(&["fixed"]) => "Look at what a step does with fixed particles.",
+        () if has(&["-hx", "-hv", "matrix", "linear-mass", "implicit-mass"]) => {
+            "Look at how the system matrix is built."
+        }
+        () if has(&["-right", "-momentum"]) => "Look at how the right-hand side of the system is built.",
+        () if has(&["newton"]) || key.starts_with("implicit") => {
+            "Look at Newton's method: what each iteration computes from what, and when it ends."
+        }
+        () if key.starts_with("linear") => {
             "Look at where forces and matrix are computed, and at what the solution of the system changes."
         }
-        _ if ["order", "first", "behind", "mean"].iter().any(|word| key.contains(word)) => look(Area::Integrator),
-        _ => "Look at how forces change velocities, and velocities change positions.",
+        () if has(&["-velocity", "behind"]) => look(Area::Integrator),
+        () => "Look at how forces change velocities, and velocities change positions.",
     }
 }
 
@@ -145,6 +154,9 @@ const fn look(area: Area) -> &'static str {
         Area::ContactVector => "Look at what the detection returns once the time of impact is known.",
         Area::Decision => {
             "Look at which pairs are tested, and at what is done with the time that the root finder returns."
+        }
+        Area::SimpleDetection => {
+            "Look at when the detection of this kind of pair finds a collision, and at the vector that it returns."
         }
         Area::Response => "Look at how one contact changes velocities and positions.",
         Area::ContinuousTime => "Look at the loop over the pairs in the single pass of continuous-time.",

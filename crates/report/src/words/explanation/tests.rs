@@ -310,13 +310,13 @@ fn a_known_mistake_is_told_by_its_row() {
 #[test]
 fn advice_on_a_step_fits_its_mistake() {
     for (key, word) in [
-        ("matrix-velocities-squared", "system matrix"),
-        ("right-side-of-fixed", "fixed particles"),
-        ("right-side-sign", "right-hand side"),
-        ("implicit-one-iteration", "Newton's method"),
-        ("linear-overwrites", "solution of the system"),
-        ("integrator-velocity-first", "order"),
-        ("integrator-no-mass", "forces change velocities"),
+        ("linear-hv-step", "system matrix"),
+        ("linear-right-of-fixed", "fixed particles"),
+        ("implicit-right-sign", "right-hand side"),
+        ("newton-iterations-1", "Newton's method"),
+        ("linear-velocities-assigned", "solution of the system"),
+        ("explicit-positions-other-velocity", "order"),
+        ("symplectic-velocities-mass", "forces change velocities"),
     ] {
         assert!(find(key).is_some() && super::look_at_step(key).contains(word), "{key}");
     }

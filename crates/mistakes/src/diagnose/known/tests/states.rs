@@ -3,19 +3,19 @@
 use crate::{
     assignments::probe_scenes,
     diagnose::{
-        explain,
+        Explanation, explain,
         known::{
             known,
             shown::{applicable, is_of_states},
         },
     },
-    student::{self, Student, all_rows, find},
+    student::{self, Area, Row, StepLog, Student, World, find, step},
 };
 use fosssim_model::{
     assignments::Assignment,
     scene::{Scene, original},
 };
-use std::{collections::BTreeMap, fs, path::Path};
+use std::{collections::BTreeSet, fs, path::Path};
 
 /// Scenes of more bodies take long to be simulated with all mistakes.
 const MOST_PARTICLES: usize = 20;
@@ -52,7 +52,11 @@ fn scenes() -> Vec<(String, Scene)> {
             scene.duration = scene.duration.min(MOST_STEPS * scene.time_step);
         }
     }
-    scenes.retain(|(_, scene)| scene.particles.len() <= MOST_PARTICLES);
+    // Programs of a milestone meet no scene that they can't run.
+    let is_met = |name: &str, scene: &Scene| {
+        name.starts_with("t2m3") || scene.assignments().any(|one| name.starts_with(one.key()))
+    };
+    scenes.retain(|(name, scene)| scene.particles.len() <= MOST_PARTICLES && is_met(name, scene));
     scenes
 }
 
@@ -65,84 +69,109 @@ fn trace(scene: &Scene, ids: &[&str]) -> Vec<u8> {
     student::trace(scene, student).unwrap_or_else(|(bytes, _)| bytes)
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Named {
-    /// The trace is the right one, or no more than round-off away from it, or ends at once.
-    Not,
-    /// It is among those that this trace can't tell apart from the one that is named.
-    Among,
-    First,
+/// Whether explanations name a mistake, told or as not to be told apart.
+fn names(told: &[Explanation], id: &str) -> bool {
+    told.iter().any(|one| one.key == id || one.same_as.iter().any(|other| other == id))
 }
 
+/// Each row leaves a wrong trace of a scene of its milestone, of which it is named, and of the scenes before that one it
+/// is taken for no other.
 #[test]
 fn every_mistake_of_states_is_named_and_taken_for_no_other() {
-    let mut best: BTreeMap<&str, (Named, String)> = BTreeMap::new();
-    let mut mistaken = Vec::new();
+    let (mut named, mut asked, mut mistaken) = (BTreeSet::<&str>::new(), BTreeSet::new(), Vec::new());
     for (name, scene) in scenes() {
         let correct = trace(&scene, &[]);
-        for row in applicable(&scene).filter(|row| is_of_states(row)) {
+        // A mistake that shows only with the step before is none that one step makes.
+        let is_of_step = |row: &&Row| is_of_states(row) && !row.id.ends_with("not-cleared");
+        let rows: Vec<&Row> = applicable(&scene).filter(is_of_step).filter(|row| !named.contains(row.id)).collect();
+        for row in rows {
             let trace = trace(&scene, &[row.id]);
-            let told = if trace == correct { None } else { known(&scene, &trace[..]).into_iter().next() };
-            let found = match told {
-                None => (Named::Not, String::new()),
-                Some(one) if one.key == row.id => (Named::First, format!("{:?}", one.same_as)),
-                Some(one) if one.same_as.iter().any(|id| id == row.id) => {
-                    (Named::Among, format!("{} {:?}", one.key, one.same_as))
-                }
-                Some(one) => {
-                    mistaken.push(format!("{} on {name} is taken for {}", row.id, one.key));
-                    continue;
-                }
-            };
-            let entry = best.entry(row.id).or_insert((Named::Not, String::new()));
-            if found.0 > entry.0 {
-                *entry = found;
+            // Newton's method does not end with every mistake, and the contest's scenes lack some pairs.
+            if trace.len() == correct.len() && (row.area != Area::NearPairs || trace != correct) {
+                asked.insert(row.id);
+            }
+            let told = if trace == correct { Vec::new() } else { known(&scene, &trace[..]) };
+            if names(&told, row.id) {
+                named.insert(row.id);
+            } else if let Some(one) = told.first() {
+                mistaken.push(format!("{} on {name} is taken for {}", row.id, one.key));
             }
         }
     }
     assert!(mistaken.is_empty(), "{mistaken:#?}");
-    let not_first: Vec<_> = all_rows()
-        .filter(|row| is_of_states(row))
-        .map(|row| (row.id, best.get(row.id)))
-        .filter(|(_, found)| found.is_none_or(|found| found.0 < Named::First))
-        .collect();
-    assert!(not_first.is_empty(), "{not_first:#?}");
+    let unnamed: Vec<_> = asked.difference(&named).collect();
+    assert!(unnamed.is_empty(), "{unnamed:#?}");
 }
 
 /// A student wrote `n.normalized();` and threw its result away.
 #[test]
 fn a_spring_whose_direction_is_never_normalised_is_named() {
     for (name, id) in [
-        ("t1m3/linearized-implicit-chain", "spring-direction"),
-        ("t1m3/linearized-implicit-chain", "spring-direction-everywhere"),
-        ("t1m3/implicit-euler-net-with-fixed-corners", "spring-direction-everywhere"),
+        ("t1m3/linear-with-drag", "spring-direction"),
+        ("t1m3/linear-with-drag", "spring-direction-everywhere"),
         ("t1m2/damped-spring-turning", "spring-direction"),
     ] {
         let scene = scene(name);
         let told = explain(&scene, &trace(&scene, &[id]));
         let [one] = &told[..] else { panic!("{name}: {told:#?}") };
-        // Newton's method comes to the same end without the right derivatives.
-        assert!(one.key == id || one.same_as == [id], "{name}: {one:#?}");
-        assert!(one.is_complete());
+        assert!(one.key == id && one.is_complete(), "{name}: {one:#?}");
     }
 }
 
 #[test]
-fn two_mistakes_of_states_are_named_together() {
+fn several_mistakes_of_states_are_named_together() {
     for (name, ids) in [
-        ("t1m2/forward-backward-euler-swing", ["spring-direction", "gravity-sign"]),
-        ("t1m2/all-forces-at-once", ["vortex-turn", "drag-mass"]),
-        ("t1m3/linearized-implicit-chain", ["jacobian-velocity-missing", "spring-damping-sign"]),
-        ("t2m1/pile-between-fixed-bodies", ["penalty-no-radii", "gravity-no-mass"]),
+        ("t1m2/springs-share-a-particle", &["spring-direction", "symplectic-positions-doubled"][..]),
+        ("t1m2/drag-and-pull-of-unequal-masses", &["gravitation-sign", "drag-mass"]),
+        ("t1m2/drag-and-pull-of-unequal-masses", &["gravitation-missing", "drag-missing"]),
+        ("t2m1/layers-of-balls-and-edges", &["penalty-particles-no-radii", "penalty-edges-sign"]),
+        (
+            "t2m1/layers-of-balls-and-edges",
+            &["penalty-particles-missing", "penalty-edges-missing", "penalty-half-planes-missing"],
+        ),
     ] {
         let scene = scene(name);
-        let told = explain(&scene, &trace(&scene, &ids));
-        assert_eq!(told.len(), 2, "{name}: {told:#?}");
-        for id in ids {
-            let is_named = told.iter().any(|one| one.key == id || one.same_as.iter().any(|other| other == id));
-            assert!(is_named && told.iter().all(|one| one.is_complete()), "{id} on {name}: {told:#?}");
-        }
+        let told = explain(&scene, &trace(&scene, ids));
+        assert_eq!(told.len(), ids.len(), "{name}: {told:#?}");
+        let are_named = ids.iter().all(|id| names(&told, id));
+        assert!(are_named && told.iter().all(Explanation::is_complete), "{ids:?} on {name}: {told:#?}");
     }
+}
+
+/// A mistake in a file that the library supplies is not the student's.
+#[test]
+fn only_files_of_the_student_are_named() {
+    for (name, id) in [
+        ("t1m2/drag-alone", "jacobian-drag-missing"),
+        ("t1m2/explicit-euler-orbit", "explicit-positions-doubled"),
+        ("t2m1/balls-meet", "symplectic-positions-doubled"),
+    ] {
+        let row = find(id).expect("a row");
+        assert!(applicable(&scene(name)).all(|other| other.id != row.id), "{id} on {name}");
+    }
+}
+
+/// Forces that are summed up over the steps show only with the step before.
+#[test]
+fn forces_that_are_not_cleared_between_steps_are_named() {
+    let scene = scene("t1m1/two-fields-and-a-fixed-particle");
+    let world = World::new(scene.clone(), Student::default());
+    let mut state = world.initial_state();
+    let (mut bytes, mut sum) = (Vec::new(), vec![0.0; state.x.len()]);
+    let mut write = |state: &student::State| {
+        state.x.iter().chain(&state.v).for_each(|value| bytes.extend(value.to_le_bytes()));
+    };
+    write(&state);
+    for _ in 0..scene.steps() {
+        let mut right = state.clone();
+        step(&world, &mut right, &mut StepLog::default(), &mut |_, _| ()).expect("a step");
+        sum.iter_mut().zip(right.v.iter().zip(&state.v)).for_each(|(sum, (new, old))| *sum += new - old);
+        state.x = right.x;
+        state.v.iter_mut().zip(&sum).for_each(|(v, change)| *v += change);
+        write(&state);
+    }
+    let told = explain(&scene, &bytes);
+    assert!(told.len() == 1 && told[0].key == "explicit-velocities-not-cleared", "{told:#?}");
 }
 
 /// Other arithmetic: forces summed in another order, products fused with sums, and states with the round-off of
@@ -173,7 +202,7 @@ fn correct_programs_of_these_milestones_are_accused_of_nothing() {
 
 #[test]
 fn the_probe_scenes_are_sound() {
-    for milestone in [Assignment::T1M3, Assignment::T2M1, Assignment::T2M3] {
+    for milestone in [Assignment::T1M1, Assignment::T1M2, Assignment::T1M3, Assignment::T2M1, Assignment::T2M3] {
         let scenes = probe_scenes(milestone);
         assert!(!scenes.is_empty());
         for (name, scene) in scenes {

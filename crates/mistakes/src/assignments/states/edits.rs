@@ -1,0 +1,34 @@
+//! The rows that follow from quantities and slips: each slip in each quantity that it fits.
+use super::{
+    slips::Slip,
+    steps::StepMistake,
+    terms::{Edit, TERMS, TermRow},
+};
+use crate::assignments::rows::{RowKind, RowOf};
+use std::sync::LazyLock;
+
+impl From<Edit> for StepMistake {
+    fn from(edit: Edit) -> Self {
+        Self::Edit(edit)
+    }
+}
+
+fn row(of: &'static TermRow, slip: Slip) -> RowOf<StepMistake> {
+    let kept = |text: String| -> &'static str { Box::leak(text.into_boxed_str()) };
+    RowOf {
+        mistake: StepMistake::Edit(Edit { term: of.term, slip }),
+        id: kept(format!("{}-{}", of.id, slip.id())),
+        kind: RowKind::Wrong,
+        area: of.area(),
+        what: kept(format!("{} {}.", of.subject, slip.predicate(of))),
+        term: kept(slip.exact(of)),
+    }
+}
+
+/// All these rows, those of functions that are not written first.
+pub static EDITS: LazyLock<Vec<RowOf<StepMistake>>> = LazyLock::new(|| {
+    let of = |row: &'static TermRow| row.slips.iter().copied().flatten().map(move |slip| (row, *slip));
+    let mut all: Vec<(&TermRow, Slip)> = TERMS.iter().flat_map(of).collect();
+    all.sort_by_key(|(row, slip)| !(row.is_function && *slip == Slip::Missing));
+    all.into_iter().map(|(of, slip)| row(of, slip)).collect()
+});

@@ -1,0 +1,136 @@
+//! The slips of a student in the quantities of the program: what is added to a sum, what weighs a term, what is tested.
+use super::{
+    Mistake, StepMistake,
+    author::Student,
+    world::{World, add, subtract},
+};
+use crate::assignments::states::{Edit, Slip, Term};
+use fosssim_num::vector::{Vec2, put};
+
+/// A particle's part of a quantity, and what its slips may depend on.
+#[derive(Clone, Copy)]
+pub struct TermPart {
+    pub term: Term,
+    pub particle: usize,
+    /// The first body of the pair.
+    pub first: usize,
+    /// 0 for the first body of a pair, 1 and 2 for the others.
+    pub role: usize,
+    /// The distance of the bodies.
+    pub length: f64,
+    /// Whether the part is subtracted.
+    pub is_negative: bool,
+}
+
+impl TermPart {
+    /// A particle's part of a quantity that knows no pairs; it is added.
+    pub const fn of(term: Term, particle: usize) -> Self {
+        Self { term, particle, first: particle, role: 0, length: 1.0, is_negative: false }
+    }
+}
+
+impl Student {
+    /// The slips in a quantity, or in one of which it is a part.
+    pub fn slips(self, term: Term) -> impl Iterator<Item = Slip> {
+        self.edits().filter(move |edit| edit.term.covers(term)).map(|edit| edit.slip)
+    }
+
+    /// Whether the student makes this slip in the quantity.
+    pub fn slips_by(self, term: Term, slip: Slip) -> bool {
+        self.slips(term).any(|made| made == slip)
+    }
+
+    fn edits(self) -> impl Iterator<Item = Edit> {
+        self.mistakes().filter_map(|mistake| match mistake {
+            Mistake::Step(StepMistake::Edit(edit)) => Some(edit),
+            _ => None,
+        })
+    }
+}
+
+impl World {
+    /// The weight of a quantity that is a number, in this student's program: its slips, but for those of the whole.
+    pub fn weight(&self, term: Term, length: f64) -> f64 {
+        let own = self.student.edits().filter(|edit| edit.term == term);
+        own.map(|edit| self.factor(edit.slip, 0, length)).product()
+    }
+
+    /// The weight of what a particle gets of a quantity, with the slips of the whole.
+    pub fn whole_weight(&self, term: Term, particle: usize, length: f64) -> f64 {
+        self.student.slips(term).map(|slip| self.factor(slip, particle, length)).product()
+    }
+
+    /// The factor that a slip puts to a quantity.
+    fn factor(&self, slip: Slip, particle: usize, length: f64) -> f64 {
+        let power = |base: f64, by: i8| {
+            let product: f64 = (0..by.unsigned_abs()).map(|_| base).product();
+            if by < 0 { 1.0 / product } else { product }
+        };
+        match slip {
+            Slip::Missing => 0.0,
+            Slip::Sign => -1.0,
+            Slip::Doubled => 2.0,
+            Slip::Halved => 0.5,
+            Slip::Mass(by) => power(self.masses[2 * particle], by),
+            Slip::MassOfFirst => self.masses[0] / self.masses[2 * particle],
+            Slip::Step(by) => power(self.scene.time_step, by),
+            Slip::Length(by) => power(length, by),
+            _ => 1.0,
+        }
+    }
+
+    /// Adds a part to a sum over all particles, or subtracts it, as this student's program does.
+    pub fn contribute(&self, sum: &mut [f64], part: TermPart, value: Vec2) {
+        let TermPart { term, particle, first, role, length, is_negative } = part;
+        let last = self.scene.particles.len() - 1;
+        let (mut value, mut is_assigned) = (value, false);
+        for edit in self.student.edits().filter(|edit| edit.term.covers(term)) {
+            match edit.slip {
+                Slip::FirstOnly if role > 0 => return,
+                Slip::SecondOnly if role == 0 => return,
+                Slip::FirstOut if particle == 0 => return,
+                Slip::LastOut if particle == last => return,
+                Slip::OnlyFirst if particle > 0 => return,
+                Slip::OneEnd if role == 2 => return,
+                Slip::Missing => return,
+                // Of one statement for the whole force, the first part replaces what was there.
+                Slip::Assigned => is_assigned = term != Term::SpringDamping || edit.term == term,
+                Slip::SameSign if role > 0 => value = -value,
+                Slip::XOnly => value.y = 0.0,
+                Slip::YOnly => value.x = 0.0,
+                Slip::Exchanged => value = Vec2::new(value.y, value.x),
+                Slip::FirstMass => value *= self.masses[2 * first],
+                Slip::XForBoth => value.y = value.x,
+                Slip::YForBoth => value.x = value.y,
+                slip => value *= self.factor(slip, particle, length),
+            }
+        }
+        match (is_assigned, is_negative) {
+            (true, _) => put(sum, particle, if is_negative { -value } else { value }),
+            (false, true) => subtract(sum, particle, value),
+            (false, false) => add(sum, particle, value),
+        }
+    }
+
+    /// Adds opposite forces to the gradient of two particles: `push` is the second one's part.
+    pub fn contribute_opposite(&self, g: &mut [f64], term: Term, ends: (usize, usize), push: Vec2, length: f64) {
+        let part = |role, particle| {
+            let first = ends.0;
+            TermPart { first, role, length, is_negative: role == 0, ..TermPart::of(term, particle) }
+        };
+        self.contribute(g, part(0, ends.0), push);
+        self.contribute(g, part(1, ends.1), push);
+    }
+
+    /// Adds `h` times each rate to its particle's numbers.
+    pub fn advance(&self, term: Term, target: &mut Vec<f64>, h: f64, rates: &[f64]) {
+        if self.student.slips(term).next().is_none() {
+            *target = self.student.sum(target, h, rates);
+            return;
+        }
+        for particle in 0..target.len() / 2 {
+            let value = h * Vec2::new(rates[2 * particle], rates[2 * particle + 1]);
+            self.contribute(target, TermPart::of(term, particle), value);
+        }
+    }
+}
