@@ -406,7 +406,8 @@ fn github_is_told_in_annotations() {
     workspace.write("wrong, 100%.bin", wrong_drift());
     let wrong = check("wrong, 100%.bin");
     assert_eq!((wrong.code, wrong.out().lines().count()), (Some(1), 1), "{}", wrong.shown());
-    let line = "::error title=wrong%2C 100%25.bin%3A wrong answer::4 of 4 steps are wrong, the first is step 1; step 1: particle 0";
+    let line = "::error title=wrong%2C 100%25.bin%3A wrong answer::4 of 4 steps are wrong, the first is step 1; step \
+        1: particle 0";
     assert!(wrong.out().starts_with(line), "{}", wrong.shown());
     workspace.write("cut.bin", &workspace.read("trace.bin")[..150]);
     assert!(check("cut.bin").out().contains("the trace can't be read any further at "), "{}", check("cut.bin").shown());

@@ -71,7 +71,7 @@ fn journal_seeds_do_no_harm() {
 #[test]
 fn wire_seeds_do_no_harm() {
     let messages: usize = seeds("wire").iter().map(|(_, bytes)| entries::wire(bytes)).sum();
-    assert!(messages > 5, "{messages} messages in all seeds");
+    assert!(messages > 4, "{messages} messages in all seeds");
 }
 
 /// Every collision type with states of every absurd size is among the seeds of the judge.

@@ -360,7 +360,8 @@ mod tests {
         };
         assert_eq!(
             Finding { step: 14, frame: 28, detail }.to_string(),
-            "step 14: overlap polynomial of particle 3 and edge 1 (detection of impulse round 2), coefficient of t^2: 4, expected 3.5"
+            "step 14: overlap polynomial of particle 3 and edge 1 (detection of impulse round 2), coefficient of t^2: \
+            4, expected 3.5"
         );
     }
 

@@ -74,8 +74,8 @@ pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Ve
     }
 }
 
-/// The results as those of one submission: where a trace of it shows anything, one that shows nothing is wrong as others
-/// are, and does not say that nothing is written.
+/// The results as those of one submission: where a trace of it shows anything, one that shows nothing is wrong as
+/// others are, and does not say that nothing is written.
 fn as_written(mut results: Vec<(SceneResult, bool)>) -> Vec<(SceneResult, bool)> {
     let shows = |(result, _): &(SceneResult, bool)| matches!(result.verdict, Verdict::Accepted | Verdict::WrongAnswer);
     if results.iter().any(shows) {

@@ -128,7 +128,8 @@ impl Detect<'_> {
                     text += &format!("  {}\n", style.paint(Look::Bad, "nothing for this pair in this pass"))
                 }
                 Logged::Unknown => {
-                    text += "  it can't be told which of its polynomials are this pair's: it logged another number of them\n";
+                    text += "  it can't be told which of its polynomials are this pair's: it logged another number of \
+                        them\n";
                 }
             }
         }

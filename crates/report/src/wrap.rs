@@ -94,7 +94,8 @@ mod tests {
         let text = "short\n  likely mistake: the sum of radii is not squared anywhere\n- one two three four five six\n";
         assert_eq!(
             wrapped(text, 24),
-            "short\n  likely mistake: the\n      sum of radii is\n      not squared\n      anywhere\n- one two three four\n  five six\n"
+            "short\n  likely mistake: the\n      sum of radii is\n      not squared\n      anywhere\n- one two three \
+            four\n  five six\n"
         );
     }
 
@@ -103,7 +104,8 @@ mod tests {
         let row = "  WA  Group/scene   10  forty of a hundred steps are wrong, the first is step three\n";
         assert_eq!(
             wrapped(row, 60),
-            "  WA  Group/scene   10  forty of a hundred steps are wrong,\n                        the first is step three\n"
+            "  WA  Group/scene   10  forty of a hundred steps are wrong,\n                        the first is step \
+            three\n"
         );
         let narrow = wrapped(row, 50);
         assert!(narrow.lines().all(|line| line.len() <= 50), "{narrow}");

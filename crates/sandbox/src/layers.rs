@@ -166,14 +166,16 @@ fn of_calls_and_files(probe: &Probe) -> [LayerReport; 4] {
             probe.seccomp.clone(),
             "an allow list; all other calls are refused",
             true,
-            "use a kernel with CONFIG_SECCOMP_FILTER on x86_64 or aarch64, and allow seccomp in the container's profile",
+            "use a kernel with CONFIG_SECCOMP_FILTER on x86_64 or aarch64, and allow seccomp in the container's \
+            profile",
         ),
         report(
             Layer::NamedCalls,
             probe.notify.clone(),
             "a violation is reported with the call's name",
             false,
-            "use Linux 5.5 or newer; until then a violation is reported without its name, build steps cannot lock files, \
+            "use Linux 5.5 or newer; until then a violation is reported without its name, build steps cannot lock \
+                files, \
              and an ordinary user's cannot set permission bits",
         ),
         report(

@@ -1,8 +1,8 @@
 //! The system calls that the standard library does not offer, each behind a safe function: most are `rustix`'s.
 //!
-//! This file, `machine.rs` and `mounts.rs` are the sandbox's only ones with `unsafe` code. Every function passes the kernel valid
-//! pointers to live values and turns its answer into a `Result`; none keeps a pointer. The one call with a condition of
-//! its own, [`fork`], checks that condition.
+//! This file, `machine.rs` and `mounts.rs` are the sandbox's only ones with `unsafe` code. Every function passes the
+//! kernel valid pointers to live values and turns its answer into a `Result`; none keeps a pointer. The one call with a
+//! condition of its own, [`fork`], checks that condition.
 
 #![expect(unsafe_code, reason = "fork, execve, seccomp and their kin have no safe wrapper among the dependencies")]
 

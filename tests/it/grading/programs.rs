@@ -14,11 +14,9 @@ fn what_can_not_be_run_is_explained() {
     }
     workspace.write("not-executable", "#!/bin/sh\n");
     std::fs::create_dir(workspace.path("empty")).expect("a folder");
-    for (program, words) in [
-        ("text", "not a program"),
-        ("script", "interpreter /no/such/interpreter"),
-        ("not-executable", "not executable"),
-    ] {
+    for (program, words) in
+        [("text", "not a program"), ("script", "run by /no/such/interpreter"), ("not-executable", "not executable")]
+    {
         let run = workspace.run(["grade", program, "--suite", "suite.toml"]);
         assert_eq!(run.code, Some(1), "{}", run.shown());
         assert!(run.out().contains("unusable submission") && run.out().contains(words), "{program}: {}", run.shown());

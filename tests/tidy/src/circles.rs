@@ -320,7 +320,8 @@ fn imports_are_followed_to_the_file_that_defines_a_name() {
         ("b/", "pub struct B(crate::a::A); pub fn other() {}"),
         (
             "c/",
-            "pub struct C; // use super::a::A;\nconst TEXT: &str = \"crate::a::A\";\n#[cfg(test)] mod tests { use crate::a::A; }",
+            "pub struct C; // use super::a::A;\nconst TEXT: &str = \"crate::a::A\";\n#[cfg(test)] mod tests \
+            { use crate::a::A; }",
         ),
     ]);
     assert_eq!(circles.circles(), BTreeSet::from([vec!["a".to_owned(), "b".to_owned()]]));

@@ -36,7 +36,8 @@ axis!(Likeness, "masses": Equal = "equal", Unequal = "unequal");
 axis!(Radii, "radii": Equal = "equal", Unequal = "unequal");
 axis!(Company, "contacts of its bodies": Alone = "this one", Several = "several in one pass");
 axis!(FixedOfTwo, "fixed": None = "none", First = "the first", Second = "the second", Both = "both");
-axis!(FixedOfThree, "fixed": None = "none", Particle = "the particle", First = "the first end", Second = "the second end",
+axis!(FixedOfThree, "fixed": None = "none", Particle = "the particle", First = "the first end", Second = "the second \
+    end",
     Ends = "both ends", ParticleAndEnd = "the particle and an end", All = "all");
 axis!(FixedOne, "fixed": Free = "no", Fixed = "the particle");
 axis!(Place, "place on the edge": First = "near the first end", Inside = "inside", Second = "near the second end");
@@ -59,7 +60,8 @@ axis!(LoopEnd, "impulses": Nothing = "nothing collides", Within = "end before th
     JustEnough = "the last round finds nothing", RunOut = "the limit is reached", NotAllowed = "the limit is 0");
 axis!(ZoneCount, "zones": None = "none", One = "one", Several = "several");
 axis!(Rounds, "rounds of zones": None = "none", One = "1", Two = "2", More = "3 or more");
-axis!(Why, "why not": Parting = "they part", BesideFirst = "beside the first end", BesideSecond = "beside the second end",
+axis!(Why, "why not": Parting = "they part", BesideFirst = "beside the first end", BesideSecond = "beside the second \
+    end",
     Late = "too late", Never = "they never meet");
 axis!(Kind, "pair": Particles = "two particles", Edge = "a particle and an edge", HalfPlane = "a particle and a half-plane");
 axis!(SomeFixed, "fixed": None = "none", Some = "some", All = "all");

@@ -128,7 +128,8 @@ pub fn each_line<E: From<io::Error>>(
             return Ok(());
         } else {
             let text = format!(
-                "it has a line of more than {LONGEST_LINE} bytes, which no result has: remove it, and its results are made anew"
+                "it has a line of more than {LONGEST_LINE} bytes, which no result has: remove it, and its results are \
+                made anew"
             );
             return Err(io::Error::other(text).into());
         }

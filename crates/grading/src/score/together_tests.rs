@@ -96,7 +96,7 @@ fn each_scene_says_what_all_together_say() {
     assert_eq!(steps, [Some(7), Some(3), Some(5)]);
 }
 
-/// What is proven is mended first, before anybody looks for where numbers end.
+/// A proven mistake is mended first, before anybody looks for where numbers end.
 #[test]
 fn where_numbers_end_comes_first_unless_a_mistake_is_proven() {
     let end = || {

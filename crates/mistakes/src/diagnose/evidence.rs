@@ -1,4 +1,4 @@
-//! What speaks for a mistake: the symptoms of all traces that it would explain.
+//! The evidence for a mistake: the symptoms of all traces that it would explain.
 //!
 //! Each explanation of a trace is a symptom with its alternatives: all words ([`Explanation::said`]) that would explain
 //! it as well. The word that the most traces allow is the likeliest. Words that exactly the same symptoms allow can't
@@ -67,7 +67,7 @@ pub(super) fn symptoms(list: &[Explanation], is_refuted: &impl Fn(&String) -> bo
 
 /// All that speaks for one word.
 #[derive(Default)]
-struct Evidence<'a> {
+struct Support<'a> {
     /// The symptoms that allow it: the trace, and the place in its list.
     symptoms: BTreeSet<(usize, usize)>,
     traces: usize,
@@ -82,7 +82,7 @@ struct Evidence<'a> {
     told: Option<&'a Explanation>,
 }
 
-impl Evidence<'_> {
+impl Support<'_> {
     /// Whether as many traces speak against a guess about polynomials as for it.
     fn is_denied(&self) -> bool {
         self.against > 0 && self.against >= self.complete
@@ -94,8 +94,8 @@ impl Evidence<'_> {
     }
 }
 
-fn evidence(open: &[OpenTrace]) -> BTreeMap<&str, Evidence<'_>> {
-    let mut all: BTreeMap<&str, Evidence<'_>> = BTreeMap::new();
+fn evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
+    let mut all: BTreeMap<&str, Support<'_>> = BTreeMap::new();
     for (number, trace) in open.iter().enumerate() {
         for (place, symptom) in trace.symptoms.iter().enumerate().filter(|(_, symptom)| symptom.one.is_vote()) {
             let said = symptom.one.said();
@@ -145,17 +145,17 @@ fn speaks_against(one: &Explanation, told: &Explanation) -> bool {
 pub(super) fn likeliest(open: &[OpenTrace]) -> Option<Explanation> {
     let all = evidence(open);
     let is_known = |word: &str| find(word).is_some();
-    let is_likely = |(word, one): &(&&str, &Evidence<'_>)| !one.is_denied() && (one.told.is_some() || is_known(word));
+    let is_likely = |(word, one): &(&&str, &Support<'_>)| !one.is_denied() && (one.told.is_some() || is_known(word));
     let (&word, best) = all.iter().filter(is_likely).max_by(|(word, a), (other, b)| {
         let known = is_known(word).cmp(&is_known(other));
         let order = b.symptoms.first().cmp(&a.symptoms.first());
         a.weight().cmp(&b.weight()).then(known).then(a.first.cmp(&b.first)).then(order)
     })?;
-    // What the same symptoms allow can't be told apart.
-    let is_rival = |(other, rival): &(&&str, &Evidence<'_>)| {
+    // Words that the same symptoms allow can't be told apart.
+    let is_rival = |(other, rival): &(&&str, &Support<'_>)| {
         **other != word && is_known(other) && rival.symptoms == best.symptoms && rival.weight() == best.weight()
     };
-    let mut rivals: Vec<(&&str, &Evidence<'_>)> = all.iter().filter(is_rival).collect();
+    let mut rivals: Vec<(&&str, &Support<'_>)> = all.iter().filter(is_rival).collect();
     rivals.sort_by_key(|(_, rival)| std::cmp::Reverse(rival.first));
     let same_as = rivals.into_iter().map(|(other, _)| (*other).to_owned()).collect();
     let Some(told) = best.told else {

@@ -26,25 +26,11 @@ pub fn apply(
     let prediction = state.clone();
     log.prediction = Some(prediction.x.clone());
     let mut start = q_start.to_vec();
-    let mut rounds = 0;
-    match student.mistake_in(&[Area::ImpulseLoop]) {
-        Some(Mistake::ImpulsesEmpty) => return Ok(false),
-        Some(Mistake::ImpulsesEmptySuccess) => return Ok(true),
-        Some(Mistake::ImpulsesTestBefore) if detection::pass(world, q_start, &state.x, log)?.is_empty() => {
-            return Ok(true);
-        }
-        Some(Mistake::ImpulsesDetectBefore) => drop(detection::pass(world, q_start, &state.x, log)?),
-        Some(Mistake::ImpulsesPassWhenZero) if max_iterations <= 0 => {
-            detection::pass(world, q_start, &state.x, log)?;
-            return Ok(false);
-        }
-        Some(Mistake::ImpulsesTestWhenZero) if max_iterations <= 0 => {
-            return Ok(detection::pass(world, q_start, &state.x, log)?.is_empty());
-        }
-        Some(Mistake::ImpulsesSuccessWhenZero) if max_iterations <= 0 => return Ok(true),
-        Some(Mistake::ImpulsesOnceWhenZero) if max_iterations <= 0 => rounds = max_iterations.saturating_sub(1),
-        _ => {}
+    if let Some(ending) = end_before_rounds(world, q_start, max_iterations, state, log)? {
+        return Ok(ending);
     }
+    let is_once = max_iterations <= 0 && student.makes(Mistake::ImpulsesOnceWhenZero);
+    let mut rounds = if is_once { max_iterations.saturating_sub(1) } else { 0 };
     let limit = limit(world, max_iterations);
     let mut list: Vec<Contact> = Vec::new();
     while rounds < limit {
@@ -101,6 +87,35 @@ pub fn apply(
         _ => {}
     }
     Ok(false)
+}
+
+/// Returns what a program that ends before its first round returns; `None` when it goes on.
+fn end_before_rounds(
+    world: &World,
+    q_start: &[f64],
+    max_iterations: i32,
+    state: &State,
+    log: &mut StepLog,
+) -> Result<Option<bool>, StepFailure> {
+    let ending = match world.student.mistake_in(&[Area::ImpulseLoop]) {
+        Some(Mistake::ImpulsesEmpty) => Some(false),
+        Some(Mistake::ImpulsesEmptySuccess) => Some(true),
+        Some(Mistake::ImpulsesTestBefore) => detection::pass(world, q_start, &state.x, log)?.is_empty().then_some(true),
+        Some(Mistake::ImpulsesDetectBefore) => {
+            detection::pass(world, q_start, &state.x, log)?;
+            None
+        }
+        Some(Mistake::ImpulsesPassWhenZero) if max_iterations <= 0 => {
+            detection::pass(world, q_start, &state.x, log)?;
+            Some(false)
+        }
+        Some(Mistake::ImpulsesTestWhenZero) if max_iterations <= 0 => {
+            Some(detection::pass(world, q_start, &state.x, log)?.is_empty())
+        }
+        Some(Mistake::ImpulsesSuccessWhenZero) if max_iterations <= 0 => Some(true),
+        _ => None,
+    };
+    Ok(ending)
 }
 
 /// How many rounds this program allows itself.

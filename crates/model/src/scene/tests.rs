@@ -133,7 +133,8 @@ fn what_was_probably_meant_is_not_missed() {
     );
     says(
         "<dragdamping bee='1' B='1'/>",
-        "4:14: unknown attribute `bee` of `dragdamping` (`dragdamping` has `b`)\n4:22: unknown attribute `B` of `dragdamping` (did you mean `b`?)",
+        "4:14: unknown attribute `bee` of `dragdamping` (`dragdamping` has `b`)\n4:22: unknown attribute `B` of \
+        `dragdamping` (did you mean `b`?)",
     );
 }
 
@@ -236,7 +237,8 @@ fn values_that_make_no_sense() {
     assert_eq!(particle("m='1' radius='-1'"), "4:63: `radius` of particle 2 is `-1` (a radius cannot be negative)");
     says(
         "<backgroundcolor r='0' g='1.5' b='-1'/>",
-        "4:27: `g` of backgroundcolor is `1.5` (allowed is 0 to 1)\n4:35: `b` of backgroundcolor is `-1` (allowed is 0 to 1)",
+        "4:27: `g` of backgroundcolor is `1.5` (allowed is 0 to 1)\n4:35: `b` of backgroundcolor is `-1` (allowed is \
+        0 to 1)",
     );
     says(
         "<particlepath i='0' duration='-1' r='0' g='0' b='0'/>",
@@ -295,7 +297,8 @@ fn things_in_one_place() {
         assert_eq!(
             three(collision, edge),
             format!(
-                "5:1: particles 0 and 2 start in one place {penalty}\n6:1: particle 3 starts exactly on edge 0 {penalty}"
+                "5:1: particles 0 and 2 start in one place {penalty}\n6:1: particle 3 starts exactly on edge 0 \
+                {penalty}"
             )
         );
     }
@@ -405,7 +408,8 @@ fn broken_tags() {
 fn broken_nesting() {
     says(
         "<dragdamping b='1'>\n<foo/><edge/>",
-        "5:1: `foo` inside `dragdamping` (only elements directly in `scene` count; is the end of `dragdamping` missing?)",
+        "5:1: `foo` inside `dragdamping` (only elements directly in `scene` count; is the end of `dragdamping` \
+        missing?)",
     );
     says("<dragdamping b='1'>", "4:1: `<dragdamping>` is not closed (end it with `/>` or with `</dragdamping>`)");
     says("<dragdamping b='1'></dragdampin>", "4:20: `</dragdampin>` closes nothing (open is `<dragdamping>`)");

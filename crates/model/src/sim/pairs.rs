@@ -183,7 +183,8 @@ mod tests {
         let xml = format!(
             "<scene><duration time=\"0.2\"/><integrator type=\"explicit-euler\" dt=\"0.1\"/>{collision}{particles}\
              <edge i=\"2\" j=\"3\" radius=\"0.1\"/><edge i=\"3\" j=\"4\" radius=\"0.1\"/>\
-             <halfplane px=\"0\" py=\"-9\" nx=\"0\" ny=\"1\"/><halfplane px=\"0\" py=\"90\" nx=\"0\" ny=\"-1\"/></scene>"
+             <halfplane px=\"0\" py=\"-9\" nx=\"0\" ny=\"1\"/><halfplane px=\"0\" py=\"90\" nx=\"0\" \
+                 ny=\"-1\"/></scene>"
         );
         original::read(xml.as_bytes()).expect("a scene").scene
     }

@@ -347,7 +347,8 @@ fn plots(evidence: &Evidence, book: Book, key: &str, first: Option<u32>) -> Stri
     let [left, right] = STEPS_AXIS;
     let figure = |svg: &str| {
         format!(
-            "<figure tabindex=\"0\" data-plot=\"{key}\" data-left=\"{left}\" data-right=\"{right}\" data-steps=\"{steps}\">{svg}</figure>\n"
+            "<figure tabindex=\"0\" data-plot=\"{key}\" data-left=\"{left}\" data-right=\"{right}\" \
+            data-steps=\"{steps}\">{svg}</figure>\n"
         )
     };
     let mut out = String::new();

@@ -168,7 +168,8 @@ impl ClassPage<'_> {
         let names: Vec<String> = members.iter().map(|&number| one_line(&self.grades[number].submission)).collect();
         format!(
             "<details{}><summary>{}</summary><p>{}</p>\
-             <p class=\"filter\" hidden><button type=\"button\" data-copy=\"{}\">Copy the names</button></p></details>\n",
+             <p class=\"filter\" hidden><button type=\"button\" data-copy=\"{}\">Copy the \
+                 names</button></p></details>\n",
             if members.len() <= FEW { " open" } else { "" },
             counted(members.len() as u64, "submission"),
             self.links(members),
@@ -268,7 +269,8 @@ struct Shared {
 fn heat(grade: &Grade) -> String {
     let (all, accepted) = (grade.scenes().count(), grade.count(Verdict::Accepted));
     let mut out = format!(
-        "<svg viewBox=\"0 0 {} 1\" preserveAspectRatio=\"none\" role=\"img\" aria-label=\"{accepted} of {all} scenes accepted\">",
+        "<svg viewBox=\"0 0 {} 1\" preserveAspectRatio=\"none\" role=\"img\" aria-label=\"{accepted} of {all} scenes \
+        accepted\">",
         all.max(1)
     );
     for kind in ["w", "e", "n"] {
@@ -394,7 +396,8 @@ fn histogram(grades: &[Grade]) -> String {
     let title = "Points of the class";
     let mut out = format!(
         "<figure class=\"card\"><svg class=\"fp\" viewBox=\"0 0 340 190\" width=\"340\" height=\"190\" role=\"img\" \
-         aria-label=\"{title}: {}\"><title>{title}</title>\n<text x=\"10\" y=\"16\">{title}, in percent of all</text>\n",
+         aria-label=\"{title}: {}\"><title>{title}</title>\n<text x=\"10\" y=\"16\">{title}, in percent of \
+             all</text>\n",
         words.join(", ")
     );
     for (bar, count) in counts.into_iter().enumerate() {

@@ -122,7 +122,8 @@ impl GradePage<'_> {
                     .min_by_key(|(scene, card)| telling(scene, card.as_ref(), std::slice::from_ref(&mistake)));
                 let _ = writeln!(
                     out,
-                    "<section class=\"card mistake\"><p class=\"lead\">{}</p><p>Explains {explained} of {wrong}.{}</p></section>",
+                    "<section class=\"card mistake\"><p class=\"lead\">{}</p><p>Explains {explained} of \
+                    {wrong}.{}</p></section>",
                     text(&words::explanation::what_or(&mistake)),
                     shows.map_or_else(String::new, |(scene, _)| format!(" Look at it in {}.", link(scene)))
                 );
@@ -236,7 +237,8 @@ fn groups(groups: &[GroupGrade], told: &[(&SceneGrade, Option<Card>)], reader: A
         let _ = writeln!(
             out,
             "<tr><th scope=\"row\">{}</th><td><span class=\"chip {}\">{}</span></td>\
-             <td class=\"num\" data-label=\"points\">{} of {}{}</td><td class=\"num\" data-label=\"scenes accepted\">{accepted} of {}</td><td class=\"to\">{first}</td>{who}</tr>",
+             <td class=\"num\" data-label=\"points\">{} of {}{}</td><td class=\"num\" data-label=\"scenes \
+                 accepted\">{accepted} of {}</td><td class=\"to\">{first}</td>{who}</tr>",
             text(&one_line(&group.name)),
             if group.verdict.is_accepted() { "good" } else { "bad" },
             group.verdict.words(),
@@ -321,7 +323,9 @@ fn printed(heading: &str, output: &str, room: &mut usize) -> String {
     let shown = text(&shown);
     if shown.len() > *room {
         *room = 0;
-        return "<p class=\"hint\">What programs printed in this scene and in the next ones has no room on this page.</p>\n".to_owned();
+        return "<p class=\"hint\">What programs printed in this scene and in the next ones has no room on this \
+            page.</p>\n"
+            .to_owned();
     }
     *room -= shown.len();
     format!(

@@ -24,7 +24,8 @@ pub fn located(found: &Located) -> String {
         step => format!("that of step {step}"),
     };
     let mut text = format!(
-        "{which} {verb}, and none of the {without} others. In the first of them, {first}, the last complete record is {record}."
+        "{which} {verb}, and none of the {without} others. In the first of them, {first}, the last complete record is \
+        {record}."
     );
     if !others.is_empty() {
         let (shown, more) = others.split_at(others.len().min(NAMED));

@@ -12,7 +12,8 @@ pub(super) async fn run(arguments: &Upgrade) -> Result<bool> {
     let version = db::version(&database).await?;
     if version > db::LATEST {
         bail!(
-            "the tables of {address} have version {version}, this program knows versions up to {}: use the newer program",
+            "the tables of {address} have version {version}, this program knows versions up to {}: use the newer \
+            program",
             db::LATEST
         );
     }

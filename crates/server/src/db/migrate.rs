@@ -40,7 +40,8 @@ const LOCK: i64 = 0x6673_6f5f_6d69_6772;
 pub enum MigrateError {
     /// A newer program has been here.
     #[error(
-        "the database has version {found}, this program knows versions up to {LATEST}: start the newer program, or restore the backup that it made"
+        "the database has version {found}, this program knows versions up to {LATEST}: start the newer program, or \
+        restore the backup that it made"
     )]
     Newer {
         /// The database's version.

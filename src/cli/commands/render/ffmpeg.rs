@@ -77,7 +77,10 @@ impl Ffmpeg {
         // A line is ` V....D libx264   what it is`.
         let has = |name: &str| list.lines().any(|line| line.split_whitespace().nth(1) == Some(name));
         let found = ENCODERS.into_iter().find(|(name, _)| has(name));
-        found.context("this ffmpeg has no encoder for MP4 (libx264, libopenh264, libvpx-vp9, mpeg4); name the output .apng or .gif")
+        found.context(
+            "this ffmpeg has no encoder for MP4 (libx264, libopenh264, libvpx-vp9, mpeg4); name the output \
+            .apng or .gif",
+        )
     }
 
     /// Starts the program.

@@ -5,10 +5,11 @@
 //! of bodies that have nothing to do with one another stand far apart in one scene, so that few runs show much.
 //!
 //! Where particles start and how far they go in a step are integers or small dyadic fractions, and the step is half a
-//! second, in the large ones a quarter; in three it is no power of two, which tells velocities from displacements. So the first step's polynomials have coefficients that can be checked by hand;
-//! in the `drift` scenes those of every step have, because particles that are fixed and move are never pushed from
-//! their way (simulation.md 1). Gaps and displacements of the narrow ones are a half and about four of a millionth:
-//! whatever a program adds to a time or to the approach as a margin shows.
+//! second, in the large ones a quarter; in three it is no power of two, which tells velocities from displacements. So
+//! the first step's polynomials have coefficients that can be checked by hand; in the `drift` scenes those of every
+//! step have, because particles that are fixed and move are never pushed from their way (simulation.md 1). Gaps and
+//! displacements of the narrow ones are a half and about four of a millionth: whatever a program adds to a time or to
+//! the approach as a margin shows.
 //!
 //! This runs nothing and never judges. The scenes are the same every time.
 /// Names and texts: polynomials first, then contacts and responses, the impulse rounds, zones. Each is sound for both

@@ -190,7 +190,7 @@ fn mistakes_of_different_traces_are_no_rivals() {
     assert_eq!((told.len(), told[0].same_as.len()), (1, 0), "one trace knows which: {told:#?}");
 }
 
-/// What each trace allows among others is what all of them say together.
+/// All traces say together what each of them allows among others.
 #[test]
 fn forms_are_intersected_over_traces() {
     let of = |forms: [&str; 2]| {

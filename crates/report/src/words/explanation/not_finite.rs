@@ -44,6 +44,7 @@ pub(super) fn what(found: &NotFinite) -> String {
 fn sentences(where_from: &str, what: &str, makes: &str, divisors: &str) -> String {
     let root = if what.starts_with("NaN") { ", or the root of a negative number" } else { "" };
     format!(
-        "{where_from} there is {what}: {makes} from finite numbers. The usual cause is a division by {divisors} that is zero{root}."
+        "{where_from} there is {what}: {makes} from finite numbers. The usual cause is a division by {divisors} that \
+        is zero{root}."
     )
 }

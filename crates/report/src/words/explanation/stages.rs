@@ -79,7 +79,8 @@ fn of_fault(fault: &StageFault) -> String {
              where it should"
         }
         StageFault::RoundsOfPrediction => {
-            "rounds behind the first one detect on the predicted positions again, not on those that the round before left"
+            "rounds behind the first one detect on the predicted positions again, not on those that the round before \
+            left"
         }
         StageFault::BehindFirstRound => {
             "the first round is right, as the polynomials of the second one show, but not what follows"

@@ -139,7 +139,8 @@ pub(in crate::web) async fn report_response(
     let file = member.report(id, name).await?;
     let kind = HeaderValue::from_str(&file.media_type).unwrap_or(HeaderValue::from_static("application/octet-stream"));
     let policy = if file.media_type.starts_with("text/html") {
-        "sandbox allow-scripts allow-downloads; default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
+        "sandbox allow-scripts allow-downloads; default-src 'none'; script-src 'unsafe-inline'; style-src \
+        'unsafe-inline'; img-src data:"
     } else {
         "sandbox; default-src 'none'"
     };
@@ -210,8 +211,8 @@ answers! { ACCEPTED:
     /// Grades a submission once more, by the assignment's settings as they are.
     post "/api/v1/courses/{course}/submissions/{id}/again" "submissions"
         grade_again(staff: Staff, { id }) -> Again: staff.grade_again(id);
-    /// Grades all submissions to an assignment on which the grader failed once more, and goes on with it if it waits for
-    /// staff.
+    /// Grades all submissions to an assignment on which the grader failed once more, and goes on with it if it waits
+    /// for staff.
     post "/api/v1/courses/{course}/assignments/{assignment}/judge-errors/again" "submissions"
         grade_errors_again(staff: Staff, { assignment }) -> Again: staff.grade_errors_again(Some(&assignment));
     /// The same for all assignments of a course.

@@ -207,7 +207,8 @@ pub(super) async fn choose_assignment(
         Chosen::Answer { address, origins, token } => {
             let page = show(&AnswerPage { frame: PageFrame::of(&person.account), address, token })?.into_response();
             let policy = format!(
-                "default-src 'none'; style-src 'self'; form-action 'self' {origins}; base-uri 'none'; frame-ancestors 'none'"
+                "default-src 'none'; style-src 'self'; form-action 'self' {origins}; base-uri 'none'; frame-ancestors \
+                'none'"
             );
             Ok(with_policy(page, &policy))
         }

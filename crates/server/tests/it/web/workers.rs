@@ -173,7 +173,8 @@ async fn kills_of_workers_and_server_lose_nothing(fresh: Fresh) {
     let all = ada.get(path).expect(200).json();
     assert_eq!(all.as_array().expect("a list").len(), size as usize, "each upload is one submission");
     println!(
-        "over HTTP: {size} submissions, {worker_kills} kills of workers, {server_kills} of the server; lost 0, graded twice 0, {:.0} s",
+        "over HTTP: {size} submissions, {worker_kills} kills of workers, {server_kills} of the server; lost 0, graded \
+        twice 0, {:.0} s",
         start.elapsed().as_secs_f64()
     );
 }
