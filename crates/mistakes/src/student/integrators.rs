@@ -23,11 +23,11 @@ pub fn advance(world: &World, state: &mut State, solves: &mut u32) -> Result<(),
     let before = (!world.student.makes_none()).then(|| state.clone());
     match world.scene.integrator {
         Integrator::ExplicitEuler => {
-            explicit(world, [Term::ExplicitPositions, Term::ExplicitVelocities], true, state);
+            explicit(world, world, [Term::ExplicitPositions, Term::ExplicitVelocities], true, state);
         }
-        // The library's own.
-        Integrator::ForwardBackwardEuler => explicit(&world.of(Student::default()), SYMPLECTIC, false, state),
-        Integrator::SymplecticEuler => explicit(world, SYMPLECTIC, false, state),
+        // The integrator is the library's own, the forces are the student's.
+        Integrator::ForwardBackwardEuler => explicit(&world.of(Student::default()), world, SYMPLECTIC, false, state),
+        Integrator::SymplecticEuler => explicit(world, world, SYMPLECTIC, false, state),
         Integrator::LinearizedImplicitEuler if world.student.makes(StepMistake::LinearIterates) => {
             implicit(world, state, solves)?;
         }
@@ -80,13 +80,14 @@ fn rate(world: &World, term: Term, right: &[f64], other: &[f64]) -> Vec<f64> {
     }
 }
 
-/// One step of the explicit integrators, which move positions by the old or by the new velocities.
-fn explicit(world: &World, [of_x, of_v]: [Term; 2], moves_by_old: bool, state: &mut State) {
+/// One step of the explicit integrators, which move positions by the old or by the new velocities, under the forces of
+/// a world that may have another author.
+fn explicit(world: &World, forces: &World, [of_x, of_v]: [Term; 2], moves_by_old: bool, state: &mut State) {
     let (student, h) = (world.student, world.scene.time_step);
     // The factor must stay a factor: as a change of sign it would turn the sign of a NaN.
     let minus_one = black_box(-1.0);
     let x = if student.slips_by(of_v, Slip::Behind) { &student.sum(&state.x, h, &state.v) } else { &state.x };
-    let mut accelerations = forces::gradient(world, x, &state.v);
+    let mut accelerations = forces::gradient(forces, x, &state.v);
     let forgets = whole(world.scene.integrator).is_some_and(|whole| student.slips_by(whole, Slip::FixedForgotten));
     for (k, entry) in accelerations.iter_mut().enumerate() {
         *entry = if world.fixed(k / 2) && !forgets { 0.0 } else { minus_one * *entry };
