@@ -162,6 +162,12 @@ pub enum StartProblem {
         /// The kind of this machine.
         here: Cow<'static, str>,
     },
+    /// A program for another system.
+    #[error("this program was built for {system}, but programs run on Linux here; build it on the grading platform")]
+    WrongSystem {
+        /// The system for which it was built.
+        system: Cow<'static, str>,
+    },
     /// The program names a dynamic loader that is not one of this system's.
     #[error("the program needs a dynamic loader that is not on this machine; build it on the grading platform")]
     MissingLoader {},

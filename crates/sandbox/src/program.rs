@@ -70,9 +70,21 @@ pub(super) fn examine(path: &Path, own: &[PathBuf]) -> Result<Program, StartProb
     }
     // A program that may be executed and not read would also be closed to the supervisor's looks.
     let start = first_bytes(path).ok_or(StartProblem::NotPermitted)?;
-    match start.strip_prefix(b"#!") {
-        Some(line) => interpreted(line, own, 0),
-        None => elf(&start).map(|()| Program::default()),
+    match (start.strip_prefix(b"#!"), other_system(&start)) {
+        (Some(line), _) => interpreted(line, own, 0),
+        (None, Some(system)) => Err(StartProblem::WrongSystem { system: system.into() }),
+        (None, None) => elf(&start).map(|()| Program::default()),
+    }
+}
+
+/// Returns the system whose programs begin with these bytes.
+fn other_system(start: &[u8]) -> Option<&'static str> {
+    match *start.first_chunk::<8>()? {
+        [b'M', b'Z', ..] => Some("Windows"),
+        [0xcf | 0xce, 0xfa, 0xed, 0xfe, ..] => Some("macOS"),
+        // Several programs in one file, and their number; in a Java class its version is there, from 45 on.
+        [0xca, 0xfe, 0xba, 0xbe, 0, 0, 0, 1..45] => Some("macOS"),
+        _ => None,
     }
 }
 
@@ -273,6 +285,16 @@ mod tests {
         assert_eq!(examine(&path, &[]), Err(StartProblem::NotExecutable));
         let (_kept, path) = written("a", b"hello", 0o755);
         assert_eq!(examine(&path, &[]), Err(StartProblem::NotAProgram));
+        for (start, system) in [
+            (b"MZ\x90\x00\x03\x00\x00\x00", Some("Windows")),
+            (b"\xcf\xfa\xed\xfe\x0c\x00\x00\x01", Some("macOS")),
+            (b"\xca\xfe\xba\xbe\x00\x00\x00\x02", Some("macOS")),
+            (b"\xca\xfe\xba\xbe\x00\x00\x00\x41", None),
+        ] {
+            let (_kept, path) = written("a", start, 0o755);
+            let wrong = system.map(|system| StartProblem::WrongSystem { system: system.into() });
+            assert_eq!(examine(&path, &[]), Err(wrong.unwrap_or(StartProblem::NotAProgram)));
+        }
         let (_kept, path) = written("a", b"", 0o755);
         assert_eq!(examine(&path, &[]), Err(StartProblem::NotAProgram));
     }
