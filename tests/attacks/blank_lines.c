@@ -1,5 +1,5 @@
 // promise: Endless blank lines are limited like any other output.
-// expect: output stdout
+// expect: cpu or wall
 #include "attack.h"
 int main(int argc, char **argv) {
     begin(argc);

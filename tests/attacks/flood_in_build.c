@@ -1,5 +1,5 @@
-// promise: The output of a build step is limited to the byte, whoever prints.
-// expect: output stdout
+// promise: A flood of a build step is dropped beyond its limit, whoever prints, until the time is used up.
+// expect: cpu or wall
 // policy: tools
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,5 +1,5 @@
-// promise: A program whose main thread has left cannot flood standard output.
-// expect: output stdout
+// promise: A program whose main thread has left floods standard output no longer than its time.
+// expect: cpu or wall
 #include "attack.h"
 static void rest(void) {
     for (;;) write(1, full_block(), sizeof block);

@@ -1,5 +1,5 @@
-// promise: Standard error is limited to the byte.
-// expect: output stderr
+// promise: A flood on standard error is read and dropped beyond its limit, until the time is used up.
+// expect: cpu or wall
 #include "attack.h"
 int main(int argc, char **argv) {
     begin(argc);

@@ -1,5 +1,5 @@
-// promise: Standard output is limited to the byte.
-// expect: output stdout
+// promise: A flood on standard output is read and dropped beyond its limit, until the time is used up.
+// expect: cpu or wall
 #include "attack.h"
 int main(int argc, char **argv) {
     begin(argc);

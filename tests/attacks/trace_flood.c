@@ -1,6 +1,5 @@
-// promise: A trace without end is cut at its limit.
-// expect: output trace
-// pipe: any
+// promise: A trace without end ends the run at its limit.
+// expect: output
 #include "attack.h"
 int main(int argc, char **argv) {
     begin(argc);

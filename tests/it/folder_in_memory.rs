@@ -1,6 +1,8 @@
 //! A working folder that lies in memory: what the kernel limits there, and what the grader gets of it.
 use crate::sandbox::{backend, small};
-use fosssim_oracle::sandbox::{Backend, Ended, Job, Layer, Limits, Policy, RunOutcome, collect::OpenFolder};
+use fosssim_oracle::sandbox::{
+    Backend, Ended, Job, Layer, LeftFolder, Limits, Policy, RunOutcome, collect::OpenFolder,
+};
 use fosssim_testing::{Need, skip};
 use std::io::Read;
 use std::path::Path;
@@ -21,7 +23,7 @@ pub fn with_namespaces() -> Option<&'static Backend> {
     active.then_some(backend)
 }
 
-fn run(backend: &Backend, job: &Job) -> (RunOutcome, Option<OpenFolder>) {
+fn run(backend: &Backend, job: &Job) -> (RunOutcome, LeftFolder) {
     backend.start(job).unwrap().wait_with_folder().unwrap()
 }
 
@@ -38,8 +40,8 @@ fn what_a_program_leaves_is_handed_over_and_its_folder_stays_as_it_was() {
     let job = job(folder.path(), "mkdir out && cat input input > out/made && rm input && ln -s /etc/passwd link");
     let (outcome, left) = run(backend, &job);
     assert_eq!(outcome.ended, Ended::Exited(0));
-    let left = left.expect("the folder");
-    assert_eq!(text(&left, "out/made"), "givengiven");
+    let left = left.in_memory().expect("the folder");
+    assert_eq!(text(left, "out/made"), "givengiven");
     assert!(left.regular_file("input", 1000).is_err() && left.regular_file("link", 1000).is_err());
     assert!(left.regular_file("../input", 1000).is_err(), "it leads nowhere else");
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
@@ -58,7 +60,7 @@ fn a_jobs_files_lie_where_its_program_works_and_nowhere_else() {
     for _ in 0..2 {
         let (outcome, left) = run(backend, &read(folder.path()).folder_in_memory());
         assert_eq!(String::from_utf8_lossy(&outcome.stdout.bytes), sizes);
-        assert_eq!((outcome.ended, left.is_some()), (Ended::Exited(0), true));
+        assert_eq!((outcome.ended, left.in_memory().is_some()), (Ended::Exited(0), true));
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
     }
     // Build tools, and folders on the disk.
@@ -82,7 +84,7 @@ fn the_kernel_itself_refuses_more_than_the_folder_may_hold() {
     let limits = Limits { memory: 256 << 20, ..small() };
     let (outcome, left) = run(backend, &job(folder.path(), script).limits(limits));
     assert_eq!(outcome.ended, Ended::FolderLimit);
-    let left = left.expect("the folder");
+    let left = left.in_memory().expect("the folder");
     let bytes: u64 =
         left.names().unwrap().iter().filter_map(|name| Some(left.path().join(name).metadata().ok()?.len())).sum();
     assert!(bytes <= 5 << 20, "{bytes} bytes were written");
@@ -102,17 +104,16 @@ fn files_of_the_folder_are_not_the_programs_memory() {
 }
 
 #[test]
-fn a_trace_comes_through_a_pipe_in_memory_too() {
+fn a_trace_lies_in_memory_too() {
     let Some(backend) = with_namespaces() else { return };
     let folder = tempfile::tempdir().unwrap();
-    let job = job(folder.path(), "cat input input > trace.bin").trace_pipe("trace.bin");
-    let mut running = backend.start(&job).unwrap();
+    let job = job(folder.path(), "cat input input > trace.bin").trace("trace.bin");
+    let (outcome, left) = run(backend, &job);
     let mut trace = Vec::new();
-    running.trace().unwrap().read_to_end(&mut trace).unwrap();
-    assert_eq!((running.wait().unwrap().ended, trace.as_slice()), (Ended::Exited(0), &b"givengiven"[..]));
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "no pipe is left");
-    let refused = backend.start(&Job::trace_pipe(job, "../trace.bin"));
-    assert!(refused.unwrap_err().to_string().contains("trace pipe"));
+    left.regular_file("trace.bin", 10).unwrap().0.read_to_end(&mut trace).unwrap();
+    assert_eq!((outcome.ended, trace.as_slice()), (Ended::Exited(0), &b"givengiven"[..]));
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "nothing came to the disk");
+    assert!(backend.start(&job.trace("../trace.bin")).is_err());
 }
 
 #[test]
@@ -128,7 +129,7 @@ fn without_namespaces_or_room_the_folder_is_used_as_it_lies() {
     for (backend, job) in [(&bare, job.clone()), (backend, job.limits(huge))] {
         let (outcome, left) = run(backend, &job);
         assert_eq!(outcome.ended, Ended::Exited(0));
-        assert!(left.is_none());
+        assert!(left.in_memory().is_none());
         assert_eq!(std::fs::read_to_string(folder.path().join("made")).unwrap(), "given");
         std::fs::remove_file(folder.path().join("made")).unwrap();
     }

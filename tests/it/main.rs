@@ -43,6 +43,7 @@ mod speed;
 mod summaries;
 mod terminal;
 mod trace;
+mod trace_files;
 mod trace_props;
 mod verdicts;
 mod workspace;

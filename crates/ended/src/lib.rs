@@ -1,37 +1,16 @@
 //! How the run of a program ended, as a value: what the sandbox says, grades keep and reports put into words.
 //!
 //! ```
-//! use fosssim_ended::{Ended, Stream};
+//! use fosssim_ended::Ended;
 //!
-//! let ended = Ended::OutputLimit(Stream::Stdout);
-//! assert_eq!(ended.to_string(), "wrote more than allowed to standard output");
+//! let ended = Ended::TraceLimit;
+//! assert_eq!(ended.to_string(), "wrote more than allowed to the trace");
 //! assert_eq!(ended.kind(), "output");
 //! ```
 #![forbid(unsafe_code)]
 
 use serde::{Deserialize, Serialize};
 use std::{borrow::Cow, fmt};
-
-/// One of the streams that a program writes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub enum Stream {
-    /// Standard output.
-    Stdout,
-    /// Standard error.
-    Stderr,
-    /// The trace pipe.
-    Trace,
-}
-
-impl fmt::Display for Stream {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(match self {
-            Self::Stdout => "standard output",
-            Self::Stderr => "standard error",
-            Self::Trace => "the trace",
-        })
-    }
-}
 
 /// How a run ended. Every variant but [`Ended::Exited`] and [`Ended::Signalled`] is a decision of the sandbox.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -46,8 +25,8 @@ pub enum Ended {
     WallLimit,
     /// It held more memory than allowed, or gave up because it was refused memory that it asked for.
     MemoryLimit,
-    /// It wrote more than allowed to one stream.
-    OutputLimit(Stream),
+    /// Its trace is longer than allowed.
+    TraceLimit,
     /// It had more threads and processes than allowed.
     ProcessLimit,
     /// It put more bytes or files into its working folder than allowed.
@@ -73,7 +52,7 @@ impl Ended {
             Self::CpuLimit => "cpu",
             Self::WallLimit => "wall",
             Self::MemoryLimit => "memory",
-            Self::OutputLimit(_) => "output",
+            Self::TraceLimit => "output",
             Self::ProcessLimit => "processes",
             Self::FolderLimit => "folder",
             Self::Violation { .. } => "violation",
@@ -91,7 +70,7 @@ impl fmt::Display for Ended {
             Self::CpuLimit => formatter.write_str("used up its processor time"),
             Self::WallLimit => formatter.write_str("used up its time on the clock"),
             Self::MemoryLimit => formatter.write_str("needed more memory than allowed"),
-            Self::OutputLimit(stream) => write!(formatter, "wrote more than allowed to {stream}"),
+            Self::TraceLimit => formatter.write_str("wrote more than allowed to the trace"),
             Self::ProcessLimit => formatter.write_str("had more threads and processes than allowed"),
             Self::FolderLimit => formatter.write_str("put more into its working folder than allowed"),
             Self::Violation { call } => write!(formatter, "used a forbidden system call: {call}"),

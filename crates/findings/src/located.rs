@@ -58,7 +58,7 @@ impl Failing {
             Ended::Exited(_) => Some(Self::Error),
             Ended::CpuLimit | Ended::WallLimit => Some(Self::Time),
             Ended::MemoryLimit => Some(Self::Memory),
-            Ended::OutputLimit(_) | Ended::FolderLimit => Some(Self::Output),
+            Ended::TraceLimit | Ended::FolderLimit => Some(Self::Output),
             Ended::ProcessLimit | Ended::Violation { .. } => None,
         }
     }

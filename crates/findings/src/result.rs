@@ -14,7 +14,7 @@ use fosssim_model::{
 use serde::{Deserialize, Serialize};
 use std::{path::PathBuf, time::Duration};
 
-pub use fosssim_ended::{Ended, StartProblem, Stream};
+pub use fosssim_ended::{Ended, StartProblem};
 
 /// The result of one scene: everything but its points, which follow from the suite. It holds all that staff may know;
 /// reports for students are made of what `mistakes::together::told_to_students` leaves of it.

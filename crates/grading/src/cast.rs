@@ -12,7 +12,7 @@ use fosssim_model::{
     sim::{Observer, RootSearch, Simulation, Zone},
     trace::{Layout, Recorder},
 };
-use fosssim_sandbox::{Backend, Ended, FakeRun, Job, Stream};
+use fosssim_sandbox::{Backend, Ended, FakeRun, Job};
 use std::{
     path::Path,
     sync::{Arc, Mutex},
@@ -110,7 +110,7 @@ fn act(job: &Job) -> FakeRun {
                 Some("fails") => Ended::Exited(1),
                 Some("crashes") => Ended::Signalled(11),
                 Some("unread") => Ended::Signalled(13),
-                Some("stopped") => Ended::OutputLimit(Stream::Trace),
+                Some("stopped") => Ended::TraceLimit,
                 Some("sleeps") => Ended::WallLimit,
                 other => panic!("no end {other:?}"),
             };

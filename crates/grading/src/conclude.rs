@@ -5,7 +5,7 @@
 use super::{
     config::{Hints, RunLimits},
     disclosure::Disclosure,
-    result::{BadTrace, Ended, Limit, Measurements, Reached, Reason, SceneResult, Stream, Wrong},
+    result::{BadTrace, Ended, Limit, Measurements, Reached, Reason, SceneResult, Wrong},
     task::SceneTask,
     verdict::Verdict,
 };
@@ -55,8 +55,15 @@ impl From<&fosssim_sandbox::RunOutcome> for Ran {
             memory: Some(program.peak_memory),
             ..Measurements::default()
         };
-        let kept = |stream: &fosssim_sandbox::Captured| beginning(&stream.bytes, KEPT_OUTPUT, stream.truncated);
-        let (stdout, stderr) = (kept(&program.stdout), kept(&program.stderr));
+        let kept = |stream: &fosssim_sandbox::Captured, name: &str| {
+            let mut text = beginning(&stream.bytes, KEPT_OUTPUT);
+            if stream.truncated {
+                let mebibytes = stream.bytes.len() as f64 / f64::from(1 << 20);
+                text.push_str(&format!("\n[{name} was cut after {mebibytes} MiB]"));
+            }
+            text
+        };
+        let (stdout, stderr) = (kept(&program.stdout, "standard output"), kept(&program.stderr, "standard error"));
         Self { ended: program.ended.clone(), measured, stdout, stderr }
     }
 }
@@ -170,13 +177,13 @@ fn verdict_of_program(ended: &Ended, judged: &Outcome) -> Verdict {
     let had_all = judged.stop.is_none() && judged.trailing_bytes;
     match ended {
         Ended::Exited(0) => Verdict::Accepted,
-        Ended::OutputLimit(Stream::Trace) if had_all => Verdict::Accepted,
+        Ended::TraceLimit if had_all => Verdict::Accepted,
         Ended::Cancelled => Verdict::NotRun,
         Ended::Exited(_) | Ended::Signalled(_) => Verdict::RuntimeError,
         Ended::CouldNotStart(_) => Verdict::Unusable,
         Ended::CpuLimit | Ended::WallLimit => Verdict::TimeLimit,
         Ended::MemoryLimit => Verdict::MemoryLimit,
-        Ended::OutputLimit(_) | Ended::FolderLimit => Verdict::OutputLimit,
+        Ended::TraceLimit | Ended::FolderLimit => Verdict::OutputLimit,
         Ended::ProcessLimit | Ended::Violation { .. } => Verdict::Violation,
     }
 }
@@ -237,12 +244,11 @@ fn refusal(judged: &Outcome) -> BadTrace {
     }
 }
 
-/// The first bytes of what was printed, as text; what is not UTF-8 is replaced. `is_cut` says that some are gone
-/// already.
+/// Returns the first bytes of what was printed, as text; what is not UTF-8 is replaced.
 #[cfg(target_os = "linux")]
-pub(super) fn beginning(printed: &[u8], most: usize, is_cut: bool) -> String {
+pub(super) fn beginning(printed: &[u8], most: usize) -> String {
     let mut text = String::from_utf8_lossy(&printed[..printed.len().min(most)]).into_owned();
-    if is_cut || printed.len() > most {
+    if printed.len() > most {
         text.push_str("\n[cut short]");
     }
     text

@@ -1,8 +1,8 @@
-//! Runs one program on one scene in the sandbox and judges its trace while it is written.
+//! Runs one program on one scene in the sandbox and judges the trace that it leaves.
 use super::{
     cancellation::Cancellation,
     cards::{Cards, Judged},
-    conclude::{CountedReader, Look, Ran, Run, conclude},
+    conclude::{Look, Ran, Run, conclude},
     config::{Hints, RunLimits},
     fault,
     guard::{Fault, guarded},
@@ -20,11 +20,12 @@ use fosssim_judge::{
     recorded,
     replay::{Both, Options, Progress, Remark},
 };
-use fosssim_sandbox::{self as sandbox, Backend, Job, Limits, Policy, ProgramIdentity, Running};
+use fosssim_sandbox::{
+    self as sandbox, Backend, Job, LeftFolder, Limits, Policy, ProgramIdentity, Running, collect::CollectError,
+};
 use std::{
     io::{self, Read},
     path::Path,
-    sync::atomic::{AtomicU64, Ordering},
     time::Instant,
 };
 
@@ -91,20 +92,19 @@ impl Runner<'_> {
 
     fn attempt(&self, program: &Staged, task: &SceneTask, on_step: &mut dyn FnMut(u32)) -> Result<SceneResult, String> {
         let begin = Instant::now();
-        let (mut running, folder) = self.start(&program.program, program.identity, task)?;
+        let (running, folder) = self.start(&program.program, program.identity, task)?;
         let is_untouched = running.is_in_memory();
-        let _registered = self.cancellation.register(running.canceller());
-        let bytes = AtomicU64::new(0);
+        let registered = self.cancellation.register(running.canceller());
+        let (outcome, left) = running.wait_with_folder().map_err(|error| error.to_string())?;
+        drop(registered);
+        let (trace, trace_bytes) = self.trace_in(&left)?;
         // Not within the judging, which may panic: its trace is put aside then.
         let keeper = TraceKeeper::new(&task.scene, KEPT_TRACE);
         let mut rulings = StepRulings::default();
         let mut told = ToldSteps(on_step);
         let heard = &mut Both(&mut rulings, &mut told);
-        let judged = match running.trace() {
-            Some(inner) => self.judge_pipe(program, task, &keeper, CountedReader { inner, bytes: &bytes }, heard),
-            None => guarded(|| self.judge(task, &keeper, io::empty(), heard)),
-        };
-        let outcome = running.wait().map_err(|error| error.to_string())?;
+        let judged = self.judge_trace(program, task, &keeper, trace, heard);
+        drop(left);
         match is_untouched {
             true => self.folders.keep(folder),
             false => drop(folder),
@@ -120,7 +120,7 @@ impl Runner<'_> {
             task,
             program: &Ran::from(&outcome),
             judged: &judged,
-            trace_bytes: bytes.load(Ordering::Relaxed),
+            trace_bytes,
             rules: self.rules,
             hints: self.hints,
             limits: self.limits,
@@ -141,7 +141,7 @@ impl Runner<'_> {
                 outcome: &judged,
                 rulings: &rulings.into_steps(&judged),
                 trace: &trace,
-                is_cut: bytes.load(Ordering::Relaxed) > trace.len() as u64,
+                is_cut: trace_bytes > trace.len() as u64,
                 rules: self.rules,
                 hints: self.hints,
             };
@@ -170,16 +170,25 @@ impl Runner<'_> {
         task: &SceneTask,
         keep: usize,
     ) -> Result<(Vec<u8>, sandbox::RunOutcome), String> {
-        let (mut running, _folder) = self.start(program, None, task)?;
+        let (running, _folder) = self.start(program, None, task)?;
         let _registered = self.cancellation.register(running.canceller());
+        let (outcome, left) = running.wait_with_folder().map_err(|error| error.to_string())?;
         let mut kept = Vec::new();
-        if let Some(mut trace) = running.trace() {
-            // An error here ends the program as well, and its outcome says so.
-            let _ = trace.by_ref().take(keep as u64).read_to_end(&mut kept);
-            let _ = io::copy(&mut trace, &mut io::sink());
-        }
-        let outcome = running.wait().map_err(|error| error.to_string())?;
+        let (trace, _) = self.trace_in(&left)?;
+        trace.take(keep as u64).read_to_end(&mut kept).map_err(|error| format!("the trace can't be read: {error}"))?;
         Ok((kept, outcome))
+    }
+
+    /// Opens the trace that a program left, with its length: a regular file, read up to the limit. Anything else there is
+    /// no trace.
+    fn trace_in(&self, left: &LeftFolder) -> Result<(Box<dyn Read + Send>, u64), String> {
+        match left.regular_file(TRACE_FILE, u64::MAX) {
+            Ok((file, length)) => Ok((Box::new(file.take(self.limits.trace)), length.min(self.limits.trace))),
+            Err(CollectError::System { source, .. }) if source.kind() != io::ErrorKind::PermissionDenied => {
+                Err(format!("the trace can't be opened: {source}"))
+            }
+            Err(_) => Ok((Box::new(io::empty()), 0)),
+        }
     }
 
     /// Starts `program` on a scene, in a working folder of its own that lives as long as the result.
@@ -193,7 +202,7 @@ impl Runner<'_> {
         let job = Job::new(program, folder.path())
             .arguments(self.arguments(program))
             .file(SCENE_FILE, task.xml.as_slice())
-            .trace_pipe(TRACE_FILE)
+            .trace(TRACE_FILE)
             .policy(Policy::Submission)
             .folder_in_memory()
             .sanitisers(self.limits.sanitizers)
@@ -202,9 +211,8 @@ impl Runner<'_> {
         Ok((self.backend.start(&job).map_err(|error| error.to_string())?, folder))
     }
 
-    /// Judges the trace that a program writes. What the judge did not want is read all the same, within the limit: a
-    /// program must not die of our closing the pipe.
-    fn judge_pipe(
+    /// Judges the trace of a program. What the judge did not want is read all the same, to be kept.
+    fn judge_trace(
         &self,
         program: &Staged,
         task: &SceneTask,
@@ -216,7 +224,7 @@ impl Runner<'_> {
             fault::injected(Activity::Judging, &program.program);
             self.judge(task, keeper, &mut trace, watch)
         });
-        // An error here ends the program as well, and its outcome says so.
+        // The judge has met an error here, if there is one.
         let _ = io::copy(&mut keeper.reader(trace), &mut io::sink());
         judged
     }

@@ -249,14 +249,12 @@ pub fn build(
     let running = backend.start(&job).map_err(|error| error.to_string())?;
     let _registered = cancellation.register(running.canceller());
     let (outcome, made) = running.wait_with_folder().map_err(|error| error.to_string())?;
-    let (stdout, stderr) = (&outcome.stdout, &outcome.stderr);
-    let printed = [&stdout.bytes[..], &stderr.bytes].concat();
-    let output = beginning(&printed, KEPT_OUTPUT, stdout.truncated || stderr.truncated);
+    let printed = [&outcome.stdout.bytes[..], &outcome.stderr.bytes].concat();
+    let output = beginning(&printed, KEPT_OUTPUT);
     if outcome.ended != Ended::Exited(0) {
         return Ok(failed(BuildEnd::Ended(outcome.ended), output));
     }
     // The build could have left a link to anything where the program should be.
-    let made = made.map_or_else(|| OpenFolder::open(&copy), Ok).map_err(at(&copy))?;
     match made.regular_file(&step.program, LARGEST_FOLDER) {
         Ok((file, _)) => {
             let build = Some(Build { end: BuildEnd::Made, output });

@@ -1,12 +1,12 @@
 //! How programs are run on this host, and the grader's side of a start.
 
 use std::{
-    ffi::{CString, OsString},
+    ffi::OsString,
     fs::File,
     io,
     os::{
-        fd::{AsFd, OwnedFd},
-        unix::{ffi::OsStrExt, fs::FileTypeExt, net::UnixStream},
+        fd::OwnedFd,
+        unix::{ffi::OsStrExt, net::UnixStream},
     },
     path::{Path, PathBuf},
     process::{Child, Command, Stdio},
@@ -15,16 +15,18 @@ use std::{
 
 use super::{
     bubblewrap,
+    collect::OpenFolder,
     fake::FakeRun,
     fault::{SandboxError, set_up_failed},
     job::{Job, Policy, ProgramIdentity},
     keepers::{Host, Keeper, KeeperPool, Kind as Keeping},
+    laid::{folder_fault, plain_name, write_files},
     layers::{self, Layer, LayerReport},
     outcome::Ended,
     own, program, room,
     running::{Running, Supervised},
     supervisor::{MODE_KEEP, MODE_PROBE, MODE_RUN},
-    sys::{self, OFlags},
+    sys,
     wire::{self, Event, Probe, RunOrder, SUPERVISOR_ARGUMENT, Walls},
 };
 
@@ -322,7 +324,7 @@ impl Backend {
             Kind::Launcher { supervisor, walls, keepers } => (supervisor, *walls, keepers),
             Kind::Fake(script) => {
                 write_files(job)?;
-                return Ok(script(job).into_running(job, self.layers.clone()));
+                return script(job).into_running(job, self.layers.clone());
             }
         };
         if let Some(staged) = &job.staged
@@ -332,7 +334,7 @@ impl Backend {
         }
         let examined = match program::examine(&job.program, &supervisor.own_files()) {
             Ok(examined) => examined,
-            Err(problem) => return Ok(FakeRun::could_not_start(problem).into_running(job, self.layers.clone())),
+            Err(problem) => return FakeRun::could_not_start(problem).into_running(job, self.layers.clone()),
         };
         let mut order = order(job, walls, examined, &supervisor.program)?;
         if Keeping::exists_for(&order) {
@@ -341,14 +343,6 @@ impl Backend {
         } else {
             write_files(job)?;
         }
-        let pipe = match &job.trace_pipe {
-            Some(name) if order.volatile => {
-                plain_name(name)?;
-                None
-            }
-            Some(name) => Some(TracePipe::make(&wire::path(&order.folder), name)?),
-            None => None,
-        };
         let (mut asked, first) = loop {
             let (mut asked, kept) = match Keeping::of(&order) {
                 Some(kind) => supervisor.ask_keeper(&order, &job.files, kind, keepers)?,
@@ -362,25 +356,20 @@ impl Backend {
         };
         match first {
             Ok(Event::Ready { session, user }) => {
-                // From here on the supervisor holds the pipe open; when it lets go, the reader sees the end.
-                let mut reader = pipe.map(|pipe| pipe.reader);
-                let mut folder = None;
-                if order.volatile {
-                    match handed_over(&asked.control, order.pipe.is_some()) {
-                        Ok((inside, pipe)) => (folder, reader) = (Some(inside.into()), pipe.map(File::from)),
-                        Err(_) => return Err(asked.lost()),
-                    }
-                }
+                let folder = match order.volatile.then(|| handed_over(&asked.control)).transpose() {
+                    Ok(folder) => folder.map(OpenFolder::from),
+                    Err(_) => return Err(asked.lost()),
+                };
                 let (SpawnedSupervisor { host, control, answers }, layers) = (asked, self.layers.clone());
                 let supervised = Supervised { host, answers, session, user, order, layers };
-                Ok(Running::new(supervised, control, reader, folder))
+                Ok(Running::new(supervised, control, folder))
             }
             Ok(Event::Failed(failure)) => {
-                asked.host.rest(None, false);
+                asked.host.rest(None);
                 match failure.errno {
                     // The program itself is larger than its memory may be.
                     libc::ENOMEM if failure.stage == wire::EXECUTE => {
-                        Ok(FakeRun::ended(Ended::MemoryLimit).into_running(job, self.layers.clone()))
+                        FakeRun::ended(Ended::MemoryLimit).into_running(job, self.layers.clone())
                     }
                     _ => Err(set_up_failed(failure)),
                 }
@@ -398,23 +387,12 @@ const fn lacking(missing: String) -> SandboxError {
     SandboxError::Missing { missing }
 }
 
-/// Writes the job's files into its folder as it lies on the disk.
-fn write_files(job: &Job) -> Result<(), SandboxError> {
-    let failed = |source: io::Error| SandboxError::Folder { folder: job.folder.display().to_string(), source };
-    for (name, content) in &job.files {
-        let plain = wire::plain_name(name.as_bytes()).ok_or_else(|| failed(io::ErrorKind::InvalidInput.into()))?;
-        std::fs::write(job.folder.join(plain), content).map_err(failed)?;
-    }
-    Ok(())
-}
-
-/// The working folder in memory, and the reading end of its trace pipe.
-fn handed_over(control: &UnixStream, with_pipe: bool) -> io::Result<(OwnedFd, Option<OwnedFd>)> {
+/// The working folder in memory.
+fn handed_over(control: &UnixStream) -> io::Result<OwnedFd> {
     let mut byte = [0];
     let (_, descriptors) = sys::receive_descriptors(control, &mut byte)?;
-    let mut descriptors = descriptors.into_iter();
-    match (byte[0], descriptors.next(), descriptors.next()) {
-        (wire::FOLDER, Some(folder), pipe) if pipe.is_some() == with_pipe => Ok((folder, pipe)),
+    match (byte[0], descriptors.into_iter().next()) {
+        (wire::FOLDER, Some(folder)) => Ok(folder),
         _ => Err(io::ErrorKind::InvalidData.into()),
     }
 }
@@ -425,7 +403,8 @@ fn order(job: &Job, walls: Walls, examined: program::Program, supervisor: &Path)
         true => Ok(folder),
         false => Err(io::ErrorKind::NotADirectory.into()),
     });
-    let folder = folder.map_err(|source| SandboxError::Folder { folder: job.folder.display().to_string(), source })?;
+    let folder = folder.map_err(|source| folder_fault(job, source))?;
+    let trace = job.trace.as_ref().map(|name| plain_name(job, name)).transpose()?;
     let mut readable = Vec::new();
     for path in &job.readable {
         let found = std::path::absolute(path).and_then(|path| path.metadata().map(|_| path));
@@ -438,7 +417,7 @@ fn order(job: &Job, walls: Walls, examined: program::Program, supervisor: &Path)
     let set = set.map(|(name, value)| (name.as_bytes().to_vec(), value.as_bytes().to_vec()));
     let environment = given.chain(set).collect();
     let program = std::path::absolute(&job.program).unwrap_or_else(|_| job.program.clone());
-    Ok(RunOrder {
+    let mut order = RunOrder {
         program: wire::raw(&program),
         folder: wire::raw(&folder),
         arguments: job.arguments.iter().map(bytes).collect(),
@@ -447,47 +426,16 @@ fn order(job: &Job, walls: Walls, examined: program::Program, supervisor: &Path)
         executable: examined.executable.iter().map(|path| wire::raw(path)).collect(),
         named: examined.named.iter().map(|path| wire::raw(path)).collect(),
         own: own::known(supervisor).iter().map(|path| wire::raw(path)).collect(),
-        pipe: job.trace_pipe.as_ref().map(|name| name.as_bytes().to_vec()),
+        trace: trace.map(wire::raw),
         files: Vec::new(),
-        volatile: job.in_memory && walls.namespaces && room::is_enough_for(job.limits.folder_bytes),
+        volatile: false,
         tools: job.policy == Policy::Tools,
         interpreter: examined.script.as_ref().map(|script| wire::raw(&script.interpreter)),
         words: examined.script.iter().flat_map(|script| &script.words).map(|word| word.as_bytes().to_vec()).collect(),
         sanitisers: job.sanitisers,
         walls,
         limits: job.limits.clone(),
-    })
-}
-
-/// The name of a trace pipe, which leads to no other folder.
-fn plain_name(name: &str) -> Result<CString, SandboxError> {
-    let plain = wire::plain_name(name.as_bytes()).is_some();
-    CString::new(name).ok().filter(|_| plain).ok_or_else(|| SandboxError::Pipe {
-        name: name.escape_debug().to_string(),
-        source: io::ErrorKind::InvalidInput.into(),
-    })
-}
-
-/// The two ends of the trace pipe while a run starts.
-struct TracePipe {
-    reader: File,
-    /// Without a writer, a read would see the end of the pipe before the program has opened it.
-    _writer: File,
-}
-
-impl TracePipe {
-    /// Makes the pipe in the folder; a pipe that an earlier run left there is replaced.
-    fn make(folder: &Path, name: &str) -> Result<Self, SandboxError> {
-        let failed = |source: io::Error| SandboxError::Pipe { name: name.escape_debug().to_string(), source };
-        let c_name = plain_name(name)?;
-        let path = folder.join(name);
-        if path.symlink_metadata().is_ok_and(|metadata| metadata.file_type().is_fifo()) {
-            std::fs::remove_file(&path).map_err(failed)?;
-        }
-        let folder = File::open(folder).map_err(failed)?;
-        let reader = sys::make_pipe(folder.as_fd(), &c_name).map_err(failed)?;
-        let writer = sys::open_beneath(folder.as_fd(), &c_name, OFlags::WRONLY | OFlags::NONBLOCK).map_err(failed)?;
-        sys::set_blocking(reader.as_fd(), true).map_err(failed)?;
-        Ok(Self { reader: reader.into(), _writer: writer.into() })
-    }
+    };
+    order.volatile = job.in_memory && walls.namespaces && room::is_enough_for(order.folder_bytes());
+    Ok(order)
 }

@@ -5,7 +5,7 @@
 //! memory. Nobody gains by forging that; it is one failure instead of another.
 
 use super::{
-    outcome::{Ended, StartProblem, Stream},
+    outcome::{Ended, StartProblem},
     wire::{Report, RunOrder},
 };
 
@@ -20,8 +20,11 @@ pub(super) fn ended(order: &RunOrder, report: &Report, stderr: &[u8]) -> Ended {
     if let Some(errno) = report.exec_errno {
         return Ended::CouldNotStart(start_problem(errno));
     }
-    if let Some(cause) = &report.cause {
-        return cause.clone();
+    match &report.cause {
+        Some(Ended::Cancelled) => return Ended::Cancelled,
+        _ if report.trace_over => return Ended::TraceLimit,
+        Some(cause) => return cause.clone(),
+        None => {}
     }
     let signal = libc::WIFSIGNALED(report.status).then(|| libc::WTERMSIG(report.status));
     match signal {
@@ -36,12 +39,6 @@ pub(super) fn ended(order: &RunOrder, report: &Report, stderr: &[u8]) -> Ended {
     }
     if report.cpu > order.limits.cpu {
         return Ended::CpuLimit;
-    }
-    if report.stdout_truncated {
-        return Ended::OutputLimit(Stream::Stdout);
-    }
-    if report.stderr_truncated {
-        return Ended::OutputLimit(Stream::Stderr);
     }
     if report.folder_over {
         return Ended::FolderLimit;
@@ -67,16 +64,6 @@ pub(super) fn ended(order: &RunOrder, report: &Report, stderr: &[u8]) -> Ended {
         return Ended::CouldNotStart(StartProblem::NeedsDisplay);
     }
     Ended::Exited(code)
-}
-
-/// The end of a run whose trace is longer than allowed, or not. The reader's count decides, and not the order of
-/// events: the program may have ended, been killed, or met another limit before the supervisor heard of it.
-pub(super) fn beyond_trace(ended: Ended, is_beyond: bool) -> Ended {
-    match ended {
-        Ended::Cancelled => Ended::Cancelled,
-        _ if is_beyond => Ended::OutputLimit(Stream::Trace),
-        ended => ended,
-    }
 }
 
 /// The meaning of the kernel's refusal to execute a file that is there and may be executed.
@@ -154,6 +141,16 @@ mod tests {
         let report = Report { status: libc::SIGKILL, cause: Some(Ended::WallLimit), ..Report::default() };
         assert_eq!(ended(&order(), &report, b""), Ended::WallLimit);
         assert_eq!(ended(&order(), &Report { cause: None, ..report }, b""), Ended::Signalled(libc::SIGKILL));
+    }
+
+    #[test]
+    fn a_trace_beyond_its_limit_outranks_all_but_a_cancellation() {
+        for cause in [None, Some(Ended::FolderLimit), Some(Ended::WallLimit)] {
+            let report = Report { cause, trace_over: true, status: libc::SIGXFSZ, ..Report::default() };
+            assert_eq!(ended(&order(), &report, b""), Ended::TraceLimit);
+        }
+        let report = Report { cause: Some(Ended::Cancelled), trace_over: true, ..Report::default() };
+        assert_eq!(ended(&order(), &report, b""), Ended::Cancelled);
     }
 
     #[test]

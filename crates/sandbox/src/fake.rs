@@ -3,7 +3,9 @@
 use std::{sync::Arc, time::Duration};
 
 use super::{
+    fault::SandboxError,
     job::Job,
+    laid,
     layers::LayerReport,
     outcome::{Captured, Ended, RunOutcome, StartProblem},
     running::Running,
@@ -14,7 +16,7 @@ use super::{
 pub struct FakeRun {
     /// How it ended.
     pub ended: Ended,
-    /// The bytes from the trace pipe, if the job has one.
+    /// The trace that it leaves, if the job has one; nothing leaves none.
     pub trace: Vec<u8>,
     /// Standard output.
     pub stdout: Vec<u8>,
@@ -44,18 +46,21 @@ impl FakeRun {
         Self::ended(Ended::CouldNotStart(problem))
     }
 
-    pub(super) fn into_running(self, job: &Job, layers: Arc<[LayerReport]>) -> Running {
+    pub(super) fn into_running(self, job: &Job, layers: Arc<[LayerReport]>) -> Result<Running, SandboxError> {
+        if let Some(name) = job.trace.as_ref().filter(|_| !self.trace.is_empty()) {
+            laid::write_file(job, name, &self.trace)?;
+        }
+        let is_over = self.trace.len() as u64 > job.limits.trace_bytes && self.ended != Ended::Cancelled;
         let outcome = RunOutcome {
-            ended: self.ended,
+            ended: if is_over { Ended::TraceLimit } else { self.ended },
             cpu: self.cpu,
             wall: self.cpu,
             peak_memory: self.peak_memory,
-            bytes_written: (self.trace.len() + self.stdout.len() + self.stderr.len()) as u64,
             stdout: Captured { bytes: self.stdout, truncated: false },
             stderr: Captured { bytes: self.stderr, truncated: false },
             layers,
         };
-        Running::known(outcome, job.trace_pipe.is_some().then_some(self.trace), job.limits.trace_bytes)
+        Ok(Running::known(outcome, job.folder.clone()))
     }
 }
 
@@ -64,66 +69,39 @@ mod tests {
     use std::io::Read;
 
     use super::*;
-    use crate::{Backend, Limits, TraceTooLong};
+    use crate::{Backend, Limits};
 
     #[test]
     fn a_fake_answers_as_scripted_for_each_job() {
-        let backend = Backend::fake(|job| match job.trace_pipe {
+        let backend = Backend::fake(|job| match job.trace {
             Some(_) => FakeRun::wrote(*b"frames"),
             None => FakeRun::ended(Ended::WallLimit),
         });
-        let job = Job::new("program", "folder");
+        let folder = tempfile::tempdir().unwrap();
+        let job = Job::new("program", folder.path());
         assert_eq!(backend.start(&job).unwrap().wait().unwrap().ended, Ended::WallLimit);
-        let mut running = backend.start(&job.trace_pipe("trace.bin")).unwrap();
+        let (outcome, left) = backend.start(&job.trace("trace.bin")).unwrap().wait_with_folder().unwrap();
         let mut bytes = Vec::new();
-        running.trace().unwrap().read_to_end(&mut bytes).unwrap();
-        assert_eq!(bytes, b"frames");
-        assert!(running.trace().is_none(), "the trace is handed out once");
-        assert_eq!(running.wait().unwrap().ended, Ended::Exited(0));
-    }
-
-    #[test]
-    fn a_trace_is_cut_at_its_limit_to_the_byte() {
-        let backend = Backend::fake(|_| FakeRun::wrote(*b"frames"));
-        let limits = |trace_bytes| Limits { trace_bytes, ..Limits::default() };
-        let read = |trace_bytes| {
-            let job = Job::new("program", "folder").trace_pipe("t").limits(limits(trace_bytes));
-            let mut bytes = Vec::new();
-            let result = backend.start(&job).unwrap().trace().unwrap().read_to_end(&mut bytes);
-            (bytes, result.err().map(|error| *error.get_ref().unwrap().downcast_ref::<TraceTooLong>().unwrap()))
-        };
-        assert_eq!(read(6), (b"frames".to_vec(), None));
-        assert_eq!(read(5), (b"frame".to_vec(), Some(TraceTooLong { limit: 5 })));
-        assert_eq!(read(0), (Vec::new(), Some(TraceTooLong { limit: 0 })));
+        left.regular_file("trace.bin", 6).unwrap().0.read_to_end(&mut bytes).unwrap();
+        assert_eq!((outcome.ended, bytes.as_slice()), (Ended::Exited(0), &b"frames"[..]));
     }
 
     #[test]
     fn a_trace_beyond_its_limit_is_one_whoever_ended_first() {
-        for ended in [Ended::Exited(0), Ended::Exited(1), Ended::Signalled(13), Ended::CpuLimit, Ended::WallLimit] {
+        let folder = tempfile::tempdir().unwrap();
+        for (ended, beyond) in [
+            (Ended::Exited(1), Ended::TraceLimit),
+            (Ended::WallLimit, Ended::TraceLimit),
+            (Ended::Cancelled, Ended::Cancelled),
+        ] {
             let ending = ended.clone();
             let backend = Backend::fake(move |_| FakeRun { ended: ending.clone(), ..FakeRun::wrote(*b"frames") });
             let end = |trace_bytes| {
                 let limits = Limits { trace_bytes, ..Limits::default() };
-                backend.start(&Job::new("program", "folder").trace_pipe("t").limits(limits)).unwrap().wait().unwrap()
+                backend.start(&Job::new("program", folder.path()).trace("t").limits(limits)).unwrap().wait().unwrap()
             };
-            assert_eq!(end(5).ended, Ended::OutputLimit(crate::Stream::Trace), "{ended:?}");
+            assert_eq!(end(5).ended, beyond);
             assert_eq!(end(6).ended, ended);
         }
-        let cancelled = Backend::fake(|_| FakeRun { ended: Ended::Cancelled, ..FakeRun::wrote(*b"frames") });
-        let job = Job::new("program", "folder").trace_pipe("t").limits(Limits { trace_bytes: 5, ..Limits::default() });
-        assert_eq!(cancelled.start(&job).unwrap().wait().unwrap().ended, Ended::Cancelled);
-    }
-
-    /// A reader that wants no more than the limit never meets it, whatever lies behind.
-    #[test]
-    fn the_limit_is_met_only_by_who_reads_on() {
-        let backend = Backend::fake(|_| FakeRun::wrote(*b"frames and more"));
-        let limits = Limits { trace_bytes: 6, ..Limits::default() };
-        let mut running = backend.start(&Job::new("program", "folder").trace_pipe("t").limits(limits)).unwrap();
-        let mut trace = running.trace().unwrap();
-        let mut buffer = [0; 64];
-        assert_eq!(trace.read(&mut buffer).unwrap(), 6);
-        drop(trace);
-        assert_eq!(running.wait().unwrap().ended, Ended::Exited(0));
     }
 }

@@ -54,14 +54,6 @@ pub enum SandboxError {
         /// The system's reason.
         source: io::Error,
     },
-    /// The name of the trace pipe is taken or is not a plain name.
-    #[error("the trace pipe {name}: {source}; give every run a fresh folder")]
-    Pipe {
-        /// The name.
-        name: String,
-        /// The system's reason.
-        source: io::Error,
-    },
     /// The program is not the one that was staged.
     #[error("{program} was changed or removed by somebody else while it was graded")]
     Changed {

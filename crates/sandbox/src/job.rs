@@ -25,18 +25,17 @@ pub enum Policy {
 pub struct Limits {
     /// Processor time of all the program's threads and processes together.
     pub cpu: Duration,
-    /// Time on the clock, from the start to the end. While the trace pipe is full the clock stands still, because the
-    /// program then waits for its reader; that may last [`Limits::PATIENCE`] times as long as the limit at most.
+    /// Time on the clock, from the start to the end.
     pub wall: Duration,
     /// Resident memory in bytes, of all processes together. Files of the working folder are not part of it, even where
     /// the folder lies in memory, but while they are mapped. The stack of the main thread ends at 8 MiB in any case.
     pub memory: u64,
-    /// Bytes of standard output, and separately of standard error.
+    /// Bytes that are kept of standard output, and separately of standard error. The rest is read and dropped.
     pub output_bytes: u64,
-    /// Bytes through the trace pipe.
+    /// Length of the trace ([`Job::trace`]).
     pub trace_bytes: u64,
     /// Bytes on disk in the working folder (blocks in use, so that holes do not count), those at the start
-    /// included.
+    /// included. A job with a trace may have [`Limits::trace_bytes`] besides.
     pub folder_bytes: u64,
     /// Files and folders in the working folder, those at the start included.
     pub folder_files: u64,
@@ -44,11 +43,6 @@ pub struct Limits {
     pub processes: u32,
     /// Descriptors that one process may hold.
     pub open_files: u32,
-}
-
-impl Limits {
-    /// How many times its own time on the clock a program may wait for the reader of its trace.
-    pub const PATIENCE: u32 = 9;
 }
 
 impl Default for Limits {
@@ -91,7 +85,7 @@ pub struct Job {
     pub folder: PathBuf,
     pub(crate) arguments: Vec<OsString>,
     pub(crate) readable: Vec<PathBuf>,
-    pub(crate) trace_pipe: Option<String>,
+    pub(crate) trace: Option<String>,
     pub(crate) policy: Policy,
     pub(crate) environment: Vec<(OsString, OsString)>,
     pub(crate) sanitisers: bool,
@@ -112,7 +106,7 @@ impl Job {
             folder: folder.into(),
             arguments: Vec::new(),
             readable: Vec::new(),
-            trace_pipe: None,
+            trace: None,
             policy: Policy::Submission,
             environment: Vec::new(),
             sanitisers: false,
@@ -139,18 +133,17 @@ impl Job {
         self
     }
 
-    /// Makes `name` in the working folder a pipe to the grader: bytes that the program writes there arrive at
-    /// [`Running::trace`](crate::Running::trace) and never on disk. A program that removes or replaces the
-    /// pipe has written nothing. Without this, the program writes an ordinary file, for [`collect`](super::collect).
+    /// The program writes its trace into the file `name` of the working folder, which has a limit of its own.
+    /// [`LeftFolder::regular_file`](crate::LeftFolder::regular_file) opens what it left there.
     #[must_use]
-    pub fn trace_pipe(mut self, name: impl Into<String>) -> Self {
-        self.trace_pipe = Some(name.into());
+    pub fn trace(mut self, name: impl Into<String>) -> Self {
+        self.trace = Some(name.into());
         self
     }
 
     /// Has the program work in a copy of the working folder that lies in memory, where there are namespaces and the
     /// machine has room: the kernel then limits its bytes and files. The folder itself stays as it is; what the program
-    /// left is in [`Running::wait_with_folder`](crate::Running::wait_with_folder).
+    /// left is in the [`LeftFolder`](crate::LeftFolder).
     #[must_use]
     pub fn folder_in_memory(mut self) -> Self {
         self.in_memory = true;

@@ -15,13 +15,13 @@ use std::{
 
 use super::{
     fault::{SandboxError, lost},
-    job::{Limits, ProgramIdentity},
+    job::ProgramIdentity,
     sys,
     wire::{self, Report, RunOrder},
 };
 
-/// The properties that all runs of one keeper share: all of the order but arguments, environment, working folder with
-/// its contents and the limit of the trace, which the grader heeds; and the very files that it names.
+/// The properties that all runs of one keeper share: all of the order but arguments, environment and working folder
+/// with its contents; and the very files that it names.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Kind {
     order: RunOrder,
@@ -45,9 +45,7 @@ impl Kind {
             folder: Vec::new(),
             arguments: Vec::new(),
             environment: Vec::new(),
-            pipe: None,
             files: Vec::new(),
-            limits: Limits { trace_bytes: 0, ..order.limits },
             ..order.clone()
         };
         let named = order.readable.iter().chain(&order.executable).chain(&order.named);
@@ -156,15 +154,34 @@ impl Host {
     }
 
     /// The run is over, and this is its report, if there is one. Only a keeper whose run has simply ended serves
-    /// others, and only if the run's folder is `gone`.
-    pub(super) fn rest(self, report: Option<&Report>, gone: bool) {
+    /// others.
+    pub(super) fn rest(self, report: Option<&Report>) -> Option<RestingKeeper> {
         match self {
             Self::Own(mut child) => {
                 // It ends by itself after its report; how, no longer matters.
                 let _ = child.wait();
+                None
             }
-            Self::Kept(keeper, pool) if gone && report.is_some_and(has_simply_ended) => pool.put(*keeper),
-            Self::Kept(..) => {}
+            Self::Kept(keeper, pool) if report.is_some_and(has_simply_ended) => {
+                Some(RestingKeeper { keeper: Some(keeper), pool })
+            }
+            Self::Kept(..) => None,
+        }
+    }
+}
+
+/// A keeper between two runs. Dropped, it serves others: by then the folder of its last run must be gone, whose pages
+/// count for the keeper's group.
+#[derive(Debug)]
+pub(super) struct RestingKeeper {
+    keeper: Option<Box<Keeper>>,
+    pool: Arc<KeeperPool>,
+}
+
+impl Drop for RestingKeeper {
+    fn drop(&mut self) {
+        if let Some(keeper) = self.keeper.take() {
+            self.pool.put(*keeper);
         }
     }
 }
@@ -178,7 +195,7 @@ fn has_simply_ended(report: &Report) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{outcome::Ended, wire::Walls};
+    use crate::{job::Limits, outcome::Ended, wire::Walls};
 
     fn order() -> RunOrder {
         let walls = Walls { namespaces: true, seccomp: true, ..Walls::default() };
@@ -191,7 +208,6 @@ mod tests {
         let same = RunOrder {
             folder: b"/x".to_vec(),
             arguments: vec![b"-s".to_vec()],
-            pipe: Some(b"t".to_vec()),
             files: vec![(b"a".to_vec(), 9)],
             ..order()
         };

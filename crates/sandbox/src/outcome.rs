@@ -2,7 +2,7 @@
 
 use std::{sync::Arc, time::Duration};
 
-pub use fosssim_ended::{Ended, StartProblem, Stream};
+pub use fosssim_ended::{Ended, StartProblem};
 
 use super::layers::LayerReport;
 
@@ -22,35 +22,16 @@ pub struct RunOutcome {
     pub ended: Ended,
     /// Processor time, user and system, of the whole tree.
     pub cpu: Duration,
-    /// Time on the clock, without the time that the program waited for the reader of its trace.
+    /// Time on the clock.
     pub wall: Duration,
     /// Peak of the resident memory in bytes.
     pub peak_memory: u64,
-    /// Bytes written: both streams, the trace pipe, and the growth of the working folder.
-    pub bytes_written: u64,
     /// Standard output.
     pub stdout: Captured,
     /// Standard error.
     pub stderr: Captured,
     /// The layers that were active; a report states those that were not.
     pub layers: Arc<[LayerReport]>,
-}
-
-impl RunOutcome {
-    /// The outcome of a program that did not run, as if it had ended well after it wrote this number of bytes.
-    #[must_use]
-    pub fn without_run(bytes_written: u64) -> Self {
-        Self {
-            ended: Ended::Exited(0),
-            cpu: Duration::ZERO,
-            wall: Duration::ZERO,
-            peak_memory: 0,
-            bytes_written,
-            stdout: Captured::default(),
-            stderr: Captured::default(),
-            layers: Arc::from([]),
-        }
-    }
 }
 
 #[cfg(test)]
@@ -63,7 +44,7 @@ mod tests {
             Ended::Signalled(libc::SIGSEGV).to_string(),
             "ended by signal 11 (SIGSEGV: it used memory that is not its own)"
         );
-        assert_eq!(Ended::OutputLimit(Stream::Trace).to_string(), "wrote more than allowed to the trace");
+        assert_eq!(Ended::TraceLimit.to_string(), "wrote more than allowed to the trace");
         assert_eq!(
             Ended::CouldNotStart(StartProblem::NotExecutable).to_string(),
             "could not start: the file is not executable; if it is the program, run chmod +x on it"

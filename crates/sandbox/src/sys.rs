@@ -299,12 +299,6 @@ pub(super) fn poll<const N: usize>(fds: [Option<BorrowedFd<'_>>; N], time: Durat
     }))
 }
 
-/// Whether a write to the pipe would wait, because it is full.
-pub(super) fn is_full(pipe: BorrowedFd<'_>) -> bool {
-    let mut list = [PollFd::from_borrowed_fd(pipe, PollFlags::OUT)];
-    rustix::event::poll(&mut list, Some(&Timespec::default())) == Ok(0)
-}
-
 /// Has writes beyond the limit of file sizes fail instead of ending the process.
 pub(super) fn ignore_file_size_signal() {
     // SAFETY: ignoring a signal needs no function.
@@ -331,22 +325,6 @@ pub(super) fn open_beneath(folder: BorrowedFd<'_>, name: &CStr, flags: OFlags) -
         Err(Errno::NOSYS | Errno::PERM) if plain => Ok(rustix::fs::openat(folder, name, flags, Mode::empty())?),
         opened => Ok(opened?),
     }
-}
-
-/// Makes a FIFO in the folder; the answer is its reading end, which does not wait yet.
-pub(super) fn make_pipe(folder: BorrowedFd<'_>, name: &CStr) -> io::Result<OwnedFd> {
-    // The larger, the fewer switches between the program and the grader.
-    const BYTES: usize = 1 << 20;
-    make_fifo(folder, name)?;
-    let reader = open_beneath(folder, name, OFlags::RDONLY | OFlags::NONBLOCK)?;
-    // The kernel may refuse, and a smaller pipe works, too.
-    let _ = rustix::pipe::fcntl_setpipe_size(&reader, BYTES);
-    Ok(reader)
-}
-
-/// Makes a FIFO in the folder, for its owner only.
-pub(super) fn make_fifo(folder: BorrowedFd<'_>, name: &CStr) -> io::Result<()> {
-    Ok(rustix::fs::mkfifoat(folder, name, Mode::RUSR | Mode::WUSR)?)
 }
 
 /// Gives an open file or folder (also one opened with `O_PATH`) to a user and group.

@@ -1,9 +1,9 @@
 //! The messages between the grader and its supervisor process.
 //!
 //! The grader writes one length-prefixed [`RunOrder`] to the supervisor's standard input, a socket, and then, if need
-//! be, single command bytes. A working folder in memory comes back there, open, and so does its trace pipe. The
-//! supervisor answers on its standard output with length-prefixed [`Event`]s; the last one is followed by the captured
-//! bytes. Paths travel as bytes, because they need not be UTF-8.
+//! be, a command byte. A working folder in memory comes back there, open. The supervisor answers on its standard output
+//! with length-prefixed [`Event`]s; the last one is followed by the captured bytes. Paths travel as bytes, because they
+//! need not be UTF-8.
 
 use std::{
     io::{self, Read, Write},
@@ -21,8 +21,6 @@ use super::job::Limits;
 pub(super) const SUPERVISOR_ARGUMENT: &str = "__sandbox-supervisor";
 /// Command byte: stop the program, the grader has seen enough.
 pub(super) const COMMAND_CANCEL: u8 = b'c';
-/// Command byte: stop the program, its trace is too long.
-pub(super) const COMMAND_TRACE_LIMIT: u8 = b't';
 /// Few messages are longer than this.
 const USUAL_MESSAGE: u64 = 4 << 10;
 /// No message is longer than this; a longer one means that the streams are out of step.
@@ -31,8 +29,7 @@ const LONGEST_MESSAGE: u64 = 64 << 20;
 /// Starts a run in a supervisor that serves several. Comes with three descriptors: the channel of commands, the channel
 /// of answers, and the working folder on the disk.
 pub(super) const RUN: u8 = b'r';
-/// Tells the grader of a working folder in memory. Comes with the folder, and with the reading end of the trace pipe if
-/// there is one.
+/// Tells the grader of a working folder in memory. Comes with the folder.
 pub(super) const FOLDER: u8 = b'f';
 
 /// Bytes of a path or an argument.
@@ -84,11 +81,12 @@ pub(super) struct RunOrder {
     pub(super) named: Vec<Raw>,
     /// The grader's own files, which no run may see. Looked up by the grader, once for all runs.
     pub(super) own: Vec<Raw>,
-    pub(super) pipe: Option<Raw>,
+    /// The name of the trace in the working folder.
+    pub(super) trace: Option<Raw>,
     /// Files that are laid into the working folder, by name, with their length: their bytes follow the order. Only
     /// where that folder lies in memory.
     pub(super) files: Vec<(Raw, u64)>,
-    /// Whether the working folder lies in memory. The supervisor then makes the pipe, and hands both to the grader.
+    /// Whether the working folder lies in memory. The supervisor then hands it to the grader.
     pub(super) volatile: bool,
     pub(super) tools: bool,
     /// The interpreter of a script, which is executed in its place.
@@ -99,6 +97,20 @@ pub(super) struct RunOrder {
     pub(super) sanitisers: bool,
     pub(super) walls: Walls,
     pub(super) limits: Limits,
+}
+
+impl RunOrder {
+    /// Bytes that the working folder may hold, the trace included.
+    pub(super) fn folder_bytes(&self) -> u64 {
+        let trace = if self.trace.is_some() { self.limits.trace_bytes } else { 0 };
+        self.limits.folder_bytes.saturating_add(trace)
+    }
+
+    /// The greatest size of a file. One byte beyond the limit of the trace shows that it is too long.
+    pub(super) fn file_bytes(&self) -> u64 {
+        let trace = if self.trace.is_some() { self.limits.trace_bytes.saturating_add(1) } else { 0 };
+        self.limits.folder_bytes.max(trace)
+    }
 }
 
 /// A message of the supervisor.
@@ -147,8 +159,8 @@ pub(super) struct Report {
     pub(super) cpu: Duration,
     pub(super) wall: Duration,
     pub(super) peak_memory: u64,
-    /// The growth of the folder from the start to the end.
-    pub(super) folder_growth: u64,
+    /// Whether the trace is longer than its limit.
+    pub(super) trace_over: bool,
     /// Whether the folder is over a limit at the end.
     pub(super) folder_over: bool,
     pub(super) stdout_bytes: u64,

@@ -19,7 +19,7 @@ use fosssim_model::{
     trace::{List, LoggedImpulse, Malformation},
 };
 use fosssim_num::{polynomial::Polynomial, vector::Vec2};
-use fosssim_sandbox::{Ended, StartProblem, Stream};
+use fosssim_sandbox::{Ended, StartProblem};
 use std::{path::PathBuf, time::Duration};
 
 fn key() -> Key {
@@ -227,7 +227,7 @@ fn every_reason_and_every_end_reads_back() {
         Ended::Exited(-1),
         Ended::Signalled(11),
         Ended::CpuLimit,
-        Ended::OutputLimit(Stream::Trace),
+        Ended::TraceLimit,
         Ended::Violation { call: "ptrace".to_owned() },
         Ended::CouldNotStart(missing),
         Ended::Cancelled,

@@ -1,14 +1,14 @@
 //! The head of an attack's source: its promise, and its expected end.
 //!
 //! The first lines of the C file are comments of the form `// key: value`. `promise` and `expect` are required;
-//! `policy`, `wall` (milliseconds), `needs`, `leaves` and `pipe` are not.
+//! `policy`, `wall` (milliseconds), `needs` and `leaves` are not.
 
 use std::time::Duration;
 
 use crate::{
     job::Policy,
     layers::{Layer, LayerReport, is_active},
-    outcome::{Ended, Stream},
+    outcome::Ended,
 };
 
 /// The need of an attack, without which it proves nothing.
@@ -57,9 +57,6 @@ impl ExpectedEnd {
         let detail = match ended {
             Ended::Exited(code) => code.to_string(),
             Ended::Signalled(signal) => signal.to_string(),
-            Ended::OutputLimit(Stream::Stdout) => "stdout".into(),
-            Ended::OutputLimit(Stream::Stderr) => "stderr".into(),
-            Ended::OutputLimit(Stream::Trace) => "trace".into(),
             // The call's name comes first; where calls cannot be named, any violation will do.
             Ended::Violation { call } if call.contains("of another architecture") => return self.kind == "violation",
             Ended::Violation { call } => call.split(' ').next().unwrap_or_default().into(),
@@ -80,8 +77,6 @@ pub(super) struct Attack {
     pub(super) needs: Vec<AttackNeed>,
     /// The expected `trace.bin`: `nothing`, `refused`, or this text.
     pub(super) leaves: Option<String>,
-    /// Whether the trace is a pipe, and how many bytes must come through it.
-    pub(super) pipe: Option<Option<usize>>,
 }
 
 impl Attack {
@@ -105,7 +100,6 @@ impl Attack {
             wall: None,
             needs: Vec::new(),
             leaves: None,
-            pipe: None,
         };
         for line in source.lines().map_while(|line| line.strip_prefix("// ")) {
             let (key, value) = line.split_once(": ").ok_or_else(|| format!("no key in: {line}"))?;
@@ -122,8 +116,6 @@ impl Attack {
                     attack.needs.push(need.ok_or_else(|| format!("unknown need: {value}"))?);
                 }
                 "leaves" => attack.leaves = Some(value.into()),
-                "pipe" if value == "any" => attack.pipe = Some(None),
-                "pipe" => attack.pipe = Some(Some(value.parse().map_err(|_| format!("no number: {value}"))?)),
                 _ => return Err(format!("unknown: {line}")),
             }
         }
@@ -148,11 +140,11 @@ mod tests {
     #[test]
     fn a_head_is_read_up_to_the_code() {
         let text = "// promise: It holds.\n// expect: exited 0 or violation ptrace\n// policy: tools\n// wall: 300\n\
-                    // needs: file rules\n// leaves: honest\n// pipe: 6\n#include <x>\n// other: comment\n";
+                    // needs: file rules\n// leaves: honest\n#include <x>\n// other: comment\n";
         let attack = Attack::parse("a", text).unwrap();
         assert_eq!(attack.policy, Policy::Tools);
         assert_eq!(attack.wall, Some(Duration::from_millis(300)));
-        assert_eq!((attack.needs, attack.pipe), (vec![AttackNeed::ALL[0]], Some(Some(6))));
+        assert_eq!(attack.needs, [AttackNeed::ALL[0]]);
         let matches = |ended: &Ended| attack.expected.iter().any(|expected| expected.matches(ended));
         assert!(matches(&Ended::Exited(0)) && !matches(&Ended::Exited(66)));
         assert!(matches(&Ended::Violation { call: "ptrace".into() }));

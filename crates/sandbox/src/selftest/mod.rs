@@ -23,12 +23,12 @@ use include_dir::{Dir, include_dir};
 use self::{attack::Attack, decoy::Decoy};
 use super::{
     backend::Backend,
-    collect::{self, CollectError},
+    collect::CollectError,
     fault::SandboxError,
     job::{Job, Limits},
     layers::{Layer, is_active},
     outcome::{Ended, RunOutcome},
-    running::Running,
+    running::LeftFolder,
     supervisor::processes,
     sys,
 };
@@ -44,6 +44,8 @@ const GROUP: &str = "FOSSSIM_GRADER_GROUP";
 const REFUSED: Ended = Ended::Exited(77);
 /// Attacks are built without optimisation, which would take useless-looking stores and loops away.
 const FLAGS: [&str; 3] = ["-O0", "-w", "-pthread"];
+/// The trace's file.
+const TRACE: &str = "trace.bin";
 /// The largest trace that is collected.
 const LONGEST_TRACE: u64 = 1 << 20;
 
@@ -192,20 +194,10 @@ impl Place<'_> {
             .readable([&decoy.scene])
             .policy(attack.policy)
             .folder_in_memory()
+            .trace(TRACE)
             .environment(environment())
             .limits(limits(attack));
-        let job = if attack.pipe.is_some() { job.trace_pipe("trace.bin") } else { job };
-        let start = || -> Result<(Running, Option<usize>), SandboxError> {
-            let mut running = self.backend.start(&job)?;
-            let traced = running.trace().map(|mut trace| {
-                let mut bytes = Vec::new();
-                // A trace over its limit ends with an error; how the run ended says so, too.
-                let _ = std::io::Read::read_to_end(&mut trace, &mut bytes);
-                bytes.len()
-            });
-            Ok((running, traced))
-        };
-        let (mut running, mut traced) = start().map_err(|e| fault(&e))?;
+        let mut running = self.backend.start(&job).map_err(|e| fault(&e))?;
         if attack.expects_exit() && running.is_in_memory() {
             // Such runs have a supervisor in common: what this one leaves in it is there for the next.
             let outcome = running.wait().map_err(|error| broken(error.to_string()))?;
@@ -215,10 +207,9 @@ impl Place<'_> {
             if decoy.is_betrayed(&outcome.stdout.bytes) || decoy.is_betrayed(&outcome.stderr.bytes) {
                 return Err(broken("it printed a secret in a first run".into()));
             }
-            (running, traced) = start().map_err(|e| fault(&e))?;
+            running = self.backend.start(&job).map_err(|e| fault(&e))?;
         }
         let (outcome, folder) = running.wait_with_folder().map_err(|error| broken(error.to_string()))?;
-        let folder = folder.map_or_else(|| collect::OpenFolder::open(&decoy.work), Ok).map_err(|e| fault(&e))?;
 
         if let Some(left) = survivor(&program) {
             return Err(broken(format!("process {left} outlived the run")));
@@ -237,11 +228,6 @@ impl Place<'_> {
         let after = decoy.state().map_err(|e| broken(format!("the decoys cannot be read any more: {e}")))?;
         if let Some(difference) = before.difference(&after) {
             return Err(broken(format!("it changed the host: {difference}")));
-        }
-        if let (Some(Some(expected)), Some(traced)) = (attack.pipe, traced)
-            && traced != expected
-        {
-            return Err(broken(format!("{traced} bytes came through the trace pipe instead of {expected}")));
         }
         left_as_expected(attack, &folder).map_err(broken)?;
         decoy.clear().map_err(|error| broken(format!("its folder cannot be removed: {error}")))?;
@@ -339,11 +325,11 @@ fn words(outcome: &RunOutcome) -> String {
 }
 
 /// Whether the folder holds the trace that it should hold.
-fn left_as_expected(attack: &Attack, work: &collect::OpenFolder) -> Result<(), String> {
-    let collected = work.regular_file("trace.bin", LONGEST_TRACE).and_then(|(mut file, _)| {
+fn left_as_expected(attack: &Attack, work: &LeftFolder) -> Result<(), String> {
+    let collected = work.regular_file(TRACE, LONGEST_TRACE).and_then(|(mut file, _)| {
         let mut bytes = Vec::new();
         let read = std::io::Read::read_to_end(&mut file, &mut bytes);
-        read.map(|_| bytes).map_err(|source| CollectError::System { name: "trace.bin".into(), source })
+        read.map(|_| bytes).map_err(|source| CollectError::System { name: TRACE.into(), source })
     });
     match (attack.leaves.as_deref(), collected) {
         (None, _)

@@ -137,7 +137,7 @@ fn limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
     // One byte, not none: the kernel pipes the dumps of programs with a limit of 0 to a handler, if the host has one.
     sys::limit(Resource::Core, 1)?;
     let limits = &order.limits;
-    sys::limit(Resource::Fsize, limits.folder_bytes)?;
+    sys::limit(Resource::Fsize, order.file_bytes())?;
     sys::limit(Resource::Nofile, u64::from(limits.open_files))?;
     let begun = u64::from(limits.cpu.subsec_nanos() > 0);
     sys::limit(Resource::Cpu, limits.cpu.as_secs().saturating_add(begun + SPARE_SECONDS))?;

@@ -11,7 +11,7 @@ use std::{
         fd::{AsFd, AsRawFd, BorrowedFd},
         unix::{
             ffi::OsStrExt,
-            fs::{FileTypeExt, MetadataExt, PermissionsExt},
+            fs::{MetadataExt, PermissionsExt},
         },
     },
     path::{Path, PathBuf},
@@ -55,33 +55,30 @@ impl FolderUsage {
 /// The contents of the file system whose root is `folder`, by the kernel's own count: removed files that are in use as
 /// well.
 pub(super) fn in_use(folder: BorrowedFd<'_>) -> FolderUsage {
-    // The root itself, and the trace pipe, if there is one.
-    const OWN_FILES: u64 = 2;
     let (bytes, files) = mounts::file_system_usage(folder).unwrap_or_default();
-    FolderUsage { bytes, files: files.saturating_sub(OWN_FILES), ..FolderUsage::default() }
+    // The root itself is one.
+    FolderUsage { bytes, files: files.saturating_sub(1), ..FolderUsage::default() }
 }
 
-/// Counts the folder's contents and stops as soon as a limit is passed. Pipes are not counted.
+/// Counts the folder's contents and stops as soon as a limit is passed.
 pub(super) fn measure(folder: BorrowedFd<'_>, most_bytes: u64, most_files: u64) -> FolderUsage {
     let mut contents = FolderUsage::default();
     let whole = walk(folder, 0, &mut |_, metadata| {
-        if !metadata.file_type().is_fifo() {
-            contents.bytes += metadata.blocks() * BLOCK;
-            contents.files += 1;
-            contents.folders += u64::from(metadata.is_dir());
-        }
+        contents.bytes += metadata.blocks() * BLOCK;
+        contents.files += 1;
+        contents.folders += u64::from(metadata.is_dir());
         contents.bytes <= most_bytes && contents.files <= most_files
     });
     contents.over = !whole;
     contents
 }
 
-/// Gives the folder and all in it to a user and group: folders, pipes, and files that have no second name (which
-/// might lie elsewhere). Only called while no process of the program is alive.
+/// Gives the folder and all in it to a user and group: folders, and files that have no second name (which might lie
+/// elsewhere). Only called while no process of the program is alive.
 pub(super) fn give(folder: BorrowedFd<'_>, user: u32, group: u32) -> io::Result<()> {
     walk(folder, 0, &mut |path, metadata| {
         let kind = metadata.file_type();
-        if kind.is_dir() || kind.is_fifo() || (kind.is_file() && metadata.nlink() == 1) {
+        if kind.is_dir() || (kind.is_file() && metadata.nlink() == 1) {
             // An entry that cannot be given stays as it is; the program then cannot change it.
             let _ = std::os::unix::fs::lchown(path, Some(user), Some(group));
         }

@@ -124,7 +124,7 @@ impl Group {
         // Files count here, the working folder's above all, and so do buffers of others, but not for the program's own
         // limit.
         let limits = &order.limits;
-        let memory = limits.memory.saturating_add(limits.folder_bytes).saturating_add(SPARE_MEMORY);
+        let memory = limits.memory.saturating_add(order.folder_bytes()).saturating_add(SPARE_MEMORY);
         let processes = limits.processes.saturating_add(SPARE_PROCESSES);
         for part in &self.parts {
             let values: &[(&CStr, String)] = match part.kind {

@@ -24,11 +24,10 @@ use super::{
     namespaces::{self, Side},
     prepared::{Held, Prepared},
     processes, slot,
-    streams::{CapturedStream, Stalled},
+    streams::CapturedStream,
 };
 use crate::{
-    job::Limits,
-    outcome::{Ended, Stream},
+    outcome::Ended,
     sys::{self, CallAnswer, Fork, OFlags, Readiness},
     wire::{self, Event, Failure, Report, RunOrder, stage},
 };
@@ -95,8 +94,8 @@ pub(super) struct Run {
     order: Rc<RunOrder>,
     control: File,
     folder: OwnedFd,
-    /// Keeps the trace pipe open until every process is dead, so that its reader sees the end then and not before.
-    pipe: Option<OwnedFd>,
+    /// The trace's name in the folder.
+    trace: Option<CString>,
     /// The user that the program runs as, if it is its own, and who owned the folder before.
     slot: Option<(slot::Slot, (u32, u32))>,
     /// The control group, if there is one.
@@ -110,8 +109,6 @@ pub(super) struct Run {
     stdout: CapturedStream,
     stderr: CapturedStream,
     began: Instant,
-    stalled: Stalled,
-    folder_before: FolderUsage,
     main_status: Option<i32>,
     cause: Option<Ended>,
     peak_memory: u64,
@@ -126,22 +123,12 @@ impl Run {
         let (order, Held { slot, group }) = (Rc::new(order), held);
         sys::become_reaper().map_err(stage("become the reaper"))?;
         let folder: OwnedFd = File::open(wire::path(&order.folder)).map_err(stage("open the working folder"))?.into();
-        // The kernel has counted the files that were just laid out in memory.
-        let folder_before = match order.volatile {
-            true => folder::in_use(folder.as_fd()),
-            false => contents(&order, folder.as_fd()),
-        };
-        let name = order.pipe.clone().map(CString::new).transpose();
-        let name = name.map_err(|error| Failure::new("make the trace pipe", &error.into()))?;
-        let made = name.as_ref().filter(|_| order.volatile).map(|name| sys::make_pipe(folder.as_fd(), name));
-        let volatile_pipe = made.transpose().map_err(stage("make the trace pipe"))?;
+        let trace = order.trace.clone().map(CString::new).transpose();
+        let trace = trace.map_err(|error| Failure::new("name the trace", &error.into()))?;
         let slot = slot.map(|slot| owner_before(folder.as_fd(), slot.user).map(|owner| (slot, owner))).transpose();
         let slot = slot.map_err(stage("give the working folder away"))?;
-        // This end says how full it is.
-        let open = |name: &CString| sys::open_beneath(folder.as_fd(), name, OFlags::WRONLY | OFlags::NONBLOCK);
-        let pipe = name.as_ref().map(open).transpose().map_err(stage("open the trace pipe"))?;
         if order.volatile {
-            hand_over(&control, folder.as_fd(), volatile_pipe).map_err(stage("hand the working folder over"))?;
+            hand_over(&control, folder.as_fd()).map_err(stage("hand the working folder over"))?;
         }
         let (stdout, output) = io::pipe().map_err(stage("make a pipe"))?;
         let (stderr, error) = io::pipe().map_err(stage("make a pipe"))?;
@@ -179,8 +166,7 @@ impl Run {
             order,
             control,
             folder,
-            pipe,
-            stalled: Stalled::default(),
+            trace,
             slot,
             child,
             process: sys::process_descriptor(child),
@@ -190,7 +176,6 @@ impl Run {
             listener: None,
             waits: SharedWaits::default(),
             began,
-            folder_before,
             main_status: None,
             cause: None,
             peak_memory: 0,
@@ -239,7 +224,7 @@ impl Run {
             folder::give(self.folder.as_fd(), *owner, *group).map_err(stage("take the working folder back"))?;
         }
         // Cleaning up counts for the run.
-        let wall = self.wall();
+        let wall = self.began.elapsed();
         watched.map_err(stage("watch the program"))?;
         if self.orphaned {
             return Ok(None);
@@ -267,7 +252,7 @@ impl Run {
             cpu: cpu.max(self.uncounted_cpu()),
             wall,
             peak_memory: largest.max(self.peak_memory),
-            folder_growth: after.bytes.saturating_sub(self.folder_before.bytes),
+            trace_over: self.is_trace_over(),
             folder_over: self.over(&after) || !shallow,
             stdout_bytes: self.stdout.bytes.len() as u64,
             stderr_bytes: self.stderr.bytes.len() as u64,
@@ -316,8 +301,6 @@ impl Run {
                 // reaped.
                 Readiness::HungUp => self.listener = None,
             }
-            self.blame_if(self.stdout.truncated, Ended::OutputLimit(Stream::Stdout));
-            self.blame_if(self.stderr.truncated, Ended::OutputLimit(Stream::Stderr));
             let now = Instant::now();
             if let Some(listener) = &self.listener {
                 self.waits.answer(listener.as_fd(), now);
@@ -351,7 +334,6 @@ impl Run {
     fn obey(&mut self) {
         let mut command = [0];
         match self.control.read(&mut command) {
-            Ok(1) if command[0] == wire::COMMAND_TRACE_LIMIT => self.blame_if(true, Ended::OutputLimit(Stream::Trace)),
             Ok(1) => self.blame_if(true, Ended::Cancelled),
             _ => self.orphaned = true,
         }
@@ -451,15 +433,15 @@ impl Run {
         self.blame_if(memory > self.order.limits.memory, Ended::MemoryLimit);
         let cpu = (usage.cpu + reaped).max(self.uncounted_cpu());
         self.blame_if(cpu > self.order.limits.cpu, Ended::CpuLimit);
-        let full = self.pipe.as_ref().is_some_and(|pipe| sys::is_full(pipe.as_fd()));
-        self.stalled.look(full, Instant::now());
-        self.blame_if(self.wall() > self.order.limits.wall, Ended::WallLimit);
+        self.blame_if(self.is_trace_over(), Ended::TraceLimit);
+        self.blame_if(self.began.elapsed() > self.order.limits.wall, Ended::WallLimit);
     }
 
-    /// Time on the clock that is the program's own: without that in which it waited for the reader of its trace.
-    fn wall(&self) -> Duration {
-        let patience = self.order.limits.wall.saturating_mul(Limits::PATIENCE);
-        self.began.elapsed().saturating_sub(self.stalled.total.min(patience))
+    /// Whether the file at the trace's place is longer than a trace may be.
+    fn is_trace_over(&self) -> bool {
+        let opened = self.trace.as_ref().map(|name| sys::open_beneath(self.folder.as_fd(), name, OFlags::PATH));
+        let metadata = opened.and_then(|opened| File::from(opened.ok()?).metadata().ok());
+        metadata.is_some_and(|metadata| metadata.is_file() && metadata.len() > self.order.limits.trace_bytes)
     }
 
     /// The group's processor time, where there may be processes that nobody reaps. One process's own count is whole,
@@ -471,7 +453,7 @@ impl Run {
     /// Looks at the working folder, at removed files that are still in use, and at memory that is resident for nobody.
     fn look_at_folder(&mut self) {
         let mut contents =
-            folder::measure(self.folder.as_fd(), self.order.limits.folder_bytes, self.order.limits.folder_files);
+            folder::measure(self.folder.as_fd(), self.order.folder_bytes(), self.order.limits.folder_files);
         if self.order.volatile {
             contents = contents.at_least(folder::in_use(self.folder.as_fd()));
         }
@@ -505,9 +487,7 @@ impl Run {
     }
 
     fn over(&self, contents: &FolderUsage) -> bool {
-        contents.over
-            || contents.bytes > self.order.limits.folder_bytes
-            || contents.files > self.order.limits.folder_files
+        contents.over || contents.bytes > self.order.folder_bytes() || contents.files > self.order.limits.folder_files
     }
 }
 
@@ -535,10 +515,8 @@ fn entrance(order: &RunOrder, opened: &OpenedFile) -> Result<Option<OwnedFd>, Fa
     entrance.map(Some).map_err(stage("open the program once more"))
 }
 
-/// Gives the grader the folder and the reading end of the pipe. Only now, with a writer, may a read wait.
-fn hand_over(control: &File, folder: BorrowedFd<'_>, pipe: Option<OwnedFd>) -> io::Result<()> {
+/// Gives the grader the folder.
+fn hand_over(control: &File, folder: BorrowedFd<'_>) -> io::Result<()> {
     let socket = UnixStream::from(control.as_fd().try_clone_to_owned()?);
-    let Some(pipe) = pipe else { return sys::send_descriptors(&socket, wire::FOLDER, [folder]) };
-    sys::set_blocking(pipe.as_fd(), true)?;
-    sys::send_descriptors(&socket, wire::FOLDER, [folder, pipe.as_fd()])
+    sys::send_descriptors(&socket, wire::FOLDER, [folder])
 }

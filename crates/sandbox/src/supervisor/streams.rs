@@ -1,9 +1,8 @@
-//! The program's standard streams, kept up to a limit and counted to the byte.
+//! The program's standard streams, kept up to a limit.
 
 use std::{
     io::{self, PipeReader, Read},
     os::fd::{AsFd, BorrowedFd},
-    time::{Duration, Instant},
 };
 
 use crate::sys;
@@ -31,60 +30,41 @@ impl CapturedStream {
         self.pipe.as_ref().map(AsFd::as_fd)
     }
 
-    /// Takes the bytes that have arrived. A stream over its limit is closed and marked; the rest is dropped.
-    pub(super) fn take(&mut self) {
-        let Some(pipe) = &mut self.pipe else { return };
+    /// Takes the bytes that have arrived. Those beyond the limit are dropped, and the stream is marked. Returns whether
+    /// any had.
+    pub(super) fn take(&mut self) -> bool {
+        let Some(pipe) = &mut self.pipe else { return false };
         // Memory that is touched for the first time costs more than another call, and most programs print little.
-        let mut buffer = [0; 1 << 12];
+        let (mut small, mut large) = ([0; 1 << 12], Vec::new());
+        let buffer = if self.truncated {
+            large.resize(AT_ONE_GO / 16, 0);
+            &mut large[..]
+        } else {
+            &mut small[..]
+        };
         let mut taken = 0;
         while taken < AT_ONE_GO {
-            match pipe.read(&mut buffer) {
+            match pipe.read(buffer) {
                 Ok(0) => {
                     self.pipe = None;
-                    return;
+                    break;
                 }
                 Ok(length) => {
                     taken += length;
                     let room = usize::try_from(self.limit).unwrap_or(usize::MAX) - self.bytes.len();
                     self.bytes.extend_from_slice(&buffer[..length.min(room)]);
-                    if length > room {
-                        self.truncated = true;
-                        self.pipe = None;
-                        return;
-                    }
+                    self.truncated |= length > room;
                 }
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-                Err(_) => return,
+                Err(_) => break,
             }
         }
+        taken > 0
     }
 
     /// Takes all that is left. Only called when no process is alive that could go on writing.
     pub(super) fn take_rest(&mut self) {
-        while self.pipe.is_some() {
-            let before = self.bytes.len();
-            self.take();
-            if self.bytes.len() == before {
-                return;
-            }
-        }
-    }
-}
-
-/// How long the trace pipe was full.
-#[derive(Debug, Default)]
-pub(super) struct Stalled {
-    since: Option<Instant>,
-    pub(super) total: Duration,
-}
-
-impl Stalled {
-    /// Notes whether the pipe is full now. The time between two looks counts when it was at both.
-    pub(super) fn look(&mut self, full: bool, now: Instant) {
-        if let Some(since) = self.since.filter(|_| full) {
-            self.total += now.saturating_duration_since(since);
-        }
-        self.since = full.then_some(now);
+        while self.pipe.is_some() && self.take() {}
     }
 }
 
@@ -107,17 +87,5 @@ mod tests {
             assert_eq!(capture.truncated, truncated);
             assert!(capture.descriptor().is_none());
         }
-    }
-
-    #[test]
-    fn only_time_between_two_looks_at_a_full_pipe_is_given_back() {
-        let start = Instant::now();
-        let mut stalled = Stalled::default();
-        for (milliseconds, full) in
-            [(0, false), (10, true), (20, true), (35, true), (40, false), (50, true), (60, false)]
-        {
-            stalled.look(full, start + Duration::from_millis(milliseconds));
-        }
-        assert_eq!(stalled.total, Duration::from_millis(25));
     }
 }

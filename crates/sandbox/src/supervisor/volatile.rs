@@ -23,9 +23,8 @@ const AT_ONE_GO: usize = 1 << 16;
 
 /// The options of the file system for this order's folder.
 pub(super) fn options(order: &RunOrder) -> String {
-    let limits = &order.limits;
-    let (bytes, files) =
-        (limits.folder_bytes.saturating_add(SPARE_BYTES), limits.folder_files.saturating_add(SPARE_FILES));
+    let bytes = order.folder_bytes().saturating_add(SPARE_BYTES);
+    let files = order.limits.folder_files.saturating_add(SPARE_FILES);
     format!("mode=700,size={bytes},nr_inodes={files}")
 }
 

@@ -1,0 +1,25 @@
+//! The files of a job in its working folder on the disk.
+use super::{fault::SandboxError, job::Job, wire};
+use std::{io, path::Path};
+
+/// Writes the job's files into its folder as it lies on the disk.
+pub(super) fn write_files(job: &Job) -> Result<(), SandboxError> {
+    for (name, content) in &job.files {
+        write_file(job, name, content)?;
+    }
+    Ok(())
+}
+
+/// Writes a file of this name into the job's folder as it lies on the disk.
+pub(super) fn write_file(job: &Job, name: &str, content: &[u8]) -> Result<(), SandboxError> {
+    std::fs::write(job.folder.join(plain_name(job, name)?), content).map_err(|source| folder_fault(job, source))
+}
+
+/// A name that leads to no other folder.
+pub(super) fn plain_name<'a>(job: &Job, name: &'a str) -> Result<&'a Path, SandboxError> {
+    wire::plain_name(name.as_bytes()).ok_or_else(|| folder_fault(job, io::ErrorKind::InvalidInput.into()))
+}
+
+pub(super) fn folder_fault(job: &Job, source: io::Error) -> SandboxError {
+    SandboxError::Folder { folder: job.folder.display().to_string(), source }
+}

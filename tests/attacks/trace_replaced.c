@@ -1,0 +1,10 @@
+// promise: A program is judged by the regular file that it leaves at the trace's place.
+// expect: exited 0
+// leaves: second
+#include "attack.h"
+int main(int argc, char **argv) {
+    begin(argc);
+    put("trace.bin", "first");
+    put("other", "second");
+    return rename("other", "trace.bin");
+}
