@@ -1,10 +1,12 @@
 //! The work of the service's fuzz target on its bytes; the service's tests replay the seeds, and what becomes of
 //! them when bytes change, through the same function.
-use fosssim_server::{
-    archive::{self, ArchiveLimits},
-    web,
+use fosssim_intake::ArchiveLimits;
+use fosssim_server::web;
+use std::{
+    collections::BTreeSet,
+    fs::{self, File},
+    path::Path,
 };
-use std::{collections::BTreeSet, fs, path::Path};
 
 /// Small enough to be reached.
 const LIMITS: ArchiveLimits = ArchiveLimits { bytes: 1 << 16, entries: 64 };
@@ -17,8 +19,9 @@ pub fn archive(bytes: &[u8]) -> bool {
     fs::write(&file, bytes).expect("a file");
     fs::write(&outside, "untouched").expect("a file");
     fs::create_dir_all(&folder).expect("a folder");
-    let looked = archive::look_through(&file, LIMITS);
-    let unpacked = archive::unpack(&file, &folder, LIMITS);
+    let open = || File::open(&file).expect("the file");
+    let looked = fosssim_intake::look_through(open(), LIMITS);
+    let unpacked = fosssim_intake::unpack(open(), &folder, LIMITS);
     assert_eq!(looked.is_ok(), unpacked.is_ok(), "what is looked through can be unpacked: {looked:?}, {unpacked:?}");
     // In every case nothing lies outside, nothing is a link, and no more came out than may.
     assert_eq!(fs::read_to_string(&outside).expect("the file"), "untouched");

@@ -37,9 +37,10 @@ Example:
   fosssim-oracle grade submissions/ --suite course.toml --output grades --for student
   fosssim-oracle grade ./FOSSSim --failed
 
-A folder holds one submission per entry: a program, or a folder with a program of the name that --program gives. A \
-folder that holds such a program itself is one submission, and with --single it is one in any case. When the suite has \
-a [build] table, folders are built first. A program runs without the files beside it.
+A folder holds one submission per entry: a program, an archive (.zip, .tar.gz, .tar), or a folder with a program of \
+the name that --program gives. A folder that holds such a program itself is one submission, and with --single it is \
+one in any case. When the suite has a [build] table, folders and archives are built first. A program runs without the \
+files beside it.
 
 With --output, the folder keeps results as they come. (Several submissions always have one, fosssim-grades by default.) \
 An interrupted grading goes on where it stopped. A scene is run again only if the program, the scene or the rules \

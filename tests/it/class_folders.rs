@@ -160,10 +160,11 @@ fn nobody_is_passed_over_in_silence() {
         program(&workspace, name, 3);
     }
     workspace.write("class/readme.txt", "text");
+    workspace.write("class/__MACOSX/._bob", "attributes");
     fs::create_dir(workspace.path("class/empty")).expect("a folder");
     symlink("alice", workspace.path("class/link")).expect("a link");
     fifo(&workspace.path("class/fifo"));
-    let passed_over = [".dotted", ".hidden", "fifo", "link", "readme.txt"];
+    let passed_over = [".dotted", ".hidden", "__MACOSX", "fifo", "link", "readme.txt"];
     let formats = ["json", "junit", "github", "markdown", "csv", "text"];
     let formats: Vec<String> = formats.iter().map(|format| format!("--format={format}={format}.out")).collect();
     let mut arguments = vec!["class", "--output", "grades"];
@@ -183,7 +184,7 @@ fn nobody_is_passed_over_in_silence() {
         assert!(text.contains("begins with a dot"), "{file}");
     }
     let rows = table(&workspace, "grades/grades.csv");
-    assert_eq!(rows.len(), 8);
+    assert_eq!(rows.len(), 9);
     for row in rows.iter().filter(|row| passed_over.contains(&&row[0])) {
         assert_eq!((&row[1], &row[2], &row[3]), ("not graded", "", ""));
     }
@@ -197,6 +198,43 @@ fn nobody_is_passed_over_in_silence() {
         let run = grade(&workspace, &["single", "--format", format]);
         assert!(run.out().contains(".late"), "{format}: {}", run.shown());
     }
+}
+
+/// Platforms keep no permissions, pack, and put folders around uploads. A bomb is its sender's own loss.
+#[test]
+fn a_class_as_platforms_export_it_is_graded() {
+    let Some(workspace) = with_programs() else { return };
+    workspace.write("class/ada_123_FOSSSim", "#!/bin/sh\nexit 3\n");
+    workspace.write("hw/FOSSSim", "#!/bin/sh\nexit 3\n");
+    let pack = |archive: &str, what: &str| {
+        fs::create_dir_all(workspace.path(archive).parent().expect("a folder")).expect("made");
+        let (archive, from) = (workspace.path(archive), workspace.path("."));
+        let packing = Command::new("tar").arg("czf").arg(archive).arg("-C").arg(from).arg(what).status();
+        assert!(packing.expect("tar").success());
+    };
+    pack("class/bob.tar.gz", "hw");
+    pack("class/cleo_assignsubmission_file/hw.tgz", "hw");
+    fs::File::create(workspace.path("zeros")).expect("a file").set_len(100 << 20).expect("zeros");
+    pack("class/bomb.tar.gz", "zeros");
+    workspace.write("class/notes.pdf", "%PDF-1.7");
+    workspace.write("class/zoe/FOSSSim", "#!/bin/sh\nexit 3\n");
+    let run = grade(&workspace, &["class", "--output", "grades"]);
+    let rows = table(&workspace, "grades/grades.csv");
+    let found: Vec<(&str, &str)> = rows.iter().map(|row| (&row[0], &row[1])).collect();
+    let ran = "run-time error";
+    let expected = [
+        ("ada_123_FOSSSim", ran),
+        ("bob.tar.gz", ran),
+        ("bomb.tar.gz", "unusable submission"),
+        ("cleo_assignsubmission_file", ran),
+        ("zoe", ran),
+        ("notes.pdf", "not graded"),
+    ];
+    assert_eq!(found, expected, "{}", run.shown());
+    assert!(run.err().contains("notes.pdf: it is neither a program nor an archive"), "{}", run.shown());
+    // A second time nothing is run again.
+    let again = grade(&workspace, &["class", "--output", "grades"]);
+    assert!(again.err().contains("4 of 5 results taken over"), "{}", again.shown());
 }
 
 #[test]

@@ -31,58 +31,34 @@ fn a_program_is_graded_by_the_file_that_it_leaves() {
     );
     workspace.write("scenes/s.xml", BOUNCE);
     let create = "fd = open(path, O_RDWR | O_CREAT | O_TRUNC, 0644);";
+    let write = "write(fd, right, size);";
+    let map = "void *at = mmap(0, size, PROT_WRITE, MAP_SHARED, fd, 0); if (at == MAP_FAILED) return 5;";
+    let exclusive = "fd = open(path, O_WRONLY | O_CREAT | O_EXCL, 0644); if (fd < 0) return 4;";
+    let beside = "fd = open(\"beside\", O_WRONLY | O_CREAT, 0644);";
+    let seek =
+        "write(fd, right + 8, 8); lseek(fd, 8, SEEK_SET); write(fd, right + 8, size - 8); pwrite(fd, right, 8, 0);";
+    let print = "for (int i = 0; i < 100000; i++) puts(\"collision between particles\");";
     let ways = [
-        (
-            "beside",
-            "accepted",
-            "fd = open(\"beside\", O_WRONLY | O_CREAT, 0644); write(fd, right, size); rename(\"beside\", path);"
-                .to_owned(),
-        ),
-        ("removes", "accepted", format!("{create} close(fd); unlink(path); {create} write(fd, right, size);")),
-        (
-            "exclusive",
-            "accepted",
-            "fd = open(path, O_WRONLY | O_CREAT | O_EXCL, 0644); if (fd < 0) return 4; write(fd, right, size);"
-                .to_owned(),
-        ),
-        (
-            "seeks",
-            "accepted",
-            format!(
-                "{create} write(fd, right + 8, 8); lseek(fd, 8, SEEK_SET); write(fd, right + 8, size - 8); pwrite(fd, right, 8, 0);"
-            ),
-        ),
+        ("beside", "accepted", format!("{beside} {write} rename(\"beside\", path);")),
+        ("removes", "accepted", format!("{create} close(fd); unlink(path); {create} {write}")),
+        ("exclusive", "accepted", format!("{exclusive} {write}")),
+        ("seeks", "accepted", format!("{create} {seek}")),
         (
             "truncates",
             "accepted",
-            format!("{create} ftruncate(fd, size + 9); write(fd, right, size); if (ftruncate(fd, size)) return 4;"),
+            format!("{create} ftruncate(fd, size + 9); {write} if (ftruncate(fd, size)) return 4;"),
         ),
-        (
-            "maps",
-            "accepted",
-            format!(
-                "{create} if (ftruncate(fd, size)) return 4; void *at = mmap(0, size, PROT_WRITE, MAP_SHARED, fd, 0); if (at == MAP_FAILED) return 4; memcpy(at, right, size);"
-            ),
-        ),
-        (
-            "prints",
-            "accepted",
-            format!(
-                "{create} write(fd, right, size); for (int i = 0; i < 100000; i++) puts(\"collision between particles\");"
-            ),
-        ),
-        (
-            "elsewhere",
-            "no output",
-            "fd = open(\"other\", O_WRONLY | O_CREAT, 0644); write(fd, right, size);".to_owned(),
-        ),
-        ("moves", "no output", format!("{create} write(fd, right, size); rename(path, \"other\");")),
+        ("maps", "accepted", format!("{create} if (ftruncate(fd, size)) return 4; {map} memcpy(at, right, size);")),
+        ("prints", "accepted", format!("{create} {write} {print}")),
+        ("elsewhere", "no output", format!("{beside} {write}")),
+        ("moves", "no output", format!("{create} {write} rename(path, \"other\");")),
     ];
     for (name, _, body) in &ways {
         workspace.write(format!("{name}.c"), program(body));
         fs::create_dir_all(workspace.path("class")).expect("a folder");
-        let built = std::process::Command::new("cc").args(["-w", "-o"]).arg(workspace.path("class").join(name));
-        assert!(built.arg(workspace.path(format!("{name}.c"))).status().expect("cc").success());
+        let (program, source) = (workspace.path("class").join(name), workspace.path(format!("{name}.c")));
+        let built = std::process::Command::new("cc").args(["-w", "-o"]).arg(program).arg(source).status();
+        assert!(built.expect("cc").success());
         fs::set_permissions(workspace.path("class").join(name), fs::Permissions::from_mode(0o644)).expect("a mode");
     }
     let run = workspace.run(["grade", "--suite", "suite.toml", "class", "--output", "grades"]);

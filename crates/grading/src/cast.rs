@@ -160,6 +160,7 @@ impl Stage {
         let faults = &self.faults;
         let reference = None;
         Grader {
+            program: "FOSSSim",
             plan,
             backend: &self.backend,
             options,

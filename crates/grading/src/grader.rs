@@ -14,6 +14,7 @@ use super::{
     one_file::OneFile,
     patience,
     plan::Plan,
+    recipe::Recipe,
     result::{Failure, NotRunReason, Reason, SceneResult},
     results::{KeepError, Results},
     staging::{self, Staged},
@@ -36,10 +37,9 @@ use std::{
 pub struct Submission {
     /// Its name in reports.
     pub name: String,
-    /// The program, or the folder of sources when the plan builds.
+    /// The program or archive, or the folder of sources when the plan builds.
     pub path: PathBuf,
-    /// The program's name in the folder `path`, which somebody else filled. Links are not followed, and nothing is
-    /// built.
+    /// The name of the program or archive in the folder `path`, which somebody else filled. Links are not followed.
     pub program: Option<String>,
     /// Which file the program was when submissions were looked for.
     pub file: Option<OneFile>,
@@ -73,6 +73,8 @@ pub struct Grader<'a> {
     pub plan: &'a Plan,
     /// Where to run it.
     pub backend: &'a Backend,
+    /// The program's name in archives.
+    pub program: &'a str,
     /// How.
     pub options: Options,
     /// The folder for traces on which the grader itself failed; made when it is needed.
@@ -357,12 +359,13 @@ impl<'a> SubmissionGrading<'a> {
 
     fn stage(&self) -> Result<Staged, String> {
         let Submission { path, program, file, .. } = self.submission;
-        match (&self.grader.plan.build, program) {
-            (Some(step), None) if self.builds() => {
-                staging::build(path, step, self.grader.backend, self.shared.cancellation)
-            }
-            (_, Some(program)) => staging::program_in(path, program, file.as_ref()),
-            (_, None) => staging::program(path),
+        let Grader { program: name, backend, .. } = *self.grader;
+        let build = self.grader.plan.build.as_ref();
+        let recipe = Recipe { program: name, build, backend, cancellation: self.shared.cancellation };
+        match program {
+            Some(program) => recipe.file_in(path, program, file.as_ref()),
+            None if self.builds() => recipe.folder(path),
+            None => recipe.file(path),
         }
     }
 }

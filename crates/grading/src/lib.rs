@@ -51,6 +51,8 @@ mod one_file;
 mod patience;
 pub mod plan;
 #[cfg(target_os = "linux")]
+mod recipe;
+#[cfg(target_os = "linux")]
 pub mod recording;
 #[cfg(target_os = "linux")]
 pub mod results;

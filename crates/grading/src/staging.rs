@@ -9,11 +9,11 @@ use super::{
     conclude::beginning,
     config::BuildStep,
     grade::Build,
-    one_file::{ANOTHERS, OneFile, is_anothers},
+    one_file::{OneFile, is_anothers},
     result::{BuildEnd, Unusable},
     temporary::Temporary,
-    upload,
 };
+use fosssim_intake::FileKind;
 use fosssim_sandbox::{
     Backend, Ended, Job, Limits, Policy, ProgramIdentity, StartProblem,
     collect::{self, CollectError, FolderEntry, OpenFolder},
@@ -28,7 +28,7 @@ use std::{
 };
 
 /// The greatest size, number of files and depth of a submission's folder; more is no homework.
-const LARGEST_FOLDER: u64 = 1 << 30;
+pub(super) const LARGEST_FOLDER: u64 = 1 << 30;
 const MOST_FILES: u64 = 20_000;
 /// The greatest size of a build's folder, sources included.
 const LARGEST_BUILD: u64 = 2 << 30;
@@ -55,13 +55,13 @@ pub struct Staged {
 }
 
 /// Says which file or folder the operating system refuses, and why: our fault or the machine's.
-fn at(path: &Path) -> impl FnOnce(io::Error) -> String {
+pub(super) fn at(path: &Path) -> impl FnOnce(io::Error) -> String {
     move |error| format!("{}: {error}", path.display())
 }
 
 /// Why a submission's files are not copied.
 #[derive(Debug)]
-enum CopyError {
+pub(super) enum CopyError {
     /// Its own doing, in words.
     Submission(String),
     /// Ours or the machine's, in words.
@@ -75,32 +75,13 @@ impl From<String> for CopyError {
 }
 
 /// The meaning of a failure to open or read part of a submission: closed or vanished files are the submission's doing.
-fn unreadable(name: &Path, error: io::Error) -> CopyError {
+pub(super) fn unreadable(name: &Path, error: io::Error) -> CopyError {
     // A path may be as long as the submission likes, and a disk that fails is the machine's.
     let closed = matches!(error.kind(), io::ErrorKind::PermissionDenied | io::ErrorKind::NotFound);
     match closed || error.kind() == io::ErrorKind::InvalidFilename {
         true => CopyError::Submission(format!("{} can't be read: {error}", name.to_string_lossy().escape_debug())),
         false => CopyError::Ours(at(name)(error)),
     }
-}
-
-/// Copies a program, keeping whether it may be executed. What can't be run for what it is, is refused with the reason.
-///
-/// # Errors
-/// When the file can't be read for a fault of the machine, or the copy can't be written.
-pub fn program(path: &Path) -> Result<Staged, String> {
-    let why = match collect::open_file(path, true) {
-        Ok((file, _)) => return copied(file, path),
-        Err(CollectError::NotRegular { what: "a folder", .. }) => Unusable::CouldNotStart(StartProblem::IsFolder),
-        Err(CollectError::NotRegular { .. }) => Unusable::CouldNotStart(StartProblem::NotAFile),
-        Err(CollectError::Missing { .. }) => Unusable::CouldNotStart(StartProblem::NotFound),
-        Err(CollectError::System { source, .. }) => match unreadable(path, source) {
-            CopyError::Submission(why) => Unusable::Unreadable(why),
-            CopyError::Ours(why) => return Err(why),
-        },
-        Err(error) => Unusable::Unreadable(error.to_string()),
-    };
-    Ok(Staged::refused(path, why))
 }
 
 /// Copies the program that is the measure of speed. Its copy is called as the course's original, whose role it takes by
@@ -116,40 +97,19 @@ pub fn reference(path: &Path) -> Result<Staged, String> {
     })
 }
 
-/// As [`program`], for a program at `name` in a folder that somebody else filled: a link that leads elsewhere, to
-/// another's submission perhaps, is refused, and so is a file that is `noted` to be another's.
-///
-/// # Errors
-/// As for [`program`].
-pub fn program_in(folder: &Path, name: &str, noted: Option<&OneFile>) -> Result<Staged, String> {
-    let path = folder.join(name);
-    let why = match open_in(folder, name) {
-        Ok(file) if is_anothers(&file, noted).map_err(at(&path))? => Unusable::Unreadable(ANOTHERS.to_owned()),
-        Ok(file) => return copied(file, &path),
-        Err(CollectError::Missing { .. }) => upload::without(name, folder),
-        Err(CollectError::System { source, .. })
-            if matches!(unreadable(&path, io::Error::from(source.kind())), CopyError::Ours(_)) =>
-        {
-            return Err(at(&path)(source));
-        }
-        Err(error) => Unusable::Unreadable(error.to_string()),
-    };
-    Ok(Staged::refused(&path, why))
-}
-
-fn open_in(folder: &Path, name: &str) -> Result<File, CollectError> {
+pub(super) fn open_in(folder: &Path, name: &str) -> Result<File, CollectError> {
     let opened = OpenFolder::open(folder).map_err(|source| CollectError::System { name: name.to_owned(), source })?;
     opened.file(OsStr::new(name), LARGEST_FOLDER).map(|(file, _)| file)
 }
 
-/// The digest of a program as it lies there, without a copy; `None` for what [`program`] refuses, and for links.
+/// The digest of a file as it lies there, without a copy; `None` for what [`Recipe::file`] refuses, and for links.
 #[must_use]
 pub fn digest(path: &Path) -> Option<blake3::Hash> {
     let (file, length) = collect::open_file(path, false).ok()?;
     if length <= LARGEST_FOLDER { digest_of(file) } else { None }
 }
 
-/// As [`digest`], for what [`program_in`] takes.
+/// As [`digest`], for what [`Recipe::file_in`] takes.
 #[must_use]
 pub fn digest_in(folder: &Path, name: &str, noted: Option<&OneFile>) -> Option<blake3::Hash> {
     let file = open_in(folder, name).ok()?;
@@ -168,13 +128,13 @@ impl Staged {
         Self { program: path.to_owned(), digest, build: None, refused: None, identity: None, _folder: None }
     }
 
-    fn refused(path: &Path, why: Unusable) -> Self {
+    pub(super) fn refused(path: &Path, why: Unusable) -> Self {
         Self { refused: Some(why), ..Self::nothing(path) }
     }
 }
 
 /// Copies an open program, unless it is the grader itself.
-fn copied(file: File, path: &Path) -> Result<Staged, String> {
+pub(super) fn copied(file: File, path: &Path) -> Result<Staged, String> {
     let metadata = file.metadata().map_err(at(path))?;
     let mut room = LARGEST_FOLDER;
     let why = match copied_as(path.file_name().unwrap_or_else(|| "program".as_ref()), file, path, &mut room) {
@@ -192,17 +152,15 @@ fn copied(file: File, path: &Path) -> Result<Staged, String> {
 fn copied_as(name: &OsStr, file: File, path: &Path, room: &mut u64) -> Result<Staged, CopyError> {
     let folder = Temporary::make("program").map_err(at(&std::env::temp_dir()))?;
     let copy = folder.path().join(name);
-    let digest = copy_file(file, path, &copy, room)?;
+    // A program is executable, whether the way here kept the bit or not.
+    let digest = copy_file(file, path, &copy, room, true)?;
     let identity = ProgramIdentity::of(&copy);
     Ok(Staged { program: copy, digest, build: None, refused: None, identity, _folder: Some(folder) })
 }
 
 /// Builds the sources in `folder`, in a copy, and stages the program that comes out of it. A build that fails is no
 /// error: [`Staged::build`] tells of it.
-///
-/// # Errors
-/// Faults of ours or of the machine.
-pub fn build(
+pub(super) fn build(
     sources: &Path,
     step: &BuildStep,
     backend: &Backend,
@@ -265,13 +223,19 @@ pub fn build(
     }
 }
 
-/// Copies an open regular file, whether it may be executed, and digests it on the way. Holes stay holes. `room` is how
-/// many bytes it may have; it is made smaller by them.
-fn copy_file(mut source: File, from: &Path, to: &Path, room: &mut u64) -> Result<blake3::Hash, CopyError> {
+/// Copies an open regular file and digests it on the way. Holes stay holes. `room` is how many bytes it may have; it is
+/// made smaller by them. The copy is executable if the file is, begins as a program or `is_program`.
+fn copy_file(
+    mut source: File,
+    from: &Path,
+    to: &Path,
+    room: &mut u64,
+    is_program: bool,
+) -> Result<blake3::Hash, CopyError> {
     const ANYBODY_EXECUTES: u32 = 0o111;
     let mode = source.metadata().map_err(at(from))?.permissions().mode();
-    let mode = if mode & ANYBODY_EXECUTES == 0 { 0o644 } else { 0o755 };
-    let mut target = File::options().write(true).create_new(true).mode(mode).open(to).map_err(at(to))?;
+    let mut executable = is_program || mode & ANYBODY_EXECUTES != 0;
+    let mut target = File::options().write(true).create_new(true).mode(0o600).open(to).map_err(at(to))?;
     let mut hasher = blake3::Hasher::new();
     let mut buffer = vec![0; AT_ONE_GO];
     let mut length = 0;
@@ -285,6 +249,7 @@ fn copy_file(mut source: File, from: &Path, to: &Path, room: &mut u64) -> Result
         // The file may have grown since anybody looked at its length.
         *room = room.checked_sub(read.len() as u64).ok_or_else(too_large)?;
         hasher.update(read);
+        executable |= length == 0 && FileKind::of(read) == FileKind::Program;
         length += read.len() as u64;
         if read.iter().all(|byte| *byte == 0) {
             target.seek(SeekFrom::Start(length)).map_err(at(to))?;
@@ -293,7 +258,7 @@ fn copy_file(mut source: File, from: &Path, to: &Path, room: &mut u64) -> Result
         }
     }
     target.set_len(length).map_err(at(to))?;
-    // The mask of new files may have taken bits away.
+    let mode = if executable { 0o755 } else { 0o644 };
     target.set_permissions(Permissions::from_mode(mode)).map_err(at(to))?;
     Ok(hasher.finalize())
 }
@@ -335,6 +300,9 @@ fn copy_folder(
         )));
     }
     for entry in from.names().map_err(|error| unreadable(name, error))? {
+        if fosssim_intake::is_litter(&entry) {
+            continue;
+        }
         budget.files = budget.files.checked_sub(1).ok_or_else(too_large)?;
         let (inner, target) = (name.join(&entry), to.path().join(&entry));
         match from.entry(OsStr::new(&entry)) {
@@ -343,7 +311,7 @@ fn copy_folder(
                 if length > budget.bytes {
                     return Err(too_large());
                 }
-                copy_file(file, &inner, &target, &mut budget.bytes)?;
+                copy_file(file, &inner, &target, &mut budget.bytes, false)?;
             }
             Ok(FolderEntry::Folder(folder)) => {
                 fs::create_dir(&target).map_err(at(&inner))?;
@@ -373,6 +341,11 @@ mod tests {
     use std::process::Command;
 
     use super::*;
+
+    fn program(path: &Path) -> Staged {
+        let (file, _) = collect::open_file(path, true).unwrap();
+        copied(file, path).unwrap()
+    }
 
     fn why(copied: Result<(), CopyError>) -> String {
         match copied {
@@ -409,16 +382,6 @@ mod tests {
         let names: Vec<_> = std::fs::read_dir(&copy).unwrap().map(|entry| entry.unwrap().file_name()).collect();
         assert_eq!(names, ["file"]);
         assert_eq!(copy.metadata().unwrap().permissions().mode() & 0o777, 0o700, "closed to others");
-        for name in ["pipe", "socket"] {
-            let staged = program(&sources.join(name)).unwrap();
-            assert!(staged.refused.is_some() && digest(&sources.join(name)).is_none(), "{name}");
-        }
-        assert!(
-            program_in(&sources, "link", None)
-                .unwrap()
-                .refused
-                .is_some_and(|why| format!("{why:?}").contains("symbolic link"))
-        );
     }
 
     #[test]
@@ -461,7 +424,7 @@ mod tests {
         let file = File::create(&sparse).unwrap();
         file.set_len(200 << 20).unwrap();
         std::fs::set_permissions(&sparse, Permissions::from_mode(0o755)).unwrap();
-        let staged = program(&sparse).unwrap();
+        let staged = program(&sparse);
         let copy = staged.program.metadata().unwrap();
         assert_eq!(copy.len(), 200 << 20);
         assert!(copy.blocks() * 512 < 1 << 20, "{} blocks", copy.blocks());
@@ -477,10 +440,6 @@ mod tests {
         std::fs::create_dir(&sources).unwrap();
         File::create(sources.join("huge")).unwrap().set_len(100 << 30).unwrap();
         assert!(why(copy_sources(&sources, &folder.path().join("copy"))).contains("no submission"));
-        let staged = program(&folder.path().join("none")).unwrap();
-        assert_eq!(staged.refused, Some(Unusable::CouldNotStart(StartProblem::NotFound)));
-        let staged = program(&sources).unwrap();
-        assert_eq!(staged.refused, Some(Unusable::CouldNotStart(StartProblem::IsFolder)));
     }
 
     #[test]
@@ -489,6 +448,6 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let copy = folder.path().join("FOSSSim");
         std::fs::copy(own, &copy).unwrap();
-        assert_eq!(program(&copy).unwrap().refused, Some(Unusable::CouldNotStart(StartProblem::GradersOwn)));
+        assert_eq!(program(&copy).refused, Some(Unusable::CouldNotStart(StartProblem::GradersOwn)));
     }
 }

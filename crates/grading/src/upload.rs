@@ -23,7 +23,7 @@ pub(super) fn without(program: &str, folder: &Path) -> Unusable {
 
 fn found(program: &str, folder: &OpenFolder) -> FolderContents {
     let mut names = folder.names().unwrap_or_default();
-    names.retain(|name| !name.as_bytes().starts_with(b"."));
+    names.retain(|name| !name.as_bytes().starts_with(b".") && !fosssim_intake::is_litter(name));
     names.sort();
     if names.is_empty() {
         return FolderContents::Nothing;

@@ -2,7 +2,6 @@
 //! number of workers. docs/service.md tells how it works.
 
 pub mod access;
-pub mod archive;
 pub mod calendar;
 pub mod cli;
 pub mod db;

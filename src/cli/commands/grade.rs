@@ -228,6 +228,7 @@ impl GradingSession<'_> {
         let grader = Grader {
             plan: self.plan,
             backend: self.backend,
+            program: &self.arguments.program,
             options,
             faults: &faults,
             traces: if self.arguments.keep_traces { Some(&trace) } else { None },

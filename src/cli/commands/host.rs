@@ -98,6 +98,7 @@ pub(super) fn demo(arguments: &Demo) -> Result<u8> {
         let grader = Grader {
             plan: &plan,
             backend: &backend,
+            program: "",
             options: Options { jobs, fail_fast: false, recorded: false },
             faults: &Place::new("", "fosssim-faults"),
             traces: None,

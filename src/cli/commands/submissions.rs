@@ -5,10 +5,12 @@ use crate::{
     suite::{OneFile, PassedOver, Submission, config::BuildStep, names},
 };
 use anyhow::{Context, Result, bail};
+use fosssim_intake::FileKind;
 use std::{
     collections::{BTreeMap, BTreeSet},
     ffi::{OsStr, OsString},
     fs,
+    io::Read,
     os::unix::fs::{MetadataExt, PermissionsExt},
     path::{Path, PathBuf},
 };
@@ -120,8 +122,8 @@ impl<'a> Search<'a> {
         same(path, self.output) || RESULTS.iter().all(|name| path.join(name).is_file())
     }
 
-    /// One submission per entry, in alphabetical order. With a word about each are passed over hidden entries, what
-    /// can't be run, results of gradings, and links: they could lead to another's submission.
+    /// One submission per entry, in alphabetical order: folders, programs and archives. Other entries are passed over
+    /// with a word about each: hidden ones, results of gradings, and links, which could lead to another's submission.
     fn entries(&self, folder: &Path, found: &mut Vec<Entry>, passed_over: &mut Vec<PassedOver>) -> Result<()> {
         let paths = listed(folder, MOST_ENTRIES)?;
         let holds_results = self.is_results(folder);
@@ -130,6 +132,9 @@ impl<'a> Search<'a> {
             let is = |own: &&str| path.file_name().is_some_and(|name| name == *own);
             let why = match fs::symlink_metadata(path) {
                 _ if holds_results && OWN.iter().any(is) => RESULTS_OF_A_GRADING.to_owned(),
+                _ if path.file_name().is_some_and(fosssim_intake::is_litter) => {
+                    "a file manager or a build tool put it there".to_owned()
+                }
                 _ if path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b".")) => {
                     "its name begins with a dot; name it to grade it".to_owned()
                 }
@@ -141,11 +146,13 @@ impl<'a> Search<'a> {
                 Ok(data) if data.is_symlink() => {
                     "it is a link, which may lead to another's submission; name it to grade it".to_owned()
                 }
-                Ok(data) if data.is_file() && data.permissions().mode() & 0o111 != 0 => {
-                    found.push(entry(folder, path));
-                    continue;
-                }
-                Ok(data) if data.is_file() => "it is not executable".to_owned(),
+                Ok(data) if data.is_file() => match refusal(folder, path, &data) {
+                    Some(why) => why,
+                    None => {
+                        found.push(entry(folder, path));
+                        continue;
+                    }
+                },
                 Ok(_) => "it is neither a file nor a folder".to_owned(),
                 Err(error) => error.to_string(),
             };
@@ -153,8 +160,10 @@ impl<'a> Search<'a> {
         }
         if found.len() == before {
             bail!(
-                "{} holds no submission: no program, no folder, and no {}; with --single the folder itself is one",
+                "{} holds no submission: no program, no archive ({}), no folder, and no {}; with --single the folder \
+                 itself is one",
                 folder.display(),
+                fosssim_intake::KNOWN,
                 self.arguments.program
             );
         }
@@ -175,6 +184,29 @@ fn listed(folder: &Path, most: usize) -> Result<Vec<PathBuf>> {
     }
     paths.sort();
     Ok(paths)
+}
+
+/// Why a file in a class's folder is no submission. A file that may be executed is one, and so is one that begins as a
+/// program or an archive: learning platforms keep no permissions.
+fn refusal(folder: &Path, path: &Path, data: &fs::Metadata) -> Option<String> {
+    if data.permissions().mode() & 0o111 != 0 {
+        return None;
+    }
+    let mut start = Vec::new();
+    let opened = Folder::to_write(folder).map_err(|error| error.to_string()).and_then(|folder| {
+        folder.file(path.file_name().unwrap_or_default(), u64::MAX).map_err(|error| error.to_string())
+    });
+    let read = opened.and_then(|(file, _)| {
+        file.take(fosssim_intake::START as u64).read_to_end(&mut start).map_err(|error| error.to_string())
+    });
+    match (read, FileKind::of(&start)) {
+        // Its grade tells what keeps it from being read.
+        (Err(_), _) | (_, FileKind::Program | FileKind::Archive(_)) => None,
+        (Ok(_), FileKind::Other) => {
+            let found = fosssim_intake::described(&start);
+            Some(format!("it is neither a program nor an archive ({}): {found}", fosssim_intake::KNOWN))
+        }
+    }
 }
 
 /// A program among others. It is opened beneath the folder, where no link is followed.

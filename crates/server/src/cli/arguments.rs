@@ -214,6 +214,8 @@ pub(super) struct LookThrough {
     #[arg(long, default_value = "")]
     pub(super) wanted: String,
     #[arg(long)]
+    pub(super) program: Option<String>,
+    #[arg(long)]
     pub(super) into: Option<PathBuf>,
     pub(super) file: PathBuf,
 }

@@ -3,7 +3,6 @@
 use super::upload::is_program;
 use crate::{
     access::{Member, Settings},
-    archive,
     problem::{Problem, ensure},
     task::Form,
     worker,
@@ -32,12 +31,12 @@ pub(super) async fn examine(
     let wrong = || Problem::invalid("form is program, sources or traces");
     let form = said.map(|name| Form::named(name).ok_or_else(wrong)).transpose()?;
     let mut start = Vec::new();
-    std::fs::File::open(file)?.take(512).read_to_end(&mut start)?;
+    std::fs::File::open(file)?.take(fosssim_intake::START as u64).read_to_end(&mut start)?;
     ensure(!start.is_empty(), Problem::unusable("the file is empty"))?;
     match (form, is_program(&start)) {
         (None | Some(Form::Program), true) => return Ok(Form::Program),
         (Some(Form::Program), false) => {
-            let found = archive::described(&start);
+            let found = fosssim_intake::described(&start);
             return Err(Problem::unusable(format!("looked for {PROGRAM}, and found {found}")));
         }
         _ => {}
@@ -45,11 +44,15 @@ pub(super) async fn examine(
     let archives = [Form::Sources, Form::Traces].into_iter().filter(|form| settings.takes(*form));
     let archives: Vec<&str> = archives.map(Form::name).collect();
     let archives =
-        (!archives.is_empty()).then(|| format!("an archive of {} ({})", archives.join(" or "), archive::KNOWN));
+        (!archives.is_empty()).then(|| format!("an archive of {} ({})", archives.join(" or "), fosssim_intake::KNOWN));
     let program = settings.takes(Form::Program).then(|| PROGRAM.to_owned());
     let wanted = program.into_iter().chain(archives).collect::<Vec<_>>().join(", or ");
     let mut words = vec!["--wanted", &wanted];
     words.extend(said.iter().flat_map(|form| ["--form", form]));
+    // Suites that come with the grader build nothing.
+    if settings.suite_archive.is_none() && settings.takes(Form::Sources) {
+        words.extend(["--program", &settings.program]);
+    }
     let answer = in_turn(member, file, &words).await?;
     answer.map_err(Problem::unusable)?.ok_or_else(Problem::fault)
 }

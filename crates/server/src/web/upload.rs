@@ -1,7 +1,6 @@
 //! Receiving files: as they come, into a file of the server's own, never whole in memory.
 use crate::{
     access::{App, is_file_name},
-    archive::{self, ArchiveLimits},
     problem::Problem,
     task::Form,
 };
@@ -10,10 +9,12 @@ use axum::{
     extract::{FromRequest, Multipart, Request},
     http::header,
 };
+use fosssim_intake::{ArchiveError, ArchiveLimits, FileKind};
 use futures_util::{Stream, StreamExt};
 use std::{
     fmt::Display,
-    path::Path,
+    fs::File,
+    path::{Path, PathBuf},
     sync::{
         Arc,
         atomic::{AtomicU64, Ordering},
@@ -235,16 +236,18 @@ pub(super) fn plain_name(name: &str) -> String {
 
 /// Whether a file that begins so is a program.
 pub(super) fn is_program(start: &[u8]) -> bool {
-    start.starts_with(b"\x7fELF") || start.starts_with(b"#!")
+    FileKind::of(start) == FileKind::Program
 }
 
-/// The form of an archive, and whether it can be that. It runs in a process of its own ([`super::look`]).
+/// The form of an archive, and whether it can be that: sources must hold the `program`, where nothing builds it. It runs
+/// in a process of its own ([`super::look`]).
 ///
 /// # Errors
 /// Why it is refused.
-pub fn look_through(file: &Path, said: Option<&str>, wanted: &str) -> Result<Form, String> {
+pub fn look_through(file: &Path, said: Option<&str>, wanted: &str, program: Option<&str>) -> Result<Form, String> {
     let said = said.and_then(Form::named);
-    match archive::look_through(file, ArchiveLimits::USUAL) {
+    let opened = File::open(file).map_err(|error| error.to_string())?;
+    match fosssim_intake::look_through(opened, ArchiveLimits::USUAL) {
         Ok(files) if files.is_empty() => {
             Err("looked for files in the archive, and found none, or only those that a file manager adds by itself"
                 .to_owned())
@@ -256,14 +259,29 @@ pub fn look_through(file: &Path, said: Option<&str>, wanted: &str) -> Result<For
                     Err("an archive of traces holds files NAME.bin, one for each scene, and nothing else".to_owned())
                 }
                 (None, true) => Ok(Form::Traces),
-                (said, _) => Ok(said.unwrap_or(Form::Sources)),
+                (Some(Form::Traces), true) => Ok(Form::Traces),
+                (said, _) => holds_program(&files, program).map(|()| said.unwrap_or(Form::Sources)),
             }
         }
-        Err(archive::ArchiveError::Unknown(found)) if said.is_none() => {
+        Err(ArchiveError::Unknown(found)) if said.is_none() => {
             Err(format!("looked for {wanted}, and found {found}"))
         }
         Err(error) => Err(error.to_string()),
     }
+}
+
+/// Checks that an archive with these files holds the program.
+fn holds_program(files: &[PathBuf], program: Option<&str>) -> Result<(), String> {
+    /// The greatest number of files that are named.
+    const NAMED: usize = 6;
+    let Some(program) = program else { return Ok(()) };
+    if files.contains(&fosssim_intake::top_folder(Path::new(""), files).join(program)) {
+        return Ok(());
+    }
+    let names = files.iter().take(NAMED).map(|file| file.to_string_lossy().escape_debug().to_string());
+    let more = (files.len() > NAMED).then(|| format!("{} more", files.len() - NAMED));
+    let found = names.chain(more).collect::<Vec<_>>().join(", ");
+    Err(format!("looked for the program {program} in the archive, because the suite builds nothing, and found {found}"))
 }
 
 #[cfg(test)]

@@ -6,10 +6,10 @@ use super::{
     reading,
 };
 use crate::{
-    archive::{self, ArchiveLimits},
     store::digest_of_file,
     task::{Form, Suite, Task},
 };
+use fosssim_intake::ArchiveLimits;
 use std::{
     fs, io,
     os::unix::fs::{MetadataExt, PermissionsExt},
@@ -217,13 +217,9 @@ impl Grader for Program {
             Form::Program => {
                 place_program(submission, folder, &task.submission.name).map_err(cannot("place the program"))?
             }
-            Form::Sources => {
-                let sources = unpack(submission, folder.join("submission")).await?;
-                forget_builds(&sources, DEPTH);
-                sources
-            }
+            Form::Sources => unpack(submission, folder.join("submission")).await?.0,
             // Their folder stays: it may be the group of all scenes.
-            Form::Traces => unpack_all(submission, folder.join("submission")).await?,
+            Form::Traces => unpack(submission, folder.join("submission")).await?.1,
         };
         if let Some(suite) = suite {
             unpack(suite, folder.join("suite")).await?;
@@ -289,54 +285,19 @@ fn cannot(what: &'static str) -> impl Fn(io::Error) -> GraderFault {
     move |error| GraderFault::Failed(format!("cannot {what}: {error}"))
 }
 
-/// Unpacks an archive, and returns the folder that holds everything.
-async fn unpack(archive: &Path, folder: PathBuf) -> Result<PathBuf, GraderFault> {
-    unpack_all(archive, folder).await.map(only_folder)
-}
-
-/// Unpacks an archive into a new folder. It was looked through when it came, so that it can be.
-async fn unpack_all(archive: &Path, folder: PathBuf) -> Result<PathBuf, GraderFault> {
+/// Unpacks an archive into a new folder, and returns the folder at its top and that folder. It was looked through when
+/// it came, so that it can be.
+async fn unpack(archive: &Path, folder: PathBuf) -> Result<(PathBuf, PathBuf), GraderFault> {
     let archive = archive.to_owned();
     let unpacking = tokio::task::spawn_blocking(move || {
+        let archive = fs::File::open(archive).map_err(|error| error.to_string())?;
         fs::create_dir(&folder).map_err(|error| error.to_string())?;
-        archive::unpack(&archive, &folder, ArchiveLimits::USUAL).map_err(|error| error.to_string())?;
-        Ok::<_, String>(folder)
+        let files =
+            fosssim_intake::unpack(archive, &folder, ArchiveLimits::USUAL).map_err(|error| error.to_string())?;
+        Ok::<_, String>((fosssim_intake::top_folder(&folder, &files), folder))
     });
     let unpacked = unpacking.await.map_err(|error| GraderFault::Failed(error.to_string()))?;
     unpacked.map_err(|error| GraderFault::Failed(format!("cannot unpack an archive: {error}")))
-}
-
-/// The folder that holds everything: many archives have one at their top, and nothing else.
-fn only_folder(folder: PathBuf) -> PathBuf {
-    let Ok(entries) = fs::read_dir(&folder) else { return folder };
-    let mut entries = entries.flatten();
-    match (entries.next(), entries.next()) {
-        (Some(only), None) if only.path().is_dir() => only.path(),
-        _ => folder,
-    }
-}
-
-/// How deep below the sources builds are looked for.
-const DEPTH: usize = 8;
-
-/// Removes what CMake remembers of a build on another machine: it refuses to build here because of it.
-fn forget_builds(folder: &Path, depth: usize) {
-    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        let (path, name) = (entry.path(), entry.file_name());
-        let is_folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
-        let forgotten = match (is_folder, name.to_str()) {
-            (false, Some("CMakeCache.txt")) => fs::remove_file(&path),
-            (true, Some("CMakeFiles")) => fs::remove_dir_all(&path),
-            (true, _) if depth > 0 => {
-                forget_builds(&path, depth - 1);
-                Ok(())
-            }
-            _ => Ok(()),
-        };
-        if let Err(error) = forgotten {
-            tracing::debug!(%error, "what CMake remembers of another build stays");
-        }
-    }
 }
 
 /// The submission under its own name, executable: reports and messages speak of it so.

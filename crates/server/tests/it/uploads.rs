@@ -73,10 +73,7 @@ fn archives_of_strangers_do_no_harm() {
     let accepted: Vec<&str> =
         named.iter().filter(|(_, bytes)| entries::archive(bytes)).map(|(name, _)| name.as_str()).collect();
     let seeds: Vec<Vec<u8>> = named.iter().map(|(_, bytes)| bytes.clone()).collect();
-    assert_eq!(
-        accepted,
-        ["sources.7z", "sources.tar", "sources.tar.bz2", "sources.tar.gz", "sources.tar.xz", "sources.zip"]
-    );
+    assert_eq!(accepted, ["sources.tar", "sources.tar.gz", "sources.zip"]);
     let mut random = random();
     let tries = tries();
     let mut sound = 0;

@@ -70,7 +70,7 @@ pub(super) struct Extension {
     due_at: Option<i64>,
 }
 
-/// Uploads an archive (zip, 7z, tar, tar.gz, tar.xz, tar.bz2) with a `suite.toml` at its top as the assignment's suite.
+/// Uploads an archive (zip, tar, tar.gz) with a `suite.toml` at its top as the assignment's suite.
 /// Groups that it hides are withheld, also where others were published.
 #[utoipa::path(put, path = "/api/v1/courses/{course}/assignments/{assignment}/suite", tag = "assignments",
     params(("revision" = Option<i64>, Query, description = "The revision of the assignment that the change is of")),

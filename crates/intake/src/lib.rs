@@ -1,12 +1,25 @@
-//! Archives that strangers send: sources and suites. Nothing is taken over from one that its own program would not
-//! make: no way out of the folder, no links, no devices, no two files of one name, no more bytes than allowed when
-//! unpacked.
+//! Intake of the command line and the service: archives of sources and of suites, and the kinds of files.
+//!
+//! Nothing is taken over from an archive that a usual packer would not make: no way out of the folder, no links, no
+//! devices, no two files of one name, no more bytes than allowed when unpacked. Files that managers of files and build
+//! tools make by themselves are passed over.
+//!
+//! ```
+//! use fosssim_intake::{FileKind, described};
+//!
+//! assert_eq!(FileKind::of(b"#!/bin/sh"), FileKind::Program);
+//! assert_eq!(described(b"MZ\x90"), "a program for Windows");
+//! ```
+#![forbid(unsafe_code)]
+
 mod kinds;
 
-pub use kinds::{KNOWN, described};
+pub use kinds::{ArchiveKind, FileKind, KNOWN, START, described};
 
+use flate2::read::GzDecoder;
 use std::{
     collections::BTreeSet,
+    ffi::OsStr,
     fs::{self, File},
     io::{self, BufReader, Read, Seek, SeekFrom, Write},
     os::unix::fs::PermissionsExt,
@@ -22,6 +35,9 @@ pub struct ArchiveLimits {
     /// Files and folders.
     pub entries: usize,
 }
+
+/// The greatest depth of its folders.
+const DEEPEST: usize = 64;
 
 impl ArchiveLimits {
     /// Enough for a suite with all its scenes, and for a student's sources with a library in them.
@@ -57,6 +73,12 @@ pub enum ArchiveError {
     /// Too many bytes.
     #[error("the archive holds more than {0} bytes when it is unpacked")]
     Bytes(u64),
+    /// Its folders are nested too deep.
+    #[error("the archive has folders that are nested more than {DEEPEST} deep: {0}")]
+    Depth(String),
+    /// It can't be read, which is not its fault.
+    #[error("cannot read the archive: {0}")]
+    Read(io::Error),
     /// The folder can't be written.
     #[error("cannot unpack: {0}")]
     Folder(io::Error),
@@ -66,16 +88,39 @@ pub enum ArchiveError {
 ///
 /// # Errors
 /// Its fault.
-pub fn look_through(archive: &Path, limits: ArchiveLimits) -> Result<Vec<PathBuf>, ArchiveError> {
+pub fn look_through(archive: File, limits: ArchiveLimits) -> Result<Vec<PathBuf>, ArchiveError> {
     walk(archive, limits, None)
 }
 
-/// Unpacks an archive into a folder that is there and empty.
+/// Unpacks an archive into a folder that is there and empty, and returns the paths of its files. Files that begin as
+/// programs are executable, whatever the archive says: those of Windows and of many web pages keep no such bit.
 ///
 /// # Errors
 /// The first thing that is wrong with it; the folder may hold a part of it then.
-pub fn unpack(archive: &Path, folder: &Path, limits: ArchiveLimits) -> Result<Vec<PathBuf>, ArchiveError> {
+pub fn unpack(archive: File, folder: &Path, limits: ArchiveLimits) -> Result<Vec<PathBuf>, ArchiveError> {
     walk(archive, limits, Some(folder))
+}
+
+/// Returns the folder that holds the submission in the folder of an unpacked archive with these files: many archives
+/// have one folder at their top, and nothing else.
+#[must_use]
+pub fn top_folder(folder: &Path, files: &[PathBuf]) -> PathBuf {
+    let mut tops = files.iter().map(|file| file.components().next().filter(|_| file.components().count() > 1));
+    match tops.next().flatten() {
+        Some(top) if tops.all(|other| other == Some(top)) => folder.join(top),
+        _ => folder.to_owned(),
+    }
+}
+
+/// Whether a file manager or a build tool puts a file or folder of this name there by itself, and not the person who
+/// hands it in: Finder's attributes and notes on windows, Explorer's on pictures, what CMake remembers of a build on
+/// another machine (it refuses to build here because of it).
+#[must_use]
+pub fn is_litter(name: &OsStr) -> bool {
+    let name = name.as_encoded_bytes();
+    const NAMES: [&[u8]; 6] =
+        [b"__MACOSX", b".DS_Store", b"Thumbs.db", b"desktop.ini", b"CMakeCache.txt", b"CMakeFiles"];
+    NAMES.contains(&name) || name.starts_with(b"._")
 }
 
 /// An archive being walked through.
@@ -90,9 +135,8 @@ struct Walk<'a> {
     files: Vec<PathBuf>,
 }
 
-fn walk(archive: &Path, limits: ArchiveLimits, folder: Option<&Path>) -> Result<Vec<PathBuf>, ArchiveError> {
-    let file = File::open(archive).map_err(ArchiveError::Folder)?;
-    let packed = file.metadata().map_err(ArchiveError::Folder)?.len();
+fn walk(file: File, limits: ArchiveLimits, folder: Option<&Path>) -> Result<Vec<PathBuf>, ArchiveError> {
+    let packed = file.metadata().map_err(ArchiveError::Read)?.len();
     let mut walk = Walk {
         limits: limits.of_size(packed),
         folder,
@@ -108,15 +152,6 @@ fn walk(archive: &Path, limits: ArchiveLimits, folder: Option<&Path>) -> Result<
 
 fn damaged(error: impl std::fmt::Display) -> ArchiveError {
     ArchiveError::Damaged(error.to_string())
-}
-
-/// Whether a file manager put this into the archive by itself, and not the person who packed it: Finder's folder of
-/// attributes and its notes on windows, Explorer's on pictures.
-fn is_of_a_system(path: &Path) -> bool {
-    path.iter().any(|part| {
-        let part = part.as_encoded_bytes();
-        part == b"__MACOSX" || part.starts_with(b"._") || matches!(part, b".DS_Store" | b"Thumbs.db" | b"desktop.ini")
-    })
 }
 
 /// How many entries a zip archive says that it has, by its end record (APPNOTE 4.3.16), or the one of large archives
@@ -137,14 +172,34 @@ fn announced(file: &mut File) -> io::Result<Option<u64>> {
     Ok(Some(of_large.unwrap_or(entries.into())))
 }
 
+/// Returns the first bytes of a file.
+fn start_of(file: &mut File) -> io::Result<Vec<u8>> {
+    let mut start = Vec::new();
+    file.seek(SeekFrom::Start(0))?;
+    file.take(START as u64).read_to_end(&mut start)?;
+    file.seek(SeekFrom::Start(0))?;
+    Ok(start)
+}
+
 /// A name for a message.
 fn shown(name: &[u8]) -> String {
     String::from_utf8_lossy(name).chars().take(200).flat_map(char::escape_default).collect()
 }
 
 impl Walk<'_> {
+    /// Walks through an archive of any kind.
+    fn archive(&mut self, mut file: File) -> Result<(), ArchiveError> {
+        let start = start_of(&mut file).map_err(ArchiveError::Read)?;
+        match FileKind::of(&start) {
+            FileKind::Archive(ArchiveKind::Zip) => self.zip(file),
+            FileKind::Archive(ArchiveKind::TarGz) => self.tar(GzDecoder::new(BufReader::new(file))),
+            FileKind::Archive(ArchiveKind::Tar) => self.tar(BufReader::new(file)),
+            FileKind::Program | FileKind::Other => Err(ArchiveError::Unknown(described(&start))),
+        }
+    }
+
     fn zip(&mut self, mut file: File) -> Result<(), ArchiveError> {
-        let announced = announced(&mut file).map_err(ArchiveError::Folder)?;
+        let announced = announced(&mut file).map_err(ArchiveError::Read)?;
         // The library reads the list of all before it shows one.
         if announced.is_some_and(|announced| announced > self.limits.entries as u64) {
             return Err(ArchiveError::Entries(self.limits.entries));
@@ -210,6 +265,9 @@ impl Walk<'_> {
                 _ => return Err(refused()),
             }
         }
+        if path.components().count() > DEEPEST {
+            return Err(ArchiveError::Depth(shown(name)));
+        }
         Ok(path)
     }
 
@@ -226,7 +284,7 @@ impl Walk<'_> {
 
     fn folder(&mut self, name: &[u8]) -> Result<(), ArchiveError> {
         let path = self.path(name)?;
-        if is_of_a_system(&path) {
+        if path.iter().any(is_litter) {
             return Ok(());
         }
         self.within_folders(&path.join("a file"), name)?;
@@ -238,23 +296,23 @@ impl Walk<'_> {
 
     fn file(&mut self, name: &[u8], executable: bool, input: &mut impl Read) -> Result<(), ArchiveError> {
         let path = self.path(name)?;
-        if is_of_a_system(&path) {
-            return self.copy(input, &mut io::sink());
+        if path.iter().any(is_litter) {
+            return self.copy(input, &mut io::sink()).map(drop);
         }
         self.within_folders(&path, name)?;
         if path.as_os_str().is_empty() || self.folders.contains(&path) || !self.seen.insert(path.clone()) {
             return Err(ArchiveError::Twice(shown(name)));
         }
         match self.folder {
-            None => self.copy(input, &mut io::sink())?,
+            None => drop(self.copy(input, &mut io::sink())?),
             Some(folder) => {
                 let place = folder.join(&path);
                 if let Some(parent) = place.parent() {
                     fs::create_dir_all(parent).map_err(ArchiveError::Folder)?;
                 }
                 let mut output = File::create_new(&place).map_err(ArchiveError::Folder)?;
-                self.copy(input, &mut output)?;
-                let mode = if executable { 0o755 } else { 0o644 };
+                let is_program = self.copy(input, &mut output)? == FileKind::Program;
+                let mode = if executable || is_program { 0o755 } else { 0o644 };
                 fs::set_permissions(&place, fs::Permissions::from_mode(mode)).map_err(ArchiveError::Folder)?;
             }
         }
@@ -262,19 +320,80 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// Counts what really comes out: what an archive says about its sizes is nobody's word.
-    fn copy(&mut self, input: &mut impl Read, output: &mut impl Write) -> Result<(), ArchiveError> {
-        let mut chunk = vec![0; 64 * 1024];
-        loop {
-            let read = input.read(&mut chunk).map_err(damaged)?;
-            if read == 0 {
-                return Ok(());
-            }
-            self.bytes += read as u64;
+    /// Copies a file and returns its kind. What really comes out is counted: an archive may say anything of its sizes.
+    fn copy(&mut self, input: &mut impl Read, output: &mut impl Write) -> Result<FileKind, ArchiveError> {
+        const AT_ONE_GO: u64 = 64 << 10;
+        let mut chunk = Vec::new();
+        input.by_ref().take(START as u64).read_to_end(&mut chunk).map_err(damaged)?;
+        let kind = FileKind::of(&chunk);
+        while !chunk.is_empty() {
+            self.bytes += chunk.len() as u64;
             if self.bytes > self.limits.bytes {
                 return Err(ArchiveError::Bytes(self.limits.bytes));
             }
-            output.write_all(&chunk[..read]).map_err(ArchiveError::Folder)?;
+            output.write_all(&chunk).map_err(ArchiveError::Folder)?;
+            chunk.clear();
+            input.by_ref().take(AT_ONE_GO).read_to_end(&mut chunk).map_err(damaged)?;
         }
+        Ok(kind)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Cursor;
+
+    fn zip(files: &[(&str, Option<u32>, &[u8])]) -> File {
+        let mut bytes = Cursor::new(Vec::new());
+        let mut writer = zip::ZipWriter::new(&mut bytes);
+        for (name, mode, content) in files {
+            let options = zip::write::SimpleFileOptions::default();
+            writer.start_file(*name, mode.map_or(options, |mode| options.unix_permissions(mode))).unwrap();
+            writer.write_all(content).unwrap();
+        }
+        writer.finish().unwrap();
+        let mut file = tempfile::tempfile().unwrap();
+        file.write_all(bytes.get_ref()).unwrap();
+        file
+    }
+
+    #[test]
+    fn programs_are_executable_and_litter_stays_behind() {
+        let archive = zip(&[
+            ("hw/FOSSSim", None, b"\x7fELF..."),
+            ("hw/run.sh", Some(0o644), b"#!/bin/sh\n"),
+            ("hw/tool", Some(0o755), b"text"),
+            ("hw/main.cpp", None, b"int main() {}"),
+            ("hw/build/CMakeCache.txt", None, b"of another machine"),
+            ("__MACOSX/hw/._FOSSSim", None, b"attributes"),
+        ]);
+        let folder = tempfile::tempdir().unwrap();
+        let files = unpack(archive, folder.path(), ArchiveLimits::USUAL).unwrap();
+        let names: Vec<_> = files.iter().map(|file| file.to_str().unwrap()).collect();
+        assert_eq!(names, ["hw/FOSSSim", "hw/run.sh", "hw/tool", "hw/main.cpp"]);
+        assert_eq!(top_folder(folder.path(), &files), folder.path().join("hw"));
+        let executable = |name: &str| fs::metadata(folder.path().join(name)).unwrap().permissions().mode() & 0o111 != 0;
+        assert_eq!(names.into_iter().map(executable).collect::<Vec<_>>(), [true, true, true, false]);
+        assert!(!folder.path().join("hw/build").exists() && !folder.path().join("__MACOSX").exists());
+    }
+
+    #[test]
+    fn only_a_folder_that_holds_everything_is_the_top() {
+        let folder = Path::new("f");
+        let top = |files: &[&str]| top_folder(folder, &files.iter().map(PathBuf::from).collect::<Vec<_>>());
+        assert_eq!(top(&["hw/a", "hw/b/c"]), Path::new("f/hw"));
+        for files in [&["a"][..], &["hw/a", "b"], &["hw/a", "other/b"], &[]] {
+            assert_eq!(top(files), folder, "{files:?}");
+        }
+    }
+
+    #[test]
+    fn a_bomb_is_told_by_its_ratio() {
+        let bomb = || zip(&[("zeros", None, &vec![0; (50 << 20) + 1])]);
+        let told = look_through(bomb(), ArchiveLimits::USUAL).unwrap_err().to_string();
+        assert!(told.contains("more than 52428800 bytes"), "{told}");
+        let deep = zip(&[(&"d/".repeat(DEEPEST + 1), None, b"")]);
+        assert!(matches!(look_through(deep, ArchiveLimits::USUAL), Err(ArchiveError::Depth(_))));
     }
 }

@@ -1,0 +1,241 @@
+//! From what was handed in to a program that can be run: a program, an archive with one, or sources to build.
+use super::{
+    cancellation::Cancellation,
+    config::BuildStep,
+    one_file::{ANOTHERS, OneFile, is_anothers},
+    result::Unusable,
+    staging::{CopyError, LARGEST_FOLDER, Staged, at, build, copied, open_in, unreadable},
+    temporary::Temporary,
+    upload,
+};
+use fosssim_intake::{ArchiveError, ArchiveLimits, FileKind};
+use fosssim_sandbox::{
+    Backend, StartProblem,
+    collect::{self, CollectError, OpenFolder},
+};
+use std::{
+    ffi::OsString,
+    fs::{self, File},
+    io::{self, Read, Seek},
+    os::unix::fs::DirBuilderExt,
+    path::Path,
+};
+
+/// How submissions become programs.
+#[derive(Clone, Copy)]
+pub struct Recipe<'a> {
+    /// The program's name in folders and archives.
+    pub program: &'a str,
+    /// How sources are built, where the suite says.
+    pub build: Option<&'a BuildStep>,
+    /// Where they are built.
+    pub backend: &'a Backend,
+    /// Stops a build.
+    pub cancellation: &'a Cancellation,
+}
+
+impl Recipe<'_> {
+    /// Stages a file that somebody names: a program, or an archive. A file that can't be run for what it is, is refused
+    /// with the reason.
+    ///
+    /// # Errors
+    /// When the file can't be read for a fault of the machine, or the copy can't be written.
+    pub fn file(&self, path: &Path) -> Result<Staged, String> {
+        let why = match collect::open_file(path, true) {
+            Ok((file, _)) => return self.opened(file, path),
+            Err(CollectError::NotRegular { what: "a folder", .. }) => Unusable::CouldNotStart(StartProblem::IsFolder),
+            Err(CollectError::NotRegular { .. }) => Unusable::CouldNotStart(StartProblem::NotAFile),
+            Err(CollectError::Missing { .. }) => Unusable::CouldNotStart(StartProblem::NotFound),
+            Err(CollectError::System { source, .. }) => match unreadable(path, source) {
+                CopyError::Submission(why) => Unusable::Unreadable(why),
+                CopyError::Ours(why) => return Err(why),
+            },
+            Err(error) => Unusable::Unreadable(error.to_string()),
+        };
+        Ok(Staged::refused(path, why))
+    }
+
+    /// As [`Recipe::file`], for a file at `name` in a folder that somebody else filled: a link that leads elsewhere, to
+    /// another's submission perhaps, is refused, and so is a file that is `noted` to be another's. Without such a file,
+    /// an archive in the folder is the submission.
+    ///
+    /// # Errors
+    /// As for [`Recipe::file`].
+    pub fn file_in(&self, folder: &Path, name: &str, noted: Option<&OneFile>) -> Result<Staged, String> {
+        let path = folder.join(name);
+        let why = match open_in(folder, name) {
+            Ok(file) if is_anothers(&file, noted).map_err(at(&path))? => Unusable::Unreadable(ANOTHERS.to_owned()),
+            Ok(file) => return self.opened(file, &path),
+            Err(CollectError::Missing { .. }) => match only_archive(folder, false)? {
+                Some(file) => return self.unpacked(file, &path),
+                None => upload::without(name, folder),
+            },
+            Err(CollectError::System { source, .. })
+                if matches!(unreadable(&path, io::Error::from(source.kind())), CopyError::Ours(_)) =>
+            {
+                return Err(at(&path)(source));
+            }
+            Err(error) => Unusable::Unreadable(error.to_string()),
+        };
+        Ok(Staged::refused(&path, why))
+    }
+
+    /// Stages what is built of the sources in a folder, or in the archive that is all that it holds.
+    ///
+    /// # Errors
+    /// Faults of ours or of the machine.
+    pub fn folder(&self, path: &Path) -> Result<Staged, String> {
+        match (self.build, only_archive(path, true)?) {
+            (None, _) => self.file(path),
+            (_, Some(archive)) => self.unpacked(archive, path),
+            (Some(step), None) => build(path, step, self.backend, self.cancellation),
+        }
+    }
+
+    /// Stages an open file: an archive or a program.
+    fn opened(&self, mut file: File, path: &Path) -> Result<Staged, String> {
+        match kind_of(&mut file) {
+            Ok(FileKind::Archive(_)) => self.unpacked(file, path),
+            // The copy tells why the file can't be read.
+            _ => copied(file, path),
+        }
+    }
+
+    /// Unpacks an archive, and stages what is in it: sources that are to be built, or else the program.
+    fn unpacked(&self, archive: File, path: &Path) -> Result<Staged, String> {
+        let folder = Temporary::make("upload").map_err(at(&std::env::temp_dir()))?;
+        let inside = folder.path().join("submission");
+        fs::DirBuilder::new().mode(0o700).create(&inside).map_err(at(&inside))?;
+        let files = match fosssim_intake::unpack(archive, &inside, ArchiveLimits::USUAL) {
+            Ok(files) => files,
+            Err(error @ (ArchiveError::Read(_) | ArchiveError::Folder(_))) => {
+                return Err(format!("{}: {error}", path.display()));
+            }
+            Err(error) => return Ok(Staged::refused(path, Unusable::Unreadable(error.to_string()))),
+        };
+        let top = fosssim_intake::top_folder(&inside, &files);
+        if let Some(step) = self.build {
+            return build(&top, step, self.backend, self.cancellation);
+        }
+        match open_in(&top, self.program) {
+            Ok(file) => copied(file, &top.join(self.program)),
+            Err(_) => Ok(Staged::refused(path, upload::without(self.program, &top))),
+        }
+    }
+}
+
+/// The kind of an open file by its first bytes, which are read again later.
+fn kind_of(file: &mut File) -> io::Result<FileKind> {
+    let mut start = Vec::new();
+    file.take(fosssim_intake::START as u64).read_to_end(&mut start)?;
+    file.rewind()?;
+    Ok(FileKind::of(&start))
+}
+
+/// Opens the archive in a folder, if it has exactly one: learning platforms make a folder around each upload.
+/// `is_alone` asks that it is all that the folder holds.
+fn only_archive(folder: &Path, is_alone: bool) -> Result<Option<File>, String> {
+    /// A folder with more entries is none of a platform's.
+    const MOST: usize = 100;
+    let Ok(opened) = OpenFolder::open(folder) else { return Ok(None) };
+    let mut names = opened.names().map_err(at(folder))?;
+    names.retain(|name| !fosssim_intake::is_litter(name));
+    if names.len() > MOST || is_alone && names.len() > 1 {
+        return Ok(None);
+    }
+    let archive = |name: &OsString| {
+        // Of a file with several names nobody knows whose it is.
+        let (mut file, _) = opened.regular_file(name.to_str()?, LARGEST_FOLDER).ok()?;
+        matches!(kind_of(&mut file), Ok(FileKind::Archive(_))).then_some(file)
+    };
+    let mut archives = names.iter().filter_map(archive);
+    let first = archives.next();
+    Ok(first.filter(|_| archives.next().is_none()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::staging::digest;
+    use fosssim_sandbox::{Ended, FakeRun};
+    use std::{
+        os::unix::fs::{PermissionsExt, symlink},
+        path::PathBuf,
+        process::Command,
+    };
+
+    /// Stages as a suite without a build does.
+    fn staged(stage: impl FnOnce(Recipe<'_>) -> Result<Staged, String>) -> Staged {
+        let (backend, cancellation) = (Backend::fake(|_| FakeRun::ended(Ended::Exited(0))), Cancellation::default());
+        stage(Recipe { program: "FOSSSim", build: None, backend: &backend, cancellation: &cancellation }).unwrap()
+    }
+
+    fn program(path: &Path) -> Staged {
+        staged(|recipe| recipe.file(path))
+    }
+
+    #[test]
+    fn a_submission_that_is_no_file_is_told_so() {
+        let folder = tempfile::tempdir().unwrap();
+        let sources = folder.path().join("sources");
+        std::fs::create_dir(&sources).unwrap();
+        assert!(Command::new("mkfifo").arg(sources.join("pipe")).status().unwrap().success());
+        let _socket = std::os::unix::net::UnixListener::bind(sources.join("socket")).unwrap();
+        symlink("/etc/passwd", sources.join("link")).unwrap();
+        for name in ["pipe", "socket"] {
+            let staged = program(&sources.join(name));
+            assert!(staged.refused.is_some() && digest(&sources.join(name)).is_none(), "{name}");
+        }
+        assert!(
+            staged(|recipe| recipe.file_in(&sources, "link", None))
+                .refused
+                .is_some_and(|why| format!("{why:?}").contains("symbolic link"))
+        );
+        let staged = program(&folder.path().join("none"));
+        assert_eq!(staged.refused, Some(Unusable::CouldNotStart(StartProblem::NotFound)));
+        let staged = program(&sources);
+        assert_eq!(staged.refused, Some(Unusable::CouldNotStart(StartProblem::IsFolder)));
+    }
+
+    /// Packs what lies in a folder, under this name beside it.
+    fn packed(folder: &Path, name: &str) -> PathBuf {
+        let archive = folder.with_file_name(name);
+        let packing = Command::new("tar").arg("czf").arg(&archive).arg("-C").arg(folder).arg(".").status();
+        assert!(packing.unwrap().success());
+        archive
+    }
+
+    #[test]
+    fn an_archive_is_unpacked_wherever_a_program_may_be() {
+        let folder = tempfile::tempdir().unwrap();
+        let class = folder.path().join("class");
+        let hw = class.join("hw");
+        std::fs::create_dir_all(hw.join("__MACOSX")).unwrap();
+        std::fs::write(hw.join("FOSSSim"), "#!/bin/sh\n").unwrap();
+        let archive = packed(&class, "alice.tar.gz");
+        let moodle = folder.path().join("bob_assignsubmission_file");
+        std::fs::create_dir(&moodle).unwrap();
+        std::fs::copy(&archive, moodle.join("hw.tgz")).unwrap();
+        std::fs::write(moodle.join("report.pdf"), "%PDF").unwrap();
+        let same = [
+            program(&hw.join("FOSSSim")),
+            program(&archive),
+            staged(|recipe| recipe.file_in(folder.path(), "alice.tar.gz", None)),
+            staged(|recipe| recipe.file_in(&moodle, "FOSSSim", None)),
+        ];
+        for staged in &same {
+            assert_eq!((&staged.refused, staged.digest), (&None, same[0].digest));
+            assert_eq!(staged.program.metadata().unwrap().permissions().mode() & 0o111, 0o111, "no bit was needed");
+        }
+        std::fs::rename(hw.join("FOSSSim"), hw.join("main.cpp")).unwrap();
+        let without = program(&packed(&class, "without.tar.gz")).refused;
+        assert_eq!(without, Some(upload::without("FOSSSim", &hw)), "it says what it looked for and what it found");
+        std::fs::write(&archive, [0x1f, 0x8b, 8, 0, 0, 0]).unwrap();
+        let damaged = program(&archive).refused.map(|why| format!("{why:?}"));
+        assert!(damaged.as_ref().is_some_and(|why| why.contains("damaged")), "{damaged:?}");
+        // Two archives, and nobody knows which.
+        std::fs::copy(moodle.join("hw.tgz"), moodle.join("other.tgz")).unwrap();
+        let two = staged(|recipe| recipe.file_in(&moodle, "FOSSSim", None)).refused;
+        assert_eq!(two, Some(upload::without("FOSSSim", &moodle)));
+    }
+}

@@ -1,0 +1,78 @@
+//! The kinds of files, told by their first bytes: nothing else of a file that was handed in is read for that.
+
+/// The kind of a file, by its first bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FileKind {
+    /// A program for Linux: ELF, or a script that names its interpreter.
+    Program,
+    /// An archive that is unpacked.
+    Archive(ArchiveKind),
+    /// Anything else.
+    Other,
+}
+
+/// The archives that are unpacked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ArchiveKind {
+    /// A zip file.
+    Zip,
+    /// A tar file.
+    Tar,
+    /// A tar file that gzip packed.
+    TarGz,
+}
+
+/// The archives that are unpacked, in words.
+pub const KNOWN: &str = ".zip, .tar.gz, .tar";
+
+/// The first bytes that tell what a file is.
+pub const START: usize = 512;
+
+impl FileKind {
+    /// Tells what a file is that begins with these bytes, at most [`START`] of them.
+    #[must_use]
+    pub fn of(start: &[u8]) -> Self {
+        match start {
+            [0x7f, b'E', b'L', b'F', ..] | [b'#', b'!', ..] => Self::Program,
+            [b'P', b'K', 3, 4, ..] => Self::Archive(ArchiveKind::Zip),
+            [0x1f, 0x8b, ..] => Self::Archive(ArchiveKind::TarGz),
+            _ if start.get(257..262) == Some(b"ustar") => Self::Archive(ArchiveKind::Tar),
+            _ => Self::Other,
+        }
+    }
+}
+
+/// Describes a file that begins with these bytes, for a message about what was found.
+#[must_use]
+pub fn described(start: &[u8]) -> String {
+    let known: [(&[u8], &str); 17] = [
+        (b"MZ", "a program for Windows"),
+        (b"\xcf\xfa\xed\xfe", "a program for macOS"),
+        (b"\xce\xfa\xed\xfe", "a program for macOS"),
+        (b"\xca\xfe\xba\xbe", "a program for macOS, or a Java class"),
+        (b"\x7fELF", "a program for Linux"),
+        (b"#!", "a script"),
+        (b"PK\x03\x04", "a zip archive"),
+        (b"\x1f\x8b", "a file packed by gzip"),
+        (b"Rar!", "a RAR archive"),
+        (b"7z\xbc\xaf\x27\x1c", "a 7z archive"),
+        (b"\xfd7zXZ\0", "a file packed by xz"),
+        (b"BZh", "a file packed by bzip2"),
+        (b"\x28\xb5\x2f\xfd", "a file packed by zstd"),
+        (b"!<arch>", "a library, or a Debian package"),
+        (b"%PDF", "a PDF document"),
+        (b"PK\x05\x06", "an empty zip archive"),
+        (b"SQLite", "a database"),
+    ];
+    if let Some((_, what)) = known.iter().find(|(magic, _)| start.starts_with(magic)) {
+        return (*what).to_owned();
+    }
+    if start.is_empty() {
+        return "an empty file".to_owned();
+    }
+    if start.iter().all(|byte| byte.is_ascii_graphic() || byte.is_ascii_whitespace() || *byte >= 0x80) {
+        return "text".to_owned();
+    }
+    let bytes: Vec<String> = start.iter().take(4).map(|byte| format!("{byte:02x}")).collect();
+    format!("a file that begins with the bytes {}", bytes.join(" "))
+}
