@@ -97,11 +97,12 @@ pub fn manifest<'a>(recordings: impl IntoIterator<Item = &'a Recording>) -> Stri
     recordings.into_iter().map(Recording::line).collect()
 }
 
-/// A unified diff from what was recorded to what is simulated now; empty when they are the same.
+/// A unified diff from what was recorded to what is simulated now; empty when they are the same. Git may have given the
+/// recorded lines the ends of another system.
 #[must_use]
 pub fn diff(name: &str, recorded: &str, now: &str) -> String {
     let (old, new) = (format!("recorded/{name}"), format!("simulated/{name}"));
-    fosssim_textdiff::unified((&old, recorded), (&new, now))
+    fosssim_textdiff::unified((&old, &recorded.replace("\r\n", "\n")), (&new, now))
 }
 
 /// The trace of a scene.
@@ -134,6 +135,8 @@ mod tests {
         assert_eq!((recording.steps, recording.trace.len()), (4, 5 * 32));
         let packed = recording.packed().unwrap();
         assert_eq!(recording.difference(Some(&packed), Some(recording.digests.as_bytes())), None);
+        let crlf = recording.digests.replace('\n', "\r\n");
+        assert_eq!(recording.difference(recording.packed().ok().as_deref(), Some(crlf.as_bytes())), None);
         assert!(manifest(&[recording]).starts_with("Group/name 4 steps 160 bytes sha256 "));
     }
 
