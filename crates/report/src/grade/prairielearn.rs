@@ -1,4 +1,5 @@
-//! PrairieLearn's results.json: a score in [0, 1]; `gradable: false` for faults of ours, which charge no attempt.
+//! PrairieLearn's results.json: a score in [0, 1]; `gradable: false` for faults of ours and for uploads without a
+//! program that can be run, which charge no attempt.
 use super::{super::explain, difference, head_lines, score, see_above, speed_words};
 use crate::foreign::{one_line, plain, printed};
 use crate::{view::document, words};
@@ -78,9 +79,13 @@ pub(crate) fn render(grade: &Grade) -> String {
         None if grade.unfit().is_some() => head_lines(grade),
         None => head_lines(&shown),
     };
+    let is_gradable = grade.points.is_some() && grade.verdict != Verdict::Unusable;
     let results = Results {
-        gradable: grade.points.is_some(),
-        score: grade.points.map(|points| if grade.max_points > 0.0 { points / grade.max_points } else { 0.0 }),
+        gradable: is_gradable,
+        score: grade
+            .points
+            .filter(|_| is_gradable)
+            .map(|points| if grade.max_points > 0.0 { points / grade.max_points } else { 0.0 }),
         message: match grade.verdict {
             Verdict::JudgeError => "The grader failed; this attempt is not counted.".to_owned(),
             _ if grade.is_incomplete() => "Grading was stopped before its end; this attempt is not counted.".to_owned(),

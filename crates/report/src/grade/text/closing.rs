@@ -14,10 +14,10 @@ use std::fmt::Write;
 /// The greatest number of groups that are listed; with more of them, those that are not accepted come first.
 const GROUPS: usize = 8;
 
-/// The closing lines. `alone` says that nothing stands above them.
+/// The closing lines below the verdict. `alone` says that nothing else stands above them.
 pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
     let style = options.style;
-    let mut text = options.verdict(grade) + "\n";
+    let mut text = String::new();
     if alone {
         text += &options.circumstances(grade);
     }

@@ -65,7 +65,7 @@ impl Text<'_> {
                 let why = words::unfit(grade).map(|unfit| format!(": {}", one_line(&unfit))).unwrap_or_default();
                 let _ = writeln!(text, "{}{why}", self.verdict(grade));
             } else {
-                self.submission(&mut text, grade);
+                self.submission(&mut text, grade, grades.len() > 1);
             }
         }
         if grades.len() > 1 && self.shown > TextDetail::Line {
@@ -74,13 +74,18 @@ impl Text<'_> {
         text
     }
 
-    fn submission(&self, text: &mut String, grade: &Grade) {
+    /// One submission. Its verdict stands above its scenes and, unless others follow, below them, where it stays in
+    /// sight.
+    fn submission(&self, text: &mut String, grade: &Grade, is_one_of_several: bool) {
         let details = scenes::render(self, grade);
         if !details.is_empty() {
             let _ = writeln!(text, "{}", self.verdict(grade));
             *text += &self.circumstances(grade);
             *text += &details;
             text.push('\n');
+        }
+        if !is_one_of_several || details.is_empty() {
+            let _ = writeln!(text, "{}", self.verdict(grade));
         }
         *text += &closing::render(self, grade, details.is_empty());
         text.push('\n');
