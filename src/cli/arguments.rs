@@ -64,7 +64,7 @@ pub(super) enum Command {
     Trace(Trace),
     /// Records the traces of all scenes of a folder, or checks that they are still the same.
     Record(Record),
-    /// Grades programs: runs them on a suite of scenes in a sandbox, and judges their traces while they are written.
+    /// Grades programs: runs them on a suite of scenes in a sandbox, and judges the traces that they leave.
     Grade(Grade),
     /// Joins the parts that `grade --shard` graded into one grading.
     Merge(Merge),
@@ -207,7 +207,7 @@ pub(super) struct CheckArguments {
 Example:
   fosssim-oracle explain scenes/test00.xml submission.bin
   fosssim-oracle explain --program ./FOSSSim
-  fosssim-oracle explain --program ./FOSSSim --assignment t1m3
+  fosssim-oracle explain --program ./FOSSSim --suite t1m3
   fosssim-oracle explain --program ./FOSSSim scenes/test00.xml
 
 With --program, the program runs in the sandbox on small scenes that make every term of every formula visible. \
@@ -219,15 +219,17 @@ pub(super) struct Explain {
     /// The program to run.
     #[arg(long, value_name = "PROGRAM")]
     pub(super) program: Option<PathBuf>,
-    /// The milestone of the program, whose small scenes it runs.
+    /// The milestone of the program, whose small scenes it runs. By default the program's own: which scenes it takes
+    /// tells it.
     #[arg(
         long,
+        alias = "assignment",
         value_parser = assignment(),
-        default_value = Assignment::DEFAULT.key(),
+        ignore_case = true,
         value_name = "MILESTONE",
         requires = "program"
     )]
-    pub(super) assignment: Assignment,
+    pub(super) suite: Option<Assignment>,
     /// How much the explanation tells.
     #[arg(long, value_parser = explaining(), default_value = "full")]
     pub(super) hints: Hints,

@@ -68,7 +68,7 @@ pub(super) fn explaining() -> impl TypedValueParser<Value = Hints> {
 /// A milestone of the course.
 pub(super) fn assignment() -> impl TypedValueParser<Value = Assignment> {
     PossibleValuesParser::new(Assignment::ALL.map(Assignment::key))
-        .try_map(|key| Assignment::named(&key).ok_or("no such milestone"))
+        .try_map(|key| Assignment::named(&key.to_ascii_lowercase()).ok_or("no such milestone"))
 }
 
 /// The reader of a page.

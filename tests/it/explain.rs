@@ -272,16 +272,33 @@ fn wrong_usage_is_said() {
 #[test]
 fn without_a_trace_there_is_nothing_to_explain() {
     let Some(workspace) = grading::workspace() else { return };
-    workspace.write("older", "#!/bin/sh\necho 'invalid collision type hybrid' >&2\nexit 1\n");
+    workspace.write("older", "#!/bin/sh\nprintf '\\033[31;1minvalid collision type hybrid\\033[m\\n' >&2\nexit 1\n");
     std::fs::set_permissions(workspace.path("older"), std::os::unix::fs::PermissionsExt::from_mode(0o755))
         .expect("ours");
-    let run = workspace.run(["explain", "--program", "./older"]);
-    assert!(run.code == Some(1) && run.err().contains("another milestone: --assignment t1m1, "), "{}", run.shown());
+    let run = workspace.run(["explain", "--program", "./older", "--suite", "T2M2"]);
+    assert!(run.code == Some(1) && run.err().contains("another milestone"), "{}", run.shown());
     let said = "exited with code 1 and wrote no trace; its error output ends with: invalid collision type hybrid";
     assert!(run.out().contains(said), "{}", run.shown());
     workspace.write("notes.txt", "nothing but some words\n");
     let run = workspace.run(["explain", SPINNING, "notes.txt"]);
     assert!(run.code == Some(2) && run.err().contains("is no trace: it looks like text"), "{}", run.shown());
+}
+
+/// The library of T1M3 takes implicit integrators, refuses another and knows no collisions, whatever a student wrote.
+#[test]
+fn a_program_of_another_milestone_is_known_by_the_scenes_that_it_takes() {
+    let Some(workspace) = grading::workspace() else { return };
+    let script = "#!/bin/sh\nwhile read -r line || [ -n \"$line\" ]; do case $line in *forward-backward-euler*)\n\
+                  printf '\\033[31;1mInvalid integrator\\033[m\\n' >&2; exit 1;; esac; done < \"$2\"\n\
+                  printf x > \"$6\"\n";
+    workspace.write("older", script);
+    std::fs::set_permissions(workspace.path("older"), std::os::unix::fs::PermissionsExt::from_mode(0o755))
+        .expect("ours");
+    let run = workspace.run(["grade", "older", "--scene", "GeometricTests/b*"]);
+    let told = "it looks like a program of Theme 1, Milestone 3: grade it with --suite t1m3";
+    assert!(run.code == Some(1) && run.out().contains(told) && run.out().lines().count() < 8, "{}", run.shown());
+    let run = workspace.run(["explain", "--program", "./older"]);
+    assert!(run.code == Some(1) && run.err().contains("program of Theme 1, Milestone 3"), "{}", run.shown());
 }
 
 /// The small scenes are those of the program's milestone.
@@ -290,7 +307,7 @@ fn a_program_of_any_milestone_is_explained() {
     let Some(workspace) = grading::workspace() else { return };
     let programs = grading::submit(&workspace, &["", "spring-direction", "drag-sign", "near-pairs-last-missing"]);
     let explain = |program: &str, milestone: &str| {
-        workspace.run(["explain", "--program", program, "--assignment", milestone, "--format", "json"])
+        workspace.run(["explain", "--program", program, "--suite", milestone, "--format", "json"])
     };
     for milestone in ["t1m1", "t1m2", "t1m3", "t2m1", "t2m2", "t2m3"] {
         let right = explain(&programs[0], milestone);

@@ -7,6 +7,7 @@ use super::{
     speed::{SpeedGrade, SpeedSource},
     verdict::Verdict,
 };
+use fosssim_model::assignments::Assignment;
 use serde::{Deserialize, Serialize};
 use std::{ops::Deref, time::Duration};
 
@@ -56,6 +57,8 @@ pub struct Grade {
     pub wall: Duration,
     /// Keys of mistakes that accepted scenes speak against.
     pub refuted: Vec<String>,
+    /// The milestone of which the program seems to be, if that is not the suite's.
+    pub looks_like: Option<Assignment>,
     /// The common properties of the scenes in which the program crashes or runs into a limit, where hints let them
     /// through.
     pub located: Option<Located>,
@@ -116,9 +119,12 @@ impl Grade {
     }
 
     /// The fault of the submission itself, and the reason of each of its scenes: no program that can be run is in
-    /// it, its sources do not build, or nothing is written yet.
+    /// it, its sources do not build, it is of another milestone, or nothing is written yet.
     #[must_use]
     pub fn unfit(&self) -> Option<Unfit<'_>> {
+        if let Some(other) = self.looks_like {
+            return Some(Unfit::Milestone(other));
+        }
         let first = self.scenes().next()?;
         let is_unfit = matches!(first.verdict, Verdict::Unusable | Verdict::CompileError | Verdict::Unwritten);
         let why = |scene: &SceneGrade| (scene.verdict, scene.reason.clone(), scene.ended.clone());
@@ -189,6 +195,8 @@ pub struct Build {
 pub enum Unfit<'a> {
     /// Its build.
     Build(&'a BuildEnd),
+    /// It is a program of this milestone, and the suite is of another.
+    Milestone(Assignment),
     /// The words of its first scene, and of all others with it.
     Scene(&'a SceneResult),
 }

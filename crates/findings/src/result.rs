@@ -182,6 +182,8 @@ pub enum BadTrace {
         /// The damage, as the reader tells it.
         damage: Malformation,
     },
+    /// It holds the states of all steps, and nothing of collisions.
+    StatesOnly,
     /// By the fair rules: it is damaged.
     Damaged,
     /// By the fair rules: bytes follow its last record.

@@ -161,6 +161,7 @@ impl Stage {
         let reference = None;
         Grader {
             program: "FOSSSim",
+            assignment: None,
             plan,
             backend: &self.backend,
             options,

@@ -210,6 +210,9 @@ fn verdict_of_trace(run: &Run<'_>) -> (Verdict, Reason) {
     }
     match (&judged.stop, judged.ruling(rules.official())) {
         (Some(Stop::Trace { .. }), _) if trace_bytes == 0 => (Verdict::NoOutput, Reason::NoTrace),
+        (Some(Stop::Trace { .. }), _) if Layout::of(&run.task.scene).is_states_only(trace_bytes) => {
+            (Verdict::BadTrace, Reason::Trace(BadTrace::StatesOnly))
+        }
         (Some(Stop::Trace { frame, step, cause, offset, what }), _) => {
             let (frame, step, cause, offset, damage) = (*frame, *step, *cause, *offset, what.clone());
             let unreadable = BadTrace::Unreadable { frame, step, cause, offset, damage };

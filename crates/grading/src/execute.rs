@@ -179,8 +179,8 @@ impl Runner<'_> {
         Ok((kept, outcome))
     }
 
-    /// Opens the trace that a program left, with its length: a regular file, read up to the limit. Anything else there is
-    /// no trace.
+    /// Opens the trace that a program left, with its length: a regular file, read up to the limit. Anything else there
+    /// is no trace.
     fn trace_in(&self, left: &LeftFolder) -> Result<(Box<dyn Read + Send>, u64), String> {
         match left.regular_file(TRACE_FILE, u64::MAX) {
             Ok((file, length)) => Ok((Box::new(file.take(self.limits.trace)), length.min(self.limits.trace))),

@@ -43,6 +43,8 @@ pub mod library;
 #[cfg(target_os = "linux")]
 pub mod located;
 #[cfg(target_os = "linux")]
+pub mod milestone;
+#[cfg(target_os = "linux")]
 pub mod names;
 pub mod near;
 #[cfg(target_os = "linux")]

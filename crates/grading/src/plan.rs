@@ -94,6 +94,12 @@ pub fn built_in(name: &str) -> Option<&'static str> {
     assignments::version(name).map(|(_, version)| version.suite)
 }
 
+/// Returns the assignment of a built-in suite.
+#[must_use]
+pub fn assignment(name: &str) -> Option<Assignment> {
+    assignments::version(name).map(|(assignment, _)| assignment)
+}
+
 /// The scenes that a pattern takes: names and XML.
 pub type Found = Vec<(String, Vec<u8>)>;
 

@@ -70,6 +70,7 @@ pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Ve
         warnings: Vec::new(),
         layers: Vec::new(),
         wall: Duration::ZERO,
+        looks_like: None,
         located: None,
     }
 }

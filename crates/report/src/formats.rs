@@ -202,6 +202,7 @@ fn render_in_every_format(result: &SceneResult) {
         max_points: group.max_points,
         groups: vec![group],
         refuted: Vec::new(),
+        looks_like: None,
         located: None,
         shows_output: true,
         build: None,

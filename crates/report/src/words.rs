@@ -17,6 +17,11 @@ use fosssim_findings::{
 };
 use fosssim_judge::{FindingKind, PairWords, Unreadable, share};
 use fosssim_mistakes::together::likely_mistakes;
+use fosssim_model::assignments::{Assignment, Definition};
+
+/// The words for a trace without the lists that its scene asks for.
+pub const STATES_ONLY: &str =
+    "the trace holds positions and velocities only, as that of a program whose library knows no collisions";
 
 /// The exit code of shells and loaders that did not find what they were to run.
 const NOT_FOUND: i32 = 127;
@@ -90,9 +95,16 @@ pub fn details(result: &SceneResult) -> Vec<String> {
 pub fn unfit(grade: &Grade) -> Option<String> {
     grade.unfit().map(|unfit| match unfit {
         Unfit::Build(end) => build(end),
+        Unfit::Milestone(other) => milestone(other),
         Unfit::Scene(result) if result.verdict == Verdict::Unwritten => unwritten(grade),
         Unfit::Scene(result) => summary(result),
     })
+}
+
+/// The text for a program of another milestone than the suite's.
+fn milestone(other: Assignment) -> String {
+    let Definition { title, key, .. } = other.definition();
+    format!("it looks like a program of {title}: grade it with --suite {key}")
 }
 
 /// The text for a submission that logs nothing in any scene: the parts that are not written yet, as far as that may be
@@ -165,6 +177,7 @@ fn of_bad_trace(bad: &BadTrace) -> String {
             };
             format!("{what}: frame {frame} (step {step}), byte {offset}: {damage}")
         }
+        BadTrace::StatesOnly => STATES_ONLY.to_owned(),
         BadTrace::Damaged => "the trace is damaged".to_owned(),
         BadTrace::TrailingBytes => "bytes follow the trace's last record".to_owned(),
     }

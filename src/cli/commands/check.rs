@@ -18,8 +18,10 @@ use crate::{
         number::counted,
         page,
         style::Style,
+        words,
     },
     sim::RootSearch,
+    trace::Layout,
 };
 use anyhow::{Result, bail};
 use std::{io::Read, path::Path};
@@ -56,6 +58,10 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<u8> {
         looks_like: trace.looks_like,
     };
     let accepted = check.accepted();
+    let is_states_only = |data: std::fs::Metadata| Layout::of(&scene.scene).is_states_only(data.len());
+    if lasts && !accepted && std::fs::metadata(name).is_ok_and(is_states_only) {
+        console::remark(format!("{}\n", words::STATES_ONLY));
+    }
     let evidence = || evidence_of(&examined, name, lasts);
     write(target, arguments.format, check, shown.drawing, &examined, &evidence)?;
     let disagreements = outcome.searches.disagreements;

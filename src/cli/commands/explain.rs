@@ -1,7 +1,7 @@
 //! `explain`: what is likely wrong with the program that left a trace, or with a program at hand.
 use super::{grade::backend, pages};
 use crate::{
-    assignments::Assignment,
+    assignments::{Assignment, Definition},
     cli::{
         arguments::{Explain, ExplainFormat},
         console, exit, input,
@@ -15,7 +15,7 @@ use crate::{
     report::{
         check::stopped,
         diagnosis::{Case, Diagnosis},
-        foreign::one_line,
+        foreign::{one_line, printed},
         number::counted,
         page::{Card, Explained},
         style::Style,
@@ -27,6 +27,7 @@ use crate::{
         cards::Judged,
         config::{Hints, RunLimits},
         located::{ContentIndex, Contents, Failing, Located, Tried, locate},
+        milestone,
         plan::{self, Plan},
     },
     together::told::cut,
@@ -152,16 +153,12 @@ fn program_on_probes(
     let program = placed(program);
     let cancellation = cancelled_by_signals();
     let backend = backend(arguments.unsafe_no_sandbox)?;
-    let plan = plan::find(arguments.assignment.key())?;
-    let mut tasks = tasks(arguments.assignment, &plan, scenes)?;
-    let folders = Folders::default();
-    let short = RunLimits { cpu: plan.limits.cpu.min(LEAST[0]), wall: plan.limits.wall.min(LEAST[1]), ..plan.limits };
-    let nowhere = Place::new("", "");
-    let runner = |limits| Runner {
+    let (folders, nowhere, usual) = (Folders::default(), Place::new("", ""), plan::find(Assignment::DEFAULT.key())?);
+    let runner = Runner {
         folders: &folders,
         backend: &backend,
-        run: &plan.run,
-        limits,
+        run: &usual.run,
+        limits: &usual.limits,
         rules: Rules::Fair,
         hints: Hints::Full,
         student_hints: Hints::Full,
@@ -172,6 +169,11 @@ fn program_on_probes(
         cards: None,
         rehearse: &|_| {},
     };
+    let assignment = arguments.suite.map_or_else(|| own_milestone(&runner, &program), Ok)?;
+    let plan = plan::find(assignment.key())?;
+    let mut tasks = tasks(assignment, &plan, scenes)?;
+    let short = RunLimits { cpu: plan.limits.cpu.min(LEAST[0]), wall: plan.limits.wall.min(LEAST[1]), ..plan.limits };
+    let runner = |limits| Runner { run: &plan.run, limits, ..runner };
     let (mut cases, mut cards, mut ends) = (Vec::new(), Vec::new(), Vec::new());
     let (mut stopped, mut traceless) = (0, 0);
     let bar = console::Bar::of_runs(tasks.len() as u64);
@@ -212,22 +214,30 @@ fn program_on_probes(
              loop that does not end\n"
         ));
     }
-    if traceless == tasks.len() {
-        let others = Assignment::ALL.into_iter().filter(|other| *other != arguments.assignment);
-        let others: Vec<&str> = others.map(Assignment::key).collect();
-        console::remark(format!("if this program is of another milestone: --assignment {}\n", others.join(", ")));
+    if traceless == tasks.len() && arguments.suite.is_some() {
+        console::remark("if this program is of another milestone: without --suite that is found out\n");
     }
     let located = located(&tasks, &ends);
-    let (common, refuted) = likely(arguments.assignment, &cases, &tasks);
+    let (common, refuted) = likely(assignment, &cases, &tasks);
     for case in &mut cases {
         case.explanations = diagnose::settled(&case.explanations, &common, &refuted).explanations;
     }
     Ok(Some((Diagnosis { cases, common, located }, cards)))
 }
 
+/// Finds out of which milestone a program is, and says so where that is not the default.
+fn own_milestone(runner: &Runner<'_>, program: &Path) -> Result<Assignment> {
+    let found = milestone::looks_like(runner, program).map_err(anyhow::Error::msg)?.unwrap_or(Assignment::DEFAULT);
+    if found != Assignment::DEFAULT {
+        let Definition { title, key, .. } = found.definition();
+        console::remark(format!("it looks like a program of {title} (--suite {key})\n"));
+    }
+    Ok(found)
+}
+
 /// The last line of a program's error output, where it wrote one.
 fn said(stderr: &[u8]) -> String {
-    let text = String::from_utf8_lossy(stderr);
+    let text = printed(&String::from_utf8_lossy(stderr));
     let last = text.lines().rev().map(str::trim).find(|line| !line.is_empty());
     last.map(|line| format!("; its error output ends with: {}", one_line(line))).unwrap_or_default()
 }

@@ -99,6 +99,7 @@ pub(super) fn demo(arguments: &Demo) -> Result<u8> {
             plan: &plan,
             backend: &backend,
             program: "",
+            assignment: None,
             options: Options { jobs, fail_fast: false, recorded: false },
             faults: &Place::new("", "fosssim-faults"),
             traces: None,

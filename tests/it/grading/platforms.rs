@@ -111,7 +111,7 @@ fn the_question_for_prairielearn_works_in_its_layout() {
     let copied = Command::new("cp").arg("-r").arg(course.join("serverFilesCourse")).arg(&root).status();
     assert!(copied.expect("cp").success());
     let (run, results) = grade_for_prairielearn(&root);
-    assert_eq!((run.code, &results["score"]), (Some(0), &0.0.into()), "no program was uploaded: {results}");
+    assert_eq!((run.code, &results["gradable"]), (Some(0), &false.into()), "no program was uploaded: {results}");
     fs::copy(env!("CARGO_BIN_EXE_fosssim-sample"), root.join("student/FOSSSim")).expect("an upload");
     fs::set_permissions(root.join("student/FOSSSim"), fs::Permissions::from_mode(0o644)).expect("a mode");
     let (run, results) = grade_for_prairielearn(&root);

@@ -12,10 +12,10 @@ fn what_can_not_be_run_is_explained() {
         let path = workspace.path(name);
         std::fs::set_permissions(path, std::os::unix::fs::PermissionsExt::from_mode(0o755)).expect("a mode");
     }
-    workspace.write("not-executable", "#!/bin/sh\n");
+    workspace.write("of-windows", b"MZ\x90\0\x03\0\0\0");
     std::fs::create_dir(workspace.path("empty")).expect("a folder");
     for (program, words) in
-        [("text", "not a program"), ("script", "run by /no/such/interpreter"), ("not-executable", "not executable")]
+        [("text", "not a program"), ("script", "run by /no/such/interpreter"), ("of-windows", "built for Windows")]
     {
         let run = workspace.run(["grade", program, "--suite", "suite.toml"]);
         assert_eq!(run.code, Some(1), "{}", run.shown());
@@ -24,6 +24,7 @@ fn what_can_not_be_run_is_explained() {
     for (words, arguments) in [
         ("no submission at missing", vec!["grade", "missing"]),
         ("holds no submission", vec!["grade", "empty"]),
+        ("no suite t9m9: it is neither a file nor one of", vec!["grade", "text", "--suite", "t9m9"]),
         ("no suite nowhere.toml", vec!["grade", "text", "--suite", "nowhere.toml"]),
         ("no format yaml", vec!["grade", "text", "--format", "yaml"]),
         ("only one format can go to standard output", vec!["grade", "text", "--format", "text", "--format", "csv"]),

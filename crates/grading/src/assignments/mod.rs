@@ -69,14 +69,14 @@ pub const fn versions(assignment: Assignment) -> &'static [Version] {
     }
 }
 
-/// The assignment and the version that a name such as `t2m2@1` means; `t2m2` is the newest one.
+/// The assignment and the version that a name such as `t2m2@1` means, in letters of any case; `t2m2` is the newest one.
 #[must_use]
 pub fn version(name: &str) -> Option<(Assignment, Version)> {
     if matches!(name, "earlier" | "earlier@1") {
         return Some((Assignment::T2M1, EARLIER));
     }
     let (key, number) = name.split_once('@').map_or((name, None), |(key, number)| (key, Some(number)));
-    let assignment = Assignment::named(key)?;
+    let assignment = Assignment::named(&key.to_ascii_lowercase())?;
     let all = versions(assignment);
     let number = match number {
         Some(number) => all.iter().enumerate().position(|(index, _)| number == (index + 1).to_string())?,
@@ -113,6 +113,7 @@ mod tests {
         assert_eq!(default_name(), all[0]);
         let suite = |name: &str| version(name).map(|(_, version)| version.suite);
         assert_eq!(suite("t2m2"), suite("t2m2@2"));
+        assert_eq!((suite("T1M3"), suite("T2M2@1")), (suite("t1m3"), suite("t2m2@1")));
         assert_ne!(suite("t2m2@1"), suite("t2m2@2"));
         for unknown in ["t2m2@0", "t2m2@3", "t2m2@", "t2m2@01", "t9m9@1", "@1", ""] {
             assert!(suite(unknown).is_none(), "{unknown}");

@@ -196,7 +196,7 @@ fn every_reason_and_every_end_reads_back() {
     reasons.extend([Wrong::Borderline, Wrong::Undecided].map(Reason::Wrong));
     reasons.extend(errors.map(|error| Reason::Wrong(Wrong::NoResult(error))));
     reasons.extend(causes.map(|cause| Reason::Trace(unreadable(cause))));
-    reasons.extend([BadTrace::Damaged, BadTrace::TrailingBytes].map(Reason::Trace));
+    reasons.extend([BadTrace::StatesOnly, BadTrace::Damaged, BadTrace::TrailingBytes].map(Reason::Trace));
     let total = NotRunReason::Total(Duration::from_secs(600));
     reasons.extend(
         [NotRunReason::Limits { scenes: 3, verdict: Verdict::MemoryLimit }, total, NotRunReason::FailFast]

@@ -48,11 +48,12 @@ pub fn find(name: &str) -> Result<Plan, FindError> {
         None => {
             let text = read_text(path, LARGEST_SUITE).map_err(|why| {
                 let known = || built_in_names().collect::<Vec<_>>().join(", ");
-                let words = match why.kind() {
-                    io::ErrorKind::NotFound => format!("no suite {name}: it is neither a file nor one of {}", known()),
-                    _ => format!("cannot read the suite {name}"),
-                };
-                FindError { words, why: Some(why) }
+                match why.kind() {
+                    io::ErrorKind::NotFound => {
+                        format!("no suite {name}: it is neither a file nor one of {}", known()).into()
+                    }
+                    _ => FindError { words: format!("cannot read the suite {name}"), why: Some(why) },
+                }
             })?;
             if ["<?xml", "<scene"].iter().any(|start| text.starts_with(start)) {
                 let advice = "a group of a suite lists it in its `scenes`";

@@ -4,13 +4,14 @@ use crate::{
     grade::Grade,
     grader::{SubmissionGrading, lock},
     located::{Contents, Failing, Located, Tried, locate},
-    one_file, patience,
+    milestone, one_file, patience,
     plan::PlannedGroup,
     result::{Ended, Reason, SceneResult},
     score,
     verdict::Verdict,
 };
 use fosssim_mistakes::together::settle;
+use fosssim_model::assignments::Assignment;
 
 impl SubmissionGrading<'_> {
     /// The grade, of the results of all scenes in the plan's order, each with the word whether it was found. Where the
@@ -28,6 +29,7 @@ impl SubmissionGrading<'_> {
             }
         }
         self.time(&mut results);
+        let looks_like = self.looks_like(&results);
         let wall = results.iter().map(|(result, _)| result.measured.wall).sum();
         // The submission's copy goes away.
         let build = match lock(&self.staged).take().as_deref() {
@@ -47,6 +49,7 @@ impl SubmissionGrading<'_> {
             warnings,
             layers: active.map(|report| report.layer.name().to_owned()).collect(),
             wall,
+            looks_like,
             ..score::grade(plan, self.submission.name.clone(), true, results)
         };
         if plan.staff_hints.explains() {
@@ -54,6 +57,22 @@ impl SubmissionGrading<'_> {
         }
         settle(&mut grade);
         grade
+    }
+
+    /// Returns the milestone of which the program seems to be, if its library lacks what the suite's has. It is looked
+    /// for where no scene is accepted, and in half of them there is no trace that can be read.
+    fn looks_like(&self, results: &[(SceneResult, bool)]) -> Option<Assignment> {
+        let expected = self.grader.assignment?;
+        let count = |is: fn(Verdict) -> bool| results.iter().filter(|(result, _)| is(result.verdict)).count();
+        let unread = |verdict| matches!(verdict, Verdict::RuntimeError | Verdict::BadTrace | Verdict::NoOutput);
+        if count(Verdict::is_accepted) > 0 || 2 * count(unread) < results.len() {
+            return None;
+        }
+        let (staged, first) = (self.staged(), self.grader.plan.scenes().next()?);
+        let program = &staged.as_ref().as_ref().ok()?.program;
+        // A fault here is no reason to lose the grade.
+        let found = milestone::looks_like(&self.runner(first, None), program).ok().flatten();
+        found.filter(|found| milestone::lacks(*found, expected))
     }
 }
 

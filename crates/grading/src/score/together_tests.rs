@@ -54,6 +54,7 @@ fn grade(scenes: Vec<Vec<Explanation>>) -> Grade {
         layers: Vec::new(),
         wall: Duration::ZERO,
         refuted: Vec::new(),
+        looks_like: None,
         located: None,
     };
     settle(&mut grade);

@@ -22,8 +22,10 @@ pub use integrator::Integrator;
 pub use pair_kind::PairKind;
 pub use part::Part;
 
+use serde::{Deserialize, Serialize};
+
 /// An assignment of the course.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Assignment {
     /// Theme 1, Milestone 1: explicit Euler and simple gravity.
     T1M1,

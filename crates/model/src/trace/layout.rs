@@ -41,6 +41,14 @@ impl Layout {
         1 + u64::from(self.records_per_step()) * u64::from(self.steps)
     }
 
+    /// Returns whether a trace of this many bytes holds a state for each step and nothing else, where records hold
+    /// more: so write programs whose library knows no collisions.
+    #[must_use]
+    pub fn is_states_only(&self, bytes: u64) -> bool {
+        let more = self.impulses || self.polynomials;
+        more && self.particles > 0 && bytes == (1 + u64::from(self.steps)) * self.state_bytes() as u64
+    }
+
     /// The step that record `record` belongs to, from 1; 0 for the initial record.
     #[must_use]
     pub fn step_of(&self, record: u64) -> u32 {
@@ -73,5 +81,7 @@ mod tests {
         let layout = Layout { polynomials: false, ..layout };
         assert_eq!((0..layout.records()).map(|r| layout.step_of(r)).collect::<Vec<_>>(), [0, 1, 2, 3]);
         assert!(!layout.is_mid(1));
+        assert!(layout.is_states_only(4 * 32) && !layout.is_states_only(4 * 32 + 8));
+        assert!(!Layout { impulses: false, ..layout }.is_states_only(4 * 32), "that is all that there should be");
     }
 }

@@ -50,6 +50,7 @@ fn grade(submission: &str, groups: Vec<GroupGrade>) -> Grade {
         points: groups.iter().map(|group| group.points).sum(),
         max_points: groups.iter().map(|group| group.max_points).sum(),
         refuted: Vec::new(),
+        looks_like: None,
         located: None,
         shows_output: groups.iter().all(|group| group.visibility == Visibility::Visible),
         groups,

@@ -263,9 +263,7 @@ pub fn look_through(file: &Path, said: Option<&str>, wanted: &str, program: Opti
                 (said, _) => holds_program(&files, program).map(|()| said.unwrap_or(Form::Sources)),
             }
         }
-        Err(ArchiveError::Unknown(found)) if said.is_none() => {
-            Err(format!("looked for {wanted}, and found {found}"))
-        }
+        Err(ArchiveError::Unknown(found)) if said.is_none() => Err(format!("looked for {wanted}, and found {found}")),
         Err(error) => Err(error.to_string()),
     }
 }

@@ -1,0 +1,74 @@
+//! Tells of which milestone a program is, by the scenes that it takes: a starter library ends with an exit code at an
+//! integrator or a collision type that it does not know, whatever its student wrote.
+use super::{execute::Runner, task::SceneTask};
+use fosssim_model::{
+    assignments::{Assignment, Integrator},
+    scene,
+};
+use fosssim_sandbox::Ended;
+use std::path::Path;
+
+/// Returns the milestone whose library takes the scenes that this program takes, and no others; nothing where there is
+/// none, or where the program writes no trace at all. The program is run six times, on two bodies that do not meet.
+///
+/// # Errors
+/// Faults of ours or of the machine, in words.
+pub fn looks_like(runner: &Runner<'_>, program: &Path) -> Result<Option<Assignment>, String> {
+    let mut is_traced = false;
+    let mut takes = |integrator: Integrator, collision: &str| -> Result<bool, String> {
+        let (trace, outcome) = runner.collect(program, &task(integrator, collision)?, 1)?;
+        is_traced |= !trace.is_empty();
+        // One that crashes has taken the scene.
+        Ok(!matches!(outcome.ended, Ended::Exited(1..)))
+    };
+    let mut integrators = Vec::new();
+    for (_, integrator) in Integrator::NAMED {
+        if takes(integrator, "")? {
+            integrators.push(integrator);
+        }
+    }
+    let takes_collisions = takes(Integrator::ExplicitEuler, "<collision type=\"continuous-time\" COR=\"1\"/>")?;
+    let fits = |assignment: &Assignment| {
+        let library = &assignment.definition().library;
+        let knows = |integrator: &Integrator| library.integrators.contains(integrator);
+        library.refuses_collisions != takes_collisions
+            && Integrator::NAMED.iter().all(|(_, one)| knows(one) == integrators.contains(one))
+    };
+    Ok(Assignment::ALL.into_iter().find(|assignment| is_traced && fits(assignment)))
+}
+
+/// Returns whether a milestone's library lacks integrators or collision types that scenes of another have.
+#[must_use]
+pub fn lacks(found: Assignment, expected: Assignment) -> bool {
+    let (found, expected) = (&found.definition().library, &expected.definition().library);
+    expected.integrators.iter().any(|one| !found.integrators.contains(one))
+        || expected.collisions.iter().any(|one| !found.collisions.contains(one))
+}
+
+/// Makes a scene of two steps with this element for collisions.
+fn task(integrator: Integrator, collision: &str) -> Result<SceneTask, String> {
+    let xml = format!(
+        "<scene><duration time=\"0.02\"/><integrator type=\"{}\" dt=\"0.01\"/>{collision}\
+         <particle m=\"1\" px=\"0\" py=\"0\" vx=\"1\" vy=\"0\" fixed=\"0\" radius=\"0.1\"/>\
+         <particle m=\"1\" px=\"5\" py=\"0\" vx=\"0\" vy=\"1\" fixed=\"0\" radius=\"0.1\"/></scene>",
+        integrator.name()
+    );
+    let scene = scene::read("milestone", xml.as_bytes()).map_err(|error| error.to_string())?.scene;
+    Ok(SceneTask { name: "milestone".to_owned(), xml: xml.into_bytes(), scene, recording: None })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_program_that_knows_more_is_of_no_other_milestone() {
+        use Assignment::{T1M1, T1M3, T2M1, T2M2, T2M3};
+        for (found, expected) in [(T1M1, T1M3), (T1M3, T2M2), (T1M3, T2M1), (T2M1, T2M2), (T2M3, T2M2)] {
+            assert!(lacks(found, expected), "{found:?} for {expected:?}");
+        }
+        for (found, expected) in [(T2M2, T1M3), (T2M1, T1M3), (T1M3, T1M1), (T2M2, T2M3), (T2M2, T2M2)] {
+            assert!(!lacks(found, expected), "{found:?} for {expected:?}");
+        }
+    }
+}
