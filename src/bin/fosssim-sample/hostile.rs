@@ -12,8 +12,9 @@ use std::{
 
 use fosssim_oracle::student::{Area, Mistake, Student};
 
-/// How much a flood writes.
+/// The bytes of a flood behind the trace, and of one on standard output or error.
 const FLOOD_BYTES: usize = 256 << 20;
+const PRINTED_BYTES: usize = 16 << 20;
 
 /// How much memory a hog takes.
 const HOG_BYTES: usize = 4 << 30;
@@ -92,8 +93,8 @@ pub fn midway(student: Student) -> io::Result<Midway> {
         Some(Mistake::HostileSleep) => loop {
             sleep(Duration::from_secs(3600));
         },
-        Some(Mistake::HostileFloodStdout) => flood(&mut io::stdout().lock())?,
-        Some(Mistake::HostileFloodStderr) => flood(&mut io::stderr().lock())?,
+        Some(Mistake::HostileFloodStdout) => flood(&mut io::stdout().lock(), PRINTED_BYTES)?,
+        Some(Mistake::HostileFloodStderr) => flood(&mut io::stderr().lock(), PRINTED_BYTES)?,
         Some(Mistake::HostileMemory) => {
             let hog = vec![1_u8; HOG_BYTES];
             black_box(&hog);
@@ -107,7 +108,7 @@ pub fn midway(student: Student) -> io::Result<Midway> {
 pub fn after_trace(student: Student, output: &mut impl Write) -> io::Result<()> {
     match student.mistake_in(&[Area::Process]) {
         Some(Mistake::HostileTrailingBytes) => output.write_all(&[0; 8]),
-        Some(Mistake::HostileFloodTrace) => flood(output),
+        Some(Mistake::HostileFloodTrace) => flood(output, FLOOD_BYTES),
         _ => Ok(()),
     }
 }
@@ -117,9 +118,9 @@ pub fn exit_status(student: Student) -> u8 {
     u8::from(student.makes(Mistake::HostileExitOne))
 }
 
-fn flood(output: &mut impl Write) -> io::Result<()> {
+fn flood(output: &mut impl Write, bytes: usize) -> io::Result<()> {
     let block = [b'x'; 1 << 16];
-    for _ in 0..FLOOD_BYTES / block.len() {
+    for _ in 0..bytes / block.len() {
         output.write_all(&block)?;
     }
     Ok(())

@@ -480,8 +480,8 @@ rows! {
         HostileCrash "crash-midway": "Aborts in mid-run." => "abort() in mid-run.";
         HostileLoop "endless-loop": "Computes for ever in mid-run." => "while (true) {}";
         HostileSleep "sleep-forever": "Sleeps for ever in mid-run." => "sleep(infinity)";
-        HostileFloodStdout "flood-stdout": "Writes far too much to standard output." => "256 MiB.";
-        HostileFloodStderr "flood-stderr": "Writes far too much to standard error." => "256 MiB.";
+        HostileFloodStdout "flood-stdout": "Writes far too much to standard output." => "16 MiB.";
+        HostileFloodStderr "flood-stderr": "Writes far too much to standard error." => "16 MiB.";
         HostileFloodTrace "flood-trace": "Writes far too much to the trace after its end." => "256 MiB.";
         HostileEscapes "escape-codes": "Writes terminal escape codes, markup and a spreadsheet formula on standard error." => "For example =cmd|'/c calc'!A0.";
         HostileForgedVerdict "forged-verdict": "Prints a passing verdict of the original oracle, and does wrong physics." => "No collision is reported.";
