@@ -3,7 +3,6 @@
 #![forbid(unsafe_code)]
 
 pub mod corpus;
-pub mod dice;
 pub mod mutants;
 pub mod operators;
 pub mod outside;
