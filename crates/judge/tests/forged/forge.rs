@@ -1,6 +1,4 @@
 //! Right traces made wrong at random, programs whose polynomials have factors, and what the fair rules may say of both.
-//!
-//! The short form is a test of this crate; the long one is `audit forged` in `crates/lab`.
 use fosssim_judge::{
     Finding, FindingKind,
     fair::{

@@ -12,12 +12,7 @@
 //! true. They are sorted by what the original does on purpose: `c t^m` counts as nowhere positive, small leading
 //! coefficients are dropped; whatever is left is its rounding. These do not change the exit code.
 //!
-//! `audit lanes [pairs] [seed]` compares detection in lanes with detection pair by pair instead, on random scenes, and
-//! `audit judging [CORPUS or part of a sample's id]` judging by the shortcuts with the full way; `audit
-//! drawn [traces] [seed]` does so on random traces. `audit forged [of each scene] [seed] [CORPUS]` looks for wrong
-//! traces that the fair rules accept, and for programs with factors that they refuse. `audit cost [of each scene]
-//! [seed] [CORPUS]` looks for traces that take long to judge. `audit states [CORPUS]` runs right programs in other
-//! arithmetic where traces hold states.
+//! `audit states [CORPUS]` runs right programs in other arithmetic where traces hold states.
 #![forbid(unsafe_code)]
 use fosssim_oracle::{
     num::{
@@ -32,12 +27,7 @@ use fosssim_oracle::{
 use rayon::prelude::*;
 use std::{fmt::Write as _, path::Path, process::ExitCode};
 
-mod cost;
 mod decisions;
-mod drawn;
-mod forged;
-mod judging;
-mod lanes;
 mod states;
 
 use decisions::Decisions;
@@ -47,25 +37,14 @@ const BLOCK: u64 = 10_000;
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
-    let is_word = |word: &String| word.parse::<u64>().is_err();
-    let (what, rest) = words.split_at(usize::from(words.first().is_some_and(is_word)));
-    let numbers: Vec<u64> = rest.iter().map_while(|word| word.parse().ok()).take(2).collect();
-    let number = |place: usize, otherwise: u64| numbers.get(place).copied().unwrap_or(otherwise);
-    let (of_each, detections, seed) = (number(0, 100), number(0, 1_000_000), number(1, 1));
-    let corpus = rest.get(numbers.len()).map(Path::new);
-    match (what.first().map(String::as_str), corpus) {
-        (Some("judging"), _) => judging::run(rest.first().map_or("", String::as_str)).unwrap_or_else(|error| {
-            eprintln!("{error:#}");
-            ExitCode::from(2)
-        }),
-        (Some("states"), _) => states::run(rest.first().map(Path::new)),
-        (Some("forged"), _) => forged::run(of_each, seed, corpus),
-        (Some("cost"), _) => cost::run(of_each, seed, corpus),
-        (Some("lanes"), None) => lanes::run(detections, seed),
-        (Some("drawn"), None) => drawn::run(detections, seed),
-        (None, None) => certificates(detections, seed),
+    let numbers: Option<Vec<u64>> = words.iter().map(|word| word.parse().ok()).collect();
+    match (words.first().map(String::as_str), numbers.as_deref()) {
+        (Some("states"), _) if words.len() <= 2 => states::run(words.get(1).map(Path::new)),
+        (_, Some([])) => certificates(1_000_000, 1),
+        (_, Some([detections])) => certificates(*detections, 1),
+        (_, Some([detections, seed])) => certificates(*detections, *seed),
         _ => {
-            eprintln!("usage: audit [judging|states|lanes|drawn|forged|cost] [detections] [seed]");
+            eprintln!("usage: audit [detections [seed]], or audit states [CORPUS]");
             ExitCode::from(2)
         }
     }

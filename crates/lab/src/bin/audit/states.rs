@@ -13,7 +13,11 @@ use fosssim_oracle::{
     suite::library,
 };
 use rayon::prelude::*;
-use std::{collections::BTreeMap, path::Path, process::ExitCode};
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
 
 /// The sizes of noise that are added to numbers of right traces.
 const NOISES: [f64; 6] = [1e-15, 1e-14, 1e-13, 1e-12, 1e-10, 1e-8];
@@ -201,11 +205,25 @@ fn scenes(corpus: Option<&Path>) -> Vec<(String, Scene)> {
     let mut all: Vec<(String, Vec<u8>)> = own.collect();
     for folder in ["scenes/t1m1", "scenes/t1m2", "scenes/t1m3", "scenes/t2m1", "t2m3"] {
         let Some(corpus) = corpus else { continue };
-        for path in super::forged::scene_files(&corpus.join(folder)) {
+        for path in scene_files(&corpus.join(folder)) {
             let name = path.strip_prefix(corpus).unwrap_or(&path).display().to_string();
             let name = name.strip_prefix("scenes/").unwrap_or(&name).to_owned();
             all.extend(std::fs::read(&path).ok().map(|bytes| (format!("corpus-{name}"), bytes)));
         }
     }
     all.into_iter().filter_map(|(name, bytes)| Some((name, original::read(&bytes).ok()?.scene))).collect()
+}
+
+/// All scenes below a folder.
+fn scene_files(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for path in std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()) {
+        if path.is_dir() {
+            found.extend(scene_files(&path));
+        } else if path.extension().is_some_and(|extension| extension == "xml") {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
 }
