@@ -3,7 +3,7 @@
 //! An event in a step has properties ([`FAMILIES`]): it is a contact, a pair that does not collide, a zone
 //! that the failsafe moves, the step as a whole. A suite covers two values of two properties when one event of one of
 //! its scenes has both. A mistake that shows with one or two properties together therefore meets a scene where it can
-//! show; the mutants of `crates/lab` tell whether it does.
+//! show.
 mod axes;
 mod events;
 mod families;

@@ -44,13 +44,6 @@ pub fn explain_kept(trace: &KeptTrace<'_>) -> Vec<Explanation> {
     explain_source(trace.scene(), trace.into())
 }
 
-/// The explanation of the trace's stages, whether or not a known mistake explains it: for measuring what it says.
-#[must_use]
-pub fn explain_stages(scene: &Scene, trace: &[u8]) -> Option<Explanation> {
-    let Sampled { mut reference, scan, .. } = sampled(scene, Source::whole(trace));
-    stages::explain(&mut reference, scene, scan.wrong.iter().chain(&scan.right))
-}
-
 /// As [`explain`], whatever the trace's records are read from.
 fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     if Layout::of(scene).polynomials && pairs(scene).count() > MOST_PAIRS {

@@ -19,7 +19,7 @@ mod stages;
 mod written;
 
 pub use crate::{assignments::probe_scenes, plain::formula_in};
-pub use explain::{explain, explain_kept, explain_stages};
+pub use explain::{explain, explain_kept};
 pub use fosssim_findings::explanation::{
     About, Amount, Changed, CoefficientGuess, Detail, Example, ExamplePlace, ExampleValue, Explanation, ForceTerm,
     Guess, ListGuess, LoopEnd, NanStage, NotFinite, OfPolynomials, PolynomialDetail, Quantity, QuantityGuess, Ratios,
