@@ -29,7 +29,6 @@ pub fn run(folder: &Path, suite: &str, supervisor: Supervisor) -> Result<String,
         traces: None,
         cards: None,
         reference: None,
-        rehearse: &|_| {},
     };
     let graded = batch::run(&grader, &submissions, None, &Cancellation::default(), &mut |_| {});
     let line = |grade: &fosssim_oracle::suite::Grade| {

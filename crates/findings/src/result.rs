@@ -281,8 +281,8 @@ pub enum Activity {
     Judging,
     /// Looking for the likely mistake.
     Explaining,
-    /// Making reports.
-    Reporting,
+    /// Drawing what pages show of the trace.
+    Drawing,
 }
 
 /// The place of a trace on which the grader failed.

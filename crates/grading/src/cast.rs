@@ -169,7 +169,6 @@ impl Stage {
             traces: None,
             cards: None,
             reference,
-            rehearse: &|_| {},
         }
     }
 

@@ -67,9 +67,6 @@ pub struct Runner<'a> {
     pub trace: Option<&'a Place>,
     /// Draws and keeps cards of traces that are not simply right, when somebody wants to look at them.
     pub cards: Option<Cards<'a>>,
-    /// Shows a result in the forms in which it will be reported, for nobody to see: what panics there is a fault of
-    /// this scene, and the trace is still at hand.
-    pub rehearse: &'a (dyn Fn(&SceneResult) + Sync),
 }
 
 impl Runner<'_> {
@@ -148,16 +145,13 @@ impl Runner<'_> {
             let kept = guarded(|| cards.keep(&judged, self.student_hints));
             (result.card, result.card_for_students) = match kept {
                 Ok(names) => names.map_err(|error| format!("a page's data can't be kept: {error}"))?,
-                Err(fault) => return Ok(failed(Activity::Reporting, &fault)),
+                Err(fault) => return Ok(failed(Activity::Drawing, &fault)),
             };
         }
         if let Some(place) = self.trace.filter(|_| !result.verdict.is_accepted()) {
             place.write(&beginning()).map_err(|error| format!("its trace can't be kept: {error}"))?;
         }
-        match guarded(|| (self.rehearse)(&result)) {
-            Ok(()) => Ok(result),
-            Err(fault) => Ok(failed(Activity::Reporting, &fault)),
-        }
+        Ok(result)
     }
 
     /// Runs `program` on a scene as for grading, and hands its trace over unjudged, at most `keep` bytes of it.

@@ -89,8 +89,6 @@ pub struct Grader<'a> {
     /// The program whose speed is the measure: the original, or one that does as it does when it is called so. Without
     /// one no speed is measured.
     pub reference: Option<&'a Path>,
-    /// Shows a result in the forms in which it will be reported, for nobody to see ([`Runner::rehearse`]).
-    pub rehearse: &'a (dyn Fn(&SceneResult) + Sync),
 }
 
 impl Grader<'_> {
@@ -321,7 +319,6 @@ impl<'a> SubmissionGrading<'a> {
             faults: grader.faults,
             trace,
             cards: grader.cards,
-            rehearse: grader.rehearse,
         }
     }
 

@@ -1,17 +1,12 @@
 //! The formats of grades: their names, what they hold, and what each tells its reader.
 use crate::{
-    grade::{Text, csv_of_submissions, csv_table, github, gradescope, json, junit, not_graded, prairielearn},
+    grade::{Text, csv_table, github, gradescope, json, junit, not_graded, prairielearn},
     page::{Audience, GradePage},
     style::Style,
 };
-use fosssim_findings::{
-    Grade, GroupGrade, Hints, PassedOver, Rules, SceneGrade, SceneResult, Visibility, result::Measurements,
-};
+use fosssim_findings::{Grade, PassedOver};
 use fosssim_mistakes::together::{for_students, told_to_students};
-use std::{
-    borrow::Cow,
-    sync::{Mutex, PoisonError},
-};
+use std::borrow::Cow;
 
 /// The warning of a report that leaves groups out.
 const OTHERS: &str =
@@ -138,83 +133,6 @@ impl Format {
             }
         }
     }
-}
-
-/// Renders a result in every format and throws that away: what fails here fails while the result's trace is still at
-/// hand, and not when a whole class's reports are written. One that differs from the last one in nothing that could
-/// fail is passed over: of a right submission, only the first scene is rehearsed.
-pub fn rehearse(result: &SceneResult) {
-    static LAST: Mutex<Option<SceneResult>> = Mutex::new(None);
-    let kind = without_the_harmless(result);
-    let last = || LAST.lock().unwrap_or_else(PoisonError::into_inner);
-    if last().as_ref() == Some(&kind) {
-        return;
-    }
-    render_in_every_format(result);
-    // Only what has not failed.
-    *last() = Some(kind);
-}
-
-/// The result without what no renderer can stumble over: what was measured, numbers of steps that are all right, and
-/// plain text.
-fn without_the_harmless(result: &SceneResult) -> SceneResult {
-    let mut kind = result.clone();
-    kind.measured = Measurements { memory: kind.measured.memory.map(|_| 0), ..Measurements::default() };
-    if kind.right_steps == kind.steps {
-        (kind.right_steps, kind.steps) = (kind.steps.min(1), kind.steps.min(1));
-    }
-    for text in [&mut kind.scene, &mut kind.stdout, &mut kind.stderr] {
-        let is_plain = |byte: &u8| byte.is_ascii_alphanumeric() || b" \n/-_.,:".contains(byte);
-        if text.as_bytes().iter().all(is_plain) {
-            text.truncate(1);
-            *text = text.replace(|_| true, "x");
-        }
-    }
-    kind
-}
-
-fn render_in_every_format(result: &SceneResult) {
-    let scene = SceneGrade {
-        settled: result.explanations.clone(),
-        result: result.clone(),
-        points: Some(0.0),
-        max_points: 1.0,
-        cached: false,
-        agreed: 0,
-    };
-    let group = GroupGrade {
-        hints: Hints::Full,
-        extra: false,
-        speed: None,
-        name: "group".to_owned(),
-        visibility: Visibility::Visible,
-        points: Some(0.0),
-        max_points: 1.0,
-        verdict: result.verdict,
-        scenes: vec![scene],
-    };
-    let grade = Grade {
-        submission: "submission".to_owned(),
-        suite: "suite".to_owned(),
-        rules: Rules::Both,
-        verdict: result.verdict,
-        points: group.points,
-        max_points: group.max_points,
-        groups: vec![group],
-        refuted: Vec::new(),
-        looks_like: None,
-        located: None,
-        shows_output: true,
-        build: None,
-        warnings: Vec::new(),
-        layers: Vec::new(),
-        wall: result.measured.wall,
-    };
-    let grades = [grade];
-    for format in Format::ALL {
-        drop(format.render(&grades));
-    }
-    drop(csv_of_submissions(&grades, &[]));
 }
 
 #[cfg(test)]

@@ -237,7 +237,7 @@ fn of_failure(failure: &Failure) -> String {
             let doing = match stage {
                 Activity::Judging => "judging",
                 Activity::Explaining => "explaining",
-                Activity::Reporting => "reporting",
+                Activity::Drawing => "drawing",
             };
             format!("the grader failed while {doing} this scene: {fault}")
         }

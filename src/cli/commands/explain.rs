@@ -167,7 +167,6 @@ fn program_on_probes(
         faults: &nowhere,
         trace: None,
         cards: None,
-        rehearse: &|_| {},
     };
     let assignment = arguments.suite.map_or_else(|| own_milestone(&runner, &program), Ok)?;
     let plan = plan::find(assignment.key())?;

@@ -23,7 +23,7 @@ use crate::{
     report::{
         explain,
         foreign::{plain, printed},
-        formats::{self, Format},
+        formats::Format,
         grade,
         number::counted,
         page::Audience,
@@ -235,7 +235,6 @@ impl GradingSession<'_> {
             traces: if self.arguments.keep_traces { Some(&trace) } else { None },
             cards: self.pages.as_ref().map(|pages| pages.drawing(&draw)),
             reference: reference.as_deref(),
-            rehearse: &formats::rehearse,
         };
         let mut display = LiveDisplay::new(self.plan, submissions);
         let mut counter = self.arguments.progress.as_deref().map(|file| self.counter(file, submissions)).transpose()?;

@@ -13,7 +13,7 @@ use crate::{
     files::{self, Place},
     pin,
     report::{
-        formats::{Format, rehearse},
+        formats::Format,
         number::counted,
         page::Audience,
     },
@@ -105,7 +105,6 @@ pub(super) fn demo(arguments: &Demo) -> Result<u8> {
             traces: None,
             cards: Some(pages.drawing(&draw)),
             reference: None,
-            rehearse: &rehearse,
         };
         let grades = batch::run(&grader, &[submission], None, &cancellation, &mut |_| {}).grades;
         console::print(Format::Text.render(&grades))?;

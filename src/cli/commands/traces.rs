@@ -9,7 +9,7 @@ use super::{
 use crate::{
     cli::{console, grading::Grade as Arguments, input::unpacked, selection::Selection},
     files::{FileError, Folder},
-    report::{foreign::one_line, formats::rehearse, number::counted},
+    report::{foreign::one_line, number::counted},
     suite::{Grade, SceneResult, SceneTask, cards::Judged, guarded, plan::Plan, result::Failure, traces},
 };
 use anyhow::{Context, Result, bail};
@@ -138,7 +138,6 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) 
         let draw = |judged: &Judged<'_>| pages::draw(judged, false);
         (result.card, result.card_for_students) = pages.drawing(&draw).keep(&judged, plan.student_hints(&task.name))?;
     }
-    rehearse(&result);
     Ok((result, passed_over))
 }
 

@@ -10,7 +10,7 @@ const SINCE: &str = "2026-11-26T22:00:00Z";
 
 /// Returns what is wrong with the subject of a commit.
 fn fault(subject: &str) -> Option<&'static str> {
-    if !subject.split_once(": ").is_some_and(|(scope, _)| !scope.trim().is_empty()) {
+    if subject.split_once(": ").is_none_or(|(scope, _)| scope.trim().is_empty()) {
         return Some("has no scope");
     }
     if subject.chars().count() > LONGEST_SUBJECT {

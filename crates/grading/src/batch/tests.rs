@@ -143,25 +143,21 @@ fn a_fault_of_the_grader_is_a_judge_error_of_its_scene_and_the_batch_goes_on() {
     let (plan, never) = (small_plan(), Cancellation::default());
     let names = ["fault-while-judging", "fault-while-explaining", "right"];
     let submissions = stage.submissions(&names);
-    let troubled = plan.scenes().next().expect("a scene");
-    let rehearse = |result: &SceneResult| {
-        assert!(result.scene != troubled.name, "a report that no report can be made of");
-    };
-    let grader = Grader { rehearse: &rehearse, ..stage.grader(&plan) };
+    let grader = stage.grader(&plan);
     let results = tempfile::tempdir().expect("folder");
     let graded = run(&grader, &submissions, Some(&journal(&results)), &never, &mut |_| {});
     assert!(graded.fault.is_none() && graded.grades.len() == names.len());
-    for (grade, stages) in graded.grades.iter().zip([
-        [Some(Activity::Judging); 2],
-        [Some(Activity::Explaining); 2],
-        [Some(Activity::Reporting), None],
+    for (grade, stage) in graded.grades.iter().zip([
+        Some(Activity::Judging),
+        Some(Activity::Explaining),
+        None,
     ]) {
+        let Some(stage) = stage else {
+            assert_eq!(grade.verdict, Verdict::Accepted);
+            continue;
+        };
         assert_eq!((grade.verdict, grade.points), (Verdict::JudgeError, None), "nobody's zero: {grade:?}");
         for (number, scene) in grade.scenes().enumerate() {
-            let Some(stage) = stages[number.min(1)] else {
-                assert_eq!(scene.verdict, Verdict::Accepted);
-                continue;
-            };
             assert_eq!(scene.verdict, Verdict::JudgeError);
             let Reason::Failed(Failure::Panic { stage: Some(doing), fault, trace: Some(SavedTrace::In(path)) }) =
                 &scene.reason
@@ -176,10 +172,6 @@ fn a_fault_of_the_grader_is_a_judge_error_of_its_scene_and_the_batch_goes_on() {
             assert_eq!(trace, right_trace(&Job::new("right", folder.path())));
         }
     }
-    // It is tried again, and without the fault it is graded.
-    let right = stage.submissions(&["right"]);
-    let grade = run(&stage.grader(&plan), &right, Some(&journal(&results)), &never, &mut |_| {}).grades.remove(0);
-    assert_eq!((grade.points, grade.scenes().filter(|scene| !scene.cached).count()), (Some(15.0), 1));
 }
 
 #[test]

@@ -215,7 +215,7 @@ fn every_reason_and_every_end_reads_back() {
         (None, None),
         (Some(Activity::Judging), Some(kept)),
         (Some(Activity::Explaining), Some(lost)),
-        (Some(Activity::Reporting), None),
+        (Some(Activity::Drawing), None),
     ] {
         reasons.push(Reason::Failed(Failure::Panic { stage, fault: "at x.rs:1".to_owned(), trace }));
     }

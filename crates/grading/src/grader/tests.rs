@@ -1,6 +1,7 @@
 use super::*;
 use crate::{
     batch::{Event, GradeFault, Graded, run},
+    cards::Judged,
     cast::{Stage, small_plan},
     grade::Grade,
     result::Measurements,
@@ -113,8 +114,13 @@ fn what_panics_on_one_scene_is_its_judge_error_and_is_tried_again() {
     let troubled = plan.scenes().nth(2).expect("a scene").name.clone();
     let submission = stage.submissions(&["wrong"]).remove(0);
     let memory = MemoryResults::default();
-    let rehearse = |result: &SceneResult| assert!(result.scene != troubled, "no report of this");
-    let grader = Grader { rehearse: &rehearse, ..stage.grader(&plan) };
+    let draw = |judged: &Judged<'_>| {
+        assert!(judged.name != troubled, "no picture of this");
+        None
+    };
+    let folder = Place::new("", "cards");
+    let cards = Some(Cards { folder: &folder, draw: &draw, for_students: false });
+    let grader = Grader { cards, ..stage.grader(&plan) };
     let (failed, fault, _) = grade(&grader, &submission, &memory);
     assert!(fault.is_none());
     let errors: Vec<_> = failed.scenes().filter(|scene| scene.verdict == Verdict::JudgeError).collect();

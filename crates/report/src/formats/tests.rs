@@ -265,13 +265,6 @@ fn a_stopped_grading_has_points_in_no_format() {
 }
 
 #[test]
-fn every_result_can_be_rehearsed() {
-    for grade in [samples::good(), samples::bad(), samples::stopped(), samples::fault()] {
-        grade.scenes().for_each(|scene| super::rehearse(&scene.result));
-    }
-}
-
-#[test]
 fn junit_follows_its_schema() {
     let document = Format::Junit.render(&all());
     insta::assert_snapshot!("grade_junit", document);
