@@ -12,11 +12,7 @@ use crate::{
     },
     files::{self, Place},
     pin,
-    report::{
-        formats::Format,
-        number::counted,
-        page::Audience,
-    },
+    report::{formats::Format, number::counted, page::Audience},
     sandbox::{self, selftest},
     student,
     suite::{Grader, Submission, Verdict, batch, cards::Judged, grader::Options, plan},

@@ -147,11 +147,7 @@ fn a_fault_of_the_grader_is_a_judge_error_of_its_scene_and_the_batch_goes_on() {
     let results = tempfile::tempdir().expect("folder");
     let graded = run(&grader, &submissions, Some(&journal(&results)), &never, &mut |_| {});
     assert!(graded.fault.is_none() && graded.grades.len() == names.len());
-    for (grade, stage) in graded.grades.iter().zip([
-        Some(Activity::Judging),
-        Some(Activity::Explaining),
-        None,
-    ]) {
+    for (grade, stage) in graded.grades.iter().zip([Some(Activity::Judging), Some(Activity::Explaining), None]) {
         let Some(stage) = stage else {
             assert_eq!(grade.verdict, Verdict::Accepted);
             continue;
