@@ -113,10 +113,10 @@ pub enum Look {
 impl Look {
     /// The explanations of a trace.
     #[must_use]
-    pub fn explain(self, trace: &KeptTrace<'_>) -> Vec<Explanation> {
+    pub fn explain(self, scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
         match self {
-            Self::NotFinite => diagnose::not_finite(trace),
-            Self::Mistakes => diagnose::explain_kept(trace),
+            Self::NotFinite => diagnose::not_finite(scene, trace),
+            Self::Mistakes => diagnose::explain_kept(scene, trace),
         }
     }
 }

@@ -16,9 +16,9 @@ use fosssim_evidence::StepRulings;
 use fosssim_files::Place;
 use fosssim_judge::{
     Outcome, Rules,
-    kept::{KeptTrace, TraceKeeper},
+    kept::{KeptTrace, LONGEST},
     recorded,
-    replay::{Both, Options, Progress, Remark},
+    replay::{self, Both, Options, Progress, Remark},
 };
 use fosssim_sandbox::{
     self as sandbox, Backend, Job, LeftFolder, Limits, Policy, ProgramIdentity, Running, collect::CollectError,
@@ -35,10 +35,6 @@ const TRACE_FILE: &str = "trace.bin";
 
 /// A fault of ours or of the machine is tried so often before it is reported.
 const ATTEMPTS: u32 = 2;
-
-/// The greatest number of bytes kept in memory of a trace that differs from the reference's. A wrong trace is explained
-/// from them; if the grader fails, they are put aside. The course's largest trace has 18 MB.
-const KEPT_TRACE: usize = 24 << 20;
 
 /// How scenes are run.
 #[derive(Clone, Copy)]
@@ -96,19 +92,17 @@ impl Runner<'_> {
         drop(registered);
         let (trace, trace_bytes) = self.trace_in(&left)?;
         // Not within the judging, which may panic: its trace is put aside then.
-        let keeper = TraceKeeper::new(&task.scene, KEPT_TRACE);
+        let mut kept = KeptTrace::new(LONGEST);
         let mut rulings = StepRulings::default();
         let mut told = ToldSteps(on_step);
         let heard = &mut Both(&mut rulings, &mut told);
-        let judged = self.judge_trace(program, task, &keeper, trace, heard);
+        let judged = self.judge_trace(program, task, &mut kept, trace, heard);
         drop(left);
         match is_untouched {
             true => self.folders.keep(folder),
             false => drop(folder),
         }
-        let kept = keeper.into_kept();
-        let beginning = || kept.bytes(KEPT_TRACE);
-        let failed = |stage, fault: &Fault| fault::result(task, self.faults, stage, fault, &beginning());
+        let failed = |stage, fault: &Fault| fault::result(task, self.faults, stage, fault, kept.bytes());
         let judged = match judged {
             Ok(judged) => judged?,
             Err(fault) => return Ok(failed(Activity::Judging, &fault)),
@@ -130,26 +124,25 @@ impl Runner<'_> {
         if let Some(cards) = self.cards
             && !(result.verdict.is_accepted() && result.differs.is_none())
         {
-            let trace = beginning();
             let judged = Judged {
                 scene: &task.scene,
                 name: &task.name,
                 explanations: &result.explanations,
                 outcome: &judged,
                 rulings: &rulings.into_steps(&judged),
-                trace: &trace,
-                is_cut: trace_bytes > trace.len() as u64,
+                trace: kept.bytes(),
+                is_cut: trace_bytes > kept.bytes().len() as u64,
                 rules: self.rules,
                 hints: self.hints,
             };
-            let kept = guarded(|| cards.keep(&judged, self.student_hints));
-            (result.card, result.card_for_students) = match kept {
+            let drawn = guarded(|| cards.keep(&judged, self.student_hints));
+            (result.card, result.card_for_students) = match drawn {
                 Ok(names) => names.map_err(|error| format!("a page's data can't be kept: {error}"))?,
                 Err(fault) => return Ok(failed(Activity::Drawing, &fault)),
             };
         }
         if let Some(place) = self.trace.filter(|_| !result.verdict.is_accepted()) {
-            place.write(&beginning()).map_err(|error| format!("its trace can't be kept: {error}"))?;
+            place.write(kept.bytes()).map_err(|error| format!("its trace can't be kept: {error}"))?;
         }
         Ok(result)
     }
@@ -210,35 +203,35 @@ impl Runner<'_> {
         &self,
         program: &Staged,
         task: &SceneTask,
-        keeper: &TraceKeeper<'_>,
+        kept: &mut KeptTrace,
         mut trace: impl Read + Send,
         watch: &mut dyn Progress,
     ) -> Result<Result<Outcome, String>, Fault> {
         let judged = guarded(|| {
             fault::injected(Activity::Judging, &program.program);
-            self.judge(task, keeper, &mut trace, watch)
+            self.judge(task, kept, &mut trace, watch)
         });
         // The judge has met an error here, if there is one.
-        let _ = io::copy(&mut keeper.reader(trace), &mut io::sink());
+        let _ = io::copy(&mut kept.reader(trace), &mut io::sink());
         judged
     }
 
     fn judge(
         &self,
         task: &SceneTask,
-        keeper: &TraceKeeper<'_>,
+        kept: &mut KeptTrace,
         trace: impl Read + Send,
         watch: &mut dyn Progress,
     ) -> Result<Outcome, String> {
         let options =
             Options { stop_by: self.rules.official(), threads: 1, fair: self.rules.ask_fair(), ..Options::default() };
         if !self.recorded {
-            return Ok(keeper.judge(trace, &options, watch));
+            return Ok(replay::judge(&task.scene, kept.reader(trace), &options, watch));
         }
         let no_recording = || format!("there is no recording of {}: judge it without --recorded", task.name);
         let recording = zstd::Decoder::with_buffer(task.recording.ok_or_else(no_recording)?)
             .map_err(|error| format!("a recording can't be unpacked: {error}"))?;
-        recorded::judge(&task.scene, keeper.reader(trace), recording, watch).map_err(|error| error.to_string())
+        recorded::judge(&task.scene, kept.reader(trace), recording, watch).map_err(|error| error.to_string())
     }
 
     fn arguments(&self, program: &Path) -> Vec<std::ffi::OsString> {
@@ -270,10 +263,10 @@ impl Runner<'_> {
 }
 
 /// The result of a judged run with its explanations, or what panicked.
-fn explained(run: &Run<'_>, kept: &KeptTrace<'_>, program: &Path) -> Result<SceneResult, (Activity, Fault)> {
+fn explained(run: &Run<'_>, kept: &KeptTrace, program: &Path) -> Result<SceneResult, (Activity, Fault)> {
     let mut explaining = guarded(|| fault::injected(Activity::Explaining, program)).err();
     let explain = |look: Look| {
-        guarded(|| look.explain(kept)).unwrap_or_else(|fault| {
+        guarded(|| look.explain(&run.task.scene, kept)).unwrap_or_else(|fault| {
             explaining = Some(fault);
             Vec::new()
         })

@@ -37,7 +37,7 @@ pub fn judged<'a, R: Read + Send>(
         hints: plan.staff_hints,
         limits: &plan.limits,
     };
-    let explained = conclude(&run, |look| look.explain(&examined.trace));
+    let explained = conclude(&run, |look| look.explain(&task.scene, &examined.trace));
     (SceneResult { ended: None, measured: Measurements::default(), ..explained }, examined)
 }
 

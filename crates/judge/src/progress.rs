@@ -15,25 +15,6 @@ pub trait Progress {
     fn step_judged(&mut self, _step: u32, _remarks: &[Remark]) {}
     /// The same step holds something wrong; not called for what is left of damaged records.
     fn step_wrong(&mut self, _wrong: &WrongStep<'_>) {}
-    /// The same step, last of all: where it lies in the trace.
-    fn step_passed(&mut self, _place: &StepPlace) {}
-}
-
-/// Where a step lies in its trace, in bytes from the beginning.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct StepPlace {
-    /// The step, from 1.
-    pub step: u32,
-    /// The record before it, whose state it starts from.
-    pub before: u64,
-    /// The first byte of its records.
-    pub begin: u64,
-    /// The last of its records.
-    pub last: u64,
-    /// The offset behind it.
-    pub end: u64,
-    /// Whether its records were compared as bytes and are the reference's.
-    pub is_own: bool,
 }
 
 /// A step in which a book has found something.
@@ -81,11 +62,6 @@ impl Progress for Both<'_> {
     fn step_wrong(&mut self, wrong: &WrongStep<'_>) {
         self.0.step_wrong(wrong);
         self.1.step_wrong(wrong);
-    }
-
-    fn step_passed(&mut self, place: &StepPlace) {
-        self.0.step_passed(place);
-        self.1.step_passed(place);
     }
 }
 

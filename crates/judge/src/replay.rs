@@ -8,7 +8,7 @@ mod workers;
 
 pub use super::{
     options::Options,
-    progress::{Both, Progress, Remark, StepFindings, StepPlace, WrongStep},
+    progress::{Both, Progress, Remark, StepFindings, WrongStep},
 };
 
 use super::{
@@ -42,8 +42,10 @@ const DONE_STEPS: usize = 16;
 /// One step as read, and what judging it yields.
 #[derive(Debug, Default)]
 struct StepSlot {
-    /// Its number, and where it lies.
-    place: StepPlace,
+    /// Its number, from 1.
+    step: u32,
+    /// The offset of its end record.
+    last: u64,
     before: State,
     /// The order of bodies from which the reference begins, in a contest.
     order: SweepOrder,
@@ -129,8 +131,6 @@ struct Replay<'a, R> {
     shape: StepRules<'a>,
     /// The end state of the last step that was read.
     state: State,
-    /// Byte offset of its record.
-    state_at: u64,
     steps_read: u32,
     /// The bound beyond which nothing leads anywhere by the fair rules, if they are asked.
     reach: Option<Reach<'a>>,
@@ -228,7 +228,6 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             reader,
             shape: StepRules { layout, logs_impulses, fair: fair.then(|| Context::new(scene)) },
             state: State::default(),
-            state_at: 0,
             steps_read: 0,
             reach: fair.then(|| Reach::new(scene)),
             budgets: [false, true].map(|fair| Budget::new(scene, fair)),
@@ -299,8 +298,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
     }
 
     fn read_step(&mut self, slot: &mut StepSlot) -> Result<(), Stop> {
-        let (step, before, begin) = (self.steps_read + 1, self.state_at, self.reader.offset());
-        slot.place = StepPlace { step, before, begin, ..StepPlace::default() };
+        slot.step = self.steps_read + 1;
         slot.damage = None;
         slot.error = None;
         slot.beyond_limit = false;
@@ -330,8 +328,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         slot.damage = damage;
         read?;
         self.state.clone_from(&slot.end.state);
-        self.state_at = self.reader.record_offset();
-        (slot.place.last, slot.place.end) = (self.state_at, self.reader.offset());
+        slot.last = self.reader.record_offset();
         slot.bytes = memory(&slot.end).max(memory(&slot.mid)) + self.shape.layout.state_bytes();
         self.steps_read += 1;
         Ok(())
@@ -340,15 +337,12 @@ impl<'a, R: Read + Send> Replay<'a, R> {
     /// Reads a step and judges it, if it is the reference's byte for byte.
     fn read_at_once(&mut self, slot: &mut StepSlot) -> bool {
         let (context, rest) = (self.shape.fair.as_ref(), self.budgets[0].rest());
-        let Some(found) = self.identical.find(&mut self.reader, slot.place.step, &self.state, context, rest) else {
+        let Some(found) = self.identical.find(&mut self.reader, slot.step, &self.state, context, rest) else {
             return false;
         };
         self.state.clone_from(self.identical.state());
-        self.state_at = self.reader.record_offset();
-        (slot.place.last, slot.place.end) = (self.state_at, self.reader.offset());
         self.steps_read += 1;
         slot.result.set_identical();
-        slot.place.is_own = true;
         slot.fair = found.fair.unwrap_or_default();
         (slot.bytes, slot.work, slot.is_done, slot.is_done_fairly) = (found.bytes, found.work, true, true);
         (slot.is_extraordinary, slot.is_put_off) = (false, false);
@@ -359,9 +353,9 @@ impl<'a, R: Read + Send> Replay<'a, R> {
     fn deliver(&mut self, batch: &mut Batch, progress: &mut dyn Progress, options: &Options) -> bool {
         for slot in &mut batch.slots[..batch.filled] {
             let slot = lock(slot);
-            progress.step_begins(slot.place.step);
+            progress.step_begins(slot.step);
             if !self.budgets[0].spend(slot.work) {
-                self.outcome.stop = Some(Stop::Step(StepError::Work { step: slot.place.step }));
+                self.outcome.stop = Some(Stop::Step(StepError::Work { step: slot.step }));
                 return true;
             }
             if slot.beyond_limit {
@@ -390,7 +384,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             let outcome = &mut self.outcome;
             outcome.steps_judged += 1;
             outcome.damaged_steps += u32::from(self.damaged);
-            progress.step_judged(slot.place.step, &slot.result.remarks);
+            progress.step_judged(slot.step, &slot.result.remarks);
             if slot.result.counts.total() > 0 && !self.damaged {
                 outcome.parity.findings.wrong_steps += 1;
             }
@@ -398,9 +392,8 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             if !is_right && !self.damaged {
                 let parity = StepFindings { firsts: &slot.result.firsts, more: slot.result.more() };
                 let fair = StepFindings { firsts: &slot.fair.findings, more: slot.fair.more };
-                progress.step_wrong(&WrongStep { step: slot.place.step, parity, fair });
+                progress.step_wrong(&WrongStep { step: slot.step, parity, fair });
             }
-            progress.step_passed(&slot.place);
             slot.mid.shrink();
             slot.end.shrink();
             let is_hopeless = match options.stop_by {
@@ -420,7 +413,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             slot.fair = StepJudgement::default();
             return;
         };
-        let step = slot.place.step;
+        let step = slot.step;
         let budget = &mut self.budgets[1];
         let mut has_judged = budget.spend(slot.fair_work);
         let frame = self.shape.layout.end_record(step);
@@ -454,10 +447,10 @@ impl<'a, R: Read + Send> Replay<'a, R> {
 fn beyond_limit(slot: &StepSlot, layout: Layout) -> Stop {
     let (logged, kept) = (slot.end.logged, slot.end.polynomials.len());
     Stop::Trace {
-        frame: layout.end_record(slot.place.step),
-        step: slot.place.step,
+        frame: layout.end_record(slot.step),
+        step: slot.step,
         cause: Unreadable::Limit,
-        offset: slot.place.last,
+        offset: slot.last,
         what: Malformation::BeyondKept { logged, kept },
     }
 }

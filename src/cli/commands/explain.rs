@@ -86,7 +86,7 @@ fn trace_on_scene(scene: &Path, trace: &Path, arguments: &Explain) -> Result<(Ca
     let (case, card, _) =
         case((scene.name, trace.name.clone()), true, &scene.scene, &mut trace.reader, None, arguments);
     // Bytes behind the last step are of interest only where they can't be read.
-    let _ = io::copy(&mut (&mut trace.reader).take(LONGEST), &mut io::sink());
+    let _ = io::copy(&mut (&mut trace.reader).take(LONGEST as u64), &mut io::sink());
     trace.not_failed()?;
     Ok((case, card))
 }
@@ -116,15 +116,14 @@ fn case(
     let explanations = cut(hints, explanations);
     let draws = arguments.format == ExplainFormat::Html && !accepted;
     let card = draws.then(|| {
-        let kept = examined.bytes();
         let judged = Judged {
             scene,
             name: &name,
             explanations: &explanations,
             outcome,
             rulings: &examined.rulings,
-            trace: &kept,
-            is_cut: !examined.trace.is_whole() || kept.len() as u64 >= LONGEST,
+            trace: examined.trace.bytes(),
+            is_cut: !examined.trace.is_whole() || examined.trace.bytes().len() >= LONGEST,
             rules: Rules::Fair,
             hints,
         };
@@ -182,7 +181,7 @@ fn program_on_probes(
         }
         bar.next_run(&task.name);
         let limits = if stopped < PATIENCE { &plan.limits } else { &short };
-        let (trace, outcome) = runner(limits).collect(&program, task, LONGEST as usize).map_err(anyhow::Error::msg)?;
+        let (trace, outcome) = runner(limits).collect(&program, task, LONGEST).map_err(anyhow::Error::msg)?;
         if cancellation.is_cancelled() {
             return Ok(None);
         }

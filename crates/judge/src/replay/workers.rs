@@ -141,7 +141,7 @@ fn judge_batch(batch: &Batch, workers: &mut [Worker], shape: &StepRules<'_>, [re
 
 /// Judges a step by the original's rules.
 fn judge_step(slot: &mut StepSlot, worker: &mut Worker, shape: &StepRules<'_>) {
-    let step = slot.place.step;
+    let step = slot.step;
     let StepSlot { before, order, mid, end, result, error, beyond_limit, .. } = slot;
     let Worker { simulation, buffers, searches } = worker;
     simulation.state_mut().clone_from(before);
@@ -168,11 +168,11 @@ fn judge_step(slot: &mut StepSlot, worker: &mut Worker, shape: &StepRules<'_>) {
 
 /// Judges a step that has a result by the fair rules.
 fn judge_fairly(slot: &mut StepSlot, worker: &mut Worker, shape: &StepRules<'_>) {
-    let StepSlot { place, before, mid, end, result, fair: judged, is_extraordinary, is_put_off, .. } = slot;
+    let StepSlot { step, before, mid, end, result, fair: judged, is_extraordinary, is_put_off, .. } = slot;
     if let (Some(context), None, false) = (&shape.fair, &slot.error, slot.beyond_limit) {
-        let frame = shape.layout.end_record(place.step);
+        let frame = shape.layout.end_record(*step);
         let mid = shape.layout.polynomials.then_some(&*mid);
-        let records = Records { step: place.step, frame, before, mid, end };
+        let records = Records { step: *step, frame, before, mid, end };
         *is_extraordinary = !records.states().all(|state| context.ordinary.holds(state));
         *is_put_off = *is_extraordinary && !records.start_ordinarily(context);
         if !*is_put_off {

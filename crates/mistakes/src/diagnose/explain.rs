@@ -37,11 +37,10 @@ pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
     explain_source(scene, Source::whole(trace))
 }
 
-/// As [`explain`], of what was kept of a trace: its beginning, and the steps beyond in which a book has found
-/// something.
+/// As [`explain`], of what was kept of a trace.
 #[must_use]
-pub fn explain_kept(trace: &KeptTrace<'_>) -> Vec<Explanation> {
-    explain_source(trace.scene(), trace.into())
+pub fn explain_kept(scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
+    explain_source(scene, trace.into())
 }
 
 /// As [`explain`], whatever the trace's records are read from.

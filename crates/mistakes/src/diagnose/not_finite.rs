@@ -18,8 +18,8 @@ use fosssim_model::{
 /// The explanation of the first value of a kept trace that is no finite number, and no other explanation; empty where
 /// all values are finite, or where the reference comes to the same.
 #[must_use]
-pub fn not_finite(trace: &KeptTrace<'_>) -> Vec<Explanation> {
-    of_source(trace.scene(), trace.into())
+pub fn not_finite(scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
+    of_source(scene, trace.into())
 }
 
 /// The same, of the records at hand.

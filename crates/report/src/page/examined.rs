@@ -26,9 +26,9 @@ impl WhatIf {
 /// The page about one trace that was judged, with all hints: its author has asked.
 #[must_use]
 pub fn of_examined(check: Check<'_>, examined: &Examined<'_>, evidence: &Evidence) -> String {
-    let scene = examined.trace.scene();
-    let trace = (examined.trace.is_whole() && !check.explanations.is_empty()).then(|| examined.bytes());
-    let what_if = check.explanations.first().and_then(|first| WhatIf::of(scene, first, trace.as_deref(), evidence));
+    let scene = examined.scene;
+    let trace = (examined.trace.is_whole() && !check.explanations.is_empty()).then(|| examined.trace.bytes());
+    let what_if = check.explanations.first().and_then(|first| WhatIf::of(scene, first, trace, evidence));
     let title = format!("{}: {}", check.verdict(), check.scene);
     let (evidence, what_if) = (Some(evidence), what_if.as_ref());
     Case { check, scene, evidence, what_if, hints: Hints::Full, has_trace: true }.page(&title)

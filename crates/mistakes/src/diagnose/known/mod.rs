@@ -34,7 +34,6 @@ use candidates::Candidates;
 use fosssim_model::{scene::Scene, trace::Layout};
 use resimulate::{Correct, resimulate};
 use several::Several;
-use std::io::Read;
 
 /// Searches the catalogue for the mistake that explains this trace.
 ///
@@ -50,7 +49,7 @@ use std::io::Read;
 /// over. A trace whose first record is another scene's yields nothing but the question whether it is of this scene
 /// ([`Explanation::OTHER_SCENE`]).
 #[must_use]
-pub fn known(scene: &Scene, trace: impl Read) -> Vec<Explanation> {
+pub fn known(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
     let Sampled { mut reference, scan, .. } = sampled(scene, Source::whole(trace));
     known_or_open(&mut reference, scene, scan).explanations
 }

@@ -1,13 +1,12 @@
-//! The records of a trace as explanations read them: step by step, as far as they are at hand.
+//! The records of a trace as explanations read them: step by step, as far as they were kept.
 use super::compare::Logged;
-use fosssim_judge::kept::{KeptTrace, LONGEST, LateStep};
+use fosssim_judge::kept::{KeptTrace, LONGEST};
 use fosssim_model::{
     scene::Scene,
     sim::{RootSearch, Simulation},
     trace::{Layout, Lenient, LenientFrame, Unreadable, record_memory},
 };
 use fosssim_num::tolerances::FIRST_RECORD;
-use std::io::Read;
 
 /// Records at the beginning of the trace that are kept whatever they hold, and their memory.
 const OPENING: usize = 25;
@@ -16,23 +15,21 @@ const OPENING_MEMORY: usize = 4 << 20;
 /// The records of a trace.
 pub struct Source<'a> {
     /// Its beginning.
-    beginning: Box<dyn Read + 'a>,
+    beginning: &'a [u8],
     /// Whether that is all of it.
     is_whole: bool,
-    /// Steps beyond.
-    late: &'a [LateStep],
 }
 
 impl<'a> Source<'a> {
     /// All of a trace.
-    pub fn whole(trace: impl Read + 'a) -> Self {
-        Self { beginning: Box::new(trace), is_whole: true, late: &[] }
+    pub fn whole(trace: &'a [u8]) -> Self {
+        Self { beginning: trace, is_whole: true }
     }
 }
 
-impl<'a> From<&'a KeptTrace<'_>> for Source<'a> {
-    fn from(trace: &'a KeptTrace<'_>) -> Self {
-        Self { beginning: Box::new(trace.beginning()), is_whole: trace.is_whole(), late: trace.late() }
+impl<'a> From<&'a KeptTrace> for Source<'a> {
+    fn from(trace: &'a KeptTrace) -> Self {
+        Self { beginning: trace.bytes(), is_whole: trace.is_whole() }
     }
 }
 
@@ -77,7 +74,7 @@ impl Outline {
     }
 
     /// Reads a record. False behind the last sound one: nobody is to blame for the rest of a damaged record.
-    fn read<R: Read>(&mut self, reader: &mut Lenient<R>, frame: &mut LenientFrame) -> bool {
+    fn read(&mut self, reader: &mut Lenient<&[u8]>, frame: &mut LenientFrame) -> bool {
         match reader.next(frame) {
             Ok(()) if frame.note.is_some() => false,
             Ok(()) => {
@@ -99,14 +96,12 @@ impl Outline {
     }
 }
 
-/// Reads the steps of a trace: those of its first 64 MiB up to the first damage, then those that were kept beyond.
+/// Reads the steps of a trace's first 64 MiB, up to the first damage.
 pub struct StepReader<'a> {
-    scene: &'a Scene,
     layout: Layout,
-    reader: Lenient<Box<dyn Read + 'a>>,
+    reader: Lenient<&'a [u8]>,
     is_whole: bool,
-    late: &'a [LateStep],
-    /// The number of the next step of the beginning; `None` behind its end.
+    /// The number of the next step; `None` behind the end.
     next: Option<u32>,
     /// The records of the step that was read last; before that the first record of the trace, if there is one.
     pub frames: StepFrames,
@@ -116,12 +111,12 @@ pub struct StepReader<'a> {
 
 impl<'a> StepReader<'a> {
     /// Reads the first record.
-    pub fn new(scene: &'a Scene, source: Source<'a>) -> Self {
+    pub fn new(scene: &Scene, source: Source<'a>) -> Self {
         let layout = Layout::of(scene);
-        let mut reader = Lenient::new(source.beginning, layout).with_limit(record_memory(scene));
+        let mut reader = Lenient::of_slice(source.beginning, layout).with_limit(record_memory(scene));
         let (mut frames, mut outline) = (StepFrames::default(), Outline::default());
         let next = outline.read(&mut reader, &mut frames.before).then_some(1);
-        Self { scene, layout, reader, is_whole: source.is_whole, late: source.late, next, frames, outline }
+        Self { layout, reader, is_whole: source.is_whole, next, frames, outline }
     }
 
     /// Reads the next step; its number.
@@ -135,12 +130,6 @@ impl<'a> StepReader<'a> {
         if !self.is_whole {
             self.outline.records = None;
         }
-        while let Some((late, rest)) = self.late.split_first() {
-            self.late = rest;
-            if self.read_late(late) {
-                return Some(late.step);
-            }
-        }
         None
     }
 
@@ -152,7 +141,7 @@ impl<'a> StepReader<'a> {
             }
             return false;
         }
-        if self.reader.offset() > LONGEST {
+        if self.reader.offset() > LONGEST as u64 {
             return false;
         }
         let StepFrames { before, mid, end } = &mut self.frames;
@@ -161,13 +150,5 @@ impl<'a> StepReader<'a> {
         }
         let mut read = |frame| self.outline.read(&mut self.reader, frame);
         (!self.layout.polynomials || read(mid)) && read(end)
-    }
-
-    /// Reads a step that was kept; false unless all of its records are sound.
-    fn read_late(&mut self, late: &LateStep) -> bool {
-        let mut reader = Lenient::of_slice(&late.records, self.layout).with_limit(record_memory(self.scene));
-        let mut read = |frame: &mut LenientFrame| reader.next(frame).is_ok() && frame.note.is_none();
-        let StepFrames { before, mid, end } = &mut self.frames;
-        read(before) && (!self.layout.polynomials || read(mid)) && read(end)
     }
 }

@@ -2,10 +2,7 @@
 use super::naming::is_in_other_words;
 use super::{About, Explanation, explain, explain_kept, probe_scenes, several};
 use crate::student::{self, Row, Student};
-use fosssim_judge::{
-    kept::{LONGEST, TraceKeeper},
-    replay::Options,
-};
+use fosssim_judge::kept::KeptTrace;
 use fosssim_model::assignments::Assignment;
 
 mod forces;
@@ -82,35 +79,19 @@ fn a_stage_of_which_a_trace_shows_something_is_not_empty() {
     assert!(told.iter().all(|one| !one.is_unfinished() && one.key != "failsafe-empty"), "{told:#?}");
 }
 
-/// Reads no more at a time than a record has.
-struct Slowly<'a>(&'a [u8]);
-
-impl std::io::Read for Slowly<'_> {
-    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
-        let count = buffer.len().min(64);
-        self.0.read(&mut buffer[..count])
-    }
-}
-
-/// Where a trace is too long to be kept, its wrong steps are, and are explained.
+/// Of a trace that is too long to be kept the beginning is explained, and nobody is told that it is too short.
 #[test]
-fn mistakes_beyond_what_is_kept_are_explained() {
+fn a_trace_that_was_kept_in_part_is_explained() {
     let row = student::find("pe-radius-not-squared").expect("it is known");
     let (_, scene) =
         probe_scenes(Assignment::T2M2).into_iter().find(|(name, _)| name == "edges-struck").expect("a probe scene");
     let trace = student::trace(&scene, Student::new(Some(row.mistake))).expect("it comes to an end");
-    let options = Options { threads: 1, fair: true, ..Options::default() };
-    let kept = |most: usize| {
-        let keeper = TraceKeeper::new(&scene, most);
-        let outcome = keeper.judge(Slowly(&trace), &options, &mut ());
-        assert!(outcome.stop.is_none());
-        keeper.into_kept()
+    let explained = |most: usize| {
+        let mut kept = KeptTrace::new(most);
+        std::io::copy(&mut kept.reader(&trace[..]), &mut std::io::sink()).expect("read");
+        explain_kept(&scene, &kept).into_iter().map(|one| one.key).collect::<Vec<_>>()
     };
-    for most in [trace.len() / 4, LONGEST as usize] {
-        let kept = kept(most);
-        assert_eq!(kept.is_whole(), most > trace.len());
-        let told = explain_kept(&kept);
-        assert_eq!(told.first().map(|one| one.key.as_str()), Some(row.id), "{told:#?}");
-    }
-    assert!(explain_kept(&kept(0)).is_empty());
+    assert_eq!(explained(trace.len()), [row.id]);
+    assert_eq!(explained(trace.len() * 3 / 4), [row.id]);
+    assert!(explained(0).is_empty());
 }

@@ -44,7 +44,7 @@ fn told(scene: &Scene, frames: Vec<LenientFrame>) -> NotFinite {
     let all = explain(scene, &trace);
     // Nothing but that: the steps before are right, and what follows from NaN speaks for nothing.
     let [Explanation { about: About::NotFinite(found), .. }] = &all[..] else { panic!("{all:#?}") };
-    assert_eq!(of_source(scene, Source::whole(&trace[..]))[0].about, all[0].about);
+    assert_eq!(of_source(scene, Source::whole(&trace))[0].about, all[0].about);
     *found
 }
 
