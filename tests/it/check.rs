@@ -227,7 +227,9 @@ fn every_cut_ends_with_a_report() {
         let run = workspace.run(["check", "scene.xml", "trace.bin", "--format", "json"]);
         let json: Value = serde_json::from_slice(&run.stdout).unwrap_or_else(|_| panic!("{length}: {}", run.shown()));
         let placed = json["problem"]["offset"].is_u64() || json["damage"]["offset"].is_u64();
-        assert!(placed && run.err().is_empty(), "{length}: {}", run.shown());
+        // One length is that of a trace of states alone, which a remark tells.
+        let only_remark = run.err().is_empty() || run.err().contains("positions and velocities only");
+        assert!(placed && only_remark, "{length}: {}", run.shown());
     }
 }
 
