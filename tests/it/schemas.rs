@@ -30,7 +30,7 @@ fn schemas_are_those_of_the_types() {
         .collect();
     assert!(
         differing.is_empty(),
-        "{differing:?}: make them again by `cargo run -p fosssim-report --features schema --example schemas -- schemas`"
+        "{differing:?}: make them again by `cargo run -p fosssim-report --example schemas -- schemas`"
     );
 }
 

@@ -4,8 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 /// The rule of the original that makes the verdicts differ; the original's failures come first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Cause {
     /// Parity fails: coefficients are compared at an absolute bound, whatever their size.

@@ -4,8 +4,7 @@ use fosssim_model::sim::{Pair, Pass};
 use serde::{Deserialize, Serialize};
 
 /// The verdict of the fair rules.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FairVerdict {
     /// Nothing is wrong.
@@ -18,8 +17,7 @@ pub enum FairVerdict {
 }
 
 /// Why a trace is refused as a whole.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FairRefusal {
     /// It can't be read to its end.
@@ -33,8 +31,7 @@ pub enum FairRefusal {
 }
 
 /// Which of the two accepted forms of the particle-edge approach polynomial a trace uses.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Form {
     /// Nothing tells them apart.
@@ -47,8 +44,7 @@ pub enum Form {
 }
 
 /// A decision that round-off may flip, and that the trace has the other way.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Borderline {
     /// The step, from 1.
     pub step: u32,
@@ -61,24 +57,23 @@ pub struct Borderline {
 }
 
 /// The largest shares of their tolerances that were used by what is right, 0 to 1; 0 where nothing differed.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Shares {
     /// Polynomial coefficients.
     #[serde(rename = "coefficients", with = "fosssim_num::written")]
-    #[cfg_attr(feature = "schema", schemars(with = "fosssim_num::written::Number"))]
+    #[schemars(with = "fosssim_num::written::Number")]
     pub coefficient: f64,
     /// Contact normals.
     #[serde(rename = "normals", with = "fosssim_num::written")]
-    #[cfg_attr(feature = "schema", schemars(with = "fosssim_num::written::Number"))]
+    #[schemars(with = "fosssim_num::written::Number")]
     pub normal: f64,
     /// Positions.
     #[serde(rename = "positions", with = "fosssim_num::written")]
-    #[cfg_attr(feature = "schema", schemars(with = "fosssim_num::written::Number"))]
+    #[schemars(with = "fosssim_num::written::Number")]
     pub position: f64,
     /// Velocities.
     #[serde(rename = "velocities", with = "fosssim_num::written")]
-    #[cfg_attr(feature = "schema", schemars(with = "fosssim_num::written::Number"))]
+    #[schemars(with = "fosssim_num::written::Number")]
     pub velocity: f64,
 }
 

@@ -7,8 +7,7 @@ use fosssim_num::polynomial::Polynomial;
 use serde::{Deserialize, Serialize};
 
 /// The kinds of findings, in the order in which reports list them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FindingKind {
     /// A collision of the reference is not in the trace.
@@ -385,23 +384,22 @@ pub enum FindingPlace {
 
 /// A coefficient as the original compares it: rescaled by sums of moduli, so that one wrong coefficient moves all
 /// others.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Rescaled {
     /// The highest power of t whose coefficient is beyond the original's bound.
     #[serde(rename = "coefficient")]
     pub power: usize,
     /// The reference's coefficient, rescaled to the trace's magnitude.
     #[serde(with = "fosssim_num::written")]
-    #[cfg_attr(feature = "schema", schemars(with = "fosssim_num::written::Number"))]
+    #[schemars(with = "fosssim_num::written::Number")]
     pub expected: f64,
     /// The trace's coefficient.
     #[serde(with = "fosssim_num::written")]
-    #[cfg_attr(feature = "schema", schemars(with = "fosssim_num::written::Number"))]
+    #[schemars(with = "fosssim_num::written::Number")]
     pub actual: f64,
     /// Their distance.
     #[serde(with = "fosssim_num::written")]
-    #[cfg_attr(feature = "schema", schemars(with = "fosssim_num::written::Number"))]
+    #[schemars(with = "fosssim_num::written::Number")]
     pub residual: f64,
 }
 
@@ -439,8 +437,7 @@ pub struct PolynomialPlace {
 }
 
 /// The meaning of a detection polynomial that is positive (collisions.md 2).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
     /// The objects overlap (the distance is below the sum of radii).

@@ -12,8 +12,7 @@ use serde::{Deserialize, Serialize};
 use std::{ops::Deref, time::Duration};
 
 /// The visibility of a group's results, in Gradescope's words.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Visibility {
     /// Everybody, at once.
@@ -172,8 +171,8 @@ impl Grade {
 }
 
 /// An entry of a class's folder that is no submission, and why: nobody is left out in silence.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct PassedOver {
     /// Its name, as that of a submission.
     pub name: String,

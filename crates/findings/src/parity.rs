@@ -5,8 +5,7 @@ use fosssim_num::tolerances::{PARITY_ACCUMULATED, PARITY_MAXIMUM};
 use serde::{Deserialize, Serialize};
 
 /// The original's overall verdict.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Overall {
     /// All five conditions hold.
@@ -19,24 +18,23 @@ pub enum Overall {
 }
 
 /// The four residuals (oracle-behaviour.md 6.3), in scene units.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Residuals {
     /// Sum of all position residuals.
     #[serde(rename = "accumulated_position_residual", with = "fosssim_num::written")]
-    #[cfg_attr(feature = "schema", schemars(with = "fosssim_num::written::Number"))]
+    #[schemars(with = "fosssim_num::written::Number")]
     pub accumulated_position: f64,
     /// Sum of all velocity residuals.
     #[serde(rename = "accumulated_velocity_residual", with = "fosssim_num::written")]
-    #[cfg_attr(feature = "schema", schemars(with = "fosssim_num::written::Number"))]
+    #[schemars(with = "fosssim_num::written::Number")]
     pub accumulated_velocity: f64,
     /// Largest position residual; NaN never raises it.
     #[serde(rename = "maximum_position_residual", with = "fosssim_num::written")]
-    #[cfg_attr(feature = "schema", schemars(with = "fosssim_num::written::Number"))]
+    #[schemars(with = "fosssim_num::written::Number")]
     pub maximum_position: f64,
     /// Largest velocity residual; NaN never raises it.
     #[serde(rename = "maximum_velocity_residual", with = "fosssim_num::written")]
-    #[cfg_attr(feature = "schema", schemars(with = "fosssim_num::written::Number"))]
+    #[schemars(with = "fosssim_num::written::Number")]
     pub maximum_velocity: f64,
 }
 

@@ -6,8 +6,7 @@ use serde::{Deserialize, Serialize};
 pub const MAX_COEFFICIENTS: usize = 6;
 
 /// A real polynomial, **highest power first**, after removal of the small leading coefficients.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(into = "Vec<Number>", try_from = "Vec<Number>")]
 pub struct Polynomial {
     length: u8,

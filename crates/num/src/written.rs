@@ -4,7 +4,6 @@
 //! of numbers say `#[serde(with = "fosssim_num::written")]`.
 use super::{printed::general, vector::Vec2};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::DeserializeOwned, de::Error};
-#[cfg(feature = "schema")]
 use std::borrow::Cow;
 
 /// A number in its serialised form: `nan`, `-nan`, `inf` and `-inf` are texts.
@@ -35,7 +34,6 @@ impl<'de> Deserialize<'de> for Number {
     }
 }
 
-#[cfg(feature = "schema")]
 impl schemars::JsonSchema for Number {
     fn schema_name() -> Cow<'static, str> {
         "Number".into()

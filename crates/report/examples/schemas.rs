@@ -1,5 +1,5 @@
 //! Writes the schemas of the JSON documents into a folder:
-//! `cargo run -p fosssim-report --features schema --example schemas -- schemas`.
+//! `cargo run -p fosssim-report --example schemas -- schemas`.
 #![forbid(unsafe_code)]
 use std::{env, fs, path::PathBuf};
 

@@ -316,11 +316,11 @@ pub(crate) fn polynomial(coefficients: &[f64]) -> String {
 
 /// One detection call: what the reference computes from the motion of a pair within a step. Times are fractions of the
 /// step.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+#[derive(Serialize, schemars::JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub(crate) struct DetectView<'a> {
     /// The version of this shape.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = DETECT_SCHEMA)))]
+    #[schemars(extend("const" = DETECT_SCHEMA))]
     schema: u32,
     /// Where in a scene's run the pair was looked at; null when its numbers were typed.
     place: Option<PlaceView<'a>>,
@@ -342,8 +342,8 @@ pub(crate) struct DetectView<'a> {
 }
 
 /// A place in a scene's run.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+#[derive(Serialize, schemars::JsonSchema)]
+#[schemars(deny_unknown_fields)]
 struct PlaceView<'a> {
     /// The scene as typed.
     scene: &'a str,
@@ -364,8 +364,8 @@ struct PlaceView<'a> {
 }
 
 /// The motion of a pair.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+#[derive(Serialize, schemars::JsonSchema)]
+#[schemars(deny_unknown_fields)]
 struct MotionView {
     /// The centres of both particles; the particle's centre and the edge's ends; or the particle's centre.
     points: Vec<PointView>,
@@ -377,8 +377,8 @@ struct MotionView {
 }
 
 /// A point that moves.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+#[derive(Serialize, schemars::JsonSchema)]
+#[schemars(deny_unknown_fields)]
 struct PointView {
     /// Where it is at the start of the step.
     start: [Number; 2],
@@ -387,8 +387,8 @@ struct PointView {
 }
 
 /// A half-plane.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+#[derive(Serialize, schemars::JsonSchema)]
+#[schemars(deny_unknown_fields)]
 struct HalfPlaneView {
     /// A point on its boundary.
     point: [Number; 2],
@@ -397,8 +397,8 @@ struct HalfPlaneView {
 }
 
 /// A polynomial, its zeros, and where it is positive.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+#[derive(Serialize, schemars::JsonSchema)]
+#[schemars(deny_unknown_fields)]
 struct CurveView {
     /// Its meaning when it is positive.
     role: Role,
@@ -413,8 +413,8 @@ struct CurveView {
 }
 
 /// The decision that follows from the polynomials of a pair.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+#[derive(Serialize, schemars::JsonSchema)]
+#[schemars(deny_unknown_fields)]
 struct AnswerView {
     /// Where all polynomials are positive: intervals of time, sorted and apart.
     positive: Vec<[Number; 2]>,
@@ -427,8 +427,8 @@ struct AnswerView {
 }
 
 /// The right approach polynomial and its answer.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+#[derive(Serialize, schemars::JsonSchema)]
+#[schemars(deny_unknown_fields)]
 struct RightApproachView {
     /// The polynomial.
     polynomial: CurveView,

@@ -167,11 +167,11 @@ fn indented(explanations: &[Explanation]) -> String {
 }
 
 /// The likely mistakes of the program that left one or several traces.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+#[derive(Serialize, schemars::JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub(crate) struct DiagnosisView<'a> {
     /// The version of this shape.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = SCHEMA)))]
+    #[schemars(extend("const" = SCHEMA))]
     schema: u32,
     /// Whether the fair rules accept every trace.
     accepted: bool,
@@ -187,8 +187,8 @@ pub(crate) struct DiagnosisView<'a> {
 }
 
 /// A trace.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+#[derive(Serialize, schemars::JsonSchema)]
+#[schemars(deny_unknown_fields)]
 struct CaseView<'a> {
     /// Its scene.
     scene: &'a str,

@@ -140,8 +140,7 @@ fn list(values: &[f64]) -> String {
 }
 
 /// An explanation in JSON: its key and its evidence, with sentences.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, schemars::JsonSchema)]
 pub struct ExplanationView {
     /// A stable key.
     pub key: String,
@@ -160,8 +159,7 @@ pub struct ExplanationView {
 }
 
 /// An example in JSON.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, schemars::JsonSchema)]
 pub struct ExampleView {
     /// The step, from 1.
     pub step: u32,
@@ -171,11 +169,11 @@ pub struct ExampleView {
     pub given: Vec<ExampleValue>,
     /// The expected result.
     #[serde(with = "fosssim_num::written")]
-    #[cfg_attr(feature = "schema", schemars(with = "Vec<crate::view::Number>"))]
+    #[schemars(with = "Vec<crate::view::Number>")]
     pub expected: Vec<f64>,
     /// The actual result.
     #[serde(with = "fosssim_num::written")]
-    #[cfg_attr(feature = "schema", schemars(with = "Vec<crate::view::Number>"))]
+    #[schemars(with = "Vec<crate::view::Number>")]
     pub actual: Vec<f64>,
 }
 

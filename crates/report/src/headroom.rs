@@ -85,11 +85,11 @@ pub fn json(measured: &[Measured]) -> String {
 
 /// The room that the original's rules leave in scenes: parity judges the reference's own traces while all lengths are
 /// doubled again and again.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+#[derive(Serialize, schemars::JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub(crate) struct HeadroomView {
     /// The version of this shape.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = SCHEMA)))]
+    #[schemars(extend("const" = SCHEMA))]
     schema: u32,
     /// Lengths were multiplied by powers of two up to this.
     largest_factor: u64,
@@ -102,8 +102,8 @@ pub(crate) struct HeadroomView {
 }
 
 /// The room in a scene.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+#[derive(Serialize, schemars::JsonSchema)]
+#[schemars(deny_unknown_fields)]
 struct SceneView {
     /// The scene as typed.
     scene: String,

@@ -27,7 +27,6 @@ pub mod number;
 pub mod page;
 pub mod problems;
 pub mod scene;
-#[cfg(feature = "schema")]
 pub mod schemas;
 pub mod simulate;
 pub mod style;

@@ -38,8 +38,7 @@ pub fn numbers(values: &[f64]) -> Vec<Number> {
 }
 
 /// A polynomial of a step.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, schemars::JsonSchema)]
 pub struct PolynomialView {
     /// Its number in the frame's list, from 0.
     pub index: usize,
@@ -54,8 +53,7 @@ pub struct PolynomialView {
 }
 
 /// A value that a finding compares.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, schemars::JsonSchema)]
 #[serde(untagged)]
 pub enum Value {
     /// A number.
@@ -65,7 +63,7 @@ pub enum Value {
     /// A vector.
     Point(
         #[serde(with = "fosssim_num::written")]
-        #[cfg_attr(feature = "schema", schemars(with = "[Number; 2]"))]
+        #[schemars(with = "[Number; 2]")]
         [f64; 2],
     ),
     /// The coefficients of a polynomial.
@@ -75,8 +73,7 @@ pub enum Value {
 }
 
 /// A finding in a row of its own: the same fields for every kind.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, schemars::JsonSchema)]
 pub struct FindingView {
     /// The step, from 1; 0 is the first record (fair rules).
     pub step: u32,

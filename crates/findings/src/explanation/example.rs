@@ -80,14 +80,13 @@ pub enum StepRecord {
 }
 
 /// An input of an example.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ExampleValue {
     /// Which.
     #[serde(rename = "name")]
     pub input: Input,
     /// Its components.
     #[serde(with = "fosssim_num::written")]
-    #[cfg_attr(feature = "schema", schemars(with = "Vec<fosssim_num::written::Number>"))]
+    #[schemars(with = "Vec<fosssim_num::written::Number>")]
     pub value: Vec<f64>,
 }

@@ -2,8 +2,7 @@
 use serde::{Deserialize, Serialize};
 
 /// An input of a detection; its name in JSON is its letter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Input {
     /// Where the first body is at the start of the step; of an edge and a particle, the particle.

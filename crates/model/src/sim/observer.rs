@@ -181,8 +181,7 @@ pub enum Resume {
 }
 
 /// One detection pass over all pairs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(from = "PassForm", into = "PassForm")]
 pub struct Pass {
     /// Which part of the handling asks.
@@ -211,8 +210,7 @@ pub enum Stage {
 }
 
 /// A pass in its serialised form: the round is 0 in stages that have one pass.
-#[derive(Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Serialize, Deserialize, schemars::JsonSchema)]
 struct PassForm {
     /// Number of the pass within the step, from 0.
     index: u32,
@@ -222,8 +220,7 @@ struct PassForm {
     round: u32,
 }
 
-#[derive(Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 enum StageName {
     Simple,

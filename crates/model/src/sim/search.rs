@@ -14,8 +14,7 @@ pub enum RootSearch {
 }
 
 /// Counts of the root searches so far.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, schemars::JsonSchema)]
 pub struct SearchCounts {
     /// Detection calls.
     pub calls: u64,

@@ -16,8 +16,7 @@ pub struct Frame {
 }
 
 /// An impulse as a trace holds it: nothing about it is checked.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(try_from = "ImpulseForm", into = "ImpulseForm")]
 pub struct LoggedImpulse {
     /// 0 particle-particle, 1 particle-edge, 2 particle-half-plane; anything else in a damaged trace.
@@ -33,8 +32,7 @@ pub struct LoggedImpulse {
 }
 
 /// The objects that a logged impulse names.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ImpulsePair {
     /// The name of the kind; `unknown` in a damaged trace.
     kind: Cow<'static, str>,
@@ -48,18 +46,17 @@ pub struct ImpulsePair {
 }
 
 /// A logged impulse in its serialised form, which is that of an [`Impulse`].
-#[derive(Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Serialize, Deserialize, schemars::JsonSchema)]
 struct ImpulseForm {
     /// The objects that collide.
     pair: ImpulsePair,
     /// From the first object to the second, not normalised.
     #[serde(with = "fosssim_num::written")]
-    #[cfg_attr(feature = "schema", schemars(with = "[fosssim_num::written::Number; 2]"))]
+    #[schemars(with = "[fosssim_num::written::Number; 2]")]
     normal: Vec2,
     /// The time of impact as a fraction of the step.
     #[serde(with = "fosssim_num::written")]
-    #[cfg_attr(feature = "schema", schemars(with = "fosssim_num::written::Number"))]
+    #[schemars(with = "fosssim_num::written::Number")]
     time: f64,
 }
 

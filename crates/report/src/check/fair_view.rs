@@ -7,8 +7,8 @@ use fosssim_findings::{
 use serde::Serialize;
 
 /// The fair rules' judgement.
-#[derive(Debug, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub(super) struct FairView<'a> {
     /// The verdict; none where judging was cut short, and nothing was wrong so far.
     verdict: FairVerdict,
@@ -22,7 +22,7 @@ pub(super) struct FairView<'a> {
     findings: Vec<CountedView>,
     /// Least and greatest factor of the polynomials; null where it is 1.
     #[serde(with = "fosssim_num::written")]
-    #[cfg_attr(feature = "schema", schemars(with = "Option<[crate::view::Number; 2]>"))]
+    #[schemars(with = "Option<[crate::view::Number; 2]>")]
     factor: Option<[f64; 2]>,
     /// Which accepted form the approach polynomial of a particle and an edge has.
     approach_form: Form,
@@ -33,11 +33,11 @@ pub(super) struct FairView<'a> {
 }
 
 /// All findings of one kind: how many, and the first.
-#[derive(Debug, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub(super) struct CountedView {
     /// Their number.
-    #[cfg_attr(feature = "schema", schemars(range(min = 1)))]
+    #[schemars(range(min = 1))]
     count: u64,
     #[serde(flatten)]
     first: FindingView,
@@ -51,8 +51,8 @@ impl CountedView {
 }
 
 /// Borderline decisions.
-#[derive(Debug, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
+#[schemars(deny_unknown_fields)]
 struct BorderlineView<'a> {
     /// Their number.
     count: u64,
@@ -61,8 +61,8 @@ struct BorderlineView<'a> {
 }
 
 /// The reason why the two rule books differ.
-#[derive(Debug, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub(crate) struct CauseView {
     /// The rule of the original that is the cause.
     key: Cause,

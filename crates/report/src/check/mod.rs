@@ -181,11 +181,11 @@ fn messages(outcome: &Outcome) -> BTreeMap<&'static str, u64> {
 
 /// The report on one trace. Fields may be added within a version of the shape; their meanings do not change. Numbers
 /// that are not finite are the texts nan, -nan, inf and -inf.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+#[derive(Serialize, schemars::JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub(crate) struct CheckView<'a> {
     /// The version of this shape.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = CHECK_SCHEMA)))]
+    #[schemars(extend("const" = CHECK_SCHEMA))]
     schema: u32,
     /// The scene as typed.
     scene: &'a str,
@@ -197,7 +197,7 @@ pub(crate) struct CheckView<'a> {
     official: Book,
     /// By the official book. Undecided: nothing is wrong so far, but judging was given up. Bad trace: it could not be
     /// read to the scene's last step; by the fair rules also: it is damaged, or goes on after its last record.
-    #[cfg_attr(feature = "schema", schemars(extend("enum" = Ruling::ALL.map(Ruling::words))))]
+    #[schemars(extend("enum" = Ruling::ALL.map(Ruling::words)))]
     verdict: &'static str,
     /// The reason for the verdict, in one line.
     summary: String,
@@ -226,7 +226,7 @@ pub(crate) struct CheckView<'a> {
     /// Steps with at least one finding of the official book.
     wrong_steps: u64,
     /// The numbers of these steps, from 1; the first 1000.
-    #[cfg_attr(feature = "schema", schemars(length(max = LISTED), inner(range(min = 1))))]
+    #[schemars(length(max = LISTED), inner(range(min = 1)))]
     wrong_step_numbers: Vec<u32>,
     /// With --all the wrong steps, the first 1000, with --step those asked for; null without both. By the official
     /// book, or by the fair rules where the official book has found nothing.
@@ -243,8 +243,8 @@ pub(crate) struct CheckView<'a> {
 }
 
 /// The original's judgement.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+#[derive(Serialize, schemars::JsonSchema)]
+#[schemars(deny_unknown_fields)]
 struct Parity {
     /// Its verdict; none where grading did not come to its end.
     overall: Overall,
@@ -257,8 +257,8 @@ struct Parity {
 }
 
 /// Why judging stopped early.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+#[derive(Serialize, schemars::JsonSchema)]
+#[schemars(deny_unknown_fields)]
 struct StopView {
     /// The reason.
     kind: StopKind,
@@ -267,8 +267,7 @@ struct StopView {
 }
 
 /// The reason why judging stopped early.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Serialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 enum StopKind {
     /// A record's state can't be read to its end.
@@ -286,8 +285,7 @@ enum StopKind {
 }
 
 /// A place in a trace where it can't be read as it should.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Serialize, schemars::JsonSchema)]
 struct DamageView {
     /// From 1; 0 is the initial record.
     step: u32,

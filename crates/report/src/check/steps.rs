@@ -198,8 +198,8 @@ fn block(check: &Check<'_>, step: &Step, style: Style) -> String {
 }
 
 /// A step with its findings.
-#[derive(Debug, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub(super) struct WrongStepView {
     /// From 1; 0 is the first record.
     step: u32,

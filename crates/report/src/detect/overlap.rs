@@ -118,8 +118,8 @@ const fn not(is: bool) -> &'static str {
 }
 
 /// A pair at the end of a step, as simple collision handling looks at it.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+#[derive(Serialize, schemars::JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub(super) struct OverlapView {
     /// The nearest point of an edge, from 0 at its first end to 1 at its second; null without an edge.
     alpha: Option<Number>,

@@ -2,7 +2,6 @@
 use super::{super::explain::ExplanationView, phrases::NOT_GRADED, speed_words};
 use crate::foreign::{plain, printed};
 use crate::{check::CauseView, view::document, words};
-#[cfg(feature = "schema")]
 use fosssim_findings::Verdict;
 use fosssim_findings::{
     Book, Grade, GroupGrade, PassedOver, Rules, SceneGrade, Visibility,
@@ -16,11 +15,11 @@ const SCHEMA: u32 = 4;
 
 /// The document of `grade --format json`. The number in `schema` rises when a reader of the old one would misunderstand
 /// the new one.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+#[derive(Serialize, schemars::JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub(crate) struct GradeDocument {
     /// The version of this shape.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = SCHEMA)))]
+    #[schemars(extend("const" = SCHEMA))]
     schema: u32,
     /// The version of the program.
     version: &'static str,
@@ -32,8 +31,8 @@ pub(crate) struct GradeDocument {
 }
 
 /// The grade of a submission.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+#[derive(Serialize, schemars::JsonSchema)]
+#[schemars(deny_unknown_fields)]
 struct GradeView {
     /// The submission's name.
     submission: String,
@@ -44,19 +43,19 @@ struct GradeView {
     /// The book that gives verdicts and points.
     official: Book,
     /// The worst verdict of all scenes.
-    #[cfg_attr(feature = "schema", schemars(extend("enum" = Verdict::ALL.map(Verdict::words))))]
+    #[schemars(extend("enum" = Verdict::ALL.map(Verdict::words)))]
     verdict: &'static str,
     /// The same in short.
-    #[cfg_attr(feature = "schema", schemars(extend("enum" = Verdict::ALL.map(Verdict::code))))]
+    #[schemars(extend("enum" = Verdict::ALL.map(Verdict::code)))]
     code: &'static str,
     /// Null when the grader failed or was stopped: that is nobody's zero.
-    #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
+    #[schemars(range(min = 0.0))]
     points: Option<f64>,
     /// Points that can be reached.
-    #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
+    #[schemars(range(min = 0.0))]
     max_points: f64,
     /// The wall time of all runs together.
-    #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
+    #[schemars(range(min = 0.0))]
     wall_seconds: f64,
     /// Layers of the sandbox that were active.
     sandbox: Vec<String>,
@@ -70,15 +69,15 @@ struct GradeView {
     /// The mistake that explains most wrong scenes, where several have explanations.
     likely_mistake: Option<ExplanationView>,
     /// Up to three mistakes that explain the wrong scenes together, the one that explains most first.
-    #[cfg_attr(feature = "schema", schemars(length(max = 3)))]
+    #[schemars(length(max = 3))]
     likely_mistakes: Vec<ExplanationView>,
     /// The groups in the suite's order.
     groups: Vec<GroupView>,
 }
 
 /// The scenes in which a program fails.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+#[derive(Serialize, schemars::JsonSchema)]
+#[schemars(deny_unknown_fields)]
 struct LocatedView {
     /// The whole in words.
     text: String,
@@ -95,8 +94,8 @@ struct LocatedView {
 }
 
 /// The build step's end.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+#[derive(Serialize, schemars::JsonSchema)]
+#[schemars(deny_unknown_fields)]
 struct BuildView {
     /// Whether there is a program.
     succeeded: bool,
@@ -107,21 +106,21 @@ struct BuildView {
 }
 
 /// A group of scenes.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+#[derive(Serialize, schemars::JsonSchema)]
+#[schemars(deny_unknown_fields)]
 struct GroupView {
     /// Its name.
     name: String,
     /// The readers who see it.
     visibility: Visibility,
     /// The worst verdict of its scenes.
-    #[cfg_attr(feature = "schema", schemars(extend("enum" = Verdict::ALL.map(Verdict::words))))]
+    #[schemars(extend("enum" = Verdict::ALL.map(Verdict::words)))]
     verdict: &'static str,
     /// Points reached, those for speed included; null where a scene has none.
-    #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
+    #[schemars(range(min = 0.0))]
     points: Option<f64>,
     /// Points that can be reached.
-    #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
+    #[schemars(range(min = 0.0))]
     max_points: f64,
     /// True where its points count neither in the sum nor in the maximum of the grade; left out elsewhere.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
@@ -134,41 +133,41 @@ struct GroupView {
 }
 
 /// Points for speed.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+#[derive(Serialize, schemars::JsonSchema)]
+#[schemars(deny_unknown_fields)]
 struct SpeedView {
     /// Points reached; null when the grader could not measure.
-    #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
+    #[schemars(range(min = 0.0))]
     points: Option<f64>,
     /// Points that can be reached.
-    #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
+    #[schemars(range(min = 0.0))]
     max_points: f64,
     /// The measurement in words.
     text: String,
     /// The submission's processor time, divided by the reference's: of the least times.
-    #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
+    #[schemars(range(min = 0.0))]
     ratio: Option<f64>,
     /// The least ratio of a round of runs.
-    #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
+    #[schemars(range(min = 0.0))]
     least_ratio: Option<f64>,
     /// The greatest ratio of a round of runs.
-    #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
+    #[schemars(range(min = 0.0))]
     greatest_ratio: Option<f64>,
     /// Rounds of runs.
     runs: u32,
 }
 
 /// A scene of a grade.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(deny_unknown_fields))]
+#[derive(Serialize, schemars::JsonSchema)]
+#[schemars(deny_unknown_fields)]
 struct SceneView {
     /// Its name.
     scene: String,
     /// Its verdict.
-    #[cfg_attr(feature = "schema", schemars(extend("enum" = Verdict::ALL.map(Verdict::words))))]
+    #[schemars(extend("enum" = Verdict::ALL.map(Verdict::words)))]
     verdict: &'static str,
     /// The same in short.
-    #[cfg_attr(feature = "schema", schemars(extend("enum" = Verdict::ALL.map(Verdict::code))))]
+    #[schemars(extend("enum" = Verdict::ALL.map(Verdict::code)))]
     code: &'static str,
     /// The reason for the verdict, in one line.
     summary: String,
@@ -179,20 +178,20 @@ struct SceneView {
     /// Likely mistakes, the likeliest first, as far as hints allow.
     explanations: Vec<ExplanationView>,
     /// Points reached; null when the grader failed, or did not come to run it.
-    #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
+    #[schemars(range(min = 0.0))]
     points: Option<f64>,
     /// Points that can be reached.
-    #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
+    #[schemars(range(min = 0.0))]
     max_points: f64,
     /// Steps that are right.
     right_steps: u32,
     /// Steps of the scene.
     steps: u32,
     /// The processor time of the run.
-    #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
+    #[schemars(range(min = 0.0))]
     cpu_seconds: f64,
     /// The wall time of the run.
-    #[cfg_attr(feature = "schema", schemars(range(min = 0.0)))]
+    #[schemars(range(min = 0.0))]
     wall_seconds: f64,
     /// The most memory that it had; null where that is not known.
     memory_bytes: Option<u64>,

@@ -27,7 +27,6 @@ pub fn json(grades: &[Grade]) -> String {
 pub use class::class;
 pub(crate) use class::hardest;
 pub use csv_table::submissions as csv_of_submissions;
-#[cfg(feature = "schema")]
 pub(crate) use json::GradeDocument;
 pub use json::lines as json_lines;
 pub use passed_over::{not_graded, warn_of};
