@@ -110,7 +110,7 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     all.extend(stage);
     // A stable sort: among equals the known mistake stays first.
     all.sort_by_key(|one| (one.is_unexplained(), !one.is_complete()));
-    let mut all = not_finite::with_end(not_finite, all);
+    all.extend(not_finite);
     all.iter_mut().for_each(|one| one.denies.clone_from(&denies));
     all
 }

@@ -24,7 +24,7 @@ const MANY: usize = 8;
 
 /// The likely mistakes of a program that left several traces, at most three besides stages that are still empty, which
 /// count as one and are told first. `refuted` are keys of mistakes that right traces of the same program speak against.
-/// Where numbers end counts as none, and comes behind the mistakes that are proven.
+/// Where numbers end counts as none, and comes last: it follows from the others.
 ///
 /// A scene alone often can't tell mistakes apart; several together nearly always can.
 #[must_use]
@@ -38,7 +38,7 @@ pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted:
         .map(|list| OpenTrace { symptoms: symptoms(list, &is_refuted), is_covered: false })
         .filter(|trace| !trace.symptoms.is_empty())
         .collect();
-    let wrong: Vec<Vec<Explanation>> =
+    let mut wrong: Vec<Vec<Explanation>> =
         open.iter().map(|trace| trace.symptoms.iter().map(|symptom| symptom.one.clone()).collect()).collect();
     keep_earliest_stage(&mut open);
     let (mut found, mut empty): (Vec<Explanation>, Vec<Explanation>) = (Vec::new(), Vec::new());
@@ -71,15 +71,15 @@ pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted:
         let rows = empty.iter().filter_map(|one| find(&one.key));
         rows.filter(|row| is_formula(row.area)).any(|row| row.kind_of_pair().is_none_or(|kind| kind == subject.kind()))
     };
-    if let Some(head) = wrong_polynomials(&wrong, &found)
-        && !head.subjects().iter().all(is_unwritten)
-    {
+    // A trace of unwritten stages shows no others.
+    wrong.retain(|list| !empty.iter().any(|one| is_named_in(one, list)));
+    if let Some(head) = wrong_polynomials(&wrong, &found, is_unwritten) {
         // The stages behind a wrong formula are wrong because of it.
         found.retain(|one| !one.is_of_stage());
         found.insert(0, head);
     }
     let end = not_finite(&traces).filter(|one| !refuted.contains(&one.key));
-    super::not_finite::with_end(end, unfinished(empty).into_iter().chain(found).collect())
+    unfinished(empty).into_iter().chain(found).chain(end).collect()
 }
 
 /// Where numbers end, in the stage in which they end in most traces.
@@ -102,7 +102,9 @@ fn zeros(one: &Explanation) -> Vec<Explanation> {
     let is_zero =
         matches!(&one.about, About::Polynomials { found: OfPolynomials::Guess(Guess::List(ListGuess::AllZero)), .. });
     let subjects = one.subjects();
-    let is_all = |kind: &PairKind| Subject::of(*kind).iter().all(|subject| subjects.contains(subject));
+    // The approach of particles and edges is supplied.
+    let is_theirs = |subject: &&Subject| **subject != Subject::EdgeApproach;
+    let is_all = |kind: &PairKind| Subject::of(*kind).iter().filter(is_theirs).all(|one| subjects.contains(one));
     let kinds = PairKind::ALL.into_iter().filter(|kind| is_zero && is_all(kind));
     let row = |kind: PairKind| {
         let of_kind = |row: &&Row| row.kind_of_pair() == Some(kind) && row.id.ends_with("-zero");
@@ -137,12 +139,17 @@ fn unfinished(empty: Vec<Explanation>) -> Vec<Explanation> {
 
 /// The polynomials that are wrong in most traces, where no exact form holds in most and what comes first says nothing
 /// of them: their place, and what most traces say of them without an exact form.
-fn wrong_polynomials(traces: &[Vec<Explanation>], found: &[Explanation]) -> Option<Explanation> {
+fn wrong_polynomials(
+    traces: &[Vec<Explanation>],
+    found: &[Explanation],
+    is_unwritten: impl Fn(&Subject) -> bool,
+) -> Option<Explanation> {
     let mut wrong: BTreeMap<Subject, usize> = BTreeMap::new();
     for list in traces {
         let of_polynomials = list.iter().filter(|one| matches!(one.about, About::Polynomials { .. }));
         let subjects: BTreeSet<Subject> = of_polynomials.flat_map(Explanation::subjects).collect();
-        subjects.into_iter().for_each(|subject| *wrong.entry(subject).or_default() += 1);
+        let subjects = subjects.into_iter().filter(|one| !is_unwritten(one));
+        subjects.for_each(|subject| *wrong.entry(subject).or_default() += 1);
     }
     let most = wrong.values().copied().max()?;
     let named_in = |one: &Explanation| traces.iter().filter(|list| is_named_in(one, list)).count();
@@ -213,10 +220,15 @@ fn keep_earliest_stage(open: &mut Vec<OpenTrace>) {
     let all = || open.iter().flat_map(|trace| &trace.symptoms).map(|symptom| &symptom.one);
     let Some(earliest) = all().filter_map(Explanation::stage).min() else { return };
     let is_of_it = |one: &Explanation| one.stage() == Some(earliest);
-    let observed = open.iter().filter(|trace| trace.symptoms.iter().any(|one| is_of_it(&one.one))).count();
+    let kind_of = |one: &Explanation| if let About::Stage(fault) = &one.about { fault.kind() } else { None };
+    let observed = |row: &Row| {
+        let is_of_kind = |one: &Explanation| row.kind_of_pair().is_none_or(|kind| kind_of(one) == Some(kind));
+        let shows = |trace: &&OpenTrace| trace.symptoms.iter().any(|one| is_of_it(&one.one) && is_of_kind(&one.one));
+        open.iter().filter(shows).count()
+    };
     let late = CATALOGUE.iter().filter(|row| stage_of(row.area).is_some_and(|stage| stage >= earliest));
     let explained = |row: &Row| open.iter().filter(|trace| trace.allows_wholly(row.id)).count();
-    let weak: Vec<&str> = late.filter(|row| explained(row) < observed).map(|row| row.id).collect();
+    let weak: Vec<&str> = late.filter(|row| explained(row) < observed(row)).map(|row| row.id).collect();
     // An explanation that says what is wrong with the stage speaks for those that only say that something is.
     let is_said = all().any(|one| is_of_it(one) && !one.is_vague());
     // In another order, polynomials of one pair stand where those of another are looked for.

@@ -167,13 +167,3 @@ fn pair_at(scene: &Scene, index: usize) -> Option<(usize, Pair)> {
         index < first
     })
 }
-
-/// Explanations with the one that says where numbers end: behind the mistakes that are proven, whose mending comes first,
-/// and before all that is only seen.
-pub(super) fn with_end(end: Option<Explanation>, mut found: Vec<Explanation>) -> Vec<Explanation> {
-    if let Some(end) = end {
-        let proven = found.iter().take_while(|one| one.is_proven() || one.is_unfinished()).count();
-        found.insert(proven, end);
-    }
-    found
-}

@@ -1,5 +1,5 @@
 //! One trace's own explanations, in the light of what all traces of its program say together.
-use super::{About, Explanation, is_named_in, naming::as_row, not_finite::with_end};
+use super::{About, Explanation, is_named_in, naming::as_row};
 use crate::student::find;
 
 /// The explanations of one trace, once all traces of its program have been heard.
@@ -17,13 +17,12 @@ pub struct Settled {
 #[must_use]
 pub fn settled(own: &[Explanation], likely: &[Explanation], refuted: &[String]) -> Settled {
     let of_all = likely.iter().filter(|one| !one.is_not_finite()).flat_map(|one| agreed(own, one));
-    let explanations: Vec<Explanation> = of_all.collect();
+    let mut explanations: Vec<Explanation> = of_all.collect();
     if explanations.is_empty() {
         return Settled { explanations: own.iter().filter_map(|one| without(one, refuted)).collect(), agreed: 0 };
     }
     // Where numbers end each trace says for itself.
-    let end = own.iter().find(|one| one.is_not_finite()).cloned();
-    let explanations = with_end(end, explanations);
+    explanations.extend(own.iter().find(|one| one.is_not_finite()).cloned());
     Settled { agreed: explanations.len(), explanations }
 }
 

@@ -58,14 +58,14 @@ fn stops(world: &World, zone: &Zone) -> bool {
     let fixed = student.holds(Place::FixedHolds, asked.into_iter().any(|particle| world.fixed(particle)));
     let half_plane = student.holds(Place::HalfPlaneHolds, zone.half_plane);
     let half_plane = half_plane && !student.makes(Mistake::FailsafeHalfPlaneForgotten);
-    match student.mistake_among(STOPS) {
-        Some(Mistake::FailsafeFixedForgotten) => half_plane,
-        Some(Mistake::FailsafeAllFixedOnly) => {
-            half_plane || zone.particles.iter().all(|&particle| world.fixed(particle))
+    let fixed = match () {
+        () if student.makes(Mistake::FailsafeFixedForgotten) => false,
+        () if student.makes(Mistake::FailsafeAllFixedOnly) => {
+            zone.particles.iter().all(|&particle| world.fixed(particle))
         }
-        Some(Mistake::FailsafeAlwaysStops) => true,
-        _ => half_plane || fixed,
-    }
+        () => fixed,
+    };
+    half_plane || fixed || student.makes(Mistake::FailsafeAlwaysStops)
 }
 
 /// The particles of a zone in the order in which a loop goes through them.

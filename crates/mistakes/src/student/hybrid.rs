@@ -48,7 +48,7 @@ pub fn handle(
 fn geometric(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLog) -> Result<(), StepFailure> {
     let student = world.student;
     let prediction = state.clone();
-    log.prediction = Some(prediction.x.clone());
+    log.prediction = None;
     let contacts = student.items(Place::FirstZoneContacts, detection::pass(world, q_start, &state.x, log)?);
     let mut zones = zones::merge(student, contacts.iter().map(|contact| zones::zone_of(world, contact)).collect());
     let most_rounds = if let Some(Change::GeometricRounds(most)) = student.change { *most } else { u32::MAX };
@@ -93,10 +93,8 @@ fn geometric(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLo
         };
         next.extend(found);
         let next = zones::merge(student, next);
-        // Without the old zones the list may change for ever, so that program gives up when nothing collides.
         let same = student.holds(Place::ZonesAreTheSame, zones::equal(student, &zones, &next));
-        let done = same || next.is_empty() || round > MOST_ROUNDS;
-        if done {
+        if same || round > MOST_ROUNDS {
             if student.makes(Mistake::GeometricExtraPass) {
                 detection::pass(world, q_start, &state.x, log)?;
             }

@@ -75,7 +75,9 @@ pub fn likely_mistake(grade: &Grade) -> Option<Explanation> {
 pub fn likely_mistakes(grade: &Grade) -> Vec<(Explanation, usize)> {
     several(grade.scenes().map(|scene| scene.explanations.as_slice()), &grade.refuted)
         .into_iter()
-        .filter(|likely| likely.reproduced > 0 || likely.is_of_stage() || likely.is_not_finite())
+        .filter(|likely| {
+            likely.reproduced > 0 || likely.is_of_stage() || likely.is_not_finite() || likely.is_unexplained()
+        })
         .map(|likely| (likely.clone(), explained_by(grade, &likely)))
         .collect()
 }

@@ -120,11 +120,14 @@ impl GradePage<'_> {
                 let shows = named
                     .iter()
                     .min_by_key(|(scene, card)| telling(scene, card.as_ref(), std::slice::from_ref(&mistake)));
+                let verb = if mistake.is_unexplained() { "In" } else { "Explains" };
+                let forms = words::explanation::forms(&mistake);
                 let _ = writeln!(
                     out,
-                    "<section class=\"card mistake\"><p class=\"lead\">{}</p><p>Explains {explained} of \
+                    "<section class=\"card mistake\"><p class=\"lead\">{}</p>{}<p>{verb} {explained} of \
                     {wrong}.{}</p></section>",
                     text(&words::explanation::what_or(&mistake)),
+                    forms.iter().map(|form| format!("<p>{}</p>", text(form))).collect::<String>(),
                     shows.map_or_else(String::new, |(scene, _)| format!(" Look at it in {}.", link(scene)))
                 );
             }

@@ -18,7 +18,12 @@ rows! {
     Mistake CATALOGUE [Step StepMistake]
     Wrong ParticleParticle {
         ParticleParticleEmpty "pp-empty": "The detection is left empty: it never asks the root finder." => "No polynomial reaches the root finder; overlap (quadratic) and approach (linear) are expected for each pair.";
-        ParticleParticleZero "pp-zero": "The coefficients are left at zero." => "Every coefficient is 0; expected are -d21.d21, -2 x21.d21, (r1 + r2)^2 - x21.x21 and -d21.d21, -x21.d21.";
+        ParticleParticleZero "pp-zero": "The coefficients are left at zero." =>
+            "Every coefficient is 0; expected are -d21.d21, -2 x21.d21, (r1 + r2)^2 - x21.x21 and -d21.d21, -x21.d21.";
+        ParticleParticleReversed "pp-reversed": "The coefficients are handed over lowest power first." =>
+            "Polynomial takes the coefficient of the highest power first; here 1 comes first, then t.";
+        ParticleParticleSwapped "pp-swapped": "The first two polynomials are handed over in the wrong order." =>
+            "Polynomial 2 stands before polynomial 1.";
         ParticleParticleNoTwo "pp-no-two": "The linear coefficient of the overlap lacks a factor." => "t: -x21.d21 stands where -2 x21.d21 belongs.";
         ParticleParticleLinearSign "pp-linear-sign": "The linear coefficient of the overlap has the wrong sign." => "t: 2 x21.d21 stands where -2 x21.d21 belongs.";
         ParticleParticleQuadraticSign "pp-quadratic-sign": "The quadratic coefficient of the overlap has the wrong sign." => "t^2: d21.d21 stands where -d21.d21 belongs.";
@@ -51,7 +56,12 @@ rows! {
     }
     Wrong ParticleEdge {
         ParticleEdgeEmpty "pe-empty": "The detection is left empty: it never asks the root finder." => "No polynomial reaches the root finder; overlap, alpha > 0, alpha < 1 and approach are expected for each pair.";
-        ParticleEdgeZero "pe-zero": "The coefficients are left at zero." => "Every coefficient is 0.";
+        ParticleEdgeZero "pe-zero": "The coefficients are left at zero." =>
+            "Every coefficient is 0, but those of the supplied approach.";
+        ParticleEdgeReversed "pe-reversed": "The coefficients are handed over lowest power first." =>
+            "Polynomial takes the coefficient of the highest power first; here 1 comes first, then t.";
+        ParticleEdgeSwapped "pe-swapped": "The first two polynomials are handed over in the wrong order." =>
+            "Polynomial 2 stands before polynomial 1.";
         ParticleEdgeStill "pe-edge-still": "The edge is treated as if it did not move." => "dx2 = dx3 = 0 in all formulas.";
         ParticleEdgeParticleStill "pe-particle-still": "The particle's displacement is forgotten." => "dx1 = 0 in all formulas.";
         ParticleEdgeFirstEndStill "pe-first-end-still": "The displacement of the edge's first endpoint is forgotten." => "dx2 = 0 in all formulas.";
@@ -124,6 +134,10 @@ rows! {
     Wrong ParticleHalfPlane {
         HalfPlaneEmpty "ph-empty": "The detection is left empty: it never asks the root finder." => "No polynomial reaches the root finder; overlap (quadratic) and approach (linear) are expected for each pair.";
         HalfPlaneZero "ph-zero": "The coefficients are left at zero." => "Every coefficient is 0.";
+        HalfPlaneReversed "ph-reversed": "The coefficients are handed over lowest power first." =>
+            "Polynomial takes the coefficient of the highest power first; here 1 comes first, then t.";
+        HalfPlaneSwapped "ph-swapped": "The first two polynomials are handed over in the wrong order." =>
+            "Polynomial 2 stands before polynomial 1.";
         HalfPlaneNoNormalSquare "ph-no-normal-square": "The radius term ignores the normal's length, which is right for unit normals only." => "1: r^2 stands where r^2 (n.n) belongs.";
         HalfPlaneNormalLength "ph-normal-length": "The radius term has the normal's length where its square belongs." => "1: r^2 |n| stands where r^2 (n.n) belongs.";
         HalfPlaneRadiusNotSquared "ph-radius-not-squared": "The radius is not squared." => "1: r (n.n) stands where r^2 (n.n) belongs.";
@@ -159,7 +173,6 @@ rows! {
         HandoverNegated "handover-negated": "All polynomials are handed over negated." => "Every coefficient is multiplied by -1.";
         HandoverSwapped "handover-swapped": "The first two polynomials of each pair are handed over in the wrong order." => "Polynomial 2 stands before polynomial 1.";
         HandoverAlphaSwapped "handover-alpha-swapped": "alpha > 0 and alpha < 1 are handed over in the wrong order." => "alpha < 1 stands before alpha > 0.";
-        HandoverZeros "handover-zeros": "Every coefficient of every polynomial is zero." => "0 stands in the place of every coefficient.";
         HandoverSinglePrecision "handover-single-precision": "The coefficients are stored as float before they are handed over." => "float holds 24 bits; double, with 53, is expected.";
         HandoverPositionOnly "handover-position-only": "Only the polynomials about position are handed over, not the approach." => "The last polynomial of each pair is missing.";
         HandoverApproachOnly "handover-approach-only": "Only the approach is handed over, nothing about position." => "Only the last polynomial of each pair is there.";

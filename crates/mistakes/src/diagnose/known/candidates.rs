@@ -111,7 +111,6 @@ impl<'a> Candidates<'a> {
         match row.mistake {
             Mistake::LogPolynomialsKept if sample.difference.is_some() => return sample.context.polynomials_kept,
             Mistake::LogImpulsesKept if sample.difference.is_some() => return sample.context.impulses_kept,
-            Mistake::LogNan | Mistake::LogNanContacts if sample.context.logs_nan => return logs_nan(row, sample),
             Mistake::LogSinglePrecision if sample.difference.is_some() => return sample.context.single_precision,
             Mistake::Step(StepMistake::Edit(Edit { slip: Slip::NotCleared, .. })) if sample.difference.is_some() => {
                 return sample.context.forces_kept;
@@ -119,16 +118,5 @@ impl<'a> Candidates<'a> {
             _ => {}
         }
         self.trials.reached(program, sample) >= 1.0
-    }
-}
-
-/// Whether NaN stands in all polynomials of the step, or in all its contact vectors, as this row has it.
-fn logs_nan(row: &Row, sample: &KeptStep) -> bool {
-    let end = &sample.records.end;
-    let in_polynomials = end.polynomials.coefficients.iter().all(|value| value.is_nan());
-    let in_vectors = end.impulses.iter().all(|contact| contact.normal.x.is_nan() && contact.normal.y.is_nan());
-    match row.mistake {
-        Mistake::LogNan => in_polynomials && !end.polynomials.coefficients.is_empty(),
-        _ => in_vectors && !end.impulses.is_empty(),
     }
 }

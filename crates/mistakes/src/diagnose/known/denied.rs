@@ -22,7 +22,6 @@ pub(super) fn denied(scene: &Scene, scan: &Scan) -> Vec<String> {
         | Mistake::ParticleParticleZero
         | Mistake::ParticleEdgeZero
         | Mistake::HalfPlaneZero => row.kind_of_pair().is_some_and(|kind| kinds.contains(&kind)),
-        Mistake::HandoverZeros => !kinds.is_empty(),
         Mistake::ImpulsesEmpty | Mistake::ImpulsesEmptySuccess => is_hybrid && samples().any(has_rounds),
         Mistake::GeometricEmpty => is_hybrid && samples().any(|sample| has_passes(sample) || moves(sample)),
         Mistake::FailsafeEmpty => is_hybrid && samples().any(moves),

@@ -183,7 +183,6 @@ fn plausibility(row: &Row) -> u8 {
         | Mistake::ParticleParticleZero
         | Mistake::ParticleEdgeZero
         | Mistake::HalfPlaneZero
-        | Mistake::HandoverZeros
         | Mistake::ImpulsesEmpty
         | Mistake::ImpulsesEmptySuccess
         | Mistake::GeometricEmpty

@@ -4,12 +4,12 @@ use super::{
     shown::can_show,
 };
 use crate::{
-    diagnose::sampling::{Capture, PLAIN, first_difference, same_polynomial},
-    student::{Area, StepLog, Student, World, find},
+    diagnose::sampling::{Capture, PLAIN, StepRecords, first_difference, same_polynomial},
+    student::{Area, Mistake, StepLog, Student, World, find},
 };
 use fosssim_model::{
     scene::{Collision, Scene},
-    sim::{RootSearch, Simulation},
+    sim::{RootSearch, Simulation, State},
 };
 use std::cell::Cell;
 
@@ -34,6 +34,12 @@ pub(in crate::diagnose) fn shows_within(scene: &Scene, key: &str, work: &Cell<u6
         return false;
     }
     let world = World::new(scene.clone(), Student::new(Some(row.mistake)));
+    // The fair rules accept the nearest point of an edge, too.
+    let clamped = world.of(Student::new(Some(Mistake::ParticleEdgeContactClamped)));
+    let is_clamped = |before: &State, records: &StepRecords| {
+        let right = resimulate(&clamped, before, &mut StepLog::default());
+        right.is_some_and(|right| first_difference(&right, records, &PLAIN).is_none())
+    };
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     let mut capture = Capture::new(&scene.collision);
     let each = step_work(scene);
@@ -49,7 +55,8 @@ pub(in crate::diagnose) fn shows_within(scene: &Scene, key: &str, work: &Cell<u6
             index < expected.len() && same_polynomial(coefficients, expected.get(index), &PLAIN)
         };
         let records = resimulate(&world, &before, &mut StepLog { guard: Some(&guard), ..StepLog::default() });
-        if records.is_none_or(|records| first_difference(&capture.records, &records, &PLAIN).is_some()) {
+        let differs = |records: &StepRecords| first_difference(&capture.records, records, &PLAIN).is_some();
+        if records.is_none_or(|records| differs(&records) && !is_clamped(&before, &records)) {
             return true;
         }
     }

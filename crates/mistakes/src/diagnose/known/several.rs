@@ -224,7 +224,6 @@ impl<'a> Search<'a> {
         let is_asked = |row: &&Row| match row.mistake {
             Mistake::ParticleParticleEmpty | Mistake::ParticleEdgeEmpty | Mistake::HalfPlaneEmpty => !logs_zeros,
             Mistake::ParticleParticleZero | Mistake::ParticleEdgeZero | Mistake::HalfPlaneZero => logs_zeros,
-            Mistake::HandoverZeros => false,
             _ => is_empty_stage(row),
         };
         applicable(self.scene).filter(is_asked).collect()
@@ -247,7 +246,12 @@ impl<'a> Search<'a> {
             }
         }
         let (progress, mut rows) = best;
-        rows.sort_by_key(|row| plausibility(row));
+        // Of those that carry as far, one that makes right steps wrong is none of the set.
+        let spoils = |row: &&'static Row| {
+            let program = self.trials.program(&[set, &[*row]].concat());
+            self.scan.right.iter().any(|kept| self.trials.reached(&program, kept) < 1.0)
+        };
+        rows.sort_by_cached_key(|row| (spoils(row), plausibility(row)));
         (!rows.is_empty()).then(|| (rows[0], progress, rows[1..].to_vec()))
     }
 

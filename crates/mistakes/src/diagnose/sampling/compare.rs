@@ -1,8 +1,7 @@
 //! The log of one step, and when two such logs are the same but for round-off.
 //!
 //! Polynomials count up to a positive factor, as only their signs matter; contacts in any order; states and contact
-//! vectors relative to the size of the numbers around them. NaN equals nothing: any mistake may make it, so that it
-//! proves none.
+//! vectors relative to the size of the numbers around them. NaN equals NaN only.
 use crate::student::{Contact, Record};
 use fosssim_model::{
     scene::{Integrator, Scene},
@@ -258,7 +257,7 @@ pub fn state_difference(ours: &State, theirs: &State, by: &Tolerance) -> Option<
 fn same_number(ours: f64, theirs: f64, within: f64) -> bool {
     let distance = (ours - theirs).abs();
     // The bound of an infinite number is infinite; nothing but itself is near it.
-    (ours.to_bits() == theirs.to_bits() && !ours.is_nan()) || (distance <= within && distance.is_finite())
+    ours == theirs || (ours.is_nan() && theirs.is_nan()) || (distance <= within && distance.is_finite())
 }
 
 #[cfg(test)]
@@ -285,8 +284,8 @@ mod tests {
     }
 
     #[test]
-    fn nan_equals_nothing() {
-        assert!(!same(&[f64::NAN, 1.0], &[f64::NAN, 1.0]) && !same(&[f64::NAN], &[f64::NAN]));
+    fn nan_equals_nan_only() {
+        assert!(same(&[f64::NAN, 1.0], &[f64::NAN, 1.0]) && same(&[f64::NAN], &[f64::NAN]));
         assert!(!same(&[f64::NAN, 1.0], &[1.0, 1.0]) && !same(&[f64::INFINITY, 1.0], &[1.0, 1.0]));
     }
 

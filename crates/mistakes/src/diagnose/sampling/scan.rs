@@ -52,8 +52,6 @@ pub struct Context {
     pub polynomials_kept: bool,
     /// Right, but behind the impulses of the step before.
     pub impulses_kept: bool,
-    /// Right, though NaN stands in its lists: contacts were found and resolved that NaN can't lead to.
-    pub logs_nan: bool,
     /// All positions or all velocities are numbers of single precision, and apart from that it is right.
     pub single_precision: bool,
     /// Velocities change by what they should and by their change in the step before.
@@ -96,6 +94,8 @@ pub struct Scanner {
     scan: Scan,
     seen: BTreeMap<(bool, u64), u32>,
     memory: usize,
+    /// Wrong steps in which numbers end though something happens.
+    not_finite: Vec<KeptStep>,
     /// The number of the step before, and the change of its velocities.
     last: Option<(u32, Vec<f64>)>,
 }
@@ -110,13 +110,16 @@ impl Scanner {
             scan: Scan::default(),
             seen: BTreeMap::new(),
             memory: 0,
+            not_finite: Vec::new(),
             last: None,
         }
     }
 
-    /// The steps that were kept, with the outline of their trace.
+    /// The steps that were kept, with the outline of their trace. Those in which numbers end speak only where no other
+    /// step is wrong: several mistakes make the same NaN.
     pub fn into_scan(self, outline: Outline) -> Scan {
-        Scan { outline, ..self.scan }
+        let wrong = if self.scan.wrong.is_empty() { self.not_finite } else { self.scan.wrong };
+        Scan { outline, wrong, ..self.scan }
     }
 
     /// Looks at one step, and keeps it if it is of use.
@@ -128,13 +131,15 @@ impl Scanner {
             return;
         }
         let actual = StepRecords { mid: self.has_mid.then(|| mid.into()), end: end.into() };
-        let logs_nan = !actual.is_finite();
-        if logs_nan && !self.logs_nan(&actual) {
-            // Values that follow from NaN speak neither for a mistake nor against one.
-            return;
-        }
         let difference = first_difference(&self.capture.records, &actual, &self.round_off);
         let signature = self.signature(difference, &actual);
+        if !actual.is_finite() {
+            if self.capture.events != 0 && self.not_finite.len() < PROBES {
+                let (before, context) = (before.state.clone(), Context::default());
+                self.not_finite.push(KeptStep { step, before, records: actual, difference, context, signature });
+            }
+            return;
+        }
         let change = before.state.velocities.iter().zip(&actual.end.state.velocities).map(|(old, new)| new - old);
         let last = self.last.replace((step, change.collect())).filter(|(number, _)| number + 1 == step);
         let count = self.seen.entry((difference.is_some(), signature)).or_default();
@@ -149,9 +154,8 @@ impl Scanner {
         if !wanted || (self.memory > MEMORY && !self.scan.wrong.is_empty()) {
             return;
         }
-        let context = difference.map_or(Context::default(), |_| Context {
-            logs_nan,
-            ..self.context(before, &actual, last.as_ref().map(|(_, change)| change.as_slice()))
+        let context = difference.map_or(Context::default(), |_| {
+            self.context(before, &actual, last.as_ref().map(|(_, change)| change.as_slice()))
         });
         let kept = KeptStep { step, before: before.state.clone(), records: actual, difference, context, signature };
         self.memory += kept.bytes();
@@ -206,7 +210,6 @@ impl Scanner {
                 }
                 begins
             }),
-            logs_nan: false,
             single_precision: is_single && first_difference(expected, actual, &SINGLE_PRECISION).is_none(),
             forces_kept: last.is_some_and(|last| {
                 let changes = before.state.velocities.iter().zip(&expected.end.state.velocities).zip(last);
@@ -216,26 +219,6 @@ impl Scanner {
                 })
             }),
         }
-    }
-
-    /// Whether contacts were found and resolved rightly though only NaN is logged in their place, so that just the
-    /// logging is wrong.
-    fn logs_nan(&self, actual: &StepRecords) -> bool {
-        let without_lists = |records: &StepRecords| {
-            let bare = |logged: &Logged| Logged { state: logged.state.clone(), ..Logged::default() };
-            StepRecords { mid: records.mid.as_ref().map(bare), end: bare(&records.end) }
-        };
-        let expected = &self.capture.records;
-        let has_lengths = |ours: &Logged, theirs: &Logged| {
-            (ours.polynomials.len(), ours.impulses.len()) == (theirs.polynomials.len(), theirs.impulses.len())
-        };
-        let end = &actual.end;
-        let is_meant = end.polynomials.coefficients.iter().all(|value| value.is_nan())
-            || end.impulses.iter().all(|contact| contact.normal.x.is_nan() && contact.normal.y.is_nan());
-        is_meant
-            && self.capture.events != 0
-            && has_lengths(&expected.end, &actual.end)
-            && first_difference(&without_lists(expected), &without_lists(actual), &self.round_off).is_none()
     }
 
     /// Whether the step is right once `strip` has taken the lists of the step before off its records.

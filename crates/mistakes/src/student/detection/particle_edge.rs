@@ -22,7 +22,9 @@ pub fn polynomials(student: Student, bodies: &[MovingBody; 3], edge_radius: f64)
     let mistake = student.mistake_in(FORMULAS);
     match mistake {
         Some(Mistake::ParticleEdgeEmpty) => return Vec::new(),
-        Some(Mistake::ParticleEdgeZero) => return vec![vec![0.0; 5], vec![0.0; 3], vec![0.0; 3], vec![0.0; 6]],
+        Some(Mistake::ParticleEdgeZero) => {
+            return vec![vec![0.0; 5], vec![0.0; 3], vec![0.0; 3], quintic::approach(student, bodies)];
+        }
         Some(Mistake::ExtendedPrecision) => return arithmetic::particle_edge::<Wide>(bodies, edge_radius),
         Some(Mistake::FusedArithmetic) => return arithmetic::particle_edge::<Fused>(bodies, edge_radius),
         Some(Mistake::InterpolatedAll) => {

@@ -34,9 +34,12 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
             let heading = if mistakes.len() == 1 { "Likely mistake" } else { "Likely mistakes" };
             let _ = writeln!(text, "{}", style.paint(Look::Strong, heading));
         }
-        let verb = if mistake.is_not_finite() { "in" } else { "explains" };
+        let verb = if mistake.is_not_finite() || mistake.is_unexplained() { "in" } else { "explains" };
         let what = plain(&words::explanation::what_or(mistake));
         let _ = writeln!(text, "  - {what} ({verb} {explained} of {wrong})");
+        for form in words::explanation::forms(mistake) {
+            let _ = writeln!(text, "    {}", plain(&form));
+        }
     }
     if grade.unfit().is_some() {
         return text;

@@ -73,6 +73,16 @@ pub fn details(explanation: &Explanation) -> Vec<String> {
     lines
 }
 
+/// The exact form alone of polynomials that no known mistake makes, a line for each term.
+pub(crate) fn forms(explanation: &Explanation) -> Vec<String> {
+    let is_form = |detail: &&Detail| matches!(detail, Detail::Polynomial(_)) && !explanation.is_unexplained();
+    let details = explanation.details.iter().filter(is_form).cloned().collect();
+    match explanation.about {
+        About::Polynomials { .. } => self::details(&Explanation { details, ..explanation.clone() }),
+        _ => Vec::new(),
+    }
+}
+
 /// Where in the program to look for what is wrong with a stage of a step.
 pub(crate) fn where_to_look(explanation: &Explanation) -> Option<&'static str> {
     match &explanation.about {
@@ -109,7 +119,6 @@ fn empty_stage(row: &Row) -> String {
         Mistake::ParticleParticleZero => "the particle-particle detection, whose coefficients are all zero",
         Mistake::ParticleEdgeZero => "the particle-edge detection, whose coefficients are all zero",
         Mistake::HalfPlaneZero => "the particle-half-plane detection, whose coefficients are all zero",
-        Mistake::HandoverZeros => "all detections, whose coefficients are zero",
         Mistake::ImpulsesEmpty | Mistake::ImpulsesEmptySuccess => "the impulse loop",
         Mistake::GeometricEmpty => "the geometric part",
         _ => "the rigid failsafe",

@@ -43,6 +43,8 @@ const PAIRS: MistakeFamily = MistakeFamily {
             ],
         ),
         ("positions' index", &[Is("pp-position-index"), Is("pe-position-index"), Is("ph-position-index")]),
+        ("lowest power first", &[Is("pp-reversed"), Is("pe-reversed"), Is("ph-reversed")]),
+        ("polynomials' order", &[Is("pp-swapped"), Is("pe-swapped"), Is("ph-swapped")]),
         ("left empty", &[Is("pp-empty"), Is("pe-empty"), Is("ph-empty")]),
         ("all zero", &[Is("pp-zero"), Is("pe-zero"), Is("ph-zero")]),
         ("end positions", &[Is("pp-end-positions"), Is("pe-end-positions"), Is("ph-end-position")]),
