@@ -71,9 +71,7 @@ impl From<&Explanation> for Told {
             _ if *samples == 0 => (false, None),
             (_, 0) => (false, Some(format!("{samples} looked at"))),
             (About::Unfinished, _) => (false, None),
-            (About::Mistake | About::Forces(_), _) => {
-                (true, Some(format!("in {reproduced} of {samples} differing steps tried")))
-            }
+            (About::Mistake, _) => (true, Some(format!("in {reproduced} of {samples} differing steps tried"))),
             _ => (true, Some(format!("fits {reproduced} of {samples} polynomials looked at"))),
         };
         let mut details = details(explanation);

@@ -1,7 +1,6 @@
 //! The subjects of explanations.
 use super::{
     fault::{NotFinite, StageFault},
-    force::{ForceTerm, WrongWeight},
     guess::Guess,
     subject::Subject,
 };
@@ -29,8 +28,6 @@ pub enum About {
     },
     /// A stage of a step: what it leaves is wrong, and everything before is right.
     Stage(StageFault),
-    /// Terms of the forces whose weight is wrong.
-    Forces(Vec<(ForceTerm, WrongWeight)>),
     /// Values that are no finite numbers: an observation, which comes before all guesses.
     NotFinite(NotFinite),
 }

@@ -1,5 +1,5 @@
 //! The exact form of what is wrong, as values. May give a right formula away.
-use super::{area::Area, fault::Changed, force::ForceTerm, reading::Reading, subject::Subject};
+use super::{area::Area, fault::Changed, reading::Reading, subject::Subject};
 use fosssim_model::sim::PairKind;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -18,14 +18,6 @@ pub enum Detail {
     Polynomial(PolynomialDetail),
     /// A fault of a stage.
     Stage(StageDetail),
-    /// The weight that a term of the forces has.
-    Force {
-        /// The term.
-        term: ForceTerm,
-        /// Its weight, which should be 1.
-        #[serde(with = "fosssim_num::written")]
-        weight: f64,
-    },
 }
 
 /// The exact form of what is wrong with polynomials.
@@ -152,6 +144,8 @@ pub struct Weight {
 pub enum StageDetail {
     /// The order of the pairs.
     Order,
+    /// The factor of all changes.
+    Factor(#[serde(with = "fosssim_num::written")] f64),
     /// Between which fractions of the step contacts have their times of impact.
     Impacts {
         /// Whether these are the contacts that are right.

@@ -29,6 +29,15 @@ pub enum StageFault {
         /// Which decisions.
         wrong: WrongDecisions,
     },
+    /// Which bodies that overlap at the end of a step collide.
+    Overlaps {
+        /// The kind of all these pairs, if they have one.
+        kind: Option<PairKind>,
+        /// Which decisions.
+        wrong: WrongDecisions,
+    },
+    /// The change of a state, where traces log states.
+    Change(WrongChange),
     /// Times of impact.
     ContactTimes,
     /// Contact vectors.
@@ -90,6 +99,64 @@ pub enum StageFault {
         /// Whether zones of other particles could move so, too.
         or_zones: bool,
     },
+}
+
+/// The features that wrong changes of states have in common.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct WrongChange {
+    /// The quantity: of positions, the velocities are right, and of velocities, positions follow from them.
+    pub quantity: Quantity,
+    /// The only component that is wrong, 0 or 1.
+    pub axis: Option<usize>,
+    /// The particles.
+    pub particles: ChangedParticles,
+    /// How they compare with the expected changes.
+    pub ratio: ChangeRatio,
+    /// The student's code that makes such changes.
+    pub cause: ChangeCause,
+}
+
+/// The code of a student of a milestone that changes states.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum ChangeCause {
+    /// Responses to simple collisions.
+    Response,
+    /// The penalty force.
+    Penalty,
+    /// Forces.
+    Forces,
+    /// The integrator.
+    Integrator,
+    /// Forces or the integrator.
+    ForcesOrIntegrator,
+    /// The forces' derivatives or the integrator.
+    JacobiansOrIntegrator,
+}
+
+/// The particles that change as they should not.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum ChangedParticles {
+    /// Any.
+    Any,
+    /// Fixed ones only.
+    Fixed,
+    /// The first one only.
+    First,
+    /// The last one only.
+    Last,
+}
+
+/// The one factor of all wrong changes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum ChangeRatio {
+    /// There is no change.
+    Nothing,
+    /// The opposite change.
+    Opposite,
+    /// Another factor.
+    Factor,
+    /// They have none in common.
+    Other,
 }
 
 /// Which decisions about contacts are wrong.
@@ -263,9 +330,10 @@ impl StageFault {
     #[must_use]
     pub const fn stage(&self) -> StepStage {
         match self {
-            Self::Order | Self::Decisions { .. } | Self::ContactTimes => StepStage::Detection,
+            Self::Order | Self::Decisions { .. } | Self::ContactTimes | Self::Overlaps { .. } => StepStage::Detection,
             Self::ContactVectors { .. } => StepStage::ContactVectors,
             Self::Responses { .. }
+            | Self::Change(_)
             | Self::ManyContacts
             | Self::Unresolved { .. }
             | Self::Rounds(_)
@@ -286,6 +354,15 @@ impl StageFault {
     pub const fn areas(&self) -> &'static [Area] {
         match self {
             Self::Order | Self::Decisions { .. } | Self::ContactTimes => &[Area::Decision],
+            Self::Overlaps { .. } => &[Area::SimpleDetection],
+            Self::Change(WrongChange { cause, .. }) => match cause {
+                ChangeCause::Response => &[Area::Response],
+                ChangeCause::Penalty => &[Area::Penalty],
+                ChangeCause::Forces => &[Area::Forces],
+                ChangeCause::Integrator => &[Area::Integrator],
+                ChangeCause::ForcesOrIntegrator => &[Area::Forces, Area::Integrator],
+                ChangeCause::JacobiansOrIntegrator => &[Area::Jacobians, Area::Integrator],
+            },
             Self::ContactVectors { .. } => &[Area::ContactVector],
             Self::Responses { in_rounds: false, .. } | Self::ManyContacts => &[Area::Response],
             // A hybrid step's trace holds no contact vector.
@@ -324,7 +401,10 @@ impl StageFault {
     #[must_use]
     pub const fn kind(&self) -> Option<PairKind> {
         match self {
-            Self::Decisions { kind, .. } | Self::ContactVectors { kind, .. } | Self::Responses { kind, .. } => *kind,
+            Self::Decisions { kind, .. }
+            | Self::Overlaps { kind, .. }
+            | Self::ContactVectors { kind, .. }
+            | Self::Responses { kind, .. } => *kind,
             _ => None,
         }
     }
@@ -336,6 +416,8 @@ impl StageFault {
             Self::Decisions { wrong: WrongDecisions::Missed, .. } => "stage-contacts-missed",
             Self::Decisions { wrong: WrongDecisions::Superfluous, .. } => "stage-contacts-superfluous",
             Self::Decisions { wrong: WrongDecisions::Both, .. } => "stage-decisions",
+            Self::Overlaps { .. } => "stage-overlaps",
+            Self::Change(_) => "stage-change",
             Self::ContactTimes => "stage-contact-times",
             Self::ContactVectors { .. } => "stage-contact-vectors",
             Self::Responses { .. } | Self::ManyContacts => "stage-response",

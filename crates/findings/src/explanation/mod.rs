@@ -4,7 +4,6 @@ mod area;
 pub mod detail;
 pub mod example;
 pub mod fault;
-pub mod force;
 pub mod guess;
 mod input;
 mod reading;
@@ -15,10 +14,10 @@ pub use area::Area;
 pub use detail::{Amount, Detail, PolynomialDetail, Ratios, StageDetail, Stand, Weight};
 pub use example::{Example, ExamplePlace, ExampleValue, StepRecord};
 pub use fault::{
-    Changed, LoopEnd, NanStage, NotFinite, Quantity, StageFault, StepStage, WrongDecisions, WrongGeometric,
-    WrongMotion, WrongNumber, WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
+    ChangeCause, ChangeRatio, Changed, ChangedParticles, LoopEnd, NanStage, NotFinite, Quantity, StageFault, StepStage,
+    WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber, WrongPositions, WrongResponses,
+    WrongVectors, WrongZoneRounds, WrongZones,
 };
-pub use force::{ForceTerm, WrongWeight};
 pub use guess::{CoefficientGuess, Guess, ListGuess, QuantityGuess};
 pub use input::Input;
 pub use reading::Reading;
@@ -62,9 +61,6 @@ impl Explanation {
 
     /// The key of pairs that are looked at in another order.
     pub const ORDER: &'static str = StageFault::Order.key();
-
-    /// The key of terms of the forces that have a wrong weight.
-    pub const FORCES: &'static str = "forces";
 
     /// The key of what is no finite number.
     pub const NOT_FINITE: &'static str = "not-a-number";
@@ -118,7 +114,7 @@ impl Explanation {
     /// Whether it is a mistake that reproduces all that was tried of what is wrong.
     #[must_use]
     pub fn is_proven(&self) -> bool {
-        matches!(self.about, About::Mistake | About::Forces(_)) && self.reproduced > 0 && self.is_complete()
+        self.about == About::Mistake && self.reproduced > 0 && self.is_complete()
     }
 
     /// Whether it names stages that are still empty.
@@ -149,7 +145,6 @@ impl Explanation {
             }
             About::Stage(fault) => format!("{}/{fault:?}", self.key),
             About::NotFinite(found) => format!("{}/{:?}", self.key, found.stage),
-            About::Forces(wrong) => format!("{}/{wrong:?}", self.key),
             _ => self.key.clone(),
         }
     }

@@ -2,7 +2,6 @@
 use super::{
     Detail, Explanation,
     about::About,
-    fitted,
     known::{Known, is_empty_stage, known_or_open},
     naming::is_in_other_words,
     not_finite, polynomial,
@@ -94,7 +93,6 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
         };
         one.is_complete() || !polynomials.iter().any(is_told)
     });
-    let forces = open.as_ref().filter(|_| known.is_empty()).and_then(|scan| fitted::explain(scene, scan));
     let stage = open.and_then(|scan| {
         let is_of_numbers = |kept: &&KeptStep| kept.records.is_finite();
         stages::explain(&mut reference, scene, scan.wrong.iter().chain(&scan.right).filter(is_of_numbers))
@@ -106,7 +104,6 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     let mut all = known;
     all.append(&mut polynomials);
     all.iter_mut().for_each(explain_letters);
-    all.extend(forces);
     all.extend(stage);
     // A stable sort: among equals the known mistake stays first.
     all.sort_by_key(|one| (one.is_unexplained(), !one.is_complete()));

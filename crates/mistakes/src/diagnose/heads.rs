@@ -3,7 +3,7 @@
 use super::{
     Detail, Explanation, Guess, ListGuess,
     about::{About, OfPolynomials},
-    evidence::{OpenTrace, likeliest, symptoms},
+    evidence::{OpenTrace, Symptom, likeliest, symptoms},
     explain::is_formula,
     fault::StepStage,
     known::is_empty_stage,
@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     assignments::t2m2::Subject,
-    student::{Area, CATALOGUE, Row, find},
+    student::{Area, CATALOGUE, Mistake, Row, find},
 };
 use fosssim_model::sim::PairKind;
 use std::collections::{BTreeMap, BTreeSet};
@@ -40,6 +40,7 @@ pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted:
         .collect();
     let mut wrong: Vec<Vec<Explanation>> =
         open.iter().map(|trace| trace.symptoms.iter().map(|symptom| symptom.one.clone()).collect()).collect();
+    drop_what_follows(&mut open);
     keep_earliest_stage(&mut open);
     let (mut found, mut empty): (Vec<Explanation>, Vec<Explanation>) = (Vec::new(), Vec::new());
     while found.len() + usize::from(!empty.is_empty()) < MOST {
@@ -211,6 +212,16 @@ fn is_said_already(found: &[Explanation], next: &Explanation, open: &[OpenTrace]
         in_one_formula || in_one_stage
     };
     found.iter().any(is_said)
+}
+
+/// Where steps log states only, all that is seen of them may follow from a mistake that explains one of the traces.
+fn drop_what_follows(open: &mut Vec<OpenTrace>) {
+    let is_of_states = |word: &String| find(word).is_some_and(|row| matches!(row.mistake, Mistake::Step(_)));
+    let names_one = |symptom: &Symptom| symptom.allowed.iter().any(|(word, is_whole)| *is_whole && is_of_states(word));
+    if open.iter().flat_map(|trace| &trace.symptoms).any(names_one) {
+        open.iter_mut().for_each(|trace| trace.symptoms.retain(|symptom| !symptom.one.is_of_stage()));
+        open.retain(|trace| !trace.symptoms.is_empty());
+    }
 }
 
 /// Of the explanations of stages, leaves those of the earliest one only: later faults may follow from it. Also drops

@@ -6,7 +6,6 @@
 
 mod evidence;
 mod explain;
-mod fitted;
 mod heads;
 mod known;
 mod naming;
@@ -21,12 +20,13 @@ mod written;
 pub use crate::{assignments::probe_scenes, plain::formula_in};
 pub use explain::{explain, explain_kept};
 pub use fosssim_findings::explanation::{
-    About, Amount, Changed, CoefficientGuess, Detail, Example, ExamplePlace, ExampleValue, Explanation, ForceTerm,
-    Guess, ListGuess, LoopEnd, NanStage, NotFinite, OfPolynomials, PolynomialDetail, Quantity, QuantityGuess, Ratios,
-    StageDetail, StageFault, Stand, StepRecord, StepStage, Weight, WrongDecisions, WrongGeometric, WrongMotion,
-    WrongNumber, WrongPositions, WrongResponses, WrongVectors, WrongWeight, WrongZoneRounds, WrongZones,
+    About, Amount, ChangeCause, ChangeRatio, Changed, ChangedParticles, CoefficientGuess, Detail, Example,
+    ExamplePlace, ExampleValue, Explanation, Guess, ListGuess, LoopEnd, NanStage, NotFinite, OfPolynomials,
+    PolynomialDetail, Quantity, QuantityGuess, Ratios, StageDetail, StageFault, Stand, StepRecord, StepStage, Weight,
+    WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber, WrongPositions, WrongResponses,
+    WrongVectors, WrongZoneRounds, WrongZones,
 };
-use fosssim_findings::explanation::{about, fault, force, guess};
+use fosssim_findings::explanation::{about, fault, guess};
 pub use heads::several;
 pub use known::{can_show, known, shows};
 pub use naming::is_named_in;

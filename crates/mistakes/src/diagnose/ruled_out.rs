@@ -4,10 +4,7 @@ use super::{
     sampling::Source, written::is_written,
 };
 use crate::student::{Area, Student, find, trace_within};
-use fosssim_model::{
-    assignments::{Assignment, Part},
-    scene::Scene,
-};
+use fosssim_model::{assignments::Assignment, scene::Scene};
 use std::{cell::Cell, collections::BTreeMap};
 
 /// The greatest number of traces in which it is asked whether a mistake makes numbers end.
@@ -23,10 +20,6 @@ fn supplied(whose: Assignment, wrong: &[(&Scene, &[Explanation])]) -> Vec<String
         for key in list.iter().flat_map(|one| alternatives(one).into_keys().chain([one.key.clone()])) {
             let is_own = match find(&key) {
                 Some(row) => is_written(row, whose),
-                None if key == Explanation::FORCES => {
-                    let parts = whose.definition().student;
-                    parts.iter().any(|part| matches!(part, Part::Force(_) | Part::Penalty(_)))
-                }
                 None => continue,
             };
             *named.entry(key).or_default() |= is_own;

@@ -43,7 +43,6 @@ pub use crate::assignments::{
 };
 pub use author::Student;
 pub use detection::polynomials_of;
-pub use forces::gradient as force_gradient;
 pub use objects::{Contact, Object, Pair, State};
 pub use record::{Record, trace, trace_within};
 pub use refused::{KNOWN_ACCUSED, KNOWN_REFUSED};

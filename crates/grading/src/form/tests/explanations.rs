@@ -3,10 +3,10 @@ use super::{Role, pair};
 use fosssim_mistakes::{
     assignments::t2m2::{Input, Reading, Subject},
     diagnose::{
-        About, Amount, Changed, CoefficientGuess, Detail, Example, ExamplePlace, ExampleValue, Explanation, ForceTerm,
-        Guess, ListGuess, LoopEnd, NanStage, NotFinite, OfPolynomials, PolynomialDetail, Quantity, QuantityGuess,
-        Ratios, StageDetail, StageFault, Stand, StepRecord, Weight, WrongDecisions, WrongGeometric, WrongMotion,
-        WrongNumber, WrongPositions, WrongResponses, WrongVectors, WrongWeight, WrongZoneRounds, WrongZones,
+        About, Amount, Changed, CoefficientGuess, Detail, Example, ExamplePlace, ExampleValue, Explanation, Guess,
+        ListGuess, LoopEnd, NanStage, NotFinite, OfPolynomials, PolynomialDetail, Quantity, QuantityGuess, Ratios,
+        StageDetail, StageFault, Stand, StepRecord, Weight, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber,
+        WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
     },
     student::Area,
 };
@@ -25,8 +25,7 @@ pub(super) fn all() -> Vec<Explanation> {
     let found = found.chain([OfPolynomials::Missing, OfPolynomials::NearlyRight, OfPolynomials::Nothing]);
     let subjects = vec![Subject::EdgeOverlap, Subject::HalfPlaneApproach];
     let of_polynomials = found.map(|found| About::Polynomials { subjects: subjects.clone(), found });
-    let terms = vec![(ForceTerm::Vortex, WrongWeight::Half), (ForceTerm::Drag, WrongWeight::Other)];
-    let others = [About::Mistake, About::Unfinished, About::Scene { has_length: false }, About::Forces(terms)];
+    let others = [About::Mistake, About::Unfinished, About::Scene { has_length: false }];
     let stages = [NanStage::Detection(Some(PairKind::ParticleEdge)), NanStage::FirstRecord, NanStage::Zones];
     let ends = stages.map(|stage| About::NotFinite(NotFinite { step: Some(7), stage, is_nan: true, ends: false }));
     let abouts = of_polynomials.chain(others).chain(ends).chain(faults().into_iter().map(About::Stage));
@@ -139,7 +138,6 @@ fn details() -> Vec<Detail> {
     let known = [
         Detail::Term("pp-no-two".into()),
         Detail::Look(Area::Failsafe),
-        Detail::Force { term: ForceTerm::SpringElastic, weight: -0.0 },
         Detail::Letters(vec![PairKind::ParticleEdge, PairKind::ParticleParticle]),
     ];
     let polynomials = polynomials.map(Detail::Polynomial);

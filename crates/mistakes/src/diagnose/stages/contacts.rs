@@ -85,6 +85,35 @@ pub(super) fn detection(facts: &[StepFacts]) -> Option<Explanation> {
     contacts.times().or_else(|| contacts.decisions()).or_else(|| contacts.vectors())
 }
 
+/// The fault in the contacts at the end of steps, each with the reference's: what parts first counts, since what follows
+/// in the pass may follow from it.
+pub(super) fn of_overlaps(steps: &[(Vec<LoggedImpulse>, Vec<LoggedImpulse>)]) -> Option<Explanation> {
+    let mut contacts = ContactStage::default();
+    for (ours, theirs) in steps {
+        let first = (0..ours.len().max(theirs.len())).find(|&index| {
+            ours.get(index).zip(theirs.get(index)).is_none_or(|(one, other)| !same_impulse(one, other, &ROUND_OFF))
+        });
+        let Some(first) = first else { continue };
+        let has = |list: &[LoggedImpulse], one: &LoggedImpulse| list.iter().any(|other| other.pair() == one.pair());
+        match (ours.get(first), theirs.get(first)) {
+            (Some(one), Some(other)) if one.pair() == other.pair() => {
+                contacts.vectors.push((one.pair()?.kind, one.normal, other.normal));
+            }
+            (Some(one), _) if !has(theirs, one) => contacts.missed.push((one.pair()?.kind, 0.0)),
+            (_, Some(other)) => contacts.superfluous.push((other.pair()?.kind, 0.0)),
+            _ => {}
+        }
+    }
+    let wrong = match (contacts.missed.is_empty(), contacts.superfluous.is_empty()) {
+        (true, true) => return contacts.vectors(),
+        (false, true) => WrongDecisions::Missed,
+        (true, false) => WrongDecisions::Superfluous,
+        (false, false) => WrongDecisions::Both,
+    };
+    let listed = [contacts.missed.as_slice(), &contacts.superfluous].concat();
+    Some(observation(StageFault::Overlaps { kind: only_kind(&listed), wrong }, Vec::new(), listed.len()))
+}
+
 impl ContactStage {
     /// Looks at contacts up to the first that is not the expected one; those behind it depend on that.
     fn look(&mut self, facts: &StepFacts) {

@@ -10,6 +10,7 @@ mod events;
 mod loops;
 mod responses;
 mod rigid;
+mod states;
 mod zones;
 
 use super::{
@@ -38,7 +39,7 @@ pub(super) fn explain<'a>(
     steps: impl Iterator<Item = &'a KeptStep>,
 ) -> Option<Explanation> {
     if !matches!(scene.collision, Collision::ContinuousTime { .. } | Collision::Hybrid { .. }) {
-        return None;
+        return states::explain(reference, scene, steps);
     }
     let mut work = 0;
     let facts: Vec<StepFacts> = steps

@@ -5,10 +5,10 @@ use crate::student::{self, Row, Student};
 use fosssim_judge::kept::KeptTrace;
 use fosssim_model::assignments::Assignment;
 
-mod forces;
 mod heads;
 mod not_finite;
 mod probes;
+mod states;
 
 /// A mistake found in all polynomials, and again in the steps that no other mistake touches, is one mistake, not two.
 #[test]

@@ -2,7 +2,6 @@
 //!
 //! Sentences that belong to an assignment (what its known mistakes are, what its letters mean) stand with its data,
 //! found by their keys; all others are made here.
-mod forces;
 mod letters;
 mod not_finite;
 mod places;
@@ -28,7 +27,6 @@ pub fn what(explanation: &Explanation) -> String {
         }
         About::Polynomials { subjects, found } => polynomials::what(subjects, found),
         About::Stage(fault) => stages::what(fault),
-        About::Forces(wrong) => forces::what(wrong),
         About::NotFinite(found) => not_finite::what(found),
     };
     debug_assert!(formula_in(&sentence).is_none(), "a sentence gives a formula away: {sentence}");
@@ -66,7 +64,6 @@ pub fn details(explanation: &Explanation) -> Vec<String> {
             Detail::Letters(kinds) => letters::of(&lines, kinds),
             Detail::Polynomial(detail) => Some(polynomials::detail(detail)),
             Detail::Stage(detail) => stages::detail(detail),
-            Detail::Force { term, weight } => Some(forces::detail(*term, *weight)),
         };
         lines.extend(line);
     }

@@ -21,7 +21,7 @@ pub(super) fn what(found: &NotFinite) -> String {
         NanStage::ImplicitMotion => {
             return format!(
                 "{where_from} there is {what}: the implicit integrator makes it from finite numbers. Wrong second \
-                 derivatives are a usual cause: Newton's method does not converge with them."
+                 derivatives or signs are usual causes: Newton's method does not converge with them."
             );
         }
         NanStage::Detection(Some(kind)) => {

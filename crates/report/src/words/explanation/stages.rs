@@ -3,8 +3,9 @@ use super::capitalised;
 use crate::view::key;
 use fosssim_mistakes::{
     diagnose::{
-        Amount, Changed, LoopEnd, Quantity, Ratios, StageDetail, StageFault, WrongDecisions, WrongGeometric,
-        WrongMotion, WrongNumber, WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
+        Amount, ChangeCause, ChangeRatio, Changed, ChangedParticles, LoopEnd, Quantity, Ratios, StageDetail,
+        StageFault, WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber, WrongPositions,
+        WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
     },
     student::Area,
 };
@@ -33,6 +34,8 @@ fn area_name(area: Area) -> String {
     let name = match area {
         Area::Decision => "detection",
         Area::ContactVector => "contact vector",
+        Area::SimpleDetection => "detection",
+        Area::Penalty => "penalty force",
         Area::Response => "collision response",
         Area::ImpulseLoop => "impulse loop",
         Area::ImpactZones => "impact zones",
@@ -53,6 +56,8 @@ fn of_fault(fault: &StageFault) -> String {
                 "the polynomials are right, the decisions are not: contacts are missed, others are superfluous"
             }
         },
+        StageFault::Overlaps { wrong, .. } => of_overlaps(*wrong),
+        StageFault::Change(wrong) => return of_change(wrong),
         StageFault::ContactTimes => "the contacts are right, but not their times of impact",
         StageFault::ContactVectors { wrong, .. } => of_vectors(*wrong),
         StageFault::Responses { wrong, .. } => return of_responses(wrong),
@@ -120,6 +125,45 @@ fn of_fault(fault: &StageFault) -> String {
         }
     };
     fixed.to_owned()
+}
+
+/// The features of wrong changes of states.
+fn of_change(wrong: &WrongChange) -> String {
+    let (quantity, other) = match wrong.quantity {
+        Quantity::Position => ("positions", "velocities are right, but "),
+        Quantity::Velocity if wrong.cause == ChangeCause::Response => {
+            ("velocities", "collisions are found as they should be, but ")
+        }
+        Quantity::Velocity => ("velocities", "positions follow from velocities as they should, but "),
+    };
+    let whose = match wrong.particles {
+        ChangedParticles::Any => "",
+        ChangedParticles::Fixed => " of fixed particles alone",
+        ChangedParticles::First => " of the first particle alone",
+        ChangedParticles::Last => " of the last particle alone",
+    };
+    let axis = match wrong.axis {
+        None => "",
+        Some(0) => ", in their horizontal component alone,",
+        Some(_) => ", in their vertical component alone,",
+    };
+    let how = match wrong.ratio {
+        ChangeRatio::Nothing => "stay as they were",
+        ChangeRatio::Opposite => "change the opposite way",
+        ChangeRatio::Factor => "change by a wrong factor, which is always the same",
+        ChangeRatio::Other => "change wrongly",
+    };
+    format!("{other}{quantity}{whose}{axis} {how}")
+}
+
+const fn of_overlaps(wrong: WrongDecisions) -> &'static str {
+    match wrong {
+        WrongDecisions::Missed => "collisions of bodies that overlap and approach each other are missed",
+        WrongDecisions::Superfluous => {
+            "collisions are found of bodies that do not overlap, or do not approach each other"
+        }
+        WrongDecisions::Both => "some collisions are missed, and others are found where there are none",
+    }
 }
 
 const fn of_vectors(wrong: WrongVectors) -> &'static str {
@@ -216,6 +260,7 @@ const fn plural(quantity: Quantity) -> &'static str {
 /// A line of the exact form; nothing where a number would say nothing.
 pub(super) fn detail(detail: &StageDetail) -> Option<String> {
     Some(match detail {
+        StageDetail::Factor(ratio) => format!("each change is {} what it should be", times(Ratios::All(*ratio))),
         StageDetail::Order => {
             "per particle: the particles behind it, the edges that it is no end of, the half-planes".to_owned()
         }

@@ -3,10 +3,10 @@ use super::*;
 use fosssim_mistakes::{
     assignments::t2m2::{EXCHANGES, Reading, SPECIALS, Subject},
     diagnose::{
-        Amount, Changed, CoefficientGuess, ForceTerm, Guess, ListGuess, LoopEnd, NanStage, NotFinite, OfPolynomials,
-        PolynomialDetail, Quantity, QuantityGuess, Ratios, StageDetail, StageFault, Stand, Weight, WrongDecisions,
-        WrongGeometric, WrongMotion, WrongNumber, WrongPositions, WrongResponses, WrongVectors, WrongWeight,
-        WrongZoneRounds, WrongZones,
+        Amount, ChangeCause, ChangeRatio, Changed, ChangedParticles, CoefficientGuess, Guess, ListGuess, LoopEnd,
+        NanStage, NotFinite, OfPolynomials, PolynomialDetail, Quantity, QuantityGuess, Ratios, StageDetail, StageFault,
+        Stand, Weight, WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber, WrongPositions,
+        WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
     },
     student::all_rows,
 };
@@ -91,6 +91,24 @@ const ZONES: [WrongZones; 10] = [
     WrongZones::KeepVelocities,
 ];
 
+/// Wrong changes of states.
+fn changes() -> [WrongChange; 4] {
+    let change = WrongChange {
+        quantity: Quantity::Position,
+        axis: None,
+        particles: ChangedParticles::Any,
+        ratio: ChangeRatio::Factor,
+        cause: ChangeCause::Integrator,
+    };
+    let (velocity, nothing) = (Quantity::Velocity, ChangeRatio::Nothing);
+    [
+        change,
+        WrongChange { axis: Some(1), ratio: ChangeRatio::Other, ..change },
+        WrongChange { quantity: velocity, particles: ChangedParticles::Fixed, ratio: nothing, ..change },
+        WrongChange { quantity: velocity, ratio: ChangeRatio::Opposite, cause: ChangeCause::Response, ..change },
+    ]
+}
+
 /// All that can be wrong with a stage.
 fn faults() -> Vec<StageFault> {
     let changed = |body, quantity| Changed { kind: PairKind::ParticleEdge, body, quantity };
@@ -119,6 +137,7 @@ fn faults() -> Vec<StageFault> {
     for kind in [None, EDGE] {
         let decisions = [WrongDecisions::Missed, WrongDecisions::Superfluous, WrongDecisions::Both];
         faults.extend(decisions.map(|wrong| StageFault::Decisions { kind, wrong }));
+        faults.extend(decisions.map(|wrong| StageFault::Overlaps { kind, wrong }));
         let vectors = [
             WrongVectors::Perpendicular,
             WrongVectors::Direction,
@@ -141,6 +160,7 @@ fn faults() -> Vec<StageFault> {
             faults.extend(all.map(|wrong| StageFault::Responses { kind, wrong, in_rounds }));
         }
     }
+    faults.extend(changes().map(StageFault::Change));
     faults.extend([WrongNumber::Fewer, WrongNumber::More, WrongNumber::Other].map(StageFault::Rounds));
     for when in [None, Some(LoopEnd::RanOut), Some(LoopEnd::Settled)] {
         let quantities = [None, Some(Quantity::Position), Some(Quantity::Velocity)];
@@ -195,12 +215,6 @@ fn all() -> Vec<Explanation> {
     let once = NotFinite { ends: true, ..ends[1] };
     all.extend(ends.into_iter().chain([together, once]).map(|end| explanation("k", About::NotFinite(end), Vec::new())));
     all.extend(guesses().into_iter().map(|guess| of(edge[..2].to_vec(), OfPolynomials::Guess(guess))));
-    let terms = [
-        (ForceTerm::SpringDamping, WrongWeight::Zero),
-        (ForceTerm::Gravity, WrongWeight::MinusOne),
-        (ForceTerm::PenaltyEdges, WrongWeight::Other),
-    ];
-    all.push(explanation("k", About::Forces(terms.to_vec()), Vec::new()));
     all.extend(faults().into_iter().map(|fault| explanation("k", About::Stage(fault), Vec::new())));
     all
 }
@@ -268,8 +282,7 @@ fn lines_of_all_sorts() -> Vec<Detail> {
         StageDetail::Velocities(TWO),
     ];
     let polynomials = polynomials.map(Detail::Polynomial).into_iter();
-    let force = Detail::Force { term: ForceTerm::Drag, weight: 0.25 };
-    let others = [Detail::Letters(vec![PairKind::ParticleEdge]), force];
+    let others = [Detail::Letters(vec![PairKind::ParticleEdge])];
     polynomials.chain(others).chain(stages.map(Detail::Stage)).collect()
 }
 

@@ -1,0 +1,110 @@
+//! The features of wrong steps where traces log states: contacts at the end of a step, then velocities, then
+//! positions. An observation of these says where to look, and guesses nothing.
+use super::{Explanation, common_value, contacts::of_overlaps, observation};
+use crate::diagnose::{
+    ChangeCause, ChangeRatio, ChangedParticles, Quantity, StageDetail, StageFault, WrongChange,
+    sampling::{Capture, KeptStep, Reference},
+};
+use fosssim_model::{
+    assignments::{Assignment, Integrator},
+    scene::{Collision, Scene},
+};
+use fosssim_num::tolerances::KNOWN_STATE;
+
+/// A number of a state that is not as it should be, with its change and the expected one.
+struct WrongEntry {
+    index: usize,
+    quantity: Quantity,
+    actual: f64,
+    expected: f64,
+}
+
+/// The observation about these steps.
+pub(super) fn explain<'a>(
+    reference: &mut Reference<'_>,
+    scene: &Scene,
+    steps: impl Iterator<Item = &'a KeptStep>,
+) -> Option<Explanation> {
+    let mut capture = Capture::new(&scene.collision);
+    let (mut contacts, mut entries, mut count) = (Vec::new(), Vec::new(), 0);
+    for kept in steps.filter(|kept| kept.difference.is_some()).take(super::MOST_STEPS) {
+        reference.step(kept.step, &kept.before, &mut capture)?;
+        count += 1;
+        contacts.push((capture.records.end.impulses.clone(), kept.records.end.impulses.clone()));
+        entries.extend(wrong_entries(scene, kept, &capture));
+    }
+    of_overlaps(&contacts).or_else(|| of_changes(scene, &entries, count))
+}
+
+/// The velocities that are wrong, and the positions that do not follow from the velocities as they are.
+fn wrong_entries(scene: &Scene, kept: &KeptStep, capture: &Capture) -> Vec<WrongEntry> {
+    let (before, actual, expected) = (&kept.before, &kept.records.end.state, &capture.records.end.state);
+    let is_wrong = |actual: f64, expected: f64| (actual - expected).abs() > KNOWN_STATE * (1.0 + expected.abs());
+    let mut entries = Vec::new();
+    for index in 0..before.positions.len() {
+        let (x, v) = (before.positions[index], before.velocities[index]);
+        let (new, right) = (actual.velocities[index], expected.velocities[index]);
+        if is_wrong(new, right) {
+            entries.push(WrongEntry { index, quantity: Quantity::Velocity, actual: new - v, expected: right - v });
+        }
+        // A simple response changes velocities behind the integrator.
+        let rate = match scene.integrator {
+            Integrator::ExplicitEuler => v,
+            _ if matches!(scene.collision, Collision::Simple { .. }) => continue,
+            _ => new,
+        };
+        let moved = scene.time_step * rate;
+        if is_wrong(actual.positions[index], x + moved) {
+            let actual = actual.positions[index] - x;
+            entries.push(WrongEntry { index, quantity: Quantity::Position, actual, expected: moved });
+        }
+    }
+    entries
+}
+
+fn of_changes(scene: &Scene, entries: &[WrongEntry], count: usize) -> Option<Explanation> {
+    let has = |quantity: Quantity| entries.iter().any(|entry| entry.quantity == quantity);
+    let quantity = match (has(Quantity::Position), has(Quantity::Velocity)) {
+        (true, false) => Quantity::Position,
+        (false, true) => Quantity::Velocity,
+        _ => return None,
+    };
+    let cause = cause(scene, quantity)?;
+    let last = scene.particles.len().checked_sub(1)?;
+    let all_are = |test: &dyn Fn(usize) -> bool| entries.iter().all(|entry| test(entry.index));
+    let axis = (0..2).find(|axis| all_are(&|index| index % 2 == *axis));
+    let particles = match () {
+        () if all_are(&|index| scene.particles[index / 2].fixed) => ChangedParticles::Fixed,
+        () if last > 0 && all_are(&|index| index / 2 == 0) => ChangedParticles::First,
+        () if last > 0 && all_are(&|index| index / 2 == last) => ChangedParticles::Last,
+        () => ChangedParticles::Any,
+    };
+    let ratios: Vec<f64> =
+        entries.iter().filter(|one| one.expected.abs() > 1e-9).map(|one| one.actual / one.expected).collect();
+    let (ratio, details) = match common_value(&ratios) {
+        _ if ratios.len() < entries.len() => (ChangeRatio::Other, Vec::new()),
+        Some(ratio) if ratio.abs() < super::ALIKE => (ChangeRatio::Nothing, Vec::new()),
+        Some(ratio) if (ratio + 1.0).abs() < super::ALIKE => (ChangeRatio::Opposite, Vec::new()),
+        Some(ratio) => (ChangeRatio::Factor, vec![StageDetail::Factor(ratio)]),
+        None => (ChangeRatio::Other, Vec::new()),
+    };
+    let wrong = WrongChange { quantity, axis, particles, ratio, cause };
+    Some(observation(StageFault::Change(wrong), details, count))
+}
+
+/// The code of a student of the scene's milestone that makes such changes.
+fn cause(scene: &Scene, quantity: Quantity) -> Option<ChangeCause> {
+    use Quantity::{Position, Velocity};
+    match (scene.assignment(), &scene.collision, scene.integrator, quantity) {
+        (Assignment::T1M1 | Assignment::T1M3, _, _, Position)
+        | (Assignment::T1M2, _, Integrator::SymplecticEuler, Position) => Some(ChangeCause::Integrator),
+        (Assignment::T1M1, ..) | (Assignment::T1M2, _, Integrator::SymplecticEuler, _) => {
+            Some(ChangeCause::ForcesOrIntegrator)
+        }
+        (Assignment::T1M2, _, _, Velocity) => Some(ChangeCause::Forces),
+        (Assignment::T1M3, ..) => Some(ChangeCause::JacobiansOrIntegrator),
+        (Assignment::T2M1, Collision::Simple { .. }, _, Velocity) => Some(ChangeCause::Response),
+        (Assignment::T2M1, Collision::Penalty { .. }, _, Velocity) => Some(ChangeCause::Penalty),
+        _ => None,
+    }
+}

@@ -1,0 +1,80 @@
+//! Of states that no known mistake explains, the first thing that is wrong is told.
+use crate::{
+    diagnose::{
+        About, ChangeCause, ChangeRatio, ChangedParticles, Detail, Explanation, Quantity, StageDetail, StageFault,
+        WrongChange, WrongDecisions, explain, several,
+    },
+    student::{self, Student, find},
+};
+use fosssim_model::{
+    scene::{Scene, original},
+    sim::PairKind,
+};
+
+const FALL: &str = r#"<scene><duration time="1"/><integrator type="explicit-euler" dt="0.1"/>
+    <simplegravity fx="0.1" fy="-0.8"/>
+    <particle m="2" px="-1" py="0" vx="0.3" vy="0.5" fixed="0" radius="0.1"/>
+    <particle m="3" px="1" py="0.4" vx="-0.2" vy="1" fixed="0" radius="0.1"/></scene>"#;
+
+const BALLS: &str = r#"<scene><duration time="1"/><integrator type="symplectic-euler" dt="0.1"/>
+    <collision type="simple" COR="0.5"/>
+    <particle m="2" px="-1" py="0" vx="1" vy="0.1" fixed="0" radius="0.3"/>
+    <particle m="3" px="0.5" py="0.1" vx="-1" vy="0" fixed="0" radius="0.3"/></scene>"#;
+
+fn scene(text: &str) -> Scene {
+    original::read(text.as_bytes()).expect("a scene").scene
+}
+
+fn right(scene: &Scene) -> Vec<u8> {
+    student::trace(scene, Student::default()).expect("a trace")
+}
+
+#[test]
+fn positions_that_do_not_follow_from_velocities_are_told_with_their_factor() {
+    let scene = scene(FALL);
+    let numbers: Vec<f64> =
+        right(&scene).chunks_exact(8).map(|bytes| f64::from_le_bytes(bytes.try_into().expect("eight bytes"))).collect();
+    // Each record has four coordinates and four velocities.
+    let mut positions: Vec<f64> = numbers[..4].to_vec();
+    let mut trace = Vec::new();
+    for record in numbers.chunks_exact(8) {
+        trace.extend(positions.iter().chain(&record[4..]).flat_map(|number| number.to_le_bytes()));
+        positions.iter_mut().zip(&record[4..]).for_each(|(x, v)| *x += 0.1 * 2.5 * v);
+    }
+    let told = explain(&scene, &trace);
+    let [Explanation { about: About::Stage(StageFault::Change(wrong)), details, .. }] = &told[..] else {
+        panic!("{told:#?}")
+    };
+    let expected = WrongChange {
+        quantity: Quantity::Position,
+        axis: None,
+        particles: ChangedParticles::Any,
+        ratio: ChangeRatio::Factor,
+        cause: ChangeCause::Integrator,
+    };
+    assert_eq!(*wrong, expected);
+    let [Detail::Stage(StageDetail::Factor(factor))] = details[..] else { panic!("{details:#?}") };
+    assert!((factor - 2.5).abs() < 1e-9);
+}
+
+/// Radii are in the test of overlap only.
+#[test]
+fn collisions_of_bodies_that_are_apart_are_told() {
+    let trace = right(&scene(&BALLS.replace("radius=\"0.3\"", "radius=\"0.36\"")));
+    let told = explain(&scene(BALLS), &trace);
+    let fault = StageFault::Overlaps { kind: Some(PairKind::ParticleParticle), wrong: WrongDecisions::Superfluous };
+    assert!(told.len() == 1 && told[0].about == About::Stage(fault), "{told:#?}");
+}
+
+/// The changes of states in one scene may follow from the mistake that another one names.
+#[test]
+fn a_known_mistake_in_one_scene_stands_for_what_others_show() {
+    let scene = scene(FALL);
+    let row = find("gravity-sign").expect("a row");
+    let named = explain(&scene, &student::trace(&scene, Student::new(Some(row.mistake))).expect("a trace"));
+    let pulled = original::read(FALL.replace("fx=\"0.1\"", "fx=\"0.7\"").as_bytes()).expect("a scene").scene;
+    let seen = explain(&scene, &right(&pulled));
+    assert!(seen.len() == 1 && seen[0].is_of_stage(), "{seen:#?}");
+    let heads = several([named.as_slice(), &seen, &seen], &[]);
+    assert!(heads.len() == 1 && heads[0].key == row.id, "{heads:#?}");
+}
