@@ -49,21 +49,6 @@ pub(crate) struct SceneInFile {
     pub(crate) scene: String,
     pub(crate) code: String,
     pub(crate) verdict: String,
-    pub(crate) summary: String,
-    pub(crate) right_steps: u32,
-    /// Where it diverges first, and how many findings there are of each kind.
-    pub(crate) details: Vec<String>,
-    pub(crate) explanations: Vec<MistakeInFile>,
-}
-
-/// A mistake that explains wrong steps.
-#[derive(Debug, Deserialize)]
-pub(crate) struct MistakeInFile {
-    pub(crate) key: String,
-    #[serde(default)]
-    pub(crate) reproduced: u64,
-    #[serde(default)]
-    pub(crate) samples: u64,
 }
 
 impl GradeInFile {

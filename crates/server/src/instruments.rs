@@ -128,8 +128,6 @@ pub struct Metrics {
     pub kept: [i64; 2],
     /// Submissions in all.
     pub submissions: i64,
-    /// Scenes in which the reference is suspected and nobody has decided.
-    pub suspicions: i64,
 }
 
 /// The numbers of this moment; names begin with `fosssim_`, and a label without a name is none.
@@ -181,7 +179,6 @@ impl MetricsPage {
             ("slots", "Their slots.", queue.slots),
             ("workers_aside", "Workers that take no jobs, because they can't grade.", queue.aside),
             ("jobs_paused", "Jobs that wait for staff: nothing can be graded by their suite.", queue.paused),
-            ("suspicions", "Scenes in which the reference may be wrong, undecided.", queue.suspicions),
         ] {
             self.number(name, help, value as f64)?;
         }

@@ -4,7 +4,6 @@ use crate::{
     health,
     lti::score,
     queue::{self, Buried, Completion, Failure, Lease, QueuePolicy, Tick},
-    suspect,
     task::{JUDGE_ERROR, Outcome, rounded},
     values,
 };
@@ -172,8 +171,8 @@ async fn write_result(
     let seconds = if outcome.code == JUDGE_ERROR { about.seconds.to_string() } else { outcome.seconds.clone() };
     let statement =
         "INSERT INTO result (job, submission, campaign, attempt, worker, verdict, code, points, max_points, summary,
-           version, task, seconds, grader, nearly_right, shown, failed, created_at)
-        VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, {now}) RETURNING id";
+           version, task, seconds, grader, shown, failed, created_at)
+        VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, {now}) RETURNING id";
     let result = transaction
         .one(
             statement,
@@ -192,7 +191,6 @@ async fn write_result(
                 &about.task,
                 seconds,
                 &outcome.grader,
-                outcome.code == "AC" || !outcome.wrong.is_empty(),
                 outcome.shown.clone(),
                 outcome.failed.clone()
             ],
@@ -206,20 +204,12 @@ async fn write_result(
             .execute(statement, values![result, &file.name, &file.media_type, file.artefact.digest.as_str(), size])
             .await?;
     }
-    for wrong in &outcome.wrong {
-        let statement = "INSERT INTO wrong_scene (result, scene, answer) VALUES (?, ?, ?)
-            ON CONFLICT (result, scene) DO NOTHING";
-        transaction.execute(statement, values![result, &wrong.scene, &wrong.answer]).await?;
-    }
     let counted = transaction.row("SELECT result FROM grade WHERE submission = ?", values![submission]).await?;
     // A grader that failed takes nobody's grade away.
     if about.campaign.is_none() && !(outcome.code == JUDGE_ERROR && counted.is_some()) {
         let reason = if counted.is_some() { "graded again" } else { "graded" };
         let change = GradeChange { submission, result, by: about.asked_by, campaign: None, reason };
         set_grade(transaction, &change).await?;
-        if let (Some(course), Some(assignment), false) = (about.course, about.assignment, outcome.wrong.is_empty()) {
-            suspect::look(transaction, course, assignment, result).await?;
-        }
     }
     // Judge errors are told of by those who bury.
     if outcome.code == JUDGE_ERROR {

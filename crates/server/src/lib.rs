@@ -20,7 +20,6 @@ mod secret;
 pub mod shown;
 pub mod storage;
 pub mod store;
-pub mod suspect;
 pub mod task;
 pub mod web;
 pub mod wire;

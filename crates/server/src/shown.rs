@@ -22,8 +22,6 @@ pub struct Shown {
     points: Option<String>,
     max_points: Option<String>,
     summary: String,
-    /// Scenes that are not accepted, by their names.
-    wrong: Vec<String>,
 }
 
 /// The texts that the database keeps about the scenes of an outcome.
@@ -73,7 +71,6 @@ fn nothing() -> Shown {
         points: None,
         max_points: None,
         summary: "what counts is not shown yet".to_owned(),
-        wrong: Vec::new(),
     }
 }
 
@@ -90,13 +87,11 @@ fn of_file(report: &GradeFile) -> Option<Shown> {
     let rank = |scene: &&SceneInFile| CODES.iter().position(|code| scene.code == *code);
     let counted = visible.iter().filter(|group| !group.extra).flat_map(|group| &group.scenes);
     let Some(worst) = counted.max_by_key(rank).or_else(|| scenes.first().copied()) else { return Some(nothing()) };
-    let wrong: Vec<String> =
-        scenes.iter().filter(|scene| scene.code != "AC").map(|scene| scene.scene.clone()).collect();
     let sum = |of: fn(&GroupInFile) -> Option<f64>| {
         let numbers: Option<Vec<f64>> = visible.iter().filter(|group| !group.extra).map(|group| of(group)).collect();
         numbers.and_then(|numbers| Number::from_f64(numbers.iter().sum())).map(|sum| sum.to_string())
     };
-    let accepted = scenes.len() - wrong.len();
+    let accepted = scenes.iter().filter(|scene| scene.code == "AC").count();
     Some(Shown {
         verdict: worst.verdict.clone(),
         // A code has letters: of what was not run nothing is known.
@@ -104,7 +99,6 @@ fn of_file(report: &GradeFile) -> Option<Shown> {
         points: sum(|group| group.points),
         max_points: sum(|group| group.max_points),
         summary: format!("{accepted} of {} scenes accepted; what else counts is not shown yet", scenes.len()),
-        wrong,
     })
 }
 
@@ -125,11 +119,6 @@ impl Shown {
     /// The verdict in short, and the points.
     pub fn line(self) -> (String, Option<String>) {
         (self.code, self.points)
-    }
-
-    /// Whether a scene is among those that are not accepted, and not withheld.
-    pub fn tells_of(&self, scene: &str) -> bool {
-        self.wrong.iter().any(|wrong| wrong == scene)
     }
 
     /// Makes an outcome what is shown of it. Digests, sizes and times of what is withheld would tell when it changes.
@@ -170,7 +159,6 @@ mod tests {
         assert_eq!((one.code.as_str(), one.verdict.as_str()), ("WA", "wrong answer"));
         assert_eq!((one.points.as_deref(), one.max_points.as_deref()), (Some("7.5"), Some("10.0")));
         assert!(one.summary.starts_with("1 of 2 scenes accepted"), "{}", one.summary);
-        assert!(one.tells_of("b") && !one.tells_of("secret"));
         assert_eq!(Shown::read(&text(&one)), Some(one));
         assert_eq!(shown(&hidden("AC", 90)), Some(nothing()));
         assert!(read(&b"{"[..]).is_none(), "what can't be read is not shown");

@@ -120,10 +120,6 @@ pub struct Outcome {
     #[schema(pattern = "^([0-9a-f]{64})?$")]
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub grader: String,
-    /// Scenes that are not accepted, of a submission that is nearly right; not shown.
-    #[schema(max_items = 1000)]
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub wrong: Vec<WrongScene>,
     /// How long it took, in seconds; missing while groups are withheld.
     #[schema(value_type = Decimal)]
     #[serde(default, skip_serializing_if = "String::is_empty")]
@@ -137,16 +133,6 @@ pub struct Outcome {
     /// The scenes that are not accepted, a line each with the verdict in short; nothing while nobody has looked.
     #[serde(skip)]
     pub failed: Option<String>,
-}
-
-/// A scene that is not accepted.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-pub struct WrongScene {
-    /// Its name.
-    pub scene: String,
-    /// The SHA-256 of what the submission answers there: the same for others who answer the same.
-    #[schema(value_type = crate::schema::Digest)]
-    pub answer: String,
 }
 
 impl Outcome {

@@ -47,11 +47,9 @@ pub struct Overview {
     pub submissions: i64,
     /// Requests of students that nobody has answered.
     pub requests: i64,
-    /// Scenes in which the reference may be wrong, and nobody has decided.
-    pub suspicions: i64,
 }
 
-from_row! { Overview { students, submissions, requests, suspicions } }
+from_row! { Overview { students, submissions, requests } }
 from_row! { Request { submission, login, text = "request" } }
 
 fn check_words(what: &str, text: &str, least: usize) -> Result<(), Problem> {
@@ -235,10 +233,9 @@ impl Member {
         let mut transaction = self.app.0.database.read().await?;
         let statement = "SELECT count(DISTINCT submission.account) AS students, count(*) AS submissions,
             (SELECT count(*) FROM mark JOIN submission AS asked ON asked.id = mark.submission
-                WHERE asked.assignment = ? AND mark.requested_at > coalesce(mark.marked_at, 0)) AS requests,
-            (SELECT count(*) FROM suspicion WHERE assignment = ? AND state = 'open') AS suspicions
+                WHERE asked.assignment = ? AND mark.requested_at > coalesce(mark.marked_at, 0)) AS requests
             FROM submission WHERE submission.assignment = ?";
-        Ok(transaction.find(statement, values![assignment.id, assignment.id, assignment.id]).await?)
+        Ok(transaction.find(statement, values![assignment.id, assignment.id]).await?)
     }
 
     /// Until when this member may hand in.

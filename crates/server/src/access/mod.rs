@@ -32,7 +32,6 @@ mod staff;
 mod standings;
 mod submit;
 mod suites;
-mod suspicion;
 mod throttle;
 mod turns;
 mod view;
@@ -63,7 +62,6 @@ pub use staff::{AssignmentChange, Staff};
 pub use standings::{ShortStanding, Standing};
 pub use submit::{Accepted, Upload};
 pub use suites::{Suites, is_file_name};
-pub use suspicion::Suspicion;
 pub use view::{Account, Assignment, Course, Event, Graded, History, Mark, Queue, QueueWorker, Submission};
 pub use visitor::{Secrets, Visitor};
 

@@ -10,9 +10,7 @@ use crate::{
 };
 
 /// The rows that are kept of submissions, in the order in which they go.
-const PARTS: [&str; 11] = [
-    "DELETE FROM wrong_scene WHERE result IN (SELECT result.id FROM result JOIN {each}
-        ON result.submission = CAST(wanted.value AS {int}))",
+const PARTS: [&str; 10] = [
     "DELETE FROM result_file WHERE result IN (SELECT result.id FROM result JOIN {each}
         ON result.submission = CAST(wanted.value AS {int}))",
     "DELETE FROM mark WHERE submission IN (SELECT CAST(wanted.value AS {int}) FROM {each})",
@@ -118,7 +116,6 @@ impl Staff {
             "DELETE FROM numbering WHERE assignment = ?",
             "DELETE FROM extension WHERE assignment = ?",
             "DELETE FROM campaign WHERE assignment = ?",
-            "DELETE FROM suspicion WHERE assignment = ?",
             "DELETE FROM event WHERE assignment = ?",
             "DELETE FROM assignment WHERE id = ?",
         ];
@@ -157,7 +154,6 @@ impl Admin {
             "DELETE FROM numbering WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)",
             "DELETE FROM extension WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)",
             "DELETE FROM campaign WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)",
-            "DELETE FROM suspicion WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)",
             "DELETE FROM assignment WHERE course = ?",
             "DELETE FROM suite WHERE course = ?",
             "DELETE FROM kept_bytes WHERE course = ?",

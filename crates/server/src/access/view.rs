@@ -295,8 +295,6 @@ macro_rules! submissions {
 fn read_grade(row: &Row, result: i64) -> Result<Graded, DbError> {
     let outcome = read_row!(row => Outcome {
         verdict, code, points, max_points, summary, version, grader, seconds, shown;
-        // Some of these scenes may be hidden.
-        wrong: Vec::new(),
         files: Vec::new(),
         failed: None,
     });

@@ -4,7 +4,7 @@ use super::super::{
     look, upload,
 };
 use crate::{
-    access::{Assignment, AssignmentChange, Member, Settings, Staff, Standing, Suspicion, moment, moment_schema},
+    access::{Assignment, AssignmentChange, Member, Settings, Staff, Standing, moment, moment_schema},
     problem::{Problem, ensure},
     schema::Title,
     worker,
@@ -193,19 +193,9 @@ answers! { OK:
     /// How all students stand: which submission counts, and for what.
     get "/api/v1/courses/{course}/assignments/{assignment}/class" "assignments"
         standings(staff: Staff, { assignment }) -> Vec<Standing>: staff.standings(&assignment);
-    /// Scenes in which more than a third of the students who are right otherwise answer the same, and not what the
-    /// reference does.
-    get "/api/v1/courses/{course}/assignments/{assignment}/suspicions" "assignments"
-        suspicions(staff: Staff, { assignment }) -> Vec<Suspicion>: staff.suspicions(&assignment);
 }
 
 deeds! { NO_CONTENT:
-    /// The reference is right there.
-    post "/api/v1/courses/{course}/assignments/{assignment}/suspicions/{id}/dismiss" "assignments"
-        dismiss(staff: Staff, { assignment, id }) -> "Noted": staff.decide_suspicion(&assignment, id, false);
-    /// Tells the students whose submissions answer so that the reference may be wrong.
-    post "/api/v1/courses/{course}/assignments/{assignment}/suspicions/{id}/tell" "assignments"
-        tell(staff: Staff, { assignment, id }) -> "Noted": staff.decide_suspicion(&assignment, id, true);
     /// Lets a student hand in until another moment than the others.
     put "/api/v1/courses/{course}/assignments/{assignment}/extensions/{login}" "assignments"
         extend(staff: Staff, { assignment, login }, wish: Extension) -> "Set":

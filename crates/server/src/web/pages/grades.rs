@@ -10,7 +10,7 @@ use super::{
     text,
 };
 use crate::{
-    access::{Assignment, Regrade, RegradeState, ScoreInfo, ShortStanding, Staff, Standing, Suspicion},
+    access::{Assignment, Regrade, RegradeState, ScoreInfo, ShortStanding, Staff, Standing},
     problem::Problem,
 };
 use askama::Template;
@@ -30,7 +30,6 @@ struct GradesPage {
     before: Option<String>,
     after: Option<String>,
     regrades: Vec<Regrade>,
-    suspicions: Vec<Suspicion>,
     scores: Vec<ScoreInfo>,
     requests: Vec<crate::access::Request>,
     statistics: Option<Statistics>,
@@ -121,7 +120,6 @@ pub(super) async fn class(staff: Staff, At { course: slug, assignment, .. }: At,
         before,
         after,
         regrades: staff.regrades(&assignment.slug).await?,
-        suspicions: staff.suspicions(&assignment.slug).await?,
         scores: staff.scores(&assignment.slug).await?,
         requests: staff.requests(&assignment.slug).await?,
         statistics,
@@ -165,8 +163,4 @@ deeds! {
         staff.discard_regrade(&assignment, id) => "/c/{course}/a/{assignment}/regrades/{id}";
     grade_errors_again(staff: Staff, { course, assignment }):
         staff.grade_errors_again(Some(&assignment)) => "/c/{course}/a/{assignment}/class";
-    dismiss(staff: Staff, { course, assignment, id }):
-        staff.decide_suspicion(&assignment, id, false) => "/c/{course}/a/{assignment}/class";
-    tell(staff: Staff, { course, assignment, id }):
-        staff.decide_suspicion(&assignment, id, true) => "/c/{course}/a/{assignment}/class";
 }

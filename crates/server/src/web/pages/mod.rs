@@ -125,8 +125,6 @@ pages! {
     get "/c/{course}/a/{assignment}/regrades/{id}" => grades::show_regrade,
     post "/c/{course}/a/{assignment}/regrades/{id}/apply" => grades::apply,
     post "/c/{course}/a/{assignment}/regrades/{id}/discard" => grades::discard,
-    post "/c/{course}/a/{assignment}/suspicions/{id}/dismiss" => grades::dismiss,
-    post "/c/{course}/a/{assignment}/suspicions/{id}/tell" => grades::tell,
     get "/c/{course}/s/{id}" => submission::submission,
     get "/c/{course}/a/{assignment}/students/{login}" => student::page,
     post "/c/{course}/a/{assignment}/students/{login}/extension" => student::extend,

@@ -48,8 +48,6 @@ struct SubmissionPage {
     history: Vec<History>,
     /// The change that it has made since the one before it.
     change: Option<String>,
-    /// Scenes in which the reference may be wrong, as staff says.
-    doubts: Vec<String>,
     report: Option<String>,
     /// The page that is shown: staff's own, where there is one.
     page: Option<&'static str>,
@@ -108,7 +106,6 @@ pub(super) async fn submission(member: Member, At { id, .. }: At) -> Page {
         is_moving: matches!(submission.state.as_str(), "waiting" | "running"),
         history: member.history(id).await?,
         change: member.change(&submission).await?.as_ref().map(heat::change),
-        doubts: member.doubts(id).await?,
         page: page_of(&submission),
         report,
         submission,

@@ -39,15 +39,6 @@ pub(super) fn regrade(state: &RegradeState) -> &'static str {
     }
 }
 
-/// The decision on a suspicion, in words.
-pub(super) fn suspicion(state: &str) -> &'static str {
-    match state {
-        "dismissed" => "the reference is right",
-        "told" => "students know that it is looked into",
-        _ => "nobody has decided yet",
-    }
-}
-
 /// The facts that a learning platform is to know.
 pub(super) fn score(score: &serde_json::Value) -> String {
     match (score["scoreGiven"].as_f64(), score["scoreMaximum"].as_f64()) {

@@ -23,7 +23,6 @@ mod roles;
 mod settings;
 mod signs;
 mod storage;
-mod suspicion;
 mod teaching;
 #[cfg(feature = "otel")]
 mod traces;
