@@ -1,5 +1,4 @@
 //! The scenes that submissions do not have right: of a class for its staff, and from one attempt to the next.
-//! Submissions that may stand beside another one: other attempts of the same person, and for staff those of others.
 use super::{Member, Staff, view::Submission};
 use crate::{
     db::{DbError, Transaction},
@@ -57,35 +56,6 @@ impl Staff {
 }
 
 impl Member {
-    /// The other attempts of a submission's owner, latest first: their numbers of submission and attempt.
-    ///
-    /// # Errors
-    /// When the database does not answer.
-    pub async fn attempts_beside(&self, submission: &Submission) -> Result<Vec<(i64, i64)>, Problem> {
-        let mut transaction = self.app.0.database.read().await?;
-        let statement = "SELECT other.id, other.number FROM submission AS other
-            JOIN submission AS one ON one.assignment = other.assignment AND one.account = other.account
-            WHERE one.id = ? AND other.id <> one.id ORDER BY other.id DESC";
-        let rows = transaction.rows(statement, values![submission.id]).await?;
-        rows.iter().map(|row| Ok((row.int("id")?, row.int("number")?))).collect()
-    }
-
-    /// The latest graded submission of somebody to the same assignment. Whether the member may see it is asked when it
-    /// is opened.
-    ///
-    /// # Errors
-    /// When there is none.
-    pub async fn latest_beside(&self, submission: &Submission, login: &str) -> Result<i64, Problem> {
-        let mut transaction = self.app.0.database.read().await?;
-        let statement = "SELECT other.id FROM submission AS other
-            JOIN submission AS one ON one.assignment = other.assignment
-            JOIN account ON account.id = other.account
-            JOIN grade ON grade.submission = other.id
-            WHERE one.id = ? AND account.login = ? ORDER BY other.id DESC LIMIT 1";
-        let row = transaction.row(statement, values![submission.id, login]).await?;
-        Ok(row.ok_or_else(|| Problem::not_found("graded submission of this login"))?.int("id")?)
-    }
-
     /// The change that a submission has made since the graded one of the same person before it. Nothing where there is
     /// none, and to students nothing where groups of one of both are withheld.
     ///

@@ -2,8 +2,7 @@
 use super::{
     super::input::{After, Asked, At, Fields},
     Page, PageFrame,
-    heat::Heat,
-    see,
+    scenes, see,
     settings::{Grading, SuiteOption, suites},
     show,
     statistics::Statistics,
@@ -33,7 +32,8 @@ struct GradesPage {
     scores: Vec<ScoreInfo>,
     requests: Vec<crate::access::Request>,
     statistics: Option<Statistics>,
-    heat: Heat,
+    /// Scenes that somebody on the page has wrong, and who.
+    scenes: Vec<(String, Vec<String>)>,
     suites: Vec<SuiteOption>,
     /// Whether students see less than staff until it is published.
     hides: bool,
@@ -123,7 +123,7 @@ pub(super) async fn class(staff: Staff, At { course: slug, assignment, .. }: At,
         scores: staff.scores(&assignment.slug).await?,
         requests: staff.requests(&assignment.slug).await?,
         statistics,
-        heat: Heat::of(&standings, &staff.failed_scenes(&results).await?),
+        scenes: scenes::wrong(&standings, &staff.failed_scenes(&results).await?),
         standings,
         suites: suites(&assignment.settings, staff.app.suites.names()),
         hides: staff.hides(&assignment).await?,

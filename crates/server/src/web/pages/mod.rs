@@ -21,9 +21,9 @@ mod administration;
 mod checker;
 mod course;
 mod grades;
-mod heat;
 mod platform;
 mod removal;
+mod scenes;
 mod settings;
 mod sign_in;
 mod statistics;
@@ -133,7 +133,6 @@ pages! {
     get "/c/{course}/s/{id}/remove" => removal::submission,
     post "/c/{course}/s/{id}/remove" => removal::remove_submission,
     get "/c/{course}/s/{id}/report/{name}" => submission::report,
-    get "/c/{course}/s/{id}/beside" => submission::beside,
     get "/c/{course}/s/{id}/upload" => submission::upload,
     get "/static/style.css" => style,
     get "/static/page.js" => script,

@@ -2,17 +2,12 @@
 use crate::{access::ShortStanding, task::rounded};
 use std::collections::BTreeMap;
 
-/// Parts of the whole, in percent.
-const BIN: usize = 10;
-
 /// How a class did.
 pub(super) struct Statistics {
     pub(super) students: usize,
     pub(super) accepted: usize,
     pub(super) mean: String,
     pub(super) median: String,
-    /// Students by percent of the points.
-    pub(super) bins: Vec<(String, usize)>,
     /// Mistakes that several students are likely to have made, the most frequent first: their logins, and a submission
     /// that shows it.
     pub(super) mistakes: Vec<(String, Vec<String>, i64)>,
@@ -43,12 +38,6 @@ impl Statistics {
         let students = parts.len();
         let median = (parts.get(students.checked_sub(1)? / 2)? + parts.get(students / 2)?) / 2.0;
         let mean = parts.iter().sum::<f64>() / students as f64;
-        let bin = |from: usize| {
-            let (low, high) = (from as f64, (from + BIN) as f64);
-            let is_last = from + BIN == 100;
-            let count = parts.iter().filter(|part| (low..high).contains(*part) || is_last && **part >= high).count();
-            (format!("{from} to {}", from + BIN), count)
-        };
         let shared = mistakes.into_iter().filter(|(_, (logins, _))| logins.len() > 1);
         let mut mistakes: Vec<_> = shared.map(|(mistake, (logins, first))| (mistake, logins, first)).collect();
         mistakes.sort_by_key(|(_, logins, _)| std::cmp::Reverse(logins.len()));
@@ -57,7 +46,6 @@ impl Statistics {
             accepted,
             mean: rounded(&mean.to_string()),
             median: rounded(&median.to_string()),
-            bins: (0..100).step_by(BIN).map(bin).collect(),
             mistakes,
         })
     }

@@ -4,7 +4,7 @@ use super::{
         api::{RequestWish, cell},
         input::{At, Fields},
     },
-    Page, PageFrame, grades, heat, see,
+    Page, PageFrame, grades, scenes, see,
     settings::moment,
     show, text,
 };
@@ -91,7 +91,7 @@ pub(super) async fn page(staff: Staff, At { course: slug, assignment, login, .. 
     let change = |pair: &[(&Submission, i64)]| {
         let [(later, new), (earlier, old)] = *pair else { return None };
         let change = AttemptChange::between(earlier.number, failed.get(&old)?, failed.get(&new)?);
-        Some((later.id, heat::change(&change)))
+        Some((later.id, scenes::change(&change)))
     };
     let changes = graded.windows(2).filter_map(change).collect();
     show(&StudentPage { frame, slug, assignment, work, changes })

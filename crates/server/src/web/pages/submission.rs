@@ -2,11 +2,11 @@
 use super::{
     super::{
         api,
-        input::{Asked, At},
+        input::At,
     },
     Page, PageFrame,
     course::OwnWork,
-    heat, see, show, text,
+    scenes, see, show, text,
 };
 use crate::{
     access::{Assignment, History, Member, Staff, Submission},
@@ -20,7 +20,6 @@ use axum::{
     http::HeaderMap,
     response::{Redirect, Response},
 };
-use serde::Deserialize;
 
 /// How much of a report a page shows; the rest is behind its link.
 const SHOWN: u64 = 200_000;
@@ -105,52 +104,12 @@ pub(super) async fn submission(member: Member, At { id, .. }: At) -> Page {
         work,
         is_moving: matches!(submission.state.as_str(), "waiting" | "running"),
         history: member.history(id).await?,
-        change: member.change(&submission).await?.as_ref().map(heat::change),
+        change: member.change(&submission).await?.as_ref().map(scenes::change),
         page: page_of(&submission),
         report,
         submission,
         member,
     })
-}
-
-#[derive(Template)]
-#[template(path = "beside.html")]
-struct BesidePage {
-    frame: PageFrame,
-    member: Member,
-    /// Other attempts of the same person: their numbers of submission and attempt.
-    attempts: Vec<(i64, i64)>,
-    /// The submissions, each with its page.
-    shown: Vec<(Submission, Option<&'static str>)>,
-}
-
-/// The submission that is to stand beside another one.
-#[derive(Deserialize)]
-pub(super) struct Beside {
-    #[serde(default)]
-    attempt: String,
-    #[serde(default)]
-    login: String,
-}
-
-pub(super) async fn beside(member: Member, At { id, .. }: At, Asked(Beside { attempt, login }): Asked<Beside>) -> Page {
-    let one = member.submission(id).await?;
-    let attempts = member.attempts_beside(&one).await?;
-    let other = match (attempt.trim(), login.trim()) {
-        ("", "") => None,
-        ("", login) => Some(member.latest_beside(&one, login).await?),
-        (attempt, _) => Some(attempt.parse().map_err(|_| Problem::not_found("submission"))?),
-    };
-    let other = match other {
-        Some(other) => Some(member.submission(other).await?),
-        None => None,
-    };
-    let frame = frame(&member, find_assignment(&member, &one).await?.as_ref(), &one);
-    let shown = std::iter::once(one).chain(other).map(|one| {
-        let page = page_of(&one);
-        (one, page)
-    });
-    show(&BesidePage { frame, member, attempts, shown: shown.collect() })
 }
 
 /// The page that is shown of a submission: staff's own, where there is one that the reader may see.

@@ -8,7 +8,6 @@ use serde_json::Value;
 on_sqlite!(
     reports_that_tell_of_hidden_groups_are_for_staff,
     the_page_for_staff_is_for_staff,
-    submissions_stand_side_by_side,
     all_that_a_page_offers_tells_of_the_points_in_its_head
 );
 
@@ -91,41 +90,6 @@ async fn reports_that_tell_of_hidden_groups_are_for_staff(fresh: Fresh) {
     assert!(page.contains("report.html") && !page.contains("grade.json") && !page.contains("Report as text"), "{page}");
     let page = teacher.get(&format!("/c/physics/s/{hidden}")).expect(200).text();
     assert!(page.contains("grade.json") && page.contains("Report as text"), "{page}");
-}
-
-/// Two attempts stand side by side, and for staff two people's; a student never sees another's.
-async fn submissions_stand_side_by_side(fresh: Fresh) {
-    let mut server = Server::start(&fresh, &["--workers", "1"]);
-    let admin = server.admin();
-    server.course(&admin, "physics");
-    let teacher = server.member(&admin, "physics", "teacher", "staff");
-    let ada = server.member(&admin, "physics", "ada", "student");
-    let bob = server.member(&admin, "physics", "bob", "student");
-    let submit = |by: &Client, points: u32| {
-        let id = by.submit("physics", format!("#!grade WA {points} Group/scene 3\n").as_bytes());
-        by.wait_for_grade("physics", id);
-        id
-    };
-    let (first, second, other) = (submit(&ada, 10), submit(&ada, 20), submit(&bob, 30));
-    let page = |by: &Client, words: &str, status: u16| {
-        by.get(&format!("/c/physics/s/{second}/beside{words}")).expect(status).text()
-    };
-    let report = |id: i64, name: &str| format!("src=\"/c/physics/s/{id}/report/{name}\"");
-    assert!(ada.get(&format!("/c/physics/s/{second}")).expect(200).text().contains("/beside\""));
-    let alone = page(&ada, "", 200);
-    assert!(alone.contains(&report(second, "report.html")) && alone.contains(&format!("value=\"{first}\"")), "{alone}");
-    let both = page(&ada, &format!("?attempt={first}"), 200);
-    assert!(both.contains(&report(second, "report.html")) && both.contains(&report(first, "report.html")), "{both}");
-    let people = page(&teacher, "?attempt=&login=bob", 200);
-    assert!(
-        people.contains(&report(second, "staff.html")) && people.contains(&report(other, "staff.html")),
-        "{people}"
-    );
-    for words in ["?login=bob", &format!("?attempt={other}"), "?attempt=none"] {
-        page(&ada, words, 404);
-    }
-    page(&teacher, "?login=nobody", 404);
-    page(&bob, "", 404);
 }
 
 /// Details that hints keep from students are on a page of their own, hidden groups or not.

@@ -1,0 +1,50 @@
+//! The scenes that submissions do not have right, in tables and sentences.
+use crate::access::{AttemptChange, FailedScenes, Standing};
+use std::{cmp::Reverse, collections::BTreeMap};
+
+/// The greatest number of scenes that are named in a sentence.
+const NAMED: usize = 3;
+
+/// The scenes that somebody has wrong, by the results that count, and those who have, most of them first.
+pub(super) fn wrong(standings: &[Standing], failed: &BTreeMap<i64, FailedScenes>) -> Vec<(String, Vec<String>)> {
+    let mut logins: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+    for standing in standings {
+        let grade = standing.counts.as_ref().and_then(|counts| counts.grade.as_ref());
+        for scene in grade.and_then(|grade| failed.get(&grade.result)).into_iter().flat_map(BTreeMap::keys) {
+            logins.entry(scene).or_default().push(standing.login.clone());
+        }
+    }
+    let mut scenes: Vec<_> = logins.into_iter().map(|(scene, logins)| (scene.to_owned(), logins)).collect();
+    scenes.sort_by_key(|(_, logins)| Reverse(logins.len()));
+    scenes
+}
+
+/// The change that an attempt has made, in a sentence.
+pub(super) fn change(change: &AttemptChange) -> String {
+    let list = |scenes: &[String]| {
+        let more = scenes.len().saturating_sub(NAMED);
+        let named = scenes[..scenes.len() - more].join(", ");
+        if more > 0 { format!("{named} and {more} more") } else { named }
+    };
+    let since = format!("Since submission {}", change.since);
+    match (&change.right[..], &change.wrong[..]) {
+        ([], []) => format!("{since} no scene became right, and none wrong."),
+        (right, []) => format!("{since} became right: {}.", list(right)),
+        ([], wrong) => format!("{since} no longer right: {}.", list(wrong)),
+        (right, wrong) => format!("{since} became right: {}. No longer right: {}.", list(right), list(wrong)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_change_names_few_scenes() {
+        let names = |count: usize| (0..count).map(|number| format!("s{number}")).collect::<Vec<_>>();
+        let of = |right, wrong| change(&AttemptChange { since: 2, right: names(right), wrong: names(wrong) });
+        assert_eq!(of(0, 0), "Since submission 2 no scene became right, and none wrong.");
+        assert_eq!(of(1, 1), "Since submission 2 became right: s0. No longer right: s0.");
+        assert_eq!(of(0, 8), "Since submission 2 no longer right: s0, s1, s2 and 5 more.");
+    }
+}
