@@ -105,7 +105,6 @@ async fn step(database: &Database, wanted: Option<i64>) -> Result<Step, Problem>
         "undo" => undo(&mut transaction, &campaign).await?,
         _ => discard(&mut transaction, &campaign).await?,
     }
-    Notifier::notify(&mut transaction).await?;
     transaction.commit().await?;
     Ok(Step::Done)
 }

@@ -50,10 +50,6 @@ pub(super) struct Place {
     /// The database: sqlite:FILE or postgres://USER:PASSWORD@HOST/NAME. A SQLite file in the data folder by default.
     #[arg(long, value_name = "ADDRESS", env = "FOSSSIM_DATABASE", hide_env_values = true)]
     pub(super) database: Option<Address>,
-    /// The same database without a pooler in between, to be told at once when something happens. Behind a pooler, and
-    /// without this, the queue is looked at every second.
-    #[arg(long, value_name = "ADDRESS", env = "FOSSSIM_DATABASE_DIRECT", hide_env_values = true)]
-    pub(super) database_direct: Option<Address>,
     /// A bucket for artefacts instead of a folder in the data folder: s3://BUCKET/PREFIX. How to reach it stands in the
     /// usual variables, AWS_ACCESS_KEY_ID and so on.
     #[arg(long, value_name = "s3://BUCKET/PREFIX", env = "FOSSSIM_STORE")]

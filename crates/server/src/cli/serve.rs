@@ -53,7 +53,6 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
     let store = folders.store(&arguments.place)?;
     clear_incoming(&folders.incoming)?;
     let notifier = Notifier::default();
-    tokio::spawn(notifier.clone().listen(database.clone(), arguments.place.database_direct.clone()));
     tokio::spawn(access::work_on_regrades(database.clone(), notifier.clone(), stop.clone()));
     let local = format!("http://{}", listener.local_addr()?);
     let public = arguments.public_url.clone().unwrap_or_else(|| local.clone());

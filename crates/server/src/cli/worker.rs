@@ -37,7 +37,6 @@ pub(super) async fn run(arguments: &WorkerArguments) -> Result<()> {
     }
     let store = folders.store(&arguments.place)?;
     let notifier = Notifier::default();
-    tokio::spawn(notifier.clone().listen(database.clone(), arguments.place.database_direct.clone()));
     let local = Local {
         folders,
         database: database.clone(),

@@ -8,7 +8,6 @@
 mod address;
 mod fault;
 mod migrate;
-mod pooler;
 mod statement;
 mod transaction;
 mod value;
@@ -16,7 +15,6 @@ mod value;
 pub use address::Address;
 pub use fault::DbError;
 pub use migrate::{LATEST, MigrateError, changes_after, migrate, version};
-pub(crate) use pooler::is_pooled;
 pub use transaction::Transaction;
 use transaction::{Faults, Inner, Turn};
 pub use value::{Column, FromRow, Row, Value};
@@ -58,7 +56,7 @@ fn is_good(connection: &impl Connection, faults: &Faults, age: Duration) -> bool
 }
 
 /// How to reach a PostgreSQL. A pooler refuses start-up settings that it does not know.
-pub(crate) fn postgres_options(url: &str) -> Result<PgConnectOptions, DbError> {
+fn postgres_options(url: &str) -> Result<PgConnectOptions, DbError> {
     let options: PgConnectOptions = url.parse().map_err(DbError::from)?;
     Ok(options
         .extra_float_digits(None)
@@ -107,10 +105,7 @@ enum Engine {
         writer: SqlitePool,
         readers: SqlitePool,
     },
-    Postgres {
-        pool: PgPool,
-        options: Box<PgConnectOptions>,
-    },
+    Postgres(PgPool),
 }
 
 /// Which database it is.
@@ -163,16 +158,15 @@ impl Database {
                 Engine::Sqlite { writer, readers: pool(4).connect_lazy_with(options) }
             }
             Address::Postgres(url) => {
-                let options = postgres_options(url)?;
                 let pool = PgPoolOptions::new()
                     .before_acquire(move |connection, about| {
                         Box::pin(std::future::ready(Ok(is_good(connection, &good, about.age))))
                     })
                     .max_connections(CONNECTIONS)
                     .acquire_timeout(PATIENCE)
-                    .connect_with(options.clone())
+                    .connect_with(postgres_options(url)?)
                     .await?;
-                Engine::Postgres { pool, options: Box::new(options) }
+                Engine::Postgres(pool)
             }
         };
         let turns = Arc::new(Semaphore::new(turns as usize));
@@ -199,7 +193,7 @@ impl Database {
     pub fn dialect(&self) -> Dialect {
         match self.engine {
             Engine::Sqlite { .. } => Dialect::Sqlite,
-            Engine::Postgres { .. } => Dialect::Postgres,
+            Engine::Postgres(_) => Dialect::Postgres,
         }
     }
 
@@ -217,7 +211,7 @@ impl Database {
             Engine::Sqlite { writer, .. } => {
                 self.waited(Inner::Sqlite, || writer.begin_with("BEGIN IMMEDIATE"), true).await
             }
-            Engine::Postgres { pool, .. } => self.waited(Inner::Postgres, || pool.begin_with(BEGIN), true).await,
+            Engine::Postgres(pool) => self.waited(Inner::Postgres, || pool.begin_with(BEGIN), true).await,
         }
     }
 
@@ -237,7 +231,7 @@ impl Database {
     pub async fn read(&self) -> Result<Transaction, DbError> {
         match &self.engine {
             Engine::Sqlite { readers, .. } => self.waited(Inner::Sqlite, || readers.begin(), false).await,
-            Engine::Postgres { pool, .. } => {
+            Engine::Postgres(pool) => {
                 let begin = "BEGIN ISOLATION LEVEL REPEATABLE READ, READ ONLY";
                 self.waited(Inner::Postgres, || pool.begin_with(begin), true).await
             }
@@ -268,21 +262,13 @@ impl Database {
     pub fn pools(&self) -> Vec<Pool> {
         match &self.engine {
             Engine::Sqlite { writer, readers } => vec![pool("writer", writer), pool("readers", readers)],
-            Engine::Postgres { pool: connections, .. } => vec![pool("postgres", connections)],
+            Engine::Postgres(connections) => vec![pool("postgres", connections)],
         }
     }
 
     /// How many transactions wait for a connection, and how many were given up because none was free in time.
     pub fn waits(&self) -> (i64, u64) {
         (self.waits.waiting.load(Ordering::Relaxed), self.waits.timeouts.load(Ordering::Relaxed))
-    }
-
-    /// How to reach PostgreSQL for a listener, which needs a connection of its own; nothing for SQLite.
-    pub(crate) fn postgres_options(&self) -> Option<&PgConnectOptions> {
-        match &self.engine {
-            Engine::Sqlite { .. } => None,
-            Engine::Postgres { options, .. } => Some(options),
-        }
     }
 
     /// Copies a SQLite database into a new file, consistently and while others write; PostgreSQL has its own tools.
@@ -296,7 +282,7 @@ impl Database {
                 sqlx::query("VACUUM INTO ?").bind(text).execute(readers).await?;
                 Ok(())
             }
-            Engine::Postgres { .. } => Err(DbError::Other("PostgreSQL is copied by pg_dump".to_owned())),
+            Engine::Postgres(_) => Err(DbError::Other("PostgreSQL is copied by pg_dump".to_owned())),
         }
     }
 
@@ -307,7 +293,7 @@ impl Database {
                 readers.close().await;
                 writer.close().await;
             }
-            Engine::Postgres { pool, .. } => pool.close().await,
+            Engine::Postgres(pool) => pool.close().await,
         }
     }
 }

@@ -8,7 +8,7 @@ use super::Platform;
 use crate::{
     db::{DbError, FromRow, Row, Transaction, read_row},
     late::Late,
-    queue::{self, Lane, NewJob, Notifier, Turn},
+    queue::{self, Lane, NewJob, Turn},
     shown::Shown,
     task::rounded,
     values,
@@ -88,9 +88,6 @@ async fn enqueue(transaction: &mut Transaction, rows: &[Row], again: bool) -> Re
         let payload = &serde_json::to_string(&order).map_err(|error| DbError::Other(error.to_string()))?;
         let job = NewJob { lane: Lane::Passback, submission: None, campaign: None, turn, payload };
         queue::enqueue(transaction, &job).await?;
-    }
-    if !rows.is_empty() {
-        Notifier::notify(transaction).await?;
     }
     Ok(rows.len())
 }

@@ -5,7 +5,6 @@ mod campaigns;
 mod command_line;
 mod deploy;
 mod migrations;
-mod notifier;
 mod plans;
 mod pooler;
 mod queue;

@@ -173,7 +173,6 @@ impl Arena {
             payload: &payload,
         };
         queue::enqueue(&mut transaction, &job).await?;
-        queue::Notifier::notify(&mut transaction).await?;
         transaction.commit().await
     }
 
