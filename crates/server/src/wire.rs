@@ -16,8 +16,6 @@ pub struct Claimed {
     pub renew_every: u64,
     /// The task.
     pub task: Task,
-    /// Whether nothing else may run beside it.
-    pub alone: bool,
 }
 
 /// A sign of life.

@@ -63,12 +63,12 @@ impl Remote {
         Ok(row.map(|row| row.maybe_int("token")).transpose()?.flatten() == Some(self.token))
     }
 
-    /// The next job, if there is one; one that must run alone only for a worker that is idle.
+    /// The next job, if there is one.
     ///
     /// # Errors
     /// When the database does not answer.
-    pub async fn claim(&self, is_idle: bool) -> Result<Option<Claimed>, Problem> {
-        Ok(self.source().claim(is_idle).await?)
+    pub async fn claim(&self) -> Result<Option<Claimed>, Problem> {
+        Ok(self.source().claim().await?)
     }
 
     /// Says that it is alive, with this many slots, or why it can't grade, and of which version it is.

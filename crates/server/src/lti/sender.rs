@@ -41,7 +41,7 @@ const LOOKS: u32 = 100;
 const LOOK_AGAIN: Duration = Duration::from_millis(250);
 
 /// The holder of the jobs.
-const CLAIMANT: Claimant<'static> = Claimant { worker: "scores", is_idle: true, token: None };
+const CLAIMANT: Claimant<'static> = Claimant { worker: "scores", token: None };
 
 /// Sends scores until `stop` is cancelled. What was sent and not noted then is sent once more, and changes nothing.
 /// `look` finds jobs of servers that went silent; it is called before each claim.
@@ -88,7 +88,7 @@ async fn take<F: Future<Output = Result<(), DbError>>>(
     look: impl Fn() -> F,
 ) -> Result<Option<(Claim, tokio::sync::OwnedSemaphorePermit)>, DbError> {
     // A server without platforms never writes for them.
-    if !queue::is_due(&mut database.read().await?, policy, Lane::Passback).await? {
+    if !queue::is_due(&mut database.read().await?, Lane::Passback).await? {
         return Ok(None);
     }
     let place = room.clone().acquire_owned().await.map_err(|error| DbError::Other(error.to_string()))?;

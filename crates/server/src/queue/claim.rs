@@ -1,5 +1,5 @@
 //! Claiming.
-use super::{Claim, Lane, Lease, QueuePolicy, SUSPECTED_AFTER, millis};
+use super::{Claim, Lane, Lease, QueuePolicy, millis};
 use crate::{
     db::{DbError, Transaction, read_row},
     secret, values,
@@ -10,9 +10,6 @@ use crate::{
 pub struct Claimant<'a> {
     /// The worker's name.
     pub worker: &'a str,
-    /// Whether it runs nothing else, and would run a suspected job alone. One that is busy leaves these to others,
-    /// until their turn has come all the same; then it has to wait until its other jobs have ended.
-    pub is_idle: bool,
     /// The token that it came by, if any.
     pub token: Option<i64>,
 }
@@ -29,28 +26,18 @@ pub async fn claim(
     lane: Lane,
     claimant: Claimant<'_>,
 ) -> Result<Option<Claim>, DbError> {
-    let Claimant { worker, is_idle, token } = claimant;
-    let bound = millis(lane.longest_wait(policy));
-    let next = transaction
-        .row(
-            // Nothing waits longer than its bound: a time that lies further ahead is of a clock that was set back.
-            "SELECT id FROM job WHERE lane = ? AND state = 'waiting' AND (run_after > {now} + ? OR run_after <= {now}
-                AND (failed_by IS NULL OR failed_by <> ? OR run_after <= {now} - ?))
-                AND (? = 1 OR failures + deaths < ? OR rank <= {now})
-             ORDER BY rank, id LIMIT 1 {skip locked}",
-            values![lane.name(), bound, worker, millis(policy.lease / 3), is_idle, SUSPECTED_AFTER],
-        )
-        .await?;
+    let Claimant { worker, token } = claimant;
+    let statement = "SELECT id FROM job WHERE lane = ? AND state = 'waiting' AND run_after <= {now}
+            AND (failed_by IS NULL OR failed_by <> ? OR run_after <= {now} - ?)
+        ORDER BY rank, id LIMIT 1 {skip locked}";
+    let next = transaction.row(statement, values![lane.name(), worker, millis(policy.lease / 3)]).await?;
     let Some(next) = next else { return Ok(None) };
     let job = next.int("id")?;
     let key = secret::random_hex();
     let statement = "UPDATE job SET state = 'running', attempt = attempt + 1, worker = ?, lease_key = ?,
-           lease_until = {now} + ?, started_at = {now}, scenes_done = NULL, scenes = NULL,
-           token = ?, is_alone = CASE WHEN failures + deaths >= ? THEN ? ELSE 0 END
+           lease_until = {now} + ?, started_at = {now}, scenes_done = NULL, scenes = NULL, token = ?
         WHERE id = ? RETURNING attempt, failures, deaths, submission, payload";
-    let row = transaction
-        .one(statement, values![worker, &key, millis(policy.lease), token, SUSPECTED_AFTER, is_idle, job])
-        .await?;
+    let row = transaction.one(statement, values![worker, &key, millis(policy.lease), token, job]).await?;
     let lease = Lease { job, attempt: row.int("attempt")?, key };
     let row = &row;
     Ok(Some(read_row!(row => Claim { submission, payload, failures, deaths; lease })))
@@ -61,10 +48,9 @@ pub async fn claim(
 ///
 /// # Errors
 /// An error of the database.
-pub async fn is_due(transaction: &mut Transaction, policy: &QueuePolicy, lane: Lane) -> Result<bool, DbError> {
+pub async fn is_due(transaction: &mut Transaction, lane: Lane) -> Result<bool, DbError> {
     let statement = "SELECT id FROM job WHERE lane = ? AND (
-           (state = 'waiting' AND (run_after <= {now} OR run_after > {now} + ?)) OR (state = 'running' AND lease_until < {now})
+           (state = 'waiting' AND run_after <= {now}) OR (state = 'running' AND lease_until < {now})
         ) LIMIT 1";
-    let row = transaction.row(statement, values![lane.name(), millis(lane.longest_wait(policy))]).await?;
-    Ok(row.is_some())
+    Ok(transaction.row(statement, values![lane.name()]).await?.is_some())
 }

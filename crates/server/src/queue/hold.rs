@@ -1,6 +1,6 @@
 //! The words that the holder of a lease may say. Everything is fenced: it counts only while the job runs under this
 //! very lease.
-use super::{A_DAY, Lease, QueuePolicy, SUSPECTED_AFTER, SUSPECTED_LATER, millis};
+use super::{A_DAY, Lease, QueuePolicy, millis};
 use crate::{
     db::{DbError, Row, Transaction},
     values,
@@ -112,19 +112,13 @@ pub async fn fail(
     fault: &str,
     least: Duration,
 ) -> Result<Failure, DbError> {
-    let statement = "SELECT failures, deaths, lone_deaths FROM job
+    let statement = "SELECT failures, deaths FROM job
         WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running' {for update}";
     let held = transaction.row(statement, values![lease.job, lease.attempt, &lease.key]).await?;
     let Some(row) = held else { return Ok(Failure::Late) };
     let failures = row.int("failures")? + 1;
-    let loss = Loss {
-        job: lease.job,
-        failures,
-        deaths: row.int("deaths")?,
-        lone_deaths: row.int("lone_deaths")?,
-        wait: policy.wait(failures).max(least).min(A_DAY),
-        fault,
-    };
+    let (deaths, wait) = (row.int("deaths")?, policy.wait(failures).max(least).min(A_DAY));
+    let loss = Loss { job: lease.job, failures, deaths, wait, fault };
     lose(transaction, loss, failures >= i64::from(policy.max_failures)).await
 }
 
@@ -133,7 +127,6 @@ struct Loss<'a> {
     job: i64,
     failures: i64,
     deaths: i64,
-    lone_deaths: i64,
     /// Before the next try.
     wait: Duration,
     fault: &'a str,
@@ -146,35 +139,24 @@ pub(super) async fn die(
     row: &Row,
     fault: &str,
 ) -> Result<Failure, DbError> {
-    let lone_deaths = row.int("lone_deaths")? + row.int("is_alone")?;
-    let loss = Loss {
-        job: row.int("id")?,
-        failures: row.int("failures")?,
-        deaths: row.int("deaths")? + 1,
-        lone_deaths,
-        wait: policy.wait_after_death(lone_deaths),
-        fault,
-    };
-    lose(transaction, loss, lone_deaths >= policy.max_lone_deaths()).await
+    let (failures, deaths) = (row.int("failures")?, row.int("deaths")? + 1);
+    let loss = Loss { job: row.int("id")?, failures, deaths, wait: policy.wait_after_death(deaths), fault };
+    lose(transaction, loss, deaths >= policy.max_deaths()).await
 }
 
-/// Buries a job that has had its last try, or has it wait again; one that is suspected by now after the others.
+/// Buries a job that has had its last try, or has it wait again.
 async fn lose(transaction: &mut Transaction, loss: Loss<'_>, is_last: bool) -> Result<Failure, DbError> {
-    let Loss { job, failures, deaths, lone_deaths, wait, fault } = loss;
+    let Loss { job, failures, deaths, wait, fault } = loss;
     if is_last {
-        let statement = "UPDATE job SET state = 'buried', failures = ?, deaths = ?, lone_deaths = ?,
-               finished_at = {now}, lease_key = NULL, lease_until = NULL, last_fault = ?
+        let statement = "UPDATE job SET state = 'buried', failures = ?, deaths = ?, finished_at = {now},
+               lease_key = NULL, lease_until = NULL, last_fault = ?
             WHERE id = ?";
-        transaction.execute(statement, values![failures, deaths, lone_deaths, fault, job]).await?;
+        transaction.execute(statement, values![failures, deaths, fault, job]).await?;
         return Ok(Failure::Buried);
     }
-    let later = if failures + deaths >= SUSPECTED_AFTER { millis(SUSPECTED_LATER) } else { 0 };
-    let statement =
-        "UPDATE job SET state = 'waiting', failures = ?, deaths = ?, lone_deaths = ?, run_after = {now} + ?,
-           rank = CASE WHEN ? > 0 AND rank < {now} + ? THEN {now} + ? ELSE rank END, failed_by = worker,
-           worker = NULL, lease_key = NULL, lease_until = NULL, last_fault = ?
+    let statement = "UPDATE job SET state = 'waiting', failures = ?, deaths = ?, run_after = {now} + ?,
+           failed_by = worker, worker = NULL, lease_key = NULL, lease_until = NULL, last_fault = ?
         WHERE id = ?";
-    let values = values![failures, deaths, lone_deaths, millis(wait), later, later, later, fault, job];
-    transaction.execute(statement, values).await?;
+    transaction.execute(statement, values![failures, deaths, millis(wait), fault, job]).await?;
     Ok(Failure::Retried)
 }

@@ -5,10 +5,8 @@
 //! (**releases**) or says that it **failed**. Every claim has a number of its own, the attempt, and a key that only the
 //! worker knows: whatever a worker says is looked at together with them, so that one who is late changes nothing. A job
 //! that failed waits again, later each time, and after [`QueuePolicy::max_failures`] failures it is **buried**:
-//! somebody is to look at it. A worker that died, or went silent, is no failure of its job. But a job that was there
-//! several times is **suspected**: it is run alone, and after the others that wait; only one that takes its worker
-//! down over and over while nothing else runs there is buried. What a job is about, and what is written when it ends,
-//! is the concern of the rooms above.
+//! somebody is to look at it. A worker that died, or went silent, is no failure of its job; only a job that was there
+//! far more often than it may fail is buried, too. What a job is about, and what is written when it ends, is the concern of the rooms above.
 
 mod claim;
 mod enqueue;
@@ -47,14 +45,6 @@ impl Lane {
         }
     }
 
-    /// How long a job of it may wait between two tries.
-    fn longest_wait(self, policy: &QueuePolicy) -> Duration {
-        match self {
-            Self::Grading => policy.longest_wait,
-            // Platforms may wish to be left alone for longer.
-            Self::Passback => A_DAY.max(policy.longest_wait),
-        }
-    }
 }
 
 /// The longest that a platform may have us wait.
@@ -100,15 +90,15 @@ impl QueuePolicy {
         self.lease / 2
     }
 
-    /// So often a worker may die with a job that it runs alone. Far more often than a job may fail: a server in a crash
-    /// loop, whatever kills it, is no fault of what it is at.
-    fn max_lone_deaths(&self) -> i64 {
+    /// So often a worker may die with a job. Far more often than a job may fail: a server in a crash loop, whatever kills
+    /// it, is no fault of what it is at.
+    fn max_deaths(&self) -> i64 {
         8 * i64::from(self.max_failures)
     }
 
     /// How long a job waits after its worker died: not long, since workers seldom die of what they do.
-    fn wait_after_death(&self, lone_deaths: i64) -> Duration {
-        self.first_wait * u32::try_from(lone_deaths).unwrap_or(0).clamp(1, 10)
+    fn wait_after_death(&self, deaths: i64) -> Duration {
+        self.first_wait * u32::try_from(deaths).unwrap_or(0).clamp(1, 10)
     }
 
     /// How long a job waits after its `failures`th failure, at most.
@@ -138,13 +128,6 @@ pub struct Lease {
     pub key: String,
 }
 
-/// From this many failures and deaths of workers on a job is suspected of killing its worker, and runs alone: others
-/// would die with it.
-const SUSPECTED_AFTER: i64 = 2;
-
-/// So much later comes the turn of a job that is suspected.
-const SUSPECTED_LATER: Duration = Duration::from_secs(1800);
-
 /// A job that was claimed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Claim {
@@ -158,13 +141,6 @@ pub struct Claim {
     pub failures: i64,
     /// How often its worker died before.
     pub deaths: i64,
-}
-
-impl Claim {
-    /// Whether the job is to run alone in its worker.
-    pub fn is_suspected(&self) -> bool {
-        self.failures + self.deaths >= SUSPECTED_AFTER
-    }
 }
 
 /// Milliseconds, as the database counts.

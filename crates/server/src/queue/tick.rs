@@ -13,8 +13,7 @@ use crate::{
 pub struct Tick {
     /// How many jobs wait again.
     pub retried: usize,
-    /// Jobs that took their worker down too often, alone; the caller writes what follows in the same
-    /// transaction.
+    /// Jobs that took their worker down too often; the caller writes what follows in the same transaction.
     pub buried: Vec<Buried>,
     /// Whether leases began anew because nobody had ticked.
     pub outage: bool,
@@ -47,10 +46,6 @@ pub async fn tick(transaction: &mut Transaction, policy: &QueuePolicy) -> Result
         return Ok(Tick::default());
     }
     transaction.execute("UPDATE pulse SET beat_at = {now} WHERE id = 1", values![]).await?;
-    if now < beat {
-        // Time that passed after the last beat goes on before what comes now, too.
-        set_back(transaction, beat - now + millis(policy.tick_every())).await?;
-    }
     // A clock that was set back, or far ahead, is an outage, too.
     if now < beat || now - beat > millis(policy.outage()) {
         let statement = "WITH held AS (SELECT id FROM job WHERE state = 'running' ORDER BY id {for update})
@@ -59,19 +54,10 @@ pub async fn tick(transaction: &mut Transaction, policy: &QueuePolicy) -> Result
         transaction.execute(statement, values![millis(policy.lease)]).await?;
         return Ok(Tick { outage: true, ..Tick::default() });
     }
-    let statement = "SELECT id, attempt, failures, deaths, lone_deaths, is_alone, worker FROM job
+    let statement = "SELECT id, attempt, failures, deaths, worker FROM job
         WHERE state = 'running' AND lease_until < {now} ORDER BY id {skip locked}";
     let lost = transaction.rows(statement, values![]).await?;
     give_up(transaction, policy, lost, "its worker went silent").await
-}
-
-/// The clock was set back by so much: what waits would wait for it to catch up, and be passed by whatever comes now.
-async fn set_back(transaction: &mut Transaction, by: i64) -> Result<(), DbError> {
-    let statement = "WITH held AS (SELECT id FROM job WHERE state = 'waiting' ORDER BY id {for update})
-        UPDATE job SET rank = rank - ?, run_after = CASE WHEN run_after > {now} THEN {now} ELSE run_after END
-        WHERE id IN (SELECT id FROM held) AND state = 'waiting'";
-    transaction.execute(statement, values![by]).await?;
-    Ok(())
 }
 
 /// Gives up on a worker that is known to be dead, before its leases run out.
@@ -79,7 +65,7 @@ async fn set_back(transaction: &mut Transaction, by: i64) -> Result<(), DbError>
 /// # Errors
 /// An error of the database.
 pub async fn abandon(transaction: &mut Transaction, policy: &QueuePolicy, worker: &str) -> Result<Tick, DbError> {
-    let statement = "SELECT id, attempt, failures, deaths, lone_deaths, is_alone, worker FROM job
+    let statement = "SELECT id, attempt, failures, deaths, worker FROM job
         WHERE state = 'running' AND worker = ? ORDER BY id {skip locked}";
     let lost = transaction.rows(statement, values![worker]).await?;
     give_up(transaction, policy, lost, "its worker died").await

@@ -90,8 +90,8 @@ fn longest(task: &Task, policy: &QueuePolicy) -> Duration {
 }
 
 impl JobSource for LocalSource {
-    async fn claim(&self, is_idle: bool) -> Result<Option<Claimed>, SourceError> {
-        let claimant = Claimant { worker: &self.worker, is_idle, token: self.token };
+    async fn claim(&self) -> Result<Option<Claimed>, SourceError> {
+        let claimant = Claimant { worker: &self.worker, token: self.token };
         ledger::tick(&self.database, &self.policy).await?;
         loop {
             let mut transaction = self.database.begin().await?;
@@ -104,9 +104,9 @@ impl JobSource for LocalSource {
             let Some(claim) = claim else { return Ok(None) };
             match serde_json::from_str(&claim.payload) {
                 Ok(task) => {
-                    let (alone, renew_every) = (claim.is_suspected(), self.policy.renew_every());
+                    let renew_every = self.policy.renew_every();
                     let renew_every = u64::try_from(renew_every.as_millis()).unwrap_or(u64::MAX);
-                    return Ok(Some(Claimed { lease: claim.lease, renew_every, task, alone }));
+                    return Ok(Some(Claimed { lease: claim.lease, renew_every, task }));
                 }
                 // Written by another version of the program: not this worker's to do.
                 Err(error) => {

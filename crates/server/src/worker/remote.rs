@@ -145,10 +145,9 @@ fn checked(mut answer: Response<Body>) -> Result<Response<Body>, SourceError> {
 }
 
 impl JobSource for RemoteSource {
-    async fn claim(&self, is_idle: bool) -> Result<Option<Claimed>, SourceError> {
+    async fn claim(&self) -> Result<Option<Claimed>, SourceError> {
         self.call(move |parts| {
-            let path = if is_idle { "claim" } else { "claim?idle=false" };
-            let mut answer = checked(parts.post(path, &serde_json::json!({}))?)?;
+            let mut answer = checked(parts.post("claim", &serde_json::json!({}))?)?;
             if answer.status() == 204 {
                 return Ok(None);
             }

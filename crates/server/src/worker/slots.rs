@@ -12,10 +12,8 @@ use std::{
     fs::File,
     io::Read,
     path::{Path, PathBuf},
-    sync::Arc,
     time::{Duration, Instant},
 };
-use tokio::sync::{OwnedRwLockReadGuard, OwnedRwLockWriteGuard, RwLock};
 use tokio_util::sync::CancellationToken;
 
 /// How long a slot waits for a job before it asks again.
@@ -49,11 +47,10 @@ pub async fn work<D: JobSource, G: Grader>(
     folder: PathBuf,
     stop: CancellationToken,
 ) -> Result<(), SourceError> {
-    let gate = Arc::new(RwLock::new(()));
     let health = Health::new(grader, folder);
     let mut running = tokio::task::JoinSet::new();
     for _ in 0..slots {
-        running.spawn(slot(source.clone(), health.clone(), gate.clone(), stop.clone()));
+        running.spawn(slot(source.clone(), health.clone(), stop.clone()));
     }
     let ticking = async {
         loop {
@@ -75,14 +72,12 @@ pub async fn work<D: JobSource, G: Grader>(
     }
 }
 
-async fn slot<D: JobSource, G: Grader>(source: D, health: Health<G>, gate: Arc<RwLock<()>>, stop: CancellationToken) {
+async fn slot<D: JobSource, G: Grader>(source: D, health: Health<G>, stop: CancellationToken) {
     let mut wait = FIRST_WAIT;
     while health.well(&stop).await {
-        let pass = SlotPermit::through(&gate).await;
-        match source.claim(matches!(pass, SlotPermit::Alone(_))).await {
+        match source.claim().await {
             Ok(None) => {
                 wait = FIRST_WAIT;
-                drop(pass);
                 tokio::select! {
                     () = source.wait(PATIENCE) => {}
                     () = stop.cancelled() => {}
@@ -92,15 +87,13 @@ async fn slot<D: JobSource, G: Grader>(source: D, health: Health<G>, gate: Arc<R
                 wait = FIRST_WAIT;
                 // A panic is this job's, not the worker's.
                 let lease = job.lease.clone();
-                let pass = pass.for_job(job.alone, gate.clone());
-                let done = tokio::spawn(run(source.clone(), health.clone(), job, pass, stop.clone()));
+                let done = tokio::spawn(run(source.clone(), health.clone(), job, stop.clone()));
                 if let Err(error) = done.await {
                     tracing::error!(job = lease.job, %error, "the worker failed");
                     settle(&source, &lease, JobEnding::Failed(format!("the worker failed: {error}")), &stop).await;
                 }
             }
             Err(error) => {
-                drop(pass);
                 tracing::warn!(%error, "no job to be had");
                 tokio::select! {
                     () = tokio::time::sleep(wait) => {}
@@ -108,34 +101,6 @@ async fn slot<D: JobSource, G: Grader>(source: D, health: Health<G>, gate: Arc<R
                 }
                 wait = (wait * 2).min(LONGEST_WAIT);
             }
-        }
-    }
-}
-
-/// The gate is held together by all slots that claim or work, or by one that has the worker for itself.
-enum SlotPermit {
-    Shared(#[expect(dead_code, reason = "held")] OwnedRwLockReadGuard<()>),
-    Alone(OwnedRwLockWriteGuard<()>),
-}
-
-impl SlotPermit {
-    /// Alone where no other slot claims or works.
-    async fn through(gate: &Arc<RwLock<()>>) -> Self {
-        match gate.clone().try_write_owned() {
-            Ok(guard) => Self::Alone(guard),
-            Err(_) => Self::Shared(gate.clone().read_owned().await),
-        }
-    }
-
-    /// The permit that a job needs; one that must run alone waits until the others have ended.
-    async fn for_job(self, alone: bool, gate: Arc<RwLock<()>>) -> Self {
-        match self {
-            Self::Alone(guard) if !alone => Self::Shared(guard.downgrade()),
-            Self::Shared(_) if alone => {
-                drop(self);
-                Self::Alone(gate.write_owned().await)
-            }
-            pass => pass,
         }
     }
 }
@@ -154,7 +119,6 @@ async fn run<D: JobSource, G: Grader>(
     source: D,
     health: Health<G>,
     job: Claimed,
-    pass: impl Future<Output = SlotPermit>,
     stop: CancellationToken,
 ) {
     let lost = CancellationToken::new();
@@ -162,7 +126,6 @@ async fn run<D: JobSource, G: Grader>(
     let progress = folder.as_ref().ok().map(|folder| folder.path().join(WORK).join(PROGRESS));
     let every = Duration::from_millis(job.renew_every);
     let keeping = tokio::spawn(keep(source.clone(), job.lease.clone(), every, progress, lost.clone()));
-    let _pass = pass.await;
     let ending = match folder {
         Err(error) => JobEnding::Failed(format!("no folder for the job: {error}")),
         Ok(folder) => {

@@ -24,9 +24,8 @@ pub enum SourceError {
 
 /// Where workers get their jobs and bring their results.
 pub trait JobSource: Clone + Send + Sync + 'static {
-    /// The next job, if there is one. Not to be interrupted: the source might have given away a job that nobody gets. A
-    /// worker that is idle also gets jobs that must run alone.
-    fn claim(&self, is_idle: bool) -> impl Future<Output = Result<Option<Claimed>, SourceError>> + Send;
+    /// The next job, if there is one. Not to be interrupted: the source might have given away a job that nobody gets.
+    fn claim(&self) -> impl Future<Output = Result<Option<Claimed>, SourceError>> + Send;
 
     /// Waits until there may be a job, or `patience` is over. May be interrupted.
     fn wait(&self, patience: Duration) -> impl Future<Output = ()> + Send;

@@ -14,14 +14,12 @@ on_all_engines!(
     an_answer_that_got_lost_may_be_repeated,
     a_foreign_key_or_number_changes_nothing,
     giving_back_costs_nothing,
-    a_poison_job_is_buried_when_it_has_killed_alone_for_long,
-    a_suspected_job_runs_alone_and_last,
+    a_poison_job_is_buried_when_it_has_killed_for_long,
     a_failed_job_waits_longer_each_time,
     students_take_turns,
     uploads_go_before_regrades_but_not_for_ever,
     the_place_in_the_queue_counts_down,
     an_outage_of_the_database_costs_no_try,
-    a_clock_that_is_set_back_holds_nothing_up,
     a_lease_is_not_renewed_for_ever,
     a_cancelled_job_is_gone_for_its_worker_too,
     a_dead_worker_is_given_up_at_once,
@@ -46,7 +44,7 @@ async fn enqueue(database: &Database, turn: Turn) -> i64 {
 }
 
 async fn claim(database: &Database, worker: &str) -> Option<Claim> {
-    claim_by(database, Claimant { worker, is_idle: true, token: None }).await
+    claim_by(database, Claimant { worker, token: None }).await
 }
 
 async fn claim_by(database: &Database, claimant: Claimant<'_>) -> Option<Claim> {
@@ -213,13 +211,13 @@ async fn giving_back_costs_nothing(fresh: Fresh) {
     }
 }
 
-async fn a_poison_job_is_buried_when_it_has_killed_alone_for_long(fresh: Fresh) {
+async fn a_poison_job_is_buried_when_it_has_killed_for_long(fresh: Fresh) {
     let database = &fresh.database;
     let poison = enqueue(database, Turn::Student(1)).await;
     let mut deaths = 0;
     let buried = loop {
         let last = claim(database, "victim").await.expect("the job");
-        assert_eq!((last.failures, last.deaths, last.is_suspected()), (0, deaths, deaths >= 2));
+        assert_eq!((last.failures, last.deaths), (0, deaths));
         deaths += 1;
         let_pass(database, POLICY.lease * 2).await;
         let tick = tick(database).await;
@@ -234,25 +232,6 @@ async fn a_poison_job_is_buried_when_it_has_killed_alone_for_long(fresh: Fresh) 
     assert_eq!((buried.job, buried.attempt, buried.worker.as_str()), (poison, deaths, "victim"));
     assert_eq!(state(database, poison).await, "buried");
     assert_eq!(claim(database, "w").await, None);
-}
-
-async fn a_suspected_job_runs_alone_and_last(fresh: Fresh) {
-    let database = &fresh.database;
-    let busy = Claimant { worker: "busy", is_idle: false, token: None };
-    let suspect = enqueue(database, Turn::Student(1)).await;
-    for _ in 0..2 {
-        assert_eq!(claim(database, "dead").await.map(|claimed| claimed.lease.job), Some(suspect));
-        let_pass(database, POLICY.lease * 2).await;
-        tick(database).await;
-        let_pass(database, POLICY.longest_wait).await;
-    }
-    let later = enqueue(database, Turn::Student(2)).await;
-    assert_eq!(claim(database, "w").await.map(|claimed| claimed.lease.job), Some(later), "others go before it");
-    assert_eq!(claim_by(database, busy).await, None, "a worker that is at something leaves it to others");
-    // But not for ever.
-    let_pass(database, Duration::from_secs(1801)).await;
-    let claimed = claim_by(database, busy).await.expect("the job");
-    assert!(claimed.lease.job == suspect && claimed.is_suspected());
 }
 
 async fn a_failed_job_waits_longer_each_time(fresh: Fresh) {
@@ -365,35 +344,6 @@ async fn an_outage_of_the_database_costs_no_try(fresh: Fresh) {
     let_pass(database, POLICY.lease).await;
     assert_eq!(tick(database).await.retried, 1);
     assert_eq!(complete(database, &held.lease).await, Completion::Late);
-}
-
-async fn a_clock_that_is_set_back_holds_nothing_up(fresh: Fresh) {
-    let database = &fresh.database;
-    let old = [enqueue(database, Turn::Student(1)).await, enqueue(database, Turn::Student(2)).await];
-    let held = claim(database, "w").await.expect("a job");
-    assert_eq!(held.lease.job, old[0]);
-    tick(database).await;
-    // An hour back: all that is kept lies an hour ahead.
-    let mut transaction = database.begin().await.expect("a transaction");
-    for statement in [
-        "UPDATE job SET rank = rank + 3600000, run_after = run_after + 3600000, enqueued_at = enqueued_at + 3600000",
-        "UPDATE job SET lease_until = lease_until + 3600000, started_at = started_at + 3600000 WHERE state = 'running'",
-        "UPDATE pulse SET beat_at = beat_at + 3600000",
-    ] {
-        transaction.execute(statement, values![]).await.expect("another time");
-    }
-    transaction.commit().await.expect("commit");
-    // Also before anybody noticed, what waited is due.
-    let found = claim(database, "w").await.expect("a job");
-    assert_eq!(found.lease.job, old[1]);
-    let mut transaction = database.begin().await.expect("a transaction");
-    assert!(queue::release(&mut transaction, &found.lease).await.expect("an answer"));
-    transaction.commit().await.expect("commit");
-    assert!(tick(database).await.outage);
-    let new = enqueue(database, Turn::Student(3)).await;
-    assert_eq!(claim_all(database).await, [old[1], new], "the jobs that came before go before");
-    let_pass(database, POLICY.lease * 2).await;
-    assert_eq!(tick(database).await.retried, 1, "a lease ends in its time");
 }
 
 async fn a_lease_is_not_renewed_for_ever(fresh: Fresh) {

@@ -2,7 +2,7 @@
 //! is shown in the header `Fosssim-Lease` as `JOB:ATTEMPT:KEY` where the body is a file.
 use super::super::{
     download,
-    input::{Asked, At, Body},
+    input::{At, Body},
     upload,
 };
 use crate::{
@@ -18,21 +18,12 @@ use axum::{
     http::{HeaderMap, StatusCode, header},
     response::{IntoResponse, Response},
 };
-use serde::Deserialize;
-
-/// The one who claims.
-#[derive(Deserialize)]
-pub(super) struct Claimant {
-    idle: Option<bool>,
-}
 
 /// Claims the next job; 204 when there is none.
 #[utoipa::path(post, path = "/api/v1/worker/claim", tag = "workers",
-    params(("idle" = Option<bool>, Query, description = "Whether nothing else runs in this worker (the default): then \
-        it may get a job that must run alone")),
     responses((status = 200, body = Claimed), (status = 204, description = "No job")))]
-pub(super) async fn claim(remote: Remote, Asked(claimant): Asked<Claimant>) -> Result<Response, Problem> {
-    Ok(match remote.claim(claimant.idle.unwrap_or(true)).await? {
+pub(super) async fn claim(remote: Remote) -> Result<Response, Problem> {
+    Ok(match remote.claim().await? {
         Some(job) => Json(job).into_response(),
         None => StatusCode::NO_CONTENT.into_response(),
     })

@@ -25,8 +25,6 @@ const BACK_TO_THE_FIRST: [&str; 82] = [
     "ALTER TABLE job DROP COLUMN scenes",
     "ALTER TABLE job DROP COLUMN scenes_done",
     "ALTER TABLE job DROP COLUMN deaths",
-    "ALTER TABLE job DROP COLUMN lone_deaths",
-    "ALTER TABLE job DROP COLUMN is_alone",
     "ALTER TABLE job DROP COLUMN token",
     "ALTER TABLE job DROP COLUMN replaced",
     "ALTER TABLE worker DROP COLUMN token",
