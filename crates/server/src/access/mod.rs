@@ -39,7 +39,6 @@ mod visitor;
 
 pub use admin::Admin;
 pub use again::Again;
-pub use campaign::run as work_on_regrades;
 pub use choice::{Choice, Chosen};
 pub use counts::Counts;
 pub use failed::{AttemptChange, FailedScenes};
@@ -54,7 +53,7 @@ pub use members::{MemberInfo, MemberLinks};
 pub use password::Passwords;
 pub use person::{CourseOf, Person};
 pub use platform::{RosterRead, RosterWish, ScoreInfo};
-pub use regrade::{Change, Doing, Regrade, RegradeState};
+pub use regrade::{Change, Regrade, RegradeState};
 pub use remote::Remote;
 pub use settings::Settings;
 pub(crate) use settings::{moment, moment_schema};

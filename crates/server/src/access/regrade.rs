@@ -1,6 +1,5 @@
 //! A regrade: new results beside the old ones, at low priority, until somebody of the staff applies or discards them.
-//! Until then no grade changes. The work is done in the background ([`campaign`]): of a class of thousands nobody waits
-//! for an answer.
+//! Until then no grade changes.
 use super::{Settings, Staff, campaign, view::Assignment};
 use crate::{
     db::{DbError, FromRow, Row, Transaction, read_row},
@@ -9,11 +8,7 @@ use crate::{
     values,
 };
 use serde::{Deserialize, Serialize};
-use std::time::Duration;
 use utoipa::ToSchema;
-
-/// For so long a request does the work itself; the rest is done after its answer.
-const HURRY: Duration = Duration::from_secs(2);
 
 /// Changes that are told at one time, at most.
 const CHANGES: i64 = 1000;
@@ -51,9 +46,6 @@ pub struct Regrade {
     pub left: usize,
     /// How many the grader failed on: their grades stay.
     pub failed: usize,
-    /// The work that goes on for it in the background; nothing when there is none.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub doing: Option<Doing>,
     /// How many grades change.
     pub changed: usize,
     /// The changes, by submission: as many as were asked for.
@@ -61,18 +53,6 @@ pub struct Regrade {
     /// The submission after which there are more changes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub next: Option<i64>,
-}
-
-/// Work on a regrade that goes on after the answer.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
-pub struct Doing {
-    /// `begin` (submissions are put into the queue), `apply` (results begin to count), `undo` (what counted before
-    /// counts again) or `discard`.
-    pub what: String,
-    /// For how many submissions it is done.
-    pub done: i64,
-    /// For how many in all.
-    pub total: i64,
 }
 
 /// A grade that changes, and why.
@@ -102,8 +82,7 @@ pub struct Change {
 macro_rules! regrades {
     ($which:literal) => {
         concat!(
-            "SELECT campaign.id, campaign.state, campaign.reason, campaign.settings, campaign.created_at,
-                campaign.doing, campaign.done, campaign.total, account.login
+            "SELECT campaign.id, campaign.state, campaign.reason, campaign.settings, campaign.created_at, account.login
              FROM campaign JOIN account ON account.id = campaign.started_by WHERE ",
             $which
         )
@@ -126,25 +105,16 @@ impl Staff {
         if transaction.row(statement, values![assignment.id]).await?.is_some() {
             return Err(Problem::conflict("another regrade is open", "apply or discard it first"));
         }
-        let statement =
-            "INSERT INTO campaign (assignment, state, reason, settings, started_by, created_at, doing, total)
-            VALUES (?, 'open', ?, ?, ?, {now}, 'begin',
-               (SELECT count(*) FROM submission WHERE assignment = ? AND removed_at IS NULL)) RETURNING id, total";
-        let values = values![assignment.id, reason, settings.text(), self.account.id, assignment.id];
-        let campaign = transaction.one(statement, values).await?;
-        let (campaign, count) = (campaign.int("id")?, campaign.int("total")?);
+        let statement = "INSERT INTO campaign (assignment, state, reason, settings, started_by, created_at)
+            VALUES (?, 'open', ?, ?, ?, {now}) RETURNING id";
+        let values = values![assignment.id, reason, settings.text(), self.account.id];
+        let campaign = transaction.one(statement, values).await?.int("id")?;
+        let of_regrade = Assignment { settings, ..assignment };
+        let count = campaign::enqueue_missing(&mut transaction, campaign, &of_regrade).await?;
         let text = format!("regrade {campaign} of {count} submissions: {reason}");
-        self.note(&mut transaction, "regrade", Some(assignment.id), &text).await?;
-        transaction.commit().await?;
-        self.hurry(campaign).await;
+        self.note(&mut transaction, "regrade", Some(of_regrade.id), &text).await?;
+        self.app.0.notifier.commit(transaction).await?;
         self.show_regrade(slug, campaign, None).await
-    }
-
-    /// Does what there is to do for a regrade, as far as it is done soon.
-    async fn hurry(&self, id: i64) {
-        let parts = &self.app.0;
-        campaign::hurry(&parts.database, id, HURRY).await;
-        parts.notifier.wake();
     }
 
     /// The regrades of an assignment, latest first, without their changes.
@@ -174,22 +144,11 @@ impl Staff {
     pub async fn apply_regrade(&self, slug: &str, id: i64) -> Result<Regrade, Problem> {
         let assignment = self.assignment(slug).await?;
         let mut transaction = self.begin().await?;
-        self.lock_open(&mut transaction, &assignment, id).await?;
-        let statement = "SELECT settings, doing,
-               (SELECT count(*) FROM submission WHERE assignment = ? AND id > campaign.cursor
-                   AND removed_at IS NULL) AS missing,
-               (SELECT count(*) FROM job WHERE campaign = ? AND state IN ('waiting', 'running')) AS waiting
-            FROM campaign WHERE id = ?";
-        let row = transaction.one(statement, values![assignment.id, id, id]).await?;
-        if row.maybe_text("doing")?.is_some() {
-            return Err(Problem::conflict("something is being done for this regrade", "wait"));
-        }
-        let missing = row.int("missing")?;
+        let (settings, reason) = self.lock_open(&mut transaction, &assignment, id).await?;
+        let of_regrade = Assignment { settings: settings.clone(), ..assignment };
+        let missing = campaign::enqueue_missing(&mut transaction, id, &of_regrade).await?;
         if missing > 0 {
-            let statement = "UPDATE campaign SET doing = 'begin', total = done + ? WHERE id = ?";
-            transaction.execute(statement, values![missing, id]).await?;
-            transaction.commit().await?;
-            self.hurry(id).await;
+            self.app.0.notifier.commit(transaction).await?;
             return Err(Problem::conflict(
                 match missing {
                     1 => "1 submission came in meanwhile, and is graded now".to_owned(),
@@ -198,71 +157,66 @@ impl Staff {
                 "look at them, and apply then",
             ));
         }
-        let waiting = row.int("waiting")?;
+        let statement = "SELECT count(*) AS n FROM job WHERE campaign = ? AND state IN ('waiting', 'running')";
+        let waiting = transaction.one(statement, values![id]).await?.int("n")?;
         ensure(waiting == 0, Problem::conflict(format!("{waiting} submissions are not graded yet"), "wait"))?;
-        // From now on submissions are graded by these settings; the grades of others change one after the other.
+        // From now on submissions are graded by these settings.
         let before = "SELECT settings FROM assignment WHERE id = ? {for update}";
-        let before = transaction.one(before, values![assignment.id]).await?.text("settings")?;
-        let settings = Settings::read(&before)?.graded_as(&Settings::read(&row.text("settings")?)?).text();
-        let statement = "UPDATE campaign SET settings_before = ?, settings = ? WHERE id = ?";
-        transaction.execute(statement, values![before, &settings, id]).await?;
+        let before = transaction.one(before, values![of_regrade.id]).await?.text("settings")?;
+        let settings = Settings::read(&before)?.graded_as(&settings).text();
         let statement = "UPDATE assignment SET settings = ?, revision = revision + 1 WHERE id = ?";
-        transaction.execute(statement, values![settings, assignment.id]).await?;
-        let statement = "UPDATE campaign SET doing = 'apply', decided_by = ?, cursor = 0, done = 0,
-            total = (SELECT count(*) FROM result WHERE campaign = ?) WHERE id = ?";
-        transaction.execute(statement, values![self.account.id, id, id]).await?;
-        transaction.commit().await?;
-        self.hurry(id).await;
+        transaction.execute(statement, values![settings, of_regrade.id]).await?;
+        campaign::apply(&mut transaction, id, (self.account.id, self.course, of_regrade.id), &reason).await?;
+        self.decide(transaction, of_regrade.id, id, "applied").await?;
         self.show_regrade(slug, id, None).await
     }
 
-    /// Gives a regrade up: its waiting jobs are cancelled, and nothing changes. While it is being applied, what counted
-    /// before counts again.
+    /// Gives a regrade up: its waiting jobs are cancelled, and nothing changes.
     ///
     /// # Errors
-    /// When it is decided already.
+    /// When there is none, or it was decided on.
     pub async fn discard_regrade(&self, slug: &str, id: i64) -> Result<Regrade, Problem> {
         let assignment = self.assignment(slug).await?;
         let mut transaction = self.begin().await?;
-        let doing = self.lock_open(&mut transaction, &assignment, id).await?;
-        let statement = match doing.as_deref() {
-            Some("apply") => "UPDATE campaign SET doing = 'undo', decided_by = ?, cursor = 0, done = 0 WHERE id = ?",
-            _ => {
-                "UPDATE campaign SET state = 'discarded', decided_by = ?, decided_at = {now}, doing = 'discard'
-                 WHERE id = ?"
-            }
-        };
-        transaction.execute(statement, values![self.account.id, id]).await?;
-        let text = format!("regrade {id} discarded");
-        self.note(&mut transaction, "regrade", Some(assignment.id), &text).await?;
-        transaction.commit().await?;
-        self.hurry(id).await;
+        self.lock_open(&mut transaction, &assignment, id).await?;
+        campaign::cancel(&mut transaction, id).await?;
+        self.decide(transaction, assignment.id, id, "discarded").await?;
         self.show_regrade(slug, id, None).await
     }
 
-    /// Locks a regrade that nobody has decided on, and says what is being done for it.
+    /// Locks a regrade that nobody has decided on; its settings and its reason.
     async fn lock_open(
         &self,
         transaction: &mut Transaction,
         assignment: &Assignment,
         id: i64,
-    ) -> Result<Option<String>, Problem> {
-        let statement = "SELECT state, doing FROM campaign WHERE id = ? AND assignment = ? {for update}";
+    ) -> Result<(Settings, String), Problem> {
+        let statement = "SELECT state, settings, reason FROM campaign WHERE id = ? AND assignment = ? {for update}";
         let row = transaction.row(statement, values![id, assignment.id]).await?;
         let row = row.ok_or_else(|| Problem::not_found("regrade"))?;
-        match (row.text("state")?.as_str(), row.maybe_text("doing")?) {
-            ("open", Some(doing)) if doing == "undo" => {
-                Err(Problem::conflict("this regrade is being taken back", "wait until it is"))
-            }
-            ("open", doing) => Ok(doing),
-            (state, _) => Err(Problem::conflict(format!("this regrade is {state}"), "begin a new one")),
+        match row.text("state")?.as_str() {
+            "open" => Ok((Settings::read(&row.text("settings")?)?, row.text("reason")?)),
+            state => Err(Problem::conflict(format!("this regrade is {state}"), "begin a new one")),
         }
+    }
+
+    /// Writes what was decided on a regrade.
+    async fn decide(
+        &self,
+        mut transaction: Transaction,
+        assignment: i64,
+        id: i64,
+        state: &'static str,
+    ) -> Result<(), Problem> {
+        let statement = "UPDATE campaign SET state = ?, decided_by = ?, decided_at = {now} WHERE id = ?";
+        transaction.execute(statement, values![state, self.account.id, id]).await?;
+        self.note(&mut transaction, "regrade", Some(assignment), &format!("regrade {id} {state}")).await?;
+        Ok(self.app.0.notifier.commit(transaction).await?)
     }
 }
 
 impl FromRow for Regrade {
     fn from_row(row: &Row) -> Result<Self, DbError> {
-        let doing = |what| Ok::<_, DbError>(Doing { what, done: row.int("done")?, total: row.int("total")? });
         Ok(read_row!(row => Self {
             id, reason, by = "login", created_at;
             state: match row.text("state")?.as_str() {
@@ -274,7 +228,6 @@ impl FromRow for Regrade {
             submissions: 0,
             left: 0,
             failed: 0,
-            doing: row.maybe_text("doing")?.map(doing).transpose()?,
             changed: 0,
             changes: Vec::new(),
             next: None,
@@ -313,10 +266,8 @@ async fn find(transaction: &mut Transaction, assignment: &Assignment, id: i64, a
     let jobs = transaction.one(statement, values![id]).await?;
     let statement = "SELECT count(*) AS n FROM result WHERE campaign = ? AND code = ?";
     let failed = transaction.one(statement, values![id, JUDGE_ERROR]).await?;
-    let coming = regrade.doing.as_ref().filter(|doing| doing.what == "begin");
-    let coming = coming.map_or(0, |doing| count(doing.total - doing.done));
-    regrade.submissions = count(jobs.int("n")?) + coming;
-    regrade.left = count(jobs.int("waiting")?) + coming;
+    regrade.submissions = count(jobs.int("n")?);
+    regrade.left = count(jobs.int("waiting")?);
     regrade.failed = count(failed.int("n")?);
     regrade.changed = count(transaction.one(changes!("count(*) AS n", ""), values![id]).await?.int("n")?);
     let statement = changes!(

@@ -6,7 +6,7 @@ use super::{
     worker::{Local, grader, policy},
 };
 use crate::{
-    access::{self, App, Options, Passwords, Suites, TransferLimits},
+    access::{App, Options, Passwords, Suites, TransferLimits},
     db::{self, Address, Database},
     instruments::Instruments,
     ledger,
@@ -53,7 +53,6 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
     let store = folders.store(&arguments.place)?;
     clear_incoming(&folders.incoming)?;
     let notifier = Notifier::default();
-    tokio::spawn(access::work_on_regrades(database.clone(), notifier.clone(), stop.clone()));
     let local = format!("http://{}", listener.local_addr()?);
     let public = arguments.public_url.clone().unwrap_or_else(|| local.clone());
     let policy = policy(&arguments.work);

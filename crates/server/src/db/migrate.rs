@@ -6,7 +6,7 @@ use sha2::{Digest, Sha256};
 use thiserror::Error;
 
 /// Every change, oldest first. The number of a change is its place in this list, from 1.
-const MIGRATIONS: [(&str, &str); 22] = [
+const MIGRATIONS: [(&str, &str); 23] = [
     ("first tables", include_str!("migrations/0001_first_tables.sql")),
     ("people", include_str!("migrations/0002_people.sql")),
     ("answers", include_str!("migrations/0003_answers.sql")),
@@ -29,6 +29,7 @@ const MIGRATIONS: [(&str, &str); 22] = [
     ("server secret", include_str!("migrations/0020_server_secret.sql")),
     ("no suspicions", include_str!("migrations/0021_no_suspicions.sql")),
     ("no quarantine", include_str!("migrations/0022_no_quarantine.sql")),
+    ("regrades at once", include_str!("migrations/0023_regrades_at_once.sql")),
 ];
 
 /// The version that this program works with.

@@ -52,16 +52,10 @@ pub(crate) async fn changed(transaction: &mut Transaction, submission: i64) -> R
     enqueue(transaction, &rows, false).await.map(drop)
 }
 
-/// The same for results of a regrade that begin to count: those after one, up to another.
-pub(crate) async fn changed_by(
-    transaction: &mut Transaction,
-    campaign: i64,
-    after: i64,
-    last: i64,
-) -> Result<(), DbError> {
-    let statement =
-        orders!("submission.id IN (SELECT submission FROM result WHERE campaign = ? AND id > ? AND id <= ?)");
-    let rows = transaction.rows(statement, values![campaign, after, last]).await?;
+/// The same for the results of a regrade, which begin to count.
+pub(crate) async fn changed_by(transaction: &mut Transaction, campaign: i64) -> Result<(), DbError> {
+    let statement = orders!("submission.id IN (SELECT submission FROM result WHERE campaign = ?)");
+    let rows = transaction.rows(statement, values![campaign]).await?;
     enqueue(transaction, &rows, false).await.map(drop)
 }
 

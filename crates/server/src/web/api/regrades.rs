@@ -23,19 +23,6 @@ pub(super) struct RegradeWish {
     settings: Map<String, Value>,
 }
 
-/// Grades all submissions again, beside their grades. Nothing changes until it is applied.
-#[utoipa::path(post, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades", tag = "regrades",
-    request_body = RegradeWish,
-    responses((status = 201, body = Regrade), (status = 202, body = Regrade, description = "It goes on: see `doing`")))]
-pub(super) async fn begin(
-    staff: Staff,
-    At { assignment, .. }: At,
-    Body(wish): Body<RegradeWish>,
-) -> Result<(StatusCode, Json<Regrade>), Problem> {
-    let settings = staff.assignment(&assignment).await?.settings.with(&wish.settings)?;
-    Ok(answer(staff.regrade(&assignment, &wish.reason, &settings).await?, StatusCode::CREATED))
-}
-
 /// The changes that a regrade would make, or made, and why.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}", tag = "regrades",
     params(("after" = Option<i64>, Query,
@@ -49,31 +36,22 @@ pub(super) async fn show(
     Ok(Json(staff.show_regrade(&assignment, id, asked.after).await?))
 }
 
-/// A regrade that is worked on after the answer was accepted only.
-fn answer(regrade: Regrade, done: StatusCode) -> (StatusCode, Json<Regrade>) {
-    (if regrade.doing.is_some() { StatusCode::ACCEPTED } else { done }, Json(regrade))
-}
-
-/// Makes its results count.
-#[utoipa::path(post, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}/apply",
-    tag = "regrades",
-    responses((status = 200, body = Regrade), (status = 202, body = Regrade, description = "It goes on: see `doing`")))]
-pub(super) async fn apply(staff: Staff, At { assignment, id, .. }: At) -> Result<(StatusCode, Json<Regrade>), Problem> {
-    Ok(answer(staff.apply_regrade(&assignment, id).await?, StatusCode::OK))
-}
-
-/// Gives it up; nothing changes.
-#[utoipa::path(post, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}/discard",
-    tag = "regrades",
-    responses((status = 200, body = Regrade), (status = 202, body = Regrade, description = "It goes on: see `doing`")))]
-pub(super) async fn discard(
-    staff: Staff,
-    At { assignment, id, .. }: At,
-) -> Result<(StatusCode, Json<Regrade>), Problem> {
-    Ok(answer(staff.discard_regrade(&assignment, id).await?, StatusCode::OK))
+answers! { CREATED:
+    /// Grades all submissions again, beside their grades. Nothing changes until it is applied.
+    post "/api/v1/courses/{course}/assignments/{assignment}/regrades" "regrades"
+        begin(staff: Staff, { assignment }, wish: RegradeWish) -> Regrade: async {
+            let settings = staff.assignment(&assignment).await?.settings.with(&wish.settings)?;
+            staff.regrade(&assignment, &wish.reason, &settings).await
+        };
 }
 
 answers! { OK:
+    /// Makes its results count.
+    post "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}/apply" "regrades"
+        apply(staff: Staff, { assignment, id }) -> Regrade: staff.apply_regrade(&assignment, id);
+    /// Gives it up; nothing changes.
+    post "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}/discard" "regrades"
+        discard(staff: Staff, { assignment, id }) -> Regrade: staff.discard_regrade(&assignment, id);
     /// The regrades of an assignment, latest first.
     get "/api/v1/courses/{course}/assignments/{assignment}/regrades" "regrades"
         regrades(staff: Staff, { assignment }) -> Vec<Regrade>: staff.regrades(&assignment);
