@@ -9,12 +9,8 @@ use std::{net::SocketAddr, num::NonZeroUsize, path::PathBuf};
 #[command(name = "fosssim-server", version, max_term_width = 100)]
 pub(super) struct Arguments {
     /// How the log is written.
-    #[arg(long, value_enum, default_value_t = LogFormat::Text, global = true)]
+    #[arg(long, value_enum, default_value_t = LogFormat::Text, env = "FOSSSIM_LOG_FORMAT", global = true)]
     pub(super) log_format: LogFormat,
-    /// A file with options (TOML): their names without dashes in front, and their values. What is typed, and what the
-    /// environment says, goes before it.
-    #[arg(long, value_name = "FILE", env = "FOSSSIM_CONFIG", global = true)]
-    pub(super) config: Option<PathBuf>,
     #[command(subcommand)]
     pub(super) command: Command,
 }
@@ -45,7 +41,7 @@ pub(super) enum Command {
 #[derive(Debug, Args)]
 pub(super) struct Place {
     /// The folder of the database, the artefacts and the jobs' working folders.
-    #[arg(long, value_name = "DIR", default_value = "fosssim-data")]
+    #[arg(long, value_name = "DIR", default_value = "fosssim-data", env = "FOSSSIM_DATA")]
     pub(super) data: PathBuf,
     /// The database: sqlite:FILE or postgres://USER:PASSWORD@HOST/NAME. A SQLite file in the data folder by default.
     #[arg(long, value_name = "ADDRESS", env = "FOSSSIM_DATABASE", hide_env_values = true)]
@@ -86,7 +82,7 @@ pub(super) struct Serve {
     #[arg(long, value_name = "URL", env = "FOSSSIM_PUBLIC_URL", value_parser = public_url)]
     pub(super) public_url: Option<String>,
     /// Gradings at one time in this process; 0 leaves them to other workers. One per core by default.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", env = "FOSSSIM_WORKERS")]
     pub(super) workers: Option<usize>,
     /// Requests that an account may send in a minute.
     #[arg(long, value_name = "N", default_value = "600", value_parser = clap::value_parser!(u32).range(1..))]
@@ -99,7 +95,7 @@ pub(super) struct Serve {
     pub(super) transfers: u32,
     /// The header in which the proxy in front names a client's address, such as XRealIp or RightmostXForwardedFor.
     /// Without it limits by address hold for the other end of a connection: the proxy.
-    #[arg(long, value_name = "HEADER")]
+    #[arg(long, value_name = "HEADER", env = "FOSSSIM_CLIENT_ADDRESS")]
     pub(super) client_address: Option<ClientIpSource>,
     /// MiB of uploads and reports that are kept of a person, in all courses; 0 for any number.
     #[arg(long, value_name = "MIB", default_value_t = 4096)]
@@ -118,7 +114,7 @@ pub(super) struct Serve {
     #[arg(long)]
     pub(super) passwords: bool,
     /// For this many days uploads and reports are kept; 0 for ever. Grades and their history always stay.
-    #[arg(long, value_name = "DAYS", default_value_t = 0)]
+    #[arg(long, value_name = "DAYS", default_value_t = 0, env = "FOSSSIM_KEEP_DAYS")]
     pub(super) keep_days: u32,
     /// A file (TOML) with learning platforms to register; docs/lti.md shows one.
     #[arg(long, value_name = "FILE")]

@@ -2,7 +2,6 @@
 
 mod arguments;
 mod backup;
-mod config;
 mod folders;
 mod health;
 mod heartbeat;
@@ -16,20 +15,13 @@ mod worker;
 
 use anyhow::Result;
 use arguments::{Arguments, Command};
+use clap::Parser;
 use std::process::ExitCode;
 use tokio_util::sync::CancellationToken;
 
 /// Runs the command that the program's arguments ask for.
 pub fn main() -> ExitCode {
-    let words: Vec<std::ffi::OsString> = std::env::args_os().collect();
-    let arguments = match config::parse(&words) {
-        Ok(arguments) => arguments,
-        Err(error) => {
-            drop(error.print());
-            return ExitCode::from(if error.use_stderr() { 2 } else { 0 });
-        }
-    };
-    match run(&arguments) {
+    match run(&Arguments::parse()) {
         Ok(code) => ExitCode::from(code),
         Err(error) => {
             eprintln!("error: {error:#}");
