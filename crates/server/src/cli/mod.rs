@@ -8,8 +8,6 @@ mod heartbeat;
 mod logging;
 mod look;
 mod serve;
-#[cfg(feature = "otel")]
-mod traces;
 mod upgrade;
 mod worker;
 
@@ -35,7 +33,7 @@ fn run(arguments: &Arguments) -> Result<u8> {
     if let Command::LookThrough(arguments) = &arguments.command {
         return look::run(arguments).map(|()| 0);
     }
-    let _traces = logging::begin(arguments.log_format);
+    logging::begin(arguments.log_format);
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;
     runtime.block_on(async {
         match &arguments.command {

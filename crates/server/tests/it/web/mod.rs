@@ -24,7 +24,5 @@ mod settings;
 mod signs;
 mod storage;
 mod teaching;
-#[cfg(feature = "otel")]
-mod traces;
 mod upgrade;
 mod workers;
