@@ -30,7 +30,6 @@ pub(super) enum Command {
     AdminLink(AdminLink),
     Backup(Backup),
     Restore(Restore),
-    Upgrade(Upgrade),
     Health(Health),
     LookThrough(LookThrough),
     /// Prints the description of the API (OpenAPI).
@@ -155,7 +154,7 @@ pub(super) struct AdminLink {
 }
 
 /// Copies the database and all uploads and reports into a new folder, while the server runs. PostgreSQL is copied by
-/// pg_dump, which has to be installed. The exit code is 1 when the store lacks what the database names.
+/// pg_dump, which has to be installed.
 #[derive(Debug, Args)]
 pub(super) struct Backup {
     #[command(flatten)]
@@ -165,8 +164,7 @@ pub(super) struct Backup {
     pub(super) output: PathBuf,
 }
 
-/// Makes a data folder from a backup. The data folder, and the database of PostgreSQL, must be empty. The exit code is
-/// 1 when the backup lacks what its database names.
+/// Makes a data folder from a backup. The data folder, and the database of PostgreSQL, must be empty.
 #[derive(Debug, Args)]
 pub(super) struct Restore {
     #[command(flatten)]
@@ -174,16 +172,6 @@ pub(super) struct Restore {
     /// The folder that `backup` made.
     #[arg(value_name = "FOLDER")]
     pub(super) backup: PathBuf,
-}
-
-/// Brings the tables up to date, as starting the server does, with a backup in the data folder before.
-#[derive(Debug, Args)]
-pub(super) struct Upgrade {
-    #[command(flatten)]
-    pub(super) place: Place,
-    /// Say what would change, and change nothing. The exit code is 1 when something would.
-    #[arg(long)]
-    pub(super) check: bool,
 }
 
 /// Says by the exit code whether a server, by its address, or a worker, by its data folder, is well: for probes.

@@ -8,7 +8,6 @@ mod heartbeat;
 mod logging;
 mod look;
 mod serve;
-mod upgrade;
 mod worker;
 
 use anyhow::Result;
@@ -40,9 +39,8 @@ fn run(arguments: &Arguments) -> Result<u8> {
             Command::Serve(arguments) => serve::run(arguments).await?,
             Command::Worker(arguments) => worker::run(arguments).await?,
             Command::AdminLink(arguments) => serve::admin_link(arguments).await?,
-            Command::Backup(arguments) => return Ok(u8::from(!backup::backup(arguments).await?)),
-            Command::Restore(arguments) => return Ok(u8::from(!backup::restore(arguments).await?)),
-            Command::Upgrade(arguments) => return Ok(u8::from(!upgrade::run(arguments).await?)),
+            Command::Backup(arguments) => backup::backup(arguments).await?,
+            Command::Restore(arguments) => backup::restore(arguments).await?,
             Command::Health(arguments) => return Ok(u8::from(!health::run(arguments))),
             Command::LookThrough(_) => {}
             Command::Openapi => print!("{}", crate::web::openapi()),

@@ -63,11 +63,6 @@ pub enum MigrateError {
     Database(#[from] DbError),
 }
 
-/// The changes that come after this version: number and name.
-pub fn changes_after(version: i64) -> Vec<(i64, &'static str)> {
-    (1..).zip(MIGRATIONS).map(|(number, (name, _))| (number, name)).filter(|(number, _)| *number > version).collect()
-}
-
 /// The version of the tables; 0 for an empty database.
 ///
 /// # Errors

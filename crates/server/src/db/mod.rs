@@ -14,7 +14,7 @@ mod value;
 
 pub use address::Address;
 pub use fault::DbError;
-pub use migrate::{LATEST, MigrateError, changes_after, migrate, version};
+pub use migrate::{LATEST, MigrateError, migrate, version};
 pub use transaction::Transaction;
 use transaction::{Faults, Inner, Turn};
 pub use value::{Column, FromRow, Row, Value};

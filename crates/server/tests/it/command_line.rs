@@ -25,7 +25,7 @@ fn a_mistyped_folder_is_told_and_not_made() {
     let temp = tempfile::tempdir().expect("a folder");
     let missing = temp.path().join("nosuch");
     let link = ["admin-link", "--public-url", "http://127.0.0.1:1"];
-    for words in [&["worker"][..], &link, &["backup", "copy"], &["upgrade", "--check"]] {
+    for words in [&["worker"][..], &link, &["backup", "copy"]] {
         let (code, said) = say(words, &missing);
         assert!(code == Some(2) && said.contains("there is no data folder") && said.contains("--data"), "{said}");
         assert!(!missing.exists(), "{words:?}");

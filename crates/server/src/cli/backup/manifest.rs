@@ -12,13 +12,13 @@ const FILE: &str = "backup.json";
 
 /// The contents of a backup.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub(in crate::cli) struct Manifest {
+pub(super) struct Manifest {
     /// The form of the backup.
     pub(super) schema: u32,
     /// The program's version.
     pub(super) version: String,
     /// The version of the tables.
-    pub(in crate::cli) tables: i64,
+    pub(super) tables: i64,
     pub(super) database: Copy,
     pub(super) artefacts: Artefacts,
 }

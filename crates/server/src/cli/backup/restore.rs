@@ -3,7 +3,7 @@
 use super::{
     super::{arguments::Restore, folders::ServiceFolders},
     manifest::{Artefacts, Manifest},
-    missing, postgres, tell_missing,
+    postgres,
 };
 use crate::{
     db::{self, Address, Database},
@@ -17,7 +17,7 @@ use std::{
 };
 
 /// Restores a backup into an empty data folder and, where there is one, an empty database.
-pub(in crate::cli) async fn restore(arguments: &Restore) -> Result<bool> {
+pub(in crate::cli) async fn restore(arguments: &Restore) -> Result<()> {
     let (place, from) = (&arguments.place, arguments.backup.as_path());
     let manifest = Manifest::read(from)?;
     if manifest.tables > db::LATEST {
@@ -45,7 +45,7 @@ pub(in crate::cli) async fn restore(arguments: &Restore) -> Result<bool> {
 }
 
 /// Fills an empty data folder.
-async fn fill(arguments: &Restore, manifest: &Manifest, copy: &Path) -> Result<bool> {
+async fn fill(arguments: &Restore, manifest: &Manifest, copy: &Path) -> Result<()> {
     let (place, from) = (&arguments.place, arguments.backup.as_path());
     let folders = ServiceFolders::open(place)?;
     let address = folders.database(place);
@@ -79,16 +79,12 @@ async fn fill(arguments: &Restore, manifest: &Manifest, copy: &Path) -> Result<b
         Address::Sqlite(file) => copy_database(copy, file)?,
         Address::Postgres(url) => postgres::load(url, copy).await?,
     }
-    let database = Database::open(&address).await.with_context(|| format!("database {address}"))?;
-    let missing = missing(&database, &store).await?;
-    database.close().await;
     let tables = match manifest.tables {
         db::LATEST => "of this version".to_owned(),
         older => format!("of version {older}; starting the server brings them up to {}", db::LATEST),
     };
     println!("{}: the database (tables {tables}) and {} artefacts", place.data.display(), restored.count);
-    tell_missing(&missing);
-    Ok(missing.is_empty())
+    Ok(())
 }
 
 /// A file that appears whole under its name, for nobody else's eyes.

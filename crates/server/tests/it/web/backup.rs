@@ -1,12 +1,9 @@
-//! Backup, restore and upgrade, as commands beside a server that runs.
+//! Backup and restore, as commands beside a server that runs.
 use crate::support::{
     engines::{Fresh, on_both_engines, run},
     server::{Server, program},
 };
-use fosssim_server::{
-    db::{self, Address},
-    values,
-};
+use fosssim_server::db::{self, Address};
 use std::{
     fs,
     path::Path,
@@ -24,10 +21,7 @@ fn command(words: &[&str], data: &Path, database: Option<&str>) -> (Option<i32>,
     (output.status.code(), said)
 }
 
-on_both_engines!(
-    what_was_accepted_is_in_a_backup_that_is_made_meanwhile,
-    an_upgrade_says_what_it_would_do_and_copies_before,
-);
+on_both_engines!(what_was_accepted_is_in_a_backup_that_is_made_meanwhile);
 
 async fn what_was_accepted_is_in_a_backup_that_is_made_meanwhile(fresh: Fresh) {
     let options = ["--workers", "1", "--requests-per-minute", "100000"];
@@ -161,40 +155,4 @@ fn a_backup_that_is_damaged_incomplete_or_newer_is_refused() {
         let (code, said) = command(&["backup", text], &folder.path().join("none"), None);
         assert!(code == Some(2) && said.contains("there is no data folder"), "{said}");
     });
-}
-
-async fn an_upgrade_says_what_it_would_do_and_copies_before(fresh: Fresh) {
-    let server = Server::start(&fresh, &["--workers", "0"]);
-    let (data, database) = (server.folder.clone(), server.database());
-    let upgrade = |words: &[&str]| command(&[&["upgrade"], words].concat(), &data, Some(&database));
-    let (code, said) = upgrade(&["--check"]);
-    assert!(code == Some(0) && said.contains("nothing to do"), "{said}");
-    drop(server);
-    // As if the last change had not been applied; it is told and not made.
-    let newest = |number: i64| {
-        let database = fresh.database.clone();
-        async move {
-            let mut transaction = database.begin().await.expect("a transaction");
-            let statement =
-                "UPDATE schema_change SET number = ? WHERE number = (SELECT max(number) FROM schema_change)";
-            transaction.execute(statement, values![number]).await.expect("a statement");
-            transaction.commit().await.expect("commit");
-        }
-    };
-    newest(db::LATEST + 1).await;
-    let (code, said) = upgrade(&["--check"]);
-    assert!(code == Some(2) && said.contains("use the newer program"), "{said}");
-    newest(db::LATEST).await;
-    let mut transaction = fresh.database.begin().await.expect("a transaction");
-    let forget = "DELETE FROM schema_change WHERE number = ?";
-    transaction.execute(forget, values![db::LATEST]).await.expect("a statement");
-    transaction.commit().await.expect("commit");
-    let (code, said) = upgrade(&["--check"]);
-    assert!(code == Some(1) && said.contains(&format!("  {} ", db::LATEST)), "{said}");
-    assert_eq!(db::version(&fresh.database).await.expect("a version"), db::LATEST - 1, "nothing changed");
-    // Whether that change can be made twice or not, there is a backup before.
-    let (_, said) = upgrade(&[]);
-    assert!(said.contains("copied to"), "{said}");
-    let backups: Vec<_> = fs::read_dir(data.join("backups")).expect("a folder").flatten().collect();
-    assert!(backups.len() == 1 && backups[0].path().join("backup.json").is_file(), "{backups:?}");
 }
