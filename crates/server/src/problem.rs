@@ -129,10 +129,6 @@ problems! {
         detail,
         "ask the course's staff: the server's administrator can give more room, or have old uploads removed; \
                       nothing was stored";
-    /// A range of a file that does not reach so far.
-    beyond(size: u64): 416, "range", "Not that long",
-        format!("the file has {size} bytes, and none in this range"),
-        "ask for an earlier range";
     /// The body came too slowly.
     too_slow(): 408, "too-slow", "Too slow",
         "the rest of the request did not come in time",
@@ -183,7 +179,6 @@ impl From<StoreError> for Problem {
     fn from(error: StoreError) -> Self {
         tracing::error!(%error, "the store failed");
         match error {
-            StoreError::TooLarge(most) => Self::too_large(most),
             StoreError::Missing(_) => Self::not_found("file"),
             StoreError::Damaged(_) => Self::fault(),
             StoreError::Failed(_) => Self::unavailable("the store of files does not work"),

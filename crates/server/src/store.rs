@@ -61,9 +61,6 @@ pub enum StoreError {
     /// The bytes are not those that were stored: a damaged disk, or somebody's hand.
     #[error("the artefact {0} is damaged in the store")]
     Damaged(Digest),
-    /// More bytes came than allowed.
-    #[error("more than {0} bytes")]
-    TooLarge(u64),
     /// The store can't be used: no space, no permission, not reachable.
     #[error("the store failed: {0}")]
     Failed(String),

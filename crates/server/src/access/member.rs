@@ -13,7 +13,6 @@ use crate::{
     worker::{PUBLISHED_PAGE, STAFF_PAGE},
 };
 use futures_util::StreamExt;
-use std::ops::Range;
 
 /// The report that holds no group that its suite hides from students.
 const SHOWN: &str = "report.html";
@@ -187,25 +186,27 @@ impl Member {
         if submission.removed_at.is_some() { Err(Problem::removed()) } else { Ok(submission) }
     }
 
-    /// Opens an artefact that they may see, or a range of it.
+    /// Opens an artefact that they may see.
     ///
     /// # Errors
     /// When the store fails.
-    pub async fn open(&self, artefact: &Artefact, range: Option<Range<u64>>) -> Result<Opened, Problem> {
-        Ok(self.app.0.store.open(&artefact.digest, range).await?)
+    pub async fn open(&self, artefact: &Artefact) -> Result<Opened, Problem> {
+        Ok(self.app.0.store.open(&artefact.digest).await?)
     }
 
     /// The first bytes of an artefact that they may see.
     ///
     /// # Errors
     /// When the store fails.
-    pub async fn beginning(&self, artefact: &Artefact, most: u64) -> Result<Vec<u8>, Problem> {
-        let range = (artefact.size > most).then_some(0..most);
-        let mut pieces = self.open(artefact, range).await?.pieces;
+    pub async fn beginning(&self, artefact: &Artefact, most: usize) -> Result<Vec<u8>, Problem> {
+        let mut pieces = self.open(artefact).await?.pieces;
         let mut bytes = Vec::new();
-        while let Some(piece) = pieces.next().await {
+        while bytes.len() < most
+            && let Some(piece) = pieces.next().await
+        {
             bytes.extend_from_slice(&piece?);
         }
+        bytes.truncate(most);
         Ok(bytes)
     }
 }

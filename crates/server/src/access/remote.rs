@@ -183,7 +183,7 @@ impl Remote {
         let task = self.held(lease).await?;
         let suite = matches!(&task.suite, Suite::Archive(suite) if suite == digest);
         ensure(task.submission.artefact.digest == *digest || suite, Problem::not_found("artefact of this job"))?;
-        Ok(self.app.0.store.open(digest, None).await?)
+        Ok(self.app.0.store.open(digest).await?)
     }
 
     /// Stores a report of a job that it holds.

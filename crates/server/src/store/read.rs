@@ -3,63 +3,42 @@ use super::{ASIDE, Digest, KEPT, Store, StoreError};
 use crate::secret::hex;
 use axum::body::Bytes;
 use futures_util::{StreamExt, TryStreamExt, stream::BoxStream};
-use object_store::{GetOptions, GetRange, GetResult, GetResultPayload};
+use object_store::ObjectStoreExt;
 use sha2::{Digest as _, Sha256};
-use std::{io, ops::Range, path::Path};
-use tokio::io::{AsyncReadExt, AsyncSeekExt, AsyncWriteExt};
-
-/// How much of an artefact is in memory at a time.
-const PIECE: usize = 32 * 1024;
+use std::path::Path;
+use tokio::io::AsyncWriteExt;
 
 /// An artefact that is being read.
 pub struct Opened {
     /// How large all of it is.
     pub size: u64,
-    /// Its bytes, or those of a range.
+    /// Its bytes.
     pub pieces: BoxStream<'static, Result<Bytes, StoreError>>,
 }
 
 impl Store {
-    /// Opens an artefact, or a range of it. Of a whole one the last piece comes only if all are what they should be:
+    /// Opens an artefact. Its last piece comes only if all are what they should be:
     /// anybody who gets all bytes got the right ones. Who reads the first piece before saying anything knows that an
     /// artefact of one piece is undamaged.
     ///
     /// # Errors
     /// When there is none, it is damaged, or the store fails.
-    pub async fn open(&self, digest: &Digest, range: Option<Range<u64>>) -> Result<Opened, StoreError> {
-        let options = || GetOptions { range: range.clone().map(GetRange::Bounded), ..GetOptions::default() };
-        let mut found = self.objects.get_opts(&digest.key(KEPT), options()).await;
+    pub async fn open(&self, digest: &Digest) -> Result<Opened, StoreError> {
+        let mut found = self.objects.get(&digest.key(KEPT)).await;
         // A file that is put aside may be named since, and comes back.
         if matches!(found, Err(object_store::Error::NotFound { .. })) {
-            found = self.objects.get_opts(&digest.key(ASIDE), options()).await;
+            found = self.objects.get(&digest.key(ASIDE)).await;
         }
         let found = match found {
             Err(object_store::Error::NotFound { .. }) => return Err(StoreError::Missing(digest.clone())),
             found => found?,
         };
         let size = found.meta.size;
-        let pieces = pieces(found).await?;
-        let mut pieces = if range.is_some() { pieces } else { verified(pieces, digest.clone()) };
+        let pieces = found.into_stream().map_err(StoreError::from).boxed();
+        let mut pieces = verified(pieces, digest.clone());
         let first = pieces.next().await.transpose()?;
         let pieces = futures_util::stream::iter(first.map(Ok)).chain(pieces).boxed();
         Ok(Opened { size, pieces })
-    }
-
-    /// The bytes of an artefact that is at most `most` bytes large.
-    ///
-    /// # Errors
-    /// When there is none, it is larger or damaged, or the store fails.
-    pub async fn bytes(&self, digest: &Digest, most: u64) -> Result<Vec<u8>, StoreError> {
-        let opened = self.open(digest, None).await?;
-        if opened.size > most {
-            return Err(StoreError::TooLarge(most));
-        }
-        let mut bytes = Vec::new();
-        let mut pieces = opened.pieces;
-        while let Some(piece) = pieces.next().await {
-            bytes.extend_from_slice(&piece?);
-        }
-        Ok(bytes)
     }
 
     /// Writes an artefact into a new file.
@@ -69,7 +48,7 @@ impl Store {
     pub async fn fetch(&self, digest: &Digest, file: &Path) -> Result<(), StoreError> {
         let mut output = tokio::fs::File::create_new(file).await?;
         let copying = async {
-            let mut pieces = self.open(digest, None).await?.pieces;
+            let mut pieces = self.open(digest).await?.pieces;
             while let Some(piece) = pieces.next().await {
                 output.write_all(&piece?).await?;
             }
@@ -83,21 +62,7 @@ impl Store {
     }
 }
 
-/// The file that was found, in pieces.
-async fn pieces(found: GetResult) -> Result<BoxStream<'static, Result<Bytes, StoreError>>, StoreError> {
-    let range = found.range.clone();
-    match found.payload {
-        GetResultPayload::File(file, _) => {
-            let mut file = tokio::fs::File::from_std(file);
-            file.seek(io::SeekFrom::Start(range.start)).await?;
-            let file = file.take(range.end - range.start);
-            Ok(tokio_util::io::ReaderStream::with_capacity(file, PIECE).map_err(StoreError::from).boxed())
-        }
-        GetResultPayload::Stream(stream) => Ok(stream.map_err(StoreError::from).boxed()),
-    }
-}
-
-/// The same pieces, of which the last one comes only if all together have this digest.
+/// The pieces, of which the last one comes only if all together have this digest.
 fn verified(
     pieces: BoxStream<'static, Result<Bytes, StoreError>>,
     digest: Digest,

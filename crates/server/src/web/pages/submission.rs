@@ -22,7 +22,7 @@ use axum::{
 };
 
 /// How much of a report a page shows; the rest is behind its link.
-const SHOWN: u64 = 200_000;
+const SHOWN: usize = 200_000;
 
 #[derive(Template)]
 #[template(path = "assignment.html")]

@@ -5,3 +5,11 @@ pub(crate) mod engines;
 pub(crate) mod platform;
 pub(crate) mod rows;
 pub(crate) mod server;
+
+/// The bytes of an artefact.
+pub(crate) async fn bytes(store: &fosssim_server::store::Store, digest: &fosssim_server::store::Digest) -> Vec<u8> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("artefact");
+    store.fetch(digest, &file).await.expect("an artefact");
+    std::fs::read(file).expect("its bytes")
+}

@@ -43,15 +43,8 @@ async fn files_are_sent_in_pieces(fresh: Fresh) {
     assert!(whole.body == bytes);
     assert_eq!(whole.header("content-length"), Some("67108864"));
     let tag = whole.header("etag").expect("a tag").to_owned();
-    // A client that has it already, or wants a part of it.
+    // A client that has it already.
     ada.send("GET", &path, &[("If-None-Match", &tag)], b"").expect(304);
-    let part = ada.send("GET", &path, &[("Range", "bytes=0-4"), ("If-Range", &tag)], b"").expect(206);
-    assert_eq!((part.body.as_slice(), part.header("content-range")), (&b"#!gra"[..], Some("bytes 0-4/67108864")));
-    ada.send("GET", &path, &[("Range", "bytes=67108864-")], b"").expect(416);
-    assert_eq!(
-        ada.send("GET", &path, &[("Range", "bytes=0-4"), ("If-Range", "\"other\"")], b"").expect(200).body.len(),
-        bytes.len()
-    );
     // Readers that take nothing: each holds little, an account has this many and no more, and the rest is not
     // disturbed.
     let before = server.peak_memory();
@@ -68,7 +61,7 @@ async fn files_are_sent_in_pieces(fresh: Fresh) {
     // An account whose readers are gone has room again.
     drop(readers);
     let start = Instant::now();
-    while ada.send("GET", &path, &[("Range", "bytes=0-4")], b"").status != 206 {
+    while ada.send("GET", &path, &[("If-None-Match", &tag)], b"").status != 304 {
         assert!(start.elapsed() < Duration::from_secs(100), "readers that are gone are never given up");
         std::thread::sleep(Duration::from_millis(50));
     }
