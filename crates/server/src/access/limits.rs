@@ -27,7 +27,7 @@ const MIB: u64 = 1 << 20;
 /// The limits, and what is being done at the moment.
 #[derive(Debug, Default)]
 pub struct TransferLimits {
-    /// Up- and downloads, followed submissions included, of one account at one time.
+    /// Up- and downloads of one account at one time.
     pub transfers: usize,
     /// Bytes of uploads and their reports that are kept: of one person, of one course, of all. 0 for any number.
     pub student: u64,
@@ -79,7 +79,7 @@ impl TransferLimits {
 }
 
 impl Member {
-    /// Leave to send or receive a file, or to follow a submission.
+    /// Leave to send or receive a file.
     ///
     /// # Errors
     /// When the account, or all together, have as many under way as they may.

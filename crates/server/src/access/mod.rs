@@ -68,7 +68,7 @@ use crate::{
     db::Database,
     instruments::Instruments,
     lti::Lti,
-    queue::{Notifier, QueuePolicy, Subscription},
+    queue::{Notifier, QueuePolicy},
     storage::Storage,
     store::Store,
 };
@@ -76,7 +76,6 @@ use axum_client_ip::ClientIpSource;
 use standings::SharedStandings;
 use std::{ops::Deref, path::PathBuf, sync::Arc, time::Duration};
 use tokio::sync::OnceCell;
-use tokio_util::sync::CancellationToken;
 
 /// The parts of the service. Those that hold data are for this room alone; the rest everybody may read.
 #[derive(Debug, Clone)]
@@ -130,8 +129,6 @@ pub struct Options {
     pub passwords: Option<Passwords>,
     /// Speaks with learning platforms.
     pub lti: Arc<Lti>,
-    /// Cancelled when the server is to end: anybody who waits for something to happen stops waiting.
-    pub closing: CancellationToken,
 }
 
 impl Deref for App {
@@ -201,13 +198,6 @@ impl App {
         self.0.storage.has_room()
     }
 
-    /// Waits until the server is to end.
-    pub async fn closing(&self) {
-        self.closing.cancelled().await;
-    }
+}
 
-    /// Hears whatever happens.
-    pub fn subscribe(&self) -> Subscription {
-        self.0.notifier.subscribe()
-    }
 }

@@ -76,7 +76,6 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
         ),
         passwords: arguments.passwords.then(Passwords::default),
         lti: lti.clone(),
-        closing: stop.clone(),
     };
     let app = App::new(database.clone(), store.clone(), notifier.clone(), policy, Instruments::new()?, options);
     if let Some(file) = &arguments.platforms {

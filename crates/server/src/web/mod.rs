@@ -8,7 +8,6 @@ mod input;
 mod look;
 pub mod pages;
 mod refusal;
-mod status;
 mod upload;
 mod who;
 

@@ -68,7 +68,7 @@ operations! {
     courses: courses new_course remove_course members import set_member remove_member member_link audit;
     assignments: assignments assignment set_assignment remove_assignment set_suite publish withhold standings export
         extend extend_no_more;
-    submissions: own submit submission remove_submission mark request history events report upload grade_again
+    submissions: own submit submission remove_submission mark request history report upload grade_again
         grade_errors_again grade_all_errors_again;
     regrades: regrades begin show apply discard;
     platforms: platforms set_platform shut_platform new_key roster scores send_scores;

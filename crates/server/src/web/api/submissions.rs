@@ -2,7 +2,7 @@
 use super::super::{
     download,
     input::{Arrived, Asked, At, Body},
-    look, status, upload,
+    look, upload,
 };
 use crate::{
     access::{Accepted, Again, History, Member, Staff, Standing, Submission, Upload},
@@ -112,14 +112,6 @@ pub(in crate::web) struct RequestWish {
     /// The fault of the grade.
     #[schema(min_length = 1, max_length = 2000)]
     pub(in crate::web) text: String,
-}
-
-/// Its state as server-sent events: one at once, one whenever it changes; the stream ends with the grade. Each event is
-/// the whole state, so that nothing is lost with a connection.
-#[utoipa::path(get, path = "/api/v1/courses/{course}/submissions/{id}/events", tag = "submissions",
-    responses((status = 200, description = "text/event-stream of submissions")))]
-pub(super) async fn events(member: Member, At { id, .. }: At) -> Result<Response, Problem> {
-    status::stream(member, id).await
 }
 
 /// A report on it, as the grader wrote it: `grade.json`, `report.txt`, ...

@@ -41,7 +41,6 @@ async fn a_digest_opens_no_suite_of_another_course(fresh: Fresh) {
         "/api/v1/courses/a/assignments".to_owned(),
         format!("/api/v1/courses/a/submissions/{id}"),
         format!("/api/v1/courses/a/submissions/{id}/history"),
-        format!("/api/v1/courses/a/submissions/{id}/events"),
         format!("/c/a/s/{id}"),
         "/c/a/a/m1".to_owned(),
     ] {

@@ -73,7 +73,6 @@ pub(super) const ROUTES: &[(&str, &str, For)] = &[
     ("post", "/api/v1/courses/{course}/assignments/{assignment}/submissions", Members),
     ("get", "/api/v1/courses/{course}/submissions/{id}", Owner),
     ("get", "/api/v1/courses/{course}/submissions/{id}/history", Owner),
-    ("get", "/api/v1/courses/{course}/submissions/{id}/events", Owner),
     ("get", "/api/v1/courses/{course}/submissions/{id}/files/{name}", Owner),
     ("get", "/api/v1/courses/{course}/submissions/{id}/upload", Owner),
     ("post", "/api/v1/courses/{course}/submissions/{id}/again", Staff),

@@ -2,11 +2,12 @@
 // Follows a submission until it is graded.
 const state = document.getElementById("state");
 if (state && state.dataset.follow) {
-  const source = new EventSource(state.dataset.follow);
-  source.addEventListener("submission", (event) => {
-    const submission = JSON.parse(event.data);
+  const look = async () => {
+    const answer = await fetch(state.dataset.follow).catch(() => null);
+    // A server that is away may come back.
+    if (!answer || !answer.ok) return;
+    const submission = await answer.json();
     if (submission.state !== "waiting" && submission.state !== "running") {
-      source.close();
       location.reload();
       return;
     }
@@ -15,7 +16,8 @@ if (state && state.dataset.follow) {
     if (submission.ahead !== undefined) text += `, ${submission.ahead} before it`;
     if (submission.expected_seconds !== undefined) text += `, about ${submission.expected_seconds} s`;
     state.textContent = text;
-  });
+  };
+  setInterval(look, 2000);
 }
 // Files can be dropped on the form.
 const form = document.querySelector("form[data-drop]");
