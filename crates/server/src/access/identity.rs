@@ -98,8 +98,6 @@ pub(super) enum Way {
 /// A session as a request shows it.
 #[derive(Debug, Clone)]
 pub(super) struct Seen {
-    /// The digest that it is kept by.
-    pub(super) digest: String,
     /// Whether it was begun by a link that a course's staff made.
     pub(super) is_vouched: bool,
     /// Whether it was begun by a token.
@@ -132,7 +130,7 @@ pub(super) async fn account_of_session(
     transaction: &mut Transaction,
     session: &str,
 ) -> Result<Option<(Account, Seen)>, Problem> {
-    let statement = "SELECT account.id, account.login, account.name, account.is_admin, session.digest, session.vouched,
+    let statement = "SELECT account.id, account.login, account.name, account.is_admin, session.vouched,
            session.token, session.created_at, session.seen_at, {now} AS now
         FROM session JOIN account ON account.id = session.account
         LEFT JOIN token ON token.id = session.token
@@ -142,7 +140,6 @@ pub(super) async fn account_of_session(
     let Some(row) = row else { return Ok(None) };
     let now = row.int("now")?;
     let seen = Seen {
-        digest: row.text("digest")?,
         is_vouched: row.flag("vouched")?,
         is_by_token: row.maybe_int("token")?.is_some(),
         is_recent: now - row.int("created_at")? < RECENT,
@@ -239,16 +236,9 @@ pub(super) async fn end_all(transaction: &mut Transaction, account: i64) -> Resu
 }
 
 /// The account is its person's own from now on. What was begun or made by links of a course's staff ends, who may have
-/// used these links themselves; but for the session that proves to be the person's.
-pub(super) async fn end_vouched(
-    transaction: &mut Transaction,
-    account: i64,
-    keep: Option<&str>,
-) -> Result<(), DbError> {
+/// used these links themselves.
+pub(super) async fn end_vouched(transaction: &mut Transaction, account: i64) -> Result<(), DbError> {
     transaction.execute("UPDATE account SET managed_by = NULL WHERE id = ?", values![account]).await?;
-    if let Some(keep) = keep {
-        transaction.execute("UPDATE session SET vouched = 0 WHERE digest = ?", values![keep]).await?;
-    }
     transaction.execute("DELETE FROM session WHERE account = ? AND vouched = 1", values![account]).await?;
     let statement = "DELETE FROM sign_in_link WHERE account = ? AND vouched = 1 AND used_at IS NULL";
     transaction.execute(statement, values![account]).await?;

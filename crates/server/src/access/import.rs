@@ -1,5 +1,5 @@
 //! A whole class by a table: name, login, e-mail address and role of each, as spreadsheets write it (CSV).
-use super::{MemberLinks, Staff, members::check_member};
+use super::{Staff, members::check_member};
 use crate::problem::Problem;
 use serde::Serialize;
 use std::collections::BTreeSet;
@@ -27,8 +27,8 @@ pub struct MemberLine {
     pub(crate) role: String,
     /// The error in the line; then nothing was done about any.
     pub(crate) error: Option<String>,
-    #[serde(flatten)]
-    pub(crate) links: MemberLinks,
+    /// A link that signs in once; nothing where the account was there before.
+    pub(crate) link: Option<String>,
 }
 
 /// Which column a heading names: "E-mail address" is "email".
@@ -103,7 +103,7 @@ fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
             Ok(()) if beside => Some("there is more in this line than name, login, email and role".to_owned()),
             Ok(()) => None,
         };
-        lines.push(MemberLine { line, name, login, email, role, error, links: MemberLinks::default() });
+        lines.push(MemberLine { line, name, login, email, role, error, link: None });
         if lines.len() > MOST {
             return Err(Problem::invalid(format!("a table has at most {MOST} lines")));
         }
@@ -126,7 +126,7 @@ impl Staff {
         let mut in_order: Vec<&mut MemberLine> = lines.iter_mut().collect();
         in_order.sort_by(|one, other| one.login.cmp(&other.login));
         for line in in_order {
-            line.links = self.add(&mut transaction, &line.login, &line.name, &line.role).await?;
+            line.link = self.add(&mut transaction, &line.login, &line.name, &line.role).await?;
         }
         transaction.commit().await?;
         Ok(lines)

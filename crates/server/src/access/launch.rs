@@ -456,7 +456,7 @@ pub(super) async fn enrol(
     if role == LtiRole::Staff && !identity::is_trusted(transaction, account).await? {
         identity::end_all(transaction, account).await?;
     } else {
-        identity::end_vouched(transaction, account, None).await?;
+        identity::end_vouched(transaction, account).await?;
     }
     let statement = "INSERT INTO member (course, account, role, platform, created_at) VALUES (?, ?, ?, ?, {now})
         ON CONFLICT (course, account) DO UPDATE SET role = excluded.role, platform = excluded.platform";

@@ -1,8 +1,7 @@
-//! The people in a course: members, and those who are invited.
+//! The people in a course.
 use super::{
-    NewSecret, Staff,
+    Staff,
     identity::{self, Link, Way},
-    invitation,
 };
 use crate::{
     db::{DbError, Transaction, from_row},
@@ -21,23 +20,12 @@ pub struct MemberInfo {
     pub name: String,
     /// `student` or `staff`.
     pub role: String,
-    /// Whether they still have to accept.
-    pub is_invited: bool,
-}
-
-/// The links that are to be handed on to a new member.
-#[derive(Default, Serialize, ToSchema)]
-pub struct MemberLinks {
-    /// A link that signs in once, good for a week; nothing where the account was there before.
-    pub link: Option<String>,
-    /// A link to accept by, for anybody who has an account of their own: they open it, signed in as ever.
-    pub invitation: Option<String>,
 }
 
 /// People on a page.
 pub(super) const PEOPLE: i64 = 200;
 
-from_row! { MemberInfo { login, name, role, is_invited } }
+from_row! { MemberInfo { login, name, role } }
 
 /// Whether these are names and a role.
 pub(super) fn check_member(login: &str, name: &str, role: &str) -> Result<(), Problem> {
@@ -47,18 +35,15 @@ pub(super) fn check_member(login: &str, name: &str, role: &str) -> Result<(), Pr
 }
 
 impl Staff {
-    /// The course's members, and who is invited.
+    /// The course's members.
     ///
     /// # Errors
     /// When the database does not answer.
     pub async fn members(&self) -> Result<Vec<MemberInfo>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
-        let statement = "SELECT account.login, account.name, member.role, CAST(0 AS {int}) AS is_invited FROM member
-            JOIN account ON account.id = member.account WHERE member.course = ?
-            UNION ALL SELECT account.login, invitation.name, invitation.role, CAST(1 AS {int}) FROM invitation
-            JOIN account ON account.id = invitation.account WHERE invitation.course = ?
-            ORDER BY 1, 4";
-        Ok(transaction.all(statement, values![self.course, self.course]).await?)
+        let statement = "SELECT account.login, account.name, member.role FROM member
+            JOIN account ON account.id = member.account WHERE member.course = ? ORDER BY account.login";
+        Ok(transaction.all(statement, values![self.course]).await?)
     }
 
     /// Those whose login or name has these words, behind the one of this login: a page of them, and whether there are
@@ -68,15 +53,13 @@ impl Staff {
     /// When the database does not answer.
     pub async fn members_page(&self, words: &str, after: &str) -> Result<(Vec<MemberInfo>, bool), Problem> {
         let mut transaction = self.app.0.database.read().await?;
-        let statement = "SELECT login, name, role, is_invited FROM (
-               SELECT account.login, account.name, member.role, CAST(0 AS {int}) AS is_invited FROM member
-               JOIN account ON account.id = member.account WHERE member.course = ?
-               UNION ALL SELECT account.login, invitation.name, invitation.role, CAST(1 AS {int}) FROM invitation
-               JOIN account ON account.id = invitation.account WHERE invitation.course = ?) AS people
-            WHERE login > ? AND ({strpos}(lower(login || ' ' || name), ?) > 0 OR {strpos}(name, ?) > 0)
-            ORDER BY login, is_invited LIMIT ?";
+        let statement = "SELECT account.login, account.name, member.role FROM member
+            JOIN account ON account.id = member.account
+            WHERE member.course = ? AND login > ? AND ({strpos}(lower(login || ' ' || name), ?) > 0
+               OR {strpos}(name, ?) > 0)
+            ORDER BY login LIMIT ?";
         let (words, most) = (words.trim(), PEOPLE + 1);
-        let values = values![self.course, self.course, after, words.to_lowercase(), words, most];
+        let values = values![self.course, after, words.to_lowercase(), words, most];
         let mut people: Vec<MemberInfo> = transaction.all(statement, values).await?;
         let has_more = people.len() as i64 == most;
         people.truncate(PEOPLE as usize);
@@ -84,17 +67,16 @@ impl Staff {
     }
 
     /// Makes somebody a member, or changes what they are; makes the account when there is none, and a link for it that
-    /// signs in once. Anybody who has an account that is not this course's alone, or is to be staff, is invited, and
-    /// nothing of theirs changes until they accept. An administrator's word needs no acceptance.
+    /// signs in once. An account that another course's staff made, who may sign in as it, an administrator adds.
     ///
     /// # Errors
     /// When a name is none.
-    pub async fn set_member(&self, login: &str, name: &str, role: &str) -> Result<MemberLinks, Problem> {
+    pub async fn set_member(&self, login: &str, name: &str, role: &str) -> Result<Link, Problem> {
         check_member(login, name, role)?;
         let mut transaction = self.app.0.database.begin().await?;
-        let links = self.add(&mut transaction, login, name, role).await?;
+        let link = self.add(&mut transaction, login, name, role).await?;
         transaction.commit().await?;
-        Ok(links)
+        Ok(Link { link })
     }
 
     pub(super) async fn add(
@@ -103,17 +85,15 @@ impl Staff {
         login: &str,
         name: &str,
         role: &str,
-    ) -> Result<MemberLinks, Problem> {
+    ) -> Result<Option<String>, Problem> {
         let course = self.course;
-        let mut links = MemberLinks::default();
         let statement = "INSERT INTO account (login, name, managed_by, created_at) VALUES (?, ?, ?, {now})
             ON CONFLICT (login) DO NOTHING RETURNING id";
         let made = transaction.row(statement, values![login, name, course]).await?;
         if let Some(made) = made {
             let account = made.int("id")?;
-            links.link = self.link(transaction, account, self.way()).await?;
             self.enter(transaction, account, login, role).await?;
-            return Ok(links);
+            return Ok(self.link(transaction, account, self.way()).await?);
         }
         let found =
             transaction.one("SELECT id, managed_by FROM account WHERE login = ? {for update}", values![login]).await?;
@@ -122,24 +102,26 @@ impl Staff {
         let was = transaction.row(statement, values![course, account]).await?;
         let was = was.map(|row| row.text("role")).transpose()?;
         if was.as_deref() == Some(role) {
-            return Ok(links);
+            return Ok(None);
         }
         self.check_left(transaction, login, role).await?;
-        let gains_nothing = role == "student" && (was.is_some() || managed_by == Some(course));
-        if !self.account.is_admin && !gains_nothing {
-            let secret = self.invite(transaction, account, (login, name), role).await?;
-            links.invitation = Some(self.app.invitation_address(&secret));
-            return Ok(links);
+        let is_of_others = managed_by.is_some_and(|other| other != course);
+        let is_admin = self.account.is_admin;
+        if is_of_others && !is_admin {
+            let detail = format!("{login} is an account of another course: an administrator adds it");
+            return Err(Problem::not_allowed(detail));
         }
-        if role == "staff" && !identity::is_trusted(transaction, account).await? {
+        let ends_all = is_admin && role == "staff" && !identity::is_trusted(transaction, account).await?;
+        if ends_all {
             identity::end_all(transaction, account).await?;
-            links.link = self.link(transaction, account, Way::Own).await?;
-        } else if managed_by.is_some_and(|other| other != course) {
-            identity::end_vouched(transaction, account, None).await?;
-            links.link = self.link(transaction, account, Way::Own).await?;
+        } else if is_of_others {
+            identity::end_vouched(transaction, account).await?;
         }
         self.enter(transaction, account, login, role).await?;
-        Ok(links)
+        match ends_all || is_of_others {
+            true => Ok(self.link(transaction, account, Way::Own).await?),
+            false => Ok(None),
+        }
     }
 
     /// Whether somebody of the course's staff is left when they are something else.
@@ -164,11 +146,13 @@ impl Staff {
     }
 
     async fn enter(&self, transaction: &mut Transaction, account: i64, login: &str, role: &str) -> Result<(), DbError> {
-        invitation::enrol(transaction, self.course, account, role).await?;
+        let statement = "INSERT INTO member (course, account, role, created_at) VALUES (?, ?, ?, {now})
+            ON CONFLICT (course, account) DO UPDATE SET role = excluded.role, platform = NULL";
+        transaction.execute(statement, values![self.course, account, role]).await?;
         self.note(transaction, "member", None, &format!("{login} is {role}")).await
     }
 
-    /// Takes somebody out of the course, or an invitation back; what they handed in stays.
+    /// Takes somebody out of the course; what they handed in stays.
     ///
     /// # Errors
     /// When they are no member.
@@ -177,10 +161,7 @@ impl Staff {
         self.check_left(&mut transaction, login, "out").await?;
         let statement = "DELETE FROM member WHERE course = ? AND account = (SELECT id FROM account WHERE login = ?)";
         let removed = transaction.execute(statement, values![self.course, login]).await?;
-        let statement =
-            "DELETE FROM invitation WHERE course = ? AND account = (SELECT id FROM account WHERE login = ?)";
-        let taken_back = transaction.execute(statement, values![self.course, login]).await?;
-        ensure(removed + taken_back > 0, Problem::not_found("member"))?;
+        ensure(removed > 0, Problem::not_found("member"))?;
         self.note(&mut transaction, "member", None, &format!("{login} is out")).await?;
         Ok(transaction.commit().await?)
     }
@@ -207,24 +188,5 @@ impl Staff {
         self.note(&mut transaction, "link", None, &format!("a new link for {login}")).await?;
         transaction.commit().await?;
         Ok(Link { link })
-    }
-
-    /// Invites somebody; an earlier invitation is void. The secret is for them alone.
-    async fn invite(
-        &self,
-        transaction: &mut Transaction,
-        account: i64,
-        (login, name): (&str, &str),
-        role: &str,
-    ) -> Result<NewSecret, DbError> {
-        let secret = NewSecret::new("");
-        let statement = "INSERT INTO invitation (course, account, name, role, digest, invited_by, created_at)
-            VALUES (?, ?, ?, ?, ?, ?, {now})
-            ON CONFLICT (course, account) DO UPDATE SET name = excluded.name, role = excluded.role,
-               digest = excluded.digest, invited_by = excluded.invited_by, created_at = excluded.created_at";
-        let values = values![self.course, account, name, role, secret.digest(), self.account.id];
-        transaction.execute(statement, values).await?;
-        self.note(transaction, "member", None, &format!("{login} is invited as {role}")).await?;
-        Ok(secret)
     }
 }

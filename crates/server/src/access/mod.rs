@@ -13,7 +13,6 @@ mod example;
 mod failed;
 mod identity;
 mod import;
-mod invitation;
 mod key_limit;
 mod launch;
 mod limits;
@@ -44,12 +43,11 @@ pub use counts::Counts;
 pub use failed::{AttemptChange, FailedScenes};
 pub use identity::{Link, NewSecret, NewToken, TokenInfo};
 pub use import::MemberLine;
-pub use invitation::Invitation;
 pub use launch::{Launched, LoginAnswer, LoginRequest};
 pub use limits::{Transfer, TransferLimits};
 pub use mark::{Overview, Request, Work};
 pub use member::Member;
-pub use members::{MemberInfo, MemberLinks};
+pub use members::MemberInfo;
 pub use password::Passwords;
 pub use person::{CourseOf, Person};
 pub use platform::{RosterRead, RosterWish, ScoreInfo};
@@ -178,11 +176,6 @@ impl App {
     /// A link that signs in once, as people open it.
     pub fn welcome_address(&self, secret: &NewSecret) -> String {
         format!("{}/welcome/{}", self.public, secret.reveal())
-    }
-
-    /// A link to an invitation.
-    pub fn invitation_address(&self, secret: &NewSecret) -> String {
-        format!("{}/invitation/{}", self.public, secret.reveal())
     }
 
     /// Whether people come by HTTPS.

@@ -185,7 +185,7 @@ impl Person {
             transaction.execute(statement, values![digest, self.account.id, kept.unwrap_or_default()]).await?;
         ensure(changed > 0, Problem::conflict("the password was changed meanwhile", "sign in again"))?;
         identity::end_sessions(&mut transaction, self.account.id).await?;
-        identity::end_vouched(&mut transaction, self.account.id, None).await?;
+        identity::end_vouched(&mut transaction, self.account.id).await?;
         Ok(transaction.commit().await?)
     }
 }

@@ -1,7 +1,7 @@
 //! Courses and their members.
 use super::super::input::{Asked, At, Before, Body, PlainBody};
 use crate::{
-    access::{Admin, Course, CourseOf, Event, Link, MemberInfo, MemberLine, MemberLinks, Person, Staff},
+    access::{Admin, Course, CourseOf, Event, Link, MemberInfo, MemberLine, Person, Staff},
     problem::Problem,
     schema::{Slug, Title},
 };
@@ -92,10 +92,10 @@ answers! { CREATED:
 }
 
 answers! { OK:
-    /// Makes somebody a member, and their account when there is none; a new account gets a link that signs in once. Anybody
-    /// who has an account of their own is invited, and nothing changes until they accept.
+    /// Makes somebody a member, and their account when there is none; a new account gets a link that signs in
+    /// once.
     put "/api/v1/courses/{course}/members/{login}" "courses"
-        set_member(staff: Staff, { login }, wish: MemberWish) -> MemberLinks:
+        set_member(staff: Staff, { login }, wish: MemberWish) -> Link:
             staff.set_member(&login, &wish.name, &wish.role);
     /// A new link that signs a student of this course in once.
     post "/api/v1/courses/{course}/members/{login}/link" "courses"

@@ -7,7 +7,7 @@ use super::{
     Page, PageFrame, see, show, text,
 };
 use crate::{
-    access::{CourseOf, Invitation, Person, TokenInfo},
+    access::{CourseOf, Person, TokenInfo},
     problem::Problem,
 };
 use askama::Template;
@@ -19,16 +19,6 @@ struct Home {
     frame: PageFrame,
     person: Person,
     courses: Vec<CourseOf>,
-    invitations: Vec<Invitation>,
-}
-
-#[derive(Template)]
-#[template(path = "invitation.html")]
-struct InvitationPage {
-    frame: PageFrame,
-    person: Person,
-    secret: String,
-    invitation: Invitation,
 }
 
 #[derive(Template)]
@@ -42,19 +32,7 @@ struct AccountPage<'a> {
 
 pub(super) async fn home(person: Person) -> Page {
     let frame = PageFrame::of(&person.account);
-    let (courses, invitations) = (person.courses().await?, person.invitations().await?);
-    show(&Home { frame, courses, invitations, person })
-}
-
-/// Opening the link does nothing yet.
-pub(super) async fn invitation(person: Person, At { secret, .. }: At) -> Page {
-    let invitation = person.invitation(&secret).await?;
-    show(&InvitationPage { frame: PageFrame::of(&person.account), secret, invitation, person })
-}
-
-pub(super) async fn accept_by_link(person: Person, At { secret, .. }: At) -> Result<Redirect, Problem> {
-    let course = person.accept_by_link(&secret).await?;
-    Ok(see(&format!("/c/{}", course.slug)))
+    show(&Home { frame, courses: person.courses().await?, person })
 }
 
 async fn page(person: &Person, new: Option<String>) -> Page {
@@ -75,7 +53,5 @@ pub(super) async fn new_token(person: Person, Fields(form): Fields<TokenName>) -
 deeds! {
     /// Everybody who is signed in as this person is to sign in again, by the new one.
     set_password(person: Person, form: PasswordWish): person.set_password(&form.old, &form.new) => "/sign-in";
-    accept(person: Person, { course }): person.answer_invitation(&course, true) => "/c/{course}";
-    decline(person: Person, { course }): person.answer_invitation(&course, false) => "/";
     revoke_token(person: Person, { id }): person.revoke_token(id) => "/account";
 }

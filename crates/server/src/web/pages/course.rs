@@ -83,8 +83,8 @@ struct MembersPage {
     /// The address of the next page.
     after: Option<String>,
     platforms: Vec<String>,
-    /// A link to be handed on: to whom, what it is, and its address.
-    link: Option<(String, &'static str, String)>,
+    /// A link to be handed on, and to whom.
+    link: Option<(String, String)>,
 }
 
 #[derive(Template)]
@@ -101,9 +101,6 @@ struct QueuePage {
     frame: PageFrame,
     queue: Queue,
 }
-
-const SIGNS_IN: &str = "a link that signs in once, good for a week";
-const INVITES: &str = "an invitation: they have an account, and accept by this link, signed in as ever";
 
 #[derive(Deserialize)]
 pub(super) struct NewAssignment {
@@ -156,7 +153,7 @@ impl People {
     }
 }
 
-async fn members_page(staff: &Staff, look: People, link: Option<(String, &'static str, String)>) -> Page {
+async fn members_page(staff: &Staff, look: People, link: Option<(String, String)>) -> Page {
     let slug = staff.slug.clone();
     let frame = PageFrame::course(staff).then(format!("/c/{slug}/members"), "Members");
     let (members, has_more) = staff.members_page(&look.q, &look.after).await?;
@@ -170,15 +167,13 @@ pub(super) async fn members(staff: Staff, Asked(look): Asked<People>) -> Page {
 
 pub(super) async fn set_member(staff: Staff, Fields(form): Fields<NewMember>) -> Page {
     let login = form.login.trim();
-    let links = staff.set_member(login, form.name.trim(), &form.role).await?;
-    let (signs_in, invites) = (links.link.map(|link| (SIGNS_IN, link)), links.invitation.map(|link| (INVITES, link)));
-    members_page(&staff, People::default(), signs_in.or(invites).map(|(what, link)| (login.to_owned(), what, link)))
-        .await
+    let link = staff.set_member(login, form.name.trim(), &form.role).await?.link;
+    members_page(&staff, People::default(), link.map(|link| (login.to_owned(), link))).await
 }
 
 pub(super) async fn member_link(staff: Staff, At { login, .. }: At) -> Page {
     let link = staff.new_link(&login).await?.link;
-    members_page(&staff, People::default(), link.map(|link| (login, SIGNS_IN, link))).await
+    members_page(&staff, People::default(), link.map(|link| (login, link))).await
 }
 
 pub(super) async fn audit(staff: Staff, Asked(asked): Asked<Before>) -> Page {

@@ -128,7 +128,7 @@ fn percent(bytes: &[u8]) -> String {
 }
 
 fn line(course: &str, of: MemberLine) -> Line {
-    let link = of.links.link.clone().or(of.links.invitation.clone()).unwrap_or_default();
+    let link = of.link.clone().unwrap_or_default();
     let (subject, body) = (percent(course.as_bytes()), percent(format!("{}:\n{link}\n", of.name).as_bytes()));
     let letter = format!("mailto:{}?subject={subject}&body={body}", percent(of.email.as_bytes()));
     Line { of, link, letter }

@@ -307,7 +307,7 @@ async fn nobody_gains_or_loses_rights_by_an_old_link(fresh: Fresh) {
     ada.get("/api/v1/me").expect(401);
     // Nobody's staff throws administrators or other staff out.
     set(&teacher, "physics", "admin", "staff");
-    set(&teacher, "physics", "colleague", "staff");
+    set(&admin, "physics", "colleague", "staff");
     set(&teacher, "physics", "colleague", "student");
     admin.get("/api/v1/me").expect(200);
     colleague.get("/api/v1/me").expect(200);

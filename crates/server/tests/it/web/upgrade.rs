@@ -65,7 +65,6 @@ const BACK_TO_THE_FIRST: [&str; 82] = [
     "DROP INDEX grade_change_new",
     "DROP TABLE mark",
     "DROP TABLE extension",
-    "DROP TABLE invitation",
     "ALTER TABLE account DROP COLUMN managed_by",
     "ALTER TABLE assignment DROP COLUMN published_at",
     "ALTER TABLE result DROP COLUMN shown",
