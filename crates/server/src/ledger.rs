@@ -3,7 +3,7 @@ use crate::{
     db::{Database, DbError, Transaction, read_row},
     health,
     lti::score,
-    queue::{self, Buried, Completion, Failure, Lease, QueuePolicy, Tick},
+    queue::{self, Buried, Completion, Failure, Lease, QueuePolicy},
     task::{JUDGE_ERROR, Outcome, rounded},
     values,
 };
@@ -80,16 +80,6 @@ pub async fn tick(database: &Database, policy: &QueuePolicy) -> Result<(), DbErr
         tracing::error!(job = job.job, worker = job.worker, fault = job.fault, "a job was tried too often");
     }
     Ok(())
-}
-
-/// Gives up on a worker that is known to be dead.
-///
-/// # Errors
-/// An error of the database.
-pub async fn abandon(transaction: &mut Transaction, policy: &QueuePolicy, worker: &str) -> Result<Tick, DbError> {
-    let tick = queue::abandon(transaction, policy, worker).await?;
-    bury_all(transaction, &tick.buried).await?;
-    Ok(tick)
 }
 
 /// The subject of a job.

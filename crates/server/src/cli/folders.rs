@@ -9,7 +9,11 @@ use std::{
     fs,
     os::unix::fs::{DirBuilderExt, PermissionsExt},
     path::{Path, PathBuf},
+    time::Duration,
 };
+
+/// How long an upload or a job that nobody finished may lie around.
+const FORGOTTEN: Duration = Duration::from_secs(24 * 3600);
 
 /// The data folder's parts.
 #[derive(Debug, Clone)]
@@ -20,9 +24,6 @@ pub(super) struct ServiceFolders {
     pub(super) backups: PathBuf,
     /// A program with a mistake, for who tries the service.
     pub(super) flawed_program: PathBuf,
-    pub(super) workers: PathBuf,
-    /// Workers of other servers: what they leave behind is no concern of a server that has the same folder.
-    pub(super) remote_workers: PathBuf,
 }
 
 impl ServiceFolders {
@@ -71,8 +72,6 @@ impl ServiceFolders {
             incoming: data.join("incoming"),
             backups: data.join("backups"),
             flawed_program: data.join("flawed-program"),
-            workers: data.join("workers"),
-            remote_workers: data.join("remote-workers"),
             data: data.to_owned(),
         })
     }
@@ -83,6 +82,20 @@ impl ServiceFolders {
             Some(address) => Store::bucket(address).with_context(|| format!("store {address}")),
             None => Ok(Store::folder(&self.data.join("store"))?),
         }
+    }
+
+    /// Makes the folders of uploads and of jobs, and removes what dead servers and workers left behind in them long ago.
+    pub(super) fn clear(&self) -> Result<()> {
+        for folder in [self.incoming.clone(), self.data.join("work")] {
+            fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
+            for entry in fs::read_dir(&folder)?.flatten() {
+                let written = entry.metadata().and_then(|data| data.modified());
+                if written.is_ok_and(|written| written.elapsed().is_ok_and(|age| age > FORGOTTEN)) {
+                    drop(fs::remove_file(entry.path()).or_else(|_| fs::remove_dir_all(entry.path())));
+                }
+            }
+        }
+        Ok(())
     }
 
     pub(super) fn work(&self, worker: &str) -> PathBuf {

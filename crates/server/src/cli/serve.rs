@@ -32,9 +32,6 @@ const DAY: u64 = 24 * 3600;
 /// A mebibyte.
 const MIB: u64 = 1 << 20;
 
-/// How long an upload that nobody finished may lie around.
-const FORGOTTEN: Duration = Duration::from_secs(DAY);
-
 /// How long the grader may take to answer.
 const ANSWER: Duration = Duration::from_secs(20);
 
@@ -51,7 +48,7 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
     let (database, address) = folders.open_database(&arguments.place).await?;
     bring_up_to_date(&database, &folders, &address).await?;
     let store = folders.store(&arguments.place)?;
-    clear_incoming(&folders.incoming)?;
+    folders.clear()?;
     let notifier = Notifier::default();
     let local = format!("http://{}", listener.local_addr()?);
     let public = arguments.public_url.clone().unwrap_or_else(|| local.clone());
@@ -234,21 +231,6 @@ async fn copy_before(database: &Database, backups: &Path, version: i64) -> Resul
     std::fs::rename(&partial, &copy)?;
     std::fs::File::open(backups)?.sync_all()?;
     Ok(copy)
-}
-
-/// Makes the folder of uploads, and removes what a dead server left behind in it.
-fn clear_incoming(folder: &PathBuf) -> Result<()> {
-    std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
-    for entry in std::fs::read_dir(folder)?.flatten() {
-        let old = entry
-            .metadata()
-            .and_then(|data| data.modified())
-            .is_ok_and(|modified| SystemTime::now().duration_since(modified).is_ok_and(|age| age > FORGOTTEN));
-        if old {
-            drop(std::fs::remove_file(entry.path()));
-        }
-    }
-    Ok(())
 }
 
 pub(super) async fn admin_link(arguments: &AdminLink) -> Result<()> {

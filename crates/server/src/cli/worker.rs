@@ -6,11 +6,10 @@ use super::{
 };
 use crate::{
     db::{self, Database},
-    ledger,
     queue::{Notifier, QueuePolicy},
     secret,
     store::Store,
-    worker::{self, JobSource, Liveness, LocalSource, Program, RemoteSource, SourceError},
+    worker::{self, JobSource, LocalSource, Program, RemoteSource, SourceError},
 };
 use anyhow::{Context, Result, bail};
 use std::{
@@ -65,12 +64,7 @@ async fn work_for(server: &str, token_file: &Path, arguments: &WorkerArguments, 
     let grader = grader(arguments.work.grader.as_deref())?;
     let folders = ServiceFolders::open(&arguments.place)?;
     let name = unique_name(arguments.name.as_deref());
-    // Jobs of workers that died here; the server gives them to others when their leases run out.
-    let alive = Liveness::begin(&folders.remote_workers, &name).context("cannot show that this worker is alive")?;
-    for dead in worker::dead_workers(&folders.remote_workers)? {
-        drop(std::fs::remove_dir_all(folders.work(&dead)));
-        worker::forget(&folders.remote_workers, &dead);
-    }
+    folders.clear()?;
     let source = RemoteSource::new(server, token, &name);
     if !greet(&source, server, &stop).await? {
         return Ok(());
@@ -84,7 +78,6 @@ async fn work_for(server: &str, token_file: &Path, arguments: &WorkerArguments, 
     let program = Program::new(grader, arguments.work.threads.get());
     let worked = worker::work(source, program, slots, folder.clone(), stop).await;
     drop(std::fs::remove_dir_all(folder));
-    drop(alive);
     worked.with_context(|| server.to_owned())?;
     tracing::info!(worker = name, "stopped");
     Ok(())
@@ -156,8 +149,7 @@ impl Local {
         stop: CancellationToken,
     ) -> Result<()> {
         let name = unique_name(name);
-        let alive = Liveness::begin(&self.folders.workers, &name).context("cannot show that this worker is alive")?;
-        self.take_over().await?;
+        self.folders.clear()?;
         let slots = self::slots(slots);
         tracing::info!(worker = name, slots, grader = %self.grader.display(), "working");
         let source = LocalSource::new(
@@ -169,37 +161,12 @@ impl Local {
         );
         let folder = self.folders.work(&name);
         let program = Program::new(self.grader.clone(), work.threads.get());
-        let watching = async {
-            loop {
-                tokio::time::sleep(self.policy.tick_every().max(Duration::from_millis(500))).await;
-                if let Err(error) = self.take_over().await {
-                    tracing::warn!(%error, "the jobs of dead workers can't be taken over yet");
-                }
-            }
-        };
-        tokio::select! {
-            worked = worker::work(source, program, slots, folder.clone(), stop) => worked?,
-            () = watching => {}
-        }
+        worker::work(source, program, slots, folder.clone(), stop).await?;
         drop(std::fs::remove_dir_all(folder));
-        drop(alive);
         tracing::info!(worker = name, "stopped");
         Ok(())
     }
 
-    /// Gives the jobs of this machine's dead workers to others, and removes what these left behind.
-    async fn take_over(&self) -> Result<()> {
-        for dead in worker::dead_workers(&self.folders.workers)? {
-            let mut transaction = self.database.begin().await?;
-            let found = ledger::abandon(&mut transaction, &self.policy, &dead).await?;
-            self.notifier.commit(transaction).await?;
-            drop(std::fs::remove_dir_all(self.folders.work(&dead)));
-            worker::forget(&self.folders.workers, &dead);
-            let jobs = found.retried + found.buried.len();
-            tracing::warn!(worker = dead, jobs, "a worker died; its jobs are taken over");
-        }
-        Ok(())
-    }
 }
 
 fn host() -> String {

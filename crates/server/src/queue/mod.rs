@@ -20,7 +20,7 @@ pub use enqueue::{NewJob, Turn, cancel, enqueue, waits};
 pub use hold::{Completion, Failure, Progress, complete, fail, payload, release, renew};
 pub use notifier::{Notifier, Subscription};
 pub use place::{Place, place};
-pub use tick::{Buried, Tick, abandon, tick};
+pub use tick::{Buried, Tick, tick};
 
 use crate::secret;
 use serde::{Deserialize, Serialize};

@@ -8,6 +8,9 @@ use crate::{
     values,
 };
 
+/// Why a job whose lease ran out came to nothing.
+const SILENT: &str = "its worker went silent";
+
 /// The findings of a tick.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Tick {
@@ -57,32 +60,20 @@ pub async fn tick(transaction: &mut Transaction, policy: &QueuePolicy) -> Result
     let statement = "SELECT id, attempt, failures, deaths, worker FROM job
         WHERE state = 'running' AND lease_until < {now} ORDER BY id {skip locked}";
     let lost = transaction.rows(statement, values![]).await?;
-    give_up(transaction, policy, lost, "its worker went silent").await
-}
-
-/// Gives up on a worker that is known to be dead, before its leases run out.
-///
-/// # Errors
-/// An error of the database.
-pub async fn abandon(transaction: &mut Transaction, policy: &QueuePolicy, worker: &str) -> Result<Tick, DbError> {
-    let statement = "SELECT id, attempt, failures, deaths, worker FROM job
-        WHERE state = 'running' AND worker = ? ORDER BY id {skip locked}";
-    let lost = transaction.rows(statement, values![worker]).await?;
-    give_up(transaction, policy, lost, "its worker died").await
+    give_up(transaction, policy, lost).await
 }
 
 async fn give_up(
     transaction: &mut Transaction,
     policy: &QueuePolicy,
     lost: Vec<Row>,
-    fault: &str,
 ) -> Result<Tick, DbError> {
     let mut tick = Tick::default();
     for row in lost {
         let (job, attempt) = (row.int("id")?, row.int("attempt")?);
         let worker = row.maybe_text("worker")?.unwrap_or_default();
-        match die(transaction, policy, &row, fault).await? {
-            Failure::Buried => tick.buried.push(Buried { job, attempt, worker, fault: fault.to_owned() }),
+        match die(transaction, policy, &row, SILENT).await? {
+            Failure::Buried => tick.buried.push(Buried { job, attempt, worker, fault: SILENT.to_owned() }),
             Failure::Retried | Failure::Late => tick.retried += 1,
         }
     }

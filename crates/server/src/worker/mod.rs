@@ -5,7 +5,6 @@ mod child;
 mod grader;
 mod guard;
 mod health;
-mod liveness;
 mod local;
 mod program;
 mod reading;
@@ -16,7 +15,6 @@ mod suite_check;
 
 pub(crate) use child::limit;
 pub use grader::{Graded, Grader, GraderFault, NewFile, PROGRESS};
-pub use liveness::{Liveness, dead_workers, forget};
 pub use local::LocalSource;
 use program::GRACE;
 pub use program::{PUBLISHED_PAGE, Program, REPORTS, STAFF_PAGE};

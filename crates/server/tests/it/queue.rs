@@ -22,7 +22,6 @@ on_all_engines!(
     an_outage_of_the_database_costs_no_try,
     a_lease_is_not_renewed_for_ever,
     a_cancelled_job_is_gone_for_its_worker_too,
-    a_dead_worker_is_given_up_at_once,
 );
 
 const POLICY: QueuePolicy = QueuePolicy {
@@ -381,18 +380,4 @@ async fn a_cancelled_job_is_gone_for_its_worker_too(fresh: Fresh) {
     assert!(!cancel(running).await);
     assert_eq!(complete(database, &held.lease).await, Completion::Late);
     assert_eq!(claim(database, "w").await, None);
-}
-
-async fn a_dead_worker_is_given_up_at_once(fresh: Fresh) {
-    let database = &fresh.database;
-    let lost = enqueue(database, Turn::Student(1)).await;
-    let kept = enqueue(database, Turn::Student(2)).await;
-    claim(database, "dead").await.expect("a job");
-    let alive = claim(database, "alive").await.expect("a job");
-    let mut transaction = database.begin().await.expect("a transaction");
-    let found = queue::abandon(&mut transaction, &POLICY, "dead").await.expect("an answer");
-    transaction.commit().await.expect("commit");
-    assert_eq!((found.retried, found.buried.len()), (1, 0));
-    assert_eq!((state(database, lost).await.as_str(), state(database, kept).await.as_str()), ("waiting", "running"));
-    assert_eq!(complete(database, &alive.lease).await, Completion::Done);
 }

@@ -17,7 +17,7 @@ async fn storm(mut arena: Arena, name: &str) {
     let start = std::time::Instant::now();
     let seen = Weather::new(&mut arena, size).blow().await;
     arena.wait_until_all_is_done().await;
-    arena.calm_down().await;
+    arena.calm_down();
     let found = arena.inspect().await;
     println!(
         "| {name} | {} | {} | {} | {} | {} | {} | {} | {} | {} of {} | {} | {:.0} s |",

@@ -61,8 +61,8 @@ async fn reports_that_tell_of_hidden_groups_are_for_staff(fresh: Fresh) {
     let list = ada.get("/api/v1/courses/physics/assignments/m1/submissions").expect(200).json();
     let seen = |one: &Value| one["id"] == open || one["grade"]["code"] == "AC";
     assert!(list.as_array().expect("a list").iter().all(seen), "{list}");
-    let told = ada.get(&format!("/api/v1/courses/physics/submissions/{other}")).expect(200).text();
-    assert!(told.contains("is_withheld") && !told.contains("RTE") && !told.contains("grade.json"), "{told}");
+    let seen = ada.get(&format!("/api/v1/courses/physics/submissions/{other}")).expect(200).text();
+    assert!(seen.contains("is_withheld") && !seen.contains("RTE") && !seen.contains("grade.json"), "{seen}");
     let page = ada.get(&format!("/c/physics/s/{other}")).expect(200).text();
     assert!(!page.contains("RTE") && page.contains("10 / 10 points"), "{page}");
     assert_eq!(told(&teacher, other).0["points"], "7");

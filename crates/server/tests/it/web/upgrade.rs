@@ -9,7 +9,7 @@ use fosssim_server::{
 };
 
 /// Statements that take a database back to the tables of the first version, with an account in it.
-const BACK_TO_THE_FIRST: [&str; 82] = [
+const BACK_TO_THE_FIRST: &[&str] = &[
     "DROP INDEX job_token",
     "DROP INDEX job_buried",
     "DROP INDEX job_cancelled",
