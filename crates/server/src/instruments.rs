@@ -1,6 +1,6 @@
-//! Numbers for a monitor, in Prometheus' text format: what the server counts about itself, what its process, disk and
-//! connections to the database come to, and what the database knows of the queue. They tell of nobody.
-use crate::{db::Database, storage::Storage};
+//! Numbers for a monitor, in Prometheus' text format: what the server counts about itself, what its process and disk
+//! come to, and what the database knows of the queue. They tell of nobody.
+use crate::storage::Storage;
 use prometheus::{
     CounterVec, GaugeVec, HistogramOpts, HistogramVec, IntCounterVec, IntGauge, Opts, Registry, TextEncoder,
     process_collector::ProcessCollector,
@@ -66,7 +66,6 @@ impl Instruments {
     /// When it can't be written as text.
     pub fn show(
         &self,
-        database: &Database,
         storage: &Storage,
         queue: Option<&Metrics>,
     ) -> Result<String, prometheus::Error> {
@@ -76,21 +75,6 @@ impl Instruments {
         page.0.register(Box::new(self.in_flight.clone()))?;
         page.0.register(Box::new(ProcessCollector::for_self()))?;
         page.gauge("build_info", "The version of the server.", "version", &[(env!("CARGO_PKG_VERSION"), 1.0)])?;
-        let pools = database.pools();
-        let most: Vec<(&str, f64)> = pools.iter().map(|pool| (pool.name, pool.most.into())).collect();
-        page.gauge("database_connections_max", "The most connections that a pool opens.", "pool", &most)?;
-        let connections =
-            Opts::new("fosssim_database_connections", "Open connections to the database, by pool and state.");
-        let connections = GaugeVec::new(connections, &["pool", "state"])?;
-        for pool in &pools {
-            connections.with_label_values(&[pool.name, "idle"]).set(pool.idle.into());
-            connections.with_label_values(&[pool.name, "used"]).set(pool.size.saturating_sub(pool.idle).into());
-        }
-        page.0.register(Box::new(connections))?;
-        let (waiting, timeouts) = database.waits();
-        page.number("database_waiting", "Transactions that wait for a connection.", waiting as f64)?;
-        let help = "Transactions that were given up because no connection was free in time.";
-        page.counter("database_timeouts_total", help, "", &[("", timeouts as f64)])?;
         if let Some((free, size)) = storage.disk() {
             page.number("disk_free_bytes", "Free room on the data folder's disk.", free as f64)?;
             page.number("disk_size_bytes", "The size of the data folder's disk.", size as f64)?;

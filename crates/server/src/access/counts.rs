@@ -1,7 +1,7 @@
-//! Numbers for monitors: counted by indexes of what is in motion, and by sums of what only grows. Many who ask at once
+//! Numbers for monitors: counted by indexes. Many who ask at once
 //! get one answer, and hold one connection.
 use crate::{
-    db::{Database, DbError, Transaction},
+    db::{Database, DbError},
     health,
     instruments::Metrics,
     queue::{Lane, QueuePolicy},
@@ -12,12 +12,6 @@ use tokio::sync::Mutex;
 
 /// For so long an answer counts.
 const FRESH: Duration = Duration::from_secs(1);
-
-/// Rows that are older than this, in milliseconds, are committed or never will be, and can be summed up.
-const SETTLED: i64 = 300_000;
-
-/// With this many new rows a sum is brought up to date.
-const MANY: i64 = 10_000;
 
 /// The last answer.
 #[derive(Debug, Default)]
@@ -32,73 +26,29 @@ impl Counts {
         {
             return Ok(metrics.clone());
         }
-        let (metrics, grown) = count(database, policy).await?;
-        if !grown.is_empty() {
-            let mut transaction = database.begin().await?;
-            for name in grown {
-                sum_up(&mut transaction, name).await?;
-            }
-            transaction.commit().await?;
-        }
+        let metrics = count(database, policy).await?;
         *last = Some((Instant::now(), metrics.clone()));
         Ok(metrics)
     }
 }
 
-/// A number that only grows: its name among the sums, how its rows after one are counted, and the last of them that is
-/// settled.
-struct Growing {
-    name: &'static str,
-    newer: &'static str,
-    settled: &'static str,
-    older: &'static str,
-}
-
-macro_rules! growing {
-    ($name:literal, $table:literal, $time:literal, $which:literal) => {
-        Growing {
-            name: $name,
-            newer: concat!("SELECT count(*) AS n FROM ", $table, " WHERE ", $which, " AND id > ?"),
-            settled: concat!(
-                "SELECT id FROM ",
-                $table,
-                " WHERE ",
-                $which,
-                " AND id > ? AND ",
-                $time,
-                " < {now} - ? ORDER BY id DESC LIMIT 1"
-            ),
-            older: concat!("SELECT count(*) AS n FROM ", $table, " WHERE ", $which, " AND id > ? AND id <= ?"),
-        }
-    };
-}
-
-const GROWING: [Growing; 6] = [
-    growing!("graded", "event", "happened_at", "kind = 'graded'"),
-    growing!("failed try", "event", "happened_at", "kind = 'failed try'"),
-    growing!("late answer", "event", "happened_at", "kind = 'late answer'"),
-    growing!("buried", "event", "happened_at", "kind = 'buried'"),
-    growing!("submission", "submission", "created_at", "1 = 1"),
-    growing!("result", "result", "created_at", "code <> 'JE'"),
-];
-
-async fn count(database: &Database, policy: &QueuePolicy) -> Result<(Metrics, Vec<&'static Growing>), DbError> {
+async fn count(database: &Database, policy: &QueuePolicy) -> Result<Metrics, DbError> {
     let mut transaction = database.read().await?;
     let mut metrics = Metrics::default();
-    let mut grown = Vec::new();
-    for growing in &GROWING {
-        let sum = transaction.one("SELECT upto, n FROM tally WHERE name = ?", values![growing.name]).await?;
-        let newer = transaction.one(growing.newer, values![sum.int("upto")?]).await?.int("n")?;
-        if newer > MANY {
-            grown.push(growing);
-        }
-        let n = sum.int("n")? + newer;
-        match growing.name {
-            "submission" => metrics.submissions = n,
-            "result" => metrics.jobs.push(("done".to_owned(), n)),
-            kind => metrics.events.push((kind.to_owned(), n)),
-        }
+    // Numbers are given out once, also where rows are removed.
+    let statement = "SELECT (SELECT coalesce(max(id), 0) FROM submission) AS submissions,
+        (SELECT coalesce(max(id), 0) FROM result) AS results";
+    let row = transaction.one(statement, values![]).await?;
+    metrics.submissions = row.int("submissions")?;
+    let mut graded = row.int("results")?;
+    // The rare ones: of each that was given up there is a result, too.
+    for kind in ["failed try", "late answer", "buried"] {
+        let n = transaction.one("SELECT count(*) AS n FROM event WHERE kind = ?", values![kind]).await?.int("n")?;
+        graded -= if kind == "buried" { n } else { 0 };
+        metrics.events.push((kind.to_owned(), n));
     }
+    metrics.events.push(("graded".to_owned(), graded));
+    metrics.jobs.push(("done".to_owned(), graded));
     for (lane, counts) in [(Lane::Grading, &mut metrics.jobs), (Lane::Passback, &mut metrics.scores)] {
         let statement = "SELECT (SELECT count(*) FROM job WHERE lane = ? AND state = 'waiting') AS waiting,
             (SELECT count(*) FROM job WHERE lane = ? AND state = 'running') AS running,
@@ -130,16 +80,5 @@ async fn count(database: &Database, policy: &QueuePolicy) -> Result<(Metrics, Ve
     let row = transaction.one(statement, values![recent, recent]).await?;
     (metrics.workers, metrics.slots, metrics.aside) = (row.int("n")?, row.int("slots")?, row.int("aside")?);
     metrics.working = row.int("working")?;
-    Ok((metrics, grown))
-}
-
-/// Adds what is settled to a sum. Two servers that do so at once do it once.
-async fn sum_up(transaction: &mut Transaction, growing: &Growing) -> Result<(), DbError> {
-    let sum = transaction.one("SELECT upto FROM tally WHERE name = ? {for update}", values![growing.name]).await?;
-    let upto = sum.int("upto")?;
-    let Some(last) = transaction.row(growing.settled, values![upto, SETTLED]).await? else { return Ok(()) };
-    let last = last.int("id")?;
-    let n = transaction.one(growing.older, values![upto, last]).await?.int("n")?;
-    transaction.execute("UPDATE tally SET upto = ?, n = n + ? WHERE name = ?", values![last, n, growing.name]).await?;
-    Ok(())
+    Ok(metrics)
 }

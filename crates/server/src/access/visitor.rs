@@ -111,7 +111,7 @@ impl Visitor {
         let parts = &self.app.0;
         let queue = parts.counts.of(&parts.database, &parts.policy).await;
         let queue = queue.inspect_err(|error| tracing::warn!(%error, "the queue can't be counted")).ok();
-        parts.instruments.show(&parts.database, &parts.storage, queue.as_ref()).map_err(|error| {
+        parts.instruments.show(&parts.storage, queue.as_ref()).map_err(|error| {
             tracing::error!(%error, "the metrics can't be written");
             Problem::fault()
         })

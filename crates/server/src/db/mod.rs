@@ -28,7 +28,7 @@ use sqlx::{
 use std::{
     sync::{
         Arc,
-        atomic::{AtomicBool, AtomicI64, AtomicU64, Ordering},
+        atomic::{AtomicBool, Ordering},
     },
     time::Duration,
 };
@@ -69,33 +69,12 @@ fn postgres_options(url: &str) -> Result<PgConnectOptions, DbError> {
 #[derive(Debug, Clone)]
 pub struct Database {
     engine: Engine,
-    waits: Arc<Waits>,
     faults: Faults,
     /// Whether a newer program has changed the tables: then nothing is written any more.
     is_outdated: Arc<AtomicBool>,
     /// Of those who do not go first only this many use, or wait for, the connections.
     turns: Arc<Semaphore>,
     goes_first: bool,
-}
-
-/// The tasks that wait for a connection, and how many did so in vain.
-#[derive(Debug, Default)]
-struct Waits {
-    waiting: AtomicI64,
-    timeouts: AtomicU64,
-}
-
-/// How a pool of connections is used.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Pool {
-    /// Its purpose.
-    pub name: &'static str,
-    /// Open connections.
-    pub size: u32,
-    /// Those that nobody uses.
-    pub idle: u32,
-    /// The most that it opens.
-    pub most: u32,
 }
 
 #[derive(Debug, Clone)]
@@ -170,7 +149,7 @@ impl Database {
             }
         };
         let turns = Arc::new(Semaphore::new(turns as usize));
-        Ok(Self { engine, waits: Arc::default(), faults, is_outdated: Arc::default(), turns, goes_first: false })
+        Ok(Self { engine, faults, is_outdated: Arc::default(), turns, goes_first: false })
     }
 
     /// The same database, for those whom requests must not keep waiting: workers, whose leases run out. However many
@@ -238,37 +217,19 @@ impl Database {
         }
     }
 
-    /// Waits for a turn, where they are counted, and for a transaction to begin, and counts that.
+    /// Waits for a turn, where they are counted, and for a transaction to begin.
     async fn waited<T, F: Future<Output = Result<T, sqlx::Error>>>(
         &self,
         make: fn(T) -> Inner,
         begin: impl FnOnce() -> F,
         in_turn: bool,
     ) -> Result<Transaction, DbError> {
-        let waiting = Waiting::begin(&self.waits.waiting);
         let begun = async {
             let turn = if in_turn { self.turn().await? } else { None };
             Ok::<_, sqlx::Error>(Transaction::new(make(begin().await?), self.faults.clone(), turn))
         }
         .await;
-        drop(waiting);
-        if matches!(begun, Err(sqlx::Error::PoolTimedOut)) {
-            self.waits.timeouts.fetch_add(1, Ordering::Relaxed);
-        }
         begun.map_err(|error| self.faults.note(error))
-    }
-
-    /// How its connections are used.
-    pub fn pools(&self) -> Vec<Pool> {
-        match &self.engine {
-            Engine::Sqlite { writer, readers } => vec![pool("writer", writer), pool("readers", readers)],
-            Engine::Postgres(connections) => vec![pool("postgres", connections)],
-        }
-    }
-
-    /// How many transactions wait for a connection, and how many were given up because none was free in time.
-    pub fn waits(&self) -> (i64, u64) {
-        (self.waits.waiting.load(Ordering::Relaxed), self.waits.timeouts.load(Ordering::Relaxed))
     }
 
     /// Copies a SQLite database into a new file, consistently and while others write; PostgreSQL has its own tools.
@@ -296,25 +257,4 @@ impl Database {
             Engine::Postgres(pool) => pool.close().await,
         }
     }
-}
-
-/// Somebody who waits, also one who gives up in the middle.
-struct Waiting<'a>(&'a AtomicI64);
-
-impl<'a> Waiting<'a> {
-    fn begin(count: &'a AtomicI64) -> Self {
-        count.fetch_add(1, Ordering::Relaxed);
-        Self(count)
-    }
-}
-
-impl Drop for Waiting<'_> {
-    fn drop(&mut self) {
-        self.0.fetch_sub(1, Ordering::Relaxed);
-    }
-}
-
-fn pool<DB: sqlx::Database>(name: &'static str, pool: &sqlx::Pool<DB>) -> Pool {
-    let idle = u32::try_from(pool.num_idle()).unwrap_or(u32::MAX);
-    Pool { name, size: pool.size(), idle, most: pool.options().get_max_connections() }
 }

@@ -81,7 +81,7 @@ pub(crate) async fn fill(database: &Database, assignment: i64, students: i64, su
     transaction.commit().await.expect("commit");
 }
 
-/// Adds the events of all submissions behind one, and sums up as servers that ran all the while have.
+/// Adds the events of all submissions behind one.
 async fn add_events(transaction: &mut Transaction, first: i64) {
     for kind in ["submitted", "graded"] {
         transaction
@@ -92,24 +92,5 @@ async fn add_events(transaction: &mut Transaction, first: i64) {
             )
             .await
             .expect("events");
-    }
-    for (name, statement) in [
-        (
-            "submission",
-            "UPDATE tally SET n = (SELECT count(*) FROM submission), upto = (SELECT max(id) FROM submission)
-            WHERE name = ?",
-        ),
-        (
-            "result",
-            "UPDATE tally SET n = (SELECT count(*) FROM result), upto = (SELECT max(id) FROM result)
-            WHERE name = ?",
-        ),
-        (
-            "graded",
-            "UPDATE tally SET n = (SELECT count(*) FROM event WHERE kind = 'graded'),
-            upto = (SELECT max(id) FROM event) WHERE name = ?",
-        ),
-    ] {
-        transaction.execute(statement, values![name]).await.expect("a sum");
     }
 }

@@ -16,7 +16,6 @@ const BACK_TO_THE_FIRST: &[&str] = &[
     "DROP INDEX job_oldest",
     "DROP INDEX result_campaign",
     "DROP INDEX job_campaign",
-    "DROP TABLE tally",
     "DROP TABLE numbering",
     "ALTER TABLE grade_change DROP COLUMN given",
     "ALTER TABLE job DROP COLUMN asked_by",

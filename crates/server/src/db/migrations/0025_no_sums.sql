@@ -1,0 +1,2 @@
+-- What only grows is counted by its numbers and indexes.
+DROP TABLE tally;
