@@ -2,7 +2,6 @@
 //! kept.
 use super::{
     Member, Throttle,
-    key_limit::{KeyLimit, Permit},
     turns::{ArchiveTurn, Turns},
 };
 use crate::{db::Transaction, problem::Problem, values};
@@ -11,9 +10,10 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
     time::{Duration, Instant},
 };
+use tokio::sync::{OwnedSemaphorePermit, Semaphore, SemaphorePermit};
 
 /// Up- and downloads of all accounts at one time: each takes a connection, a file and some 100 KiB.
-const TRANSFERS: usize = 3000;
+static OF_ALL: Semaphore = Semaphore::const_new(3000);
 
 /// How long an upload waits for others of the same account.
 const TURN: Duration = Duration::from_secs(30);
@@ -35,8 +35,7 @@ pub struct TransferLimits {
     pub course: u64,
     /// Of the server.
     pub server: u64,
-    by_account: KeyLimit<i64>,
-    of_all: KeyLimit<()>,
+    by_account: Mutex<HashMap<i64, Arc<Semaphore>>>,
     turns: Mutex<HashMap<i64, Arc<tokio::sync::Mutex<()>>>>,
     archives: Turns,
     refused: Throttle,
@@ -45,8 +44,8 @@ pub struct TransferLimits {
 /// Leave to transfer something, until it is dropped.
 #[derive(Debug)]
 pub struct Transfer {
-    _of_account: Permit<i64>,
-    _of_all: Permit<()>,
+    _of_account: OwnedSemaphorePermit,
+    _of_all: SemaphorePermit<'static>,
 }
 
 impl TransferLimits {
@@ -56,26 +55,28 @@ impl TransferLimits {
     }
 
     fn transfer(&self, account: i64) -> Result<Transfer, Problem> {
-        let Some(of_account) = self.by_account.pass(account, self.transfers) else {
-            let most = self.transfers;
-            return Err(Problem::too_many(format!("an account may have {most} up- and downloads at one time")));
-        };
-        let Some(of_all) = self.of_all.pass((), TRANSFERS) else {
-            return Err(Problem::unavailable("too many up- and downloads are under way"));
-        };
+        let most = self.transfers;
+        let of_account = shared(&self.by_account, account, || Semaphore::new(most)).try_acquire_owned();
+        let many = |_| Problem::too_many(format!("an account may have {most} up- and downloads at one time"));
+        let of_account = of_account.map_err(many)?;
+        let of_all = OF_ALL.try_acquire();
+        let of_all = of_all.map_err(|_| Problem::unavailable("too many up- and downloads are under way"))?;
         Ok(Transfer { _of_account: of_account, _of_all: of_all })
     }
 
     /// Waits until nobody else hands in for an account by this server.
     pub(super) async fn turn(&self, account: i64) -> Result<tokio::sync::OwnedMutexGuard<()>, Problem> {
-        let turn = {
-            let mut turns = self.turns.lock().unwrap_or_else(PoisonError::into_inner);
-            turns.retain(|_, turn| Arc::strong_count(turn) > 1);
-            turns.entry(account).or_default().clone()
-        };
+        let turn = shared(&self.turns, account, Default::default);
         let turn = tokio::time::timeout(TURN, turn.lock_owned()).await;
         turn.map_err(|_| Problem::unavailable("other uploads of yours are still being written"))
     }
+}
+
+/// What the tasks of an account share, while one of them holds it.
+fn shared<T>(all: &Mutex<HashMap<i64, Arc<T>>>, account: i64, new: impl FnOnce() -> T) -> Arc<T> {
+    let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
+    all.retain(|_, one| Arc::strong_count(one) > 1);
+    all.entry(account).or_insert_with(|| Arc::new(new())).clone()
 }
 
 impl Member {

@@ -13,7 +13,6 @@ mod example;
 mod failed;
 mod identity;
 mod import;
-mod key_limit;
 mod launch;
 mod limits;
 mod mark;
