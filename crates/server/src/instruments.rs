@@ -64,11 +64,7 @@ impl Instruments {
     ///
     /// # Errors
     /// When it can't be written as text.
-    pub fn show(
-        &self,
-        storage: &Storage,
-        queue: Option<&Metrics>,
-    ) -> Result<String, prometheus::Error> {
+    pub fn show(&self, storage: &Storage, queue: Option<&Metrics>) -> Result<String, prometheus::Error> {
         let page = MetricsPage(Registry::new());
         page.0.register(Box::new(self.requests.clone()))?;
         page.0.register(Box::new(self.seconds.clone()))?;

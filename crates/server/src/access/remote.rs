@@ -215,7 +215,6 @@ impl Remote {
 const MOST_POINTS: f64 = 1e9;
 const MANY_SLOTS: usize = 256;
 
-
 /// Words of a stranger: one line, not too long, without orders to terminals.
 fn plain(text: &str, most: usize) -> String {
     text.chars().map(|c| if c.is_control() { ' ' } else { c }).take(most).collect()

@@ -166,7 +166,6 @@ impl Local {
         tracing::info!(worker = name, "stopped");
         Ok(())
     }
-
 }
 
 fn host() -> String {

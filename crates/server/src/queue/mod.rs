@@ -44,7 +44,6 @@ impl Lane {
             Self::Passback => "passback",
         }
     }
-
 }
 
 /// The longest that a platform may have us wait.

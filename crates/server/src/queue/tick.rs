@@ -63,11 +63,7 @@ pub async fn tick(transaction: &mut Transaction, policy: &QueuePolicy) -> Result
     give_up(transaction, policy, lost).await
 }
 
-async fn give_up(
-    transaction: &mut Transaction,
-    policy: &QueuePolicy,
-    lost: Vec<Row>,
-) -> Result<Tick, DbError> {
+async fn give_up(transaction: &mut Transaction, policy: &QueuePolicy, lost: Vec<Row>) -> Result<Tick, DbError> {
     let mut tick = Tick::default();
     for row in lost {
         let (job, attempt) = (row.int("id")?, row.int("attempt")?);

@@ -1,8 +1,5 @@
 //! The grader's words about a submission, as far as the service understands them; the rest goes to people.
-use crate::{
-    grade_file::GradeFile,
-    task::Outcome,
-};
+use crate::{grade_file::GradeFile, task::Outcome};
 use std::{fs, path::Path};
 
 /// The schemas of `grade.json` that are read here. While servers and workers are upgraded one after the other, a grader

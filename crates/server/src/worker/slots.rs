@@ -115,12 +115,7 @@ enum JobEnding {
     Lost,
 }
 
-async fn run<D: JobSource, G: Grader>(
-    source: D,
-    health: Health<G>,
-    job: Claimed,
-    stop: CancellationToken,
-) {
+async fn run<D: JobSource, G: Grader>(source: D, health: Health<G>, job: Claimed, stop: CancellationToken) {
     let lost = CancellationToken::new();
     let folder = job_folder(&health.folder);
     let progress = folder.as_ref().ok().map(|folder| folder.path().join(WORK).join(PROGRESS));

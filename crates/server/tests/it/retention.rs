@@ -179,9 +179,7 @@ mod bucket {
             let large_one = store.put_file(&file).await.expect("stored in parts").digest;
             let small = store.put(b"small".to_vec()).await.expect("stored").digest;
             assert!(crate::support::bytes(&store, &large_one).await == large);
-            assert!(
-                !store.has(&Digest::of(b"none")).await.expect("an answer")
-            );
+            assert!(!store.has(&Digest::of(b"none")).await.expect("an answer"));
             let long = Duration::from_secs(3600);
             assert_eq!(store.give_up(long, |digests| named(digests, |_| false)).await.expect("done"), 0, "too young");
             // Nothing names either of them for a moment: put aside, and read all the same.

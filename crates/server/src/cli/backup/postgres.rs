@@ -27,7 +27,8 @@ async fn run(program: &str, address: &str, words: &[&str], file: &Path) -> Resul
     let mut command = Command::new(program);
     command.arg(format!("--dbname={url}")).args(words).arg(file).env("PGPASSWORD", password);
     let ended = command.stdin(Stdio::null()).stdout(Stdio::null()).kill_on_drop(true).output().await;
-    let ended = ended.with_context(|| format!("cannot start {program}: install PostgreSQL's client (postgresql-client)"))?;
+    let ended =
+        ended.with_context(|| format!("cannot start {program}: install PostgreSQL's client (postgresql-client)"))?;
     if !ended.status.success() {
         bail!("{program} failed: {}", String::from_utf8_lossy(&ended.stderr).trim());
     }
@@ -52,7 +53,11 @@ mod tests {
     #[test]
     fn an_address_shows_no_password() {
         for (address, shown, password) in [
-            ("postgres://me:a%40b+c@db:5433/course?sslmode=require", "postgres://me@db:5433/course?sslmode=require", "a@b+c"),
+            (
+                "postgres://me:a%40b+c@db:5433/course?sslmode=require",
+                "postgres://me@db:5433/course?sslmode=require",
+                "a@b+c",
+            ),
             ("postgres://db/course?password=x%20y&user=me", "postgres://db/course?user=me", "x y"),
             ("postgresql:///course?host=/run/postgresql", "postgresql:///course?host=/run/postgresql", ""),
         ] {

@@ -1,8 +1,7 @@
 //! The class, and regrades.
 use super::{
     super::input::{After, Asked, At, Fields},
-    Page, PageFrame,
-    scenes, see,
+    Page, PageFrame, scenes, see,
     settings::{Grading, SuiteOption, suites},
     show,
     statistics::Statistics,

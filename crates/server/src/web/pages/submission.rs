@@ -1,9 +1,6 @@
 //! Handing in, and what came of it.
 use super::{
-    super::{
-        api,
-        input::At,
-    },
+    super::{api, input::At},
     Page, PageFrame,
     course::OwnWork,
     scenes, see, show, text,

@@ -15,7 +15,6 @@ mod limits;
 mod messages;
 mod metrics;
 mod ownership;
-mod passwords;
 mod people;
 mod platforms;
 mod removal;
