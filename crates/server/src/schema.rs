@@ -50,7 +50,7 @@ texts! {
     /// A number that is not negative, digit for digit as the grader wrote it.
     Decimal, r"^[0-9]{1,9}(\.[0-9]{1,20})?$", 30, "97.5";
     /// The name of a report.
-    ReportName, r"^(grade\.json|report\.(txt|html|md)|staff\.html|junit\.xml|scenes\.csv|gradescope\.json|prairielearn\.json)$", 20, "grade.json";
+    ReportName, r"^(grade\.json|report\.(txt|html)|(staff|published)\.html)$", 20, "grade.json";
     /// A verdict in short.
     Code, r"^[A-Z]{1,4}$", 4, "WA";
 }

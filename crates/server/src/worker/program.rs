@@ -33,17 +33,12 @@ pub const STAFF_PAGE: &str = "staff.html";
 pub const PUBLISHED_PAGE: &str = "published.html";
 
 /// The reports that a grading writes: format, file, media type. Two pages have no format of their own.
-pub const REPORTS: [(&str, &str, &str); 10] = [
+pub const REPORTS: [(&str, &str, &str); 5] = [
     ("json", "grade.json", "application/json"),
     ("text", "report.txt", "text/plain; charset=utf-8"),
     ("html", "report.html", "text/html; charset=utf-8"),
     ("", STAFF_PAGE, "text/html; charset=utf-8"),
     ("", PUBLISHED_PAGE, "text/html; charset=utf-8"),
-    ("junit", "junit.xml", "application/xml"),
-    ("csv", "scenes.csv", "text/csv; charset=utf-8"),
-    ("markdown", "report.md", "text/markdown; charset=utf-8"),
-    ("gradescope", "gradescope.json", "application/json"),
-    ("prairielearn", "prairielearn.json", "application/json"),
 ];
 
 /// The program `fosssim-oracle`, or one that does as it does.

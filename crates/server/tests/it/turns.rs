@@ -1,13 +1,16 @@
 //! Workers do not wait behind everybody who hands in.
 use crate::support::engines::{Fresh, on_both_engines};
 use fosssim_server::db::Dialect;
-use std::sync::{Arc, Mutex};
+use std::sync::{
+    Arc, Mutex,
+    atomic::{AtomicUsize, Ordering},
+};
 
 on_both_engines!(workers_go_before_requests);
 
-/// Waits until this many wait for a transaction.
-async fn waiting(fresh: &Fresh, wanted: i64) {
-    while fresh.database.waits().0 < wanted {
+/// Waits until this many have asked for a transaction.
+async fn asked(count: &AtomicUsize, wanted: usize) {
+    while count.load(Ordering::SeqCst) < wanted {
         tokio::task::yield_now().await;
     }
 }
@@ -22,24 +25,25 @@ async fn workers_go_before_requests(fresh: Fresh) {
         held.push(fresh.database.begin().await.expect("a transaction"));
     }
     // Twenty requests wait, and then a worker comes.
-    let order = Arc::new(Mutex::new(Vec::new()));
+    let (order, asks) = (Arc::new(Mutex::new(Vec::new())), Arc::new(AtomicUsize::new(0)));
     let task = |who: &'static str, database: fosssim_server::db::Database| {
-        let order = order.clone();
+        let (order, asks) = (order.clone(), asks.clone());
         tokio::spawn(async move {
+            asks.fetch_add(1, Ordering::SeqCst);
             let transaction = database.begin().await.expect("a transaction");
             order.lock().expect("no panic").push(who);
             transaction.commit().await.expect("commit");
         })
     };
     let mut tasks: Vec<_> = (0..20).map(|_| task("request", fresh.database.clone())).collect();
-    waiting(&fresh, 20).await;
+    asked(&asks, 20).await;
     let worker = task("worker", fresh.database.first());
     if fresh.database.dialect() == Dialect::Postgres {
         // Some connections are only for workers.
         worker.await.expect("no panic");
         assert_eq!(*order.lock().expect("no panic"), ["worker"]);
     } else {
-        waiting(&fresh, 21).await;
+        asked(&asks, 21).await;
         tasks.push(worker);
     }
     held.clear();
