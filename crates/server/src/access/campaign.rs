@@ -19,6 +19,10 @@ pub(super) async fn enqueue_missing(
     campaign: i64,
     assignment: &Assignment,
 ) -> Result<u64, Problem> {
+    // None of them is removed before this transaction ends.
+    let statement = "SELECT count(*) AS n FROM
+        (SELECT id FROM submission WHERE assignment = ? ORDER BY id {for update}) AS held";
+    transaction.one(statement, values![assignment.id]).await?;
     let turn = Turn::Campaign(campaign);
     let from = turn.next(transaction).await?;
     let mut values: Vec<Value> = vec![campaign.into(), turn.key().into()];

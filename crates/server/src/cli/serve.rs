@@ -128,7 +128,10 @@ async fn greet(app: &App, [local, public]: [&str; 2], example: Option<&Path>, gr
             writeln!(output, "Sign in as a student, once, by {public}/welcome/{}", link.reveal())?;
         }
         if !program.exists() {
-            write_flawed_program(grader, program).await?;
+            let place = program.to_str().context("the data folder's name is not UTF-8")?;
+            answer(grader, &["demo", "--program", place])
+                .await
+                .context("no program with a mistake could be written")?;
         }
         writeln!(output, "A program with a mistake, to hand in: {}", program.display())?;
     }
@@ -185,17 +188,6 @@ async fn answer(named: Option<&Path>, words: &[&str]) -> Result<Vec<u8>> {
         bail!("{}", String::from_utf8_lossy(&said.stderr).trim());
     }
     Ok(said.stdout)
-}
-
-/// Has the grader write a program with a mistake.
-async fn write_flawed_program(grader: Option<&Path>, program: &Path) -> Result<()> {
-    let mut command = tokio::process::Command::new(self::grader(grader)?);
-    command.arg("demo").arg("--program").arg(program).stdin(std::process::Stdio::null());
-    let made = command.output().await.context("cannot start the grader")?;
-    if !made.status.success() {
-        bail!("no program with a mistake could be written: {}", String::from_utf8_lossy(&made.stderr).trim());
-    }
-    Ok(())
 }
 
 /// Brings the tables up to date; a SQLite database that holds something is copied before.

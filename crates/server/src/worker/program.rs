@@ -12,10 +12,9 @@ use crate::{
 use fosssim_intake::ArchiveLimits;
 use std::{
     fs, io,
-    os::unix::fs::{MetadataExt, PermissionsExt},
+    os::unix::fs::PermissionsExt,
     path::{Path, PathBuf},
     process::Command,
-    sync::{Arc, Mutex, PoisonError},
     time::Duration,
 };
 use tokio_util::sync::CancellationToken;
@@ -46,30 +45,17 @@ pub const REPORTS: [(&str, &str, &str); 5] = [
 pub struct Program {
     path: PathBuf,
     threads: usize,
-    digested: Arc<Mutex<Option<(Stamp, String)>>>,
 }
-
-/// The facts that tell one file at the grader's place from another: number, size and time.
-type Stamp = (u64, u64, i64, i64);
 
 impl Program {
     /// The grader at this path, with this many scenes of a job at one time.
     pub fn new(path: PathBuf, threads: usize) -> Self {
-        Self { path, threads, digested: Arc::default() }
+        Self { path, threads }
     }
 
-    /// The grader's SHA-256, taken again when the file is another; nothing when it can't be read.
+    /// The grader's SHA-256; nothing when it can't be read.
     async fn digest(&self) -> String {
-        let Ok(data) = fs::metadata(&self.path) else { return String::new() };
-        let stamp = (data.ino(), data.len(), data.mtime(), data.mtime_nsec());
-        let known = self.digested.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        if let Some((_, digest)) = known.filter(|(known, _)| *known == stamp) {
-            return digest;
-        }
-        let Ok(artefact) = digest_of_file(&self.path).await else { return String::new() };
-        let digest = artefact.digest.to_string();
-        *self.digested.lock().unwrap_or_else(PoisonError::into_inner) = Some((stamp, digest.clone()));
-        digest
+        digest_of_file(&self.path).await.map_or_else(|_| String::new(), |grader| grader.digest.to_string())
     }
 
     fn command(&self, task: &Task, submission: &Path, folder: &Path) -> Command {
