@@ -47,7 +47,7 @@ pub(super) use accounts::{TokenName, WorkerTokenName};
 pub(super) use assignments::{Revision, receive_suite};
 pub(super) use courses::CourseWish;
 pub use submissions::export_csv;
-pub(super) use submissions::{RequestWish, cell, receive, report_response, upload_response};
+pub(super) use submissions::{RequestWish, cell, receive};
 
 use crate::access::App;
 use utoipa_axum::{router::OpenApiRouter, routes};

@@ -117,19 +117,10 @@ pub(in crate::web) struct RequestWish {
 /// A report on it, as the grader wrote it: `grade.json`, `report.txt`, ...
 #[utoipa::path(get, path = "/api/v1/courses/{course}/submissions/{id}/files/{name}", tag = "submissions",
     responses((status = 200, description = "The report")))]
-pub(super) async fn report(member: Member, At { id, name, .. }: At, headers: HeaderMap) -> Result<Response, Problem> {
-    report_response(&member, id, &name, &headers).await
-}
-
-/// A report holds words of a stranger's program: a browser shows it as a page of nobody, without this site's cookies.
-pub(in crate::web) async fn report_response(
-    member: &Member,
-    id: i64,
-    name: &str,
-    asked: &HeaderMap,
-) -> Result<Response, Problem> {
-    let file = member.report(id, name).await?;
+pub(super) async fn report(member: Member, At { id, name, .. }: At, asked: HeaderMap) -> Result<Response, Problem> {
+    let file = member.report(id, &name).await?;
     let kind = HeaderValue::from_str(&file.media_type).unwrap_or(HeaderValue::from_static("application/octet-stream"));
+    // It holds words of a stranger's program: a browser shows it as a page of nobody, without this site's cookies.
     let policy = if file.media_type.starts_with("text/html") {
         "sandbox allow-scripts allow-downloads; default-src 'none'; script-src 'unsafe-inline'; style-src \
         'unsafe-inline'; img-src data:"
@@ -137,20 +128,15 @@ pub(in crate::web) async fn report_response(
         "sandbox; default-src 'none'"
     };
     let headers = [(header::CONTENT_TYPE, kind), (header::CONTENT_SECURITY_POLICY, HeaderValue::from_static(policy))];
-    Ok((headers, download::send(member, asked, &file.artefact).await?).into_response())
+    Ok((headers, download::send(&member, &asked, &file.artefact).await?).into_response())
 }
 
 /// The upload.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/submissions/{id}/upload", tag = "submissions",
     responses((status = 200, description = "The file")))]
-pub(super) async fn upload(member: Member, At { id, .. }: At, headers: HeaderMap) -> Result<Response, Problem> {
-    upload_response(&member, id, &headers).await
-}
-
-/// A stranger's file: to be kept, never to be shown.
-pub(in crate::web) async fn upload_response(member: &Member, id: i64, asked: &HeaderMap) -> Result<Response, Problem> {
+pub(super) async fn upload(member: Member, At { id, .. }: At, asked: HeaderMap) -> Result<Response, Problem> {
     let (submission, artefact) = member.upload(id).await?;
-    // The name was made harmless when it came.
+    // A stranger's file, to be kept and never to be shown. Its name was made harmless when it came.
     let disposition = format!("attachment; filename=\"{}\"", submission.file_name);
     let headers = [
         (header::CONTENT_TYPE, HeaderValue::from_static("application/octet-stream")),
@@ -160,7 +146,7 @@ pub(in crate::web) async fn upload_response(member: &Member, id: i64, asked: &He
         ),
         (header::CONTENT_SECURITY_POLICY, HeaderValue::from_static("sandbox; default-src 'none'")),
     ];
-    Ok((headers, download::send(member, asked, &artefact).await?).into_response())
+    Ok((headers, download::send(&member, &asked, &artefact).await?).into_response())
 }
 
 /// A class's grades as a table. What spreadsheets would take for a formula is marked as text.

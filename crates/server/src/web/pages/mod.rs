@@ -122,8 +122,6 @@ pages! {
     post "/c/{course}/s/{id}/mark" => student::mark,
     post "/c/{course}/s/{id}/request" => student::request,
     post "/c/{course}/s/{id}/remove" => removal::remove_submission,
-    get "/c/{course}/s/{id}/report/{name}" => submission::report,
-    get "/c/{course}/s/{id}/upload" => submission::upload,
     get "/static/style.css" => style,
     get "/static/page.js" => script,
 }

@@ -12,11 +12,7 @@ use crate::{
     worker::{PUBLISHED_PAGE, STAFF_PAGE},
 };
 use askama::Template;
-use axum::{
-    extract::Request,
-    http::HeaderMap,
-    response::{Redirect, Response},
-};
+use axum::{extract::Request, response::Redirect};
 
 /// How much of a report a page shows; the rest is behind its link.
 const SHOWN: usize = 200_000;
@@ -114,14 +110,6 @@ fn page_of(submission: &Submission) -> Option<&'static str> {
     let files = submission.grade.iter().flat_map(|grade| &grade.files);
     let names: Vec<&str> = files.map(|file| file.name.as_str()).collect();
     [STAFF_PAGE, PUBLISHED_PAGE, "report.html"].into_iter().find(|name| names.contains(name))
-}
-
-pub(super) async fn report(member: Member, At { id, name, .. }: At, headers: HeaderMap) -> Result<Response, Problem> {
-    api::report_response(&member, id, &name, &headers).await
-}
-
-pub(super) async fn upload(member: Member, At { id, .. }: At, headers: HeaderMap) -> Result<Response, Problem> {
-    api::upload_response(&member, id, &headers).await
 }
 
 deeds! {

@@ -23,15 +23,10 @@ async fn reports_that_tell_of_hidden_groups_are_for_staff(fresh: Fresh) {
         ada.wait_for_grade("physics", id);
     }
     for name in ["grade.json", "report.txt"] {
-        for place in ["api/v1/courses/physics/submissions", "c/physics/s"] {
-            let path = |id: i64| match place {
-                "c/physics/s" => format!("/{place}/{id}/report/{name}"),
-                _ => format!("/{place}/{id}/files/{name}"),
-            };
-            ada.get(&path(hidden)).expect(404);
-            teacher.get(&path(hidden)).expect(200);
-            ada.get(&path(open)).expect(200);
-        }
+        let path = |id: i64| format!("/api/v1/courses/physics/submissions/{id}/files/{name}");
+        ada.get(&path(hidden)).expect(404);
+        teacher.get(&path(hidden)).expect(200);
+        ada.get(&path(open)).expect(200);
     }
     // Which scenes an attempt has changed is told where nothing of both attempts is hidden.
     let page = |by: &Client| by.get(&format!("/c/physics/s/{open}")).expect(200).text();
@@ -71,7 +66,7 @@ async fn reports_that_tell_of_hidden_groups_are_for_staff(fresh: Fresh) {
     teacher.post_form("/c/physics/a/m1/publish", "").expect(303);
     assert_eq!(told(&ada, other), told(&teacher, other));
     assert_eq!(told(&ada, other).0["code"], "RTE");
-    ada.get(&format!("/c/physics/s/{hidden}/report/grade.json")).expect(200);
+    ada.get(&format!("/api/v1/courses/physics/submissions/{hidden}/files/grade.json")).expect(200);
     teacher.send("DELETE", "/api/v1/courses/physics/assignments/m1/published", &[], b"").expect(200);
     assert_eq!(told(&ada, other).0, grade);
     // A grade of an older version is looked at when it is asked for.
@@ -102,12 +97,14 @@ async fn the_page_for_staff_is_for_staff(fresh: Fresh) {
     for (scene, hides) in [("Group/scene", false), ("Secret/scene", true)] {
         let id = ada.submit("physics", format!("#!grade WA 40 {scene} 3\n").as_bytes());
         ada.wait_for_grade("physics", id);
-        for path in [format!("/c/physics/s/{id}/report/"), format!("/api/v1/courses/physics/submissions/{id}/files/")] {
-            ada.get(&format!("{path}staff.html")).expect(404);
-            assert!(teacher.get(&format!("{path}staff.html")).expect(200).text().starts_with("everything"));
-        }
+        let path = format!("/api/v1/courses/physics/submissions/{id}/files/staff.html");
+        ada.get(&path).expect(404);
+        assert!(teacher.get(&path).expect(200).text().starts_with("everything"));
         let shown = |by: &Client, page: &str| {
-            by.get(&format!("/c/physics/s/{id}")).expect(200).text().contains(&format!("/s/{id}/report/{page}\""))
+            by.get(&format!("/c/physics/s/{id}"))
+                .expect(200)
+                .text()
+                .contains(&format!("/submissions/{id}/files/{page}\""))
         };
         assert!(shown(&ada, "report.html") && !shown(&ada, "staff.html") && shown(&teacher, "staff.html"));
         let class = teacher.get("/c/physics/a/m1/class").expect(200).text();
@@ -139,12 +136,13 @@ async fn all_that_a_page_offers_tells_of_the_points_in_its_head(fresh: Fresh) {
             assert!(files.iter().any(|name| name.ends_with(".html")), "{files:?}");
             let page = reader.get(&format!("/c/physics/s/{id}")).expect(200).text();
             for name in files.iter().filter(|name| name.ends_with(".html") || name.ends_with(".txt")) {
-                let report = reader.get(&format!("/c/physics/s/{id}/report/{name}")).expect(200).text();
+                let report =
+                    reader.get(&format!("/api/v1/courses/physics/submissions/{id}/files/{name}")).expect(200).text();
                 assert!(report.contains(&format!("{points} points")), "{name} by {published}: {report}");
                 assert!(page.contains(name), "{name}: {page}");
             }
             for other in ["report.html", "published.html", "staff.html"].iter().filter(|name| !files.contains(name)) {
-                reader.get(&format!("/c/physics/s/{id}/report/{other}")).expect(404);
+                reader.get(&format!("/api/v1/courses/physics/submissions/{id}/files/{other}")).expect(404);
             }
         }
     }

@@ -347,7 +347,7 @@ fn addresses_lead_nowhere_else() {
         for path in [
             format!("/api/v1/courses/physics/submissions/{id}/files/..%2F..%2Ffosssim.db"),
             format!("/api/v1/courses/physics/submissions/{id}/files/%2e%2e"),
-            format!("/c/physics/s/{id}/report/..%2f..%2f..%2fetc%2fpasswd"),
+            format!("/api/v1/courses/physics/submissions/{id}/files/..%2f..%2f..%2fetc%2fpasswd"),
             "/static/..%2f..%2fCargo.toml".to_owned(),
             "/static/../../etc/passwd".to_owned(),
             "/c/physics%00/members".to_owned(),

@@ -159,8 +159,6 @@ pub(super) const ROUTES: &[(&str, &str, For)] = &[
     ("post", "/c/{course}/a/{assignment}/regrades/{id}/apply", Staff),
     ("post", "/c/{course}/a/{assignment}/regrades/{id}/discard", Staff),
     ("get", "/c/{course}/s/{id}", Owner),
-    ("get", "/c/{course}/s/{id}/report/{name}", Owner),
-    ("get", "/c/{course}/s/{id}/upload", Owner),
     ("get", "/check", All),
     ("get", "/static/style.css", All),
     ("get", "/static/page.js", All),
