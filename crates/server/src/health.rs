@@ -13,9 +13,6 @@ const STEPS_ASIDE: i64 = 3;
 /// For so long, at most; it doubles from a second on.
 const LONGEST_ASIDE: Duration = Duration::from_secs(60);
 
-/// When this many submissions failed, and none was ever graded by the same suite, the suite is taken for broken.
-const BROKEN: i64 = 5;
-
 /// How long after its last sign of life a worker counts as alive, in milliseconds.
 pub fn recent(policy: &QueuePolicy) -> i64 {
     millis(policy.lease * 2)
@@ -100,51 +97,6 @@ pub(crate) async fn failed(transaction: &mut Transaction, worker: &str, fault: &
 pub(crate) async fn graded(transaction: &mut Transaction, worker: &str) -> Result<(), DbError> {
     transaction.execute("UPDATE worker SET in_a_row = 0 WHERE name = ? AND in_a_row > 0", values![worker]).await?;
     Ok(())
-}
-
-/// After a fault: has an assignment's jobs wait for staff when nothing can be graded by their suite. It is taken for
-/// broken when many submissions failed, none was ever graded by it, and that more than one worker found, or the only
-/// one. Whether it was paused.
-pub(crate) async fn pause_broken(
-    transaction: &mut Transaction,
-    policy: &QueuePolicy,
-    assignment: i64,
-    task: &str,
-    fault: &str,
-) -> Result<bool, DbError> {
-    let Some(suite) = suite_of(task) else { return Ok(false) };
-    let statement = "SELECT result.id FROM submission JOIN result ON result.submission = submission.id
-        WHERE submission.assignment = ? AND result.code <> 'JE' AND result.task LIKE ? LIMIT 1";
-    let graded = transaction.row(statement, values![assignment, &suite]).await?;
-    if graded.is_some() {
-        return Ok(false);
-    }
-    let statement = "SELECT count(*) AS jobs, count(DISTINCT job.failed_by) AS workers FROM submission
-        JOIN job ON job.submission = submission.id
-        WHERE submission.assignment = ? AND job.failures > 0 AND job.state IN ('waiting', 'running', 'buried')
-           AND job.payload LIKE ?";
-    let failed = transaction.one(statement, values![assignment, &suite]).await?;
-    if failed.int("jobs")? < BROKEN {
-        return Ok(false);
-    }
-    let statement = "SELECT count(*) AS n FROM worker WHERE slots > 0 AND seen_at > {now} - ?";
-    let alive = transaction.one(statement, values![recent(policy)]).await?;
-    if failed.int("workers")? < 2 && alive.int("n")? > 1 {
-        return Ok(false);
-    }
-    let statement = "UPDATE assignment SET paused_at = {now}, paused_fault = ? WHERE id = ? AND paused_at IS NULL";
-    let newly = transaction.execute(statement, values![fault, assignment]).await?;
-    let statement = "WITH found AS (SELECT id FROM job WHERE lane = 'grading' AND state = 'waiting' AND payload LIKE ?
-           AND submission IN (SELECT id FROM submission WHERE assignment = ?) ORDER BY id {for update})
-        UPDATE job SET lane = 'paused' WHERE id IN (SELECT id FROM found)";
-    transaction.execute(statement, values![&suite, assignment]).await?;
-    Ok(newly > 0)
-}
-
-/// The part of a task's text that names its suite.
-fn suite_of(task: &str) -> Option<String> {
-    let value: serde_json::Value = serde_json::from_str(task).ok()?;
-    Some(format!("%\"suite\":{}%", value.get("suite")?))
 }
 
 /// A message without the folders of the machine that it comes from: of an absolute path the last name is left.

@@ -100,8 +100,6 @@ pub struct Metrics {
     pub aside: i64,
     /// Workers that grade something.
     pub working: i64,
-    /// Jobs of assignments by whose suite nothing can be graded; they wait for staff.
-    pub paused: i64,
     /// Events by kind, of those kinds that somebody should look at.
     pub events: Vec<(String, i64)>,
     /// Bytes of uploads and reports that are kept, in all and of the course that has most.
@@ -158,7 +156,6 @@ impl MetricsPage {
             ("workers", "Workers that were seen lately.", queue.workers),
             ("slots", "Their slots.", queue.slots),
             ("workers_aside", "Workers that take no jobs, because they can't grade.", queue.aside),
-            ("jobs_paused", "Jobs that wait for staff: nothing can be graded by their suite.", queue.paused),
         ] {
             self.number(name, help, value as f64)?;
         }

@@ -48,13 +48,6 @@ pub async fn fail(
     } else {
         note(transaction, &row, "failed try", fault).await?;
     }
-    if let Some(assignment) = row.assignment
-        && health::pause_broken(transaction, policy, assignment, &row.task, fault).await?
-    {
-        let text = format!("nothing can be graded by this suite, so its submissions wait for staff: {fault}");
-        let of_all = JobFacts { submission: None, task: String::new(), worker: String::new(), ..row };
-        note(transaction, &of_all, "assignment paused", &text).await?;
-    }
     // Last, as when a job is finished: anybody who holds a worker's row waits for no job.
     health::failed(transaction, &row.worker, fault).await?;
     Ok(failure)

@@ -1,7 +1,7 @@
-//! Grading once more what the grader failed on, and going on with what waits for staff.
+//! Grading once more what the grader failed on.
 use super::{
     Staff,
-    bulk::{enqueue_replaced, resume},
+    bulk::enqueue_replaced,
     view::{self, Entry},
 };
 use crate::{
@@ -41,7 +41,7 @@ impl Staff {
     }
 
     /// Grades all submissions of an assignment, or of all assignments of the course, on which the grader failed once
-    /// more, and goes on with those that wait for staff; how many these are.
+    /// more; how many these are.
     ///
     /// # Errors
     /// When there is no such assignment.
@@ -54,14 +54,13 @@ impl Staff {
         for assignment in assignments {
             let mut transaction = self.begin().await?;
             transaction.row("SELECT id FROM assignment WHERE id = ? {for update}", values![assignment.id]).await?;
-            let mut found = resume(&mut transaction, &assignment).await?;
             let statement = "UPDATE job SET replaced = 1 WHERE campaign IS NULL AND replaced = 0 AND state = 'buried'
                 AND submission IN (SELECT submission.id FROM submission
                     JOIN grade ON grade.submission = submission.id
                     JOIN result ON result.id = grade.result AND result.code = 'JE'
                     WHERE submission.assignment = ? AND submission.removed_at IS NULL)";
             transaction.execute(statement, values![assignment.id]).await?;
-            found += enqueue_replaced(&mut transaction, &assignment, self.account.id, 0..=i64::MAX).await?;
+            let found = enqueue_replaced(&mut transaction, &assignment, self.account.id, 0..=i64::MAX).await?;
             if found > 0 {
                 let text = format!("{found} submissions on which the grader failed");
                 self.note(&mut transaction, "graded again", Some(assignment.id), &text).await?;

@@ -58,26 +58,3 @@ pub(super) async fn enqueue_replaced(
     );
     Ok(i64::try_from(transaction.execute(statement, &values).await?).unwrap_or(i64::MAX))
 }
-
-/// Goes on with the jobs of an assignment that wait for staff, by its settings as they are; how many these are.
-pub(super) async fn resume(transaction: &mut Transaction, assignment: &Assignment) -> Result<i64, Problem> {
-    let statement = "SELECT id FROM assignment WHERE id = ? AND paused_at IS NOT NULL";
-    if transaction.row(statement, values![assignment.id]).await?.is_none() {
-        return Ok(0);
-    }
-    let mut values: Vec<Value> = vec![assignment.id.into()];
-    values.extend(pieces(assignment)?.into_iter().map(Value::from));
-    let statement = concat!(
-        "WITH paused AS (SELECT id FROM job WHERE lane = 'paused' AND state = 'waiting'
-            AND submission IN (SELECT id FROM submission WHERE assignment = ?) ORDER BY id {for update})
-         UPDATE job SET lane = 'grading', failures = 0, failed_by = NULL, run_after = {now}, payload =
-            CASE WHEN campaign IS NOT NULL THEN payload ELSE (SELECT ",
-        payload!(),
-        " FROM submission WHERE submission.id = job.submission) END
-         WHERE id IN (SELECT id FROM paused)"
-    );
-    let jobs = transaction.execute(statement, &values).await?;
-    let statement = "UPDATE assignment SET paused_at = NULL, paused_fault = NULL WHERE id = ?";
-    transaction.execute(statement, values![assignment.id]).await?;
-    Ok(i64::try_from(jobs).unwrap_or(i64::MAX))
-}

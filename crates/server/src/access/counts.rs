@@ -60,12 +60,11 @@ async fn count(database: &Database, policy: &QueuePolicy) -> Result<Metrics, DbE
         }
     }
     let statement = "SELECT (SELECT count(*) FROM job WHERE lane = 'passback' AND state = 'done') AS sent,
-        (SELECT count(*) FROM job WHERE lane = 'paused' AND state = 'waiting') AS paused,
         (SELECT coalesce({now} - min(enqueued_at), 0) FROM job
             WHERE lane = 'grading' AND state = 'waiting' AND campaign IS NULL) AS oldest";
     let row = transaction.one(statement, values![]).await?;
     metrics.scores.push(("done".to_owned(), row.int("sent")?));
-    (metrics.paused, metrics.oldest) = (row.int("paused")?, row.int("oldest")?.max(0));
+    metrics.oldest = row.int("oldest")?.max(0);
     let statement =
         "SELECT CAST(coalesce(sum(bytes), 0) AS {int}) AS bytes, CAST(coalesce(max(bytes), 0) AS {int}) AS most
         FROM (SELECT sum(bytes) AS bytes FROM kept_bytes GROUP BY course) AS of_courses";

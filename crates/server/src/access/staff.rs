@@ -1,6 +1,6 @@
 //! The staff of a course.
 use super::{
-    Member, Settings, bulk, identity,
+    Member, Settings, identity,
     view::{self, Assignment, Event, Queue, Submission},
 };
 use crate::{
@@ -110,8 +110,6 @@ impl Staff {
         if withholds || before.late_policy() != settings.late_policy() {
             score::send_all(&mut transaction, assignment.id, false).await?;
         }
-        // A job that waits because nothing could be graded is tried by the new settings.
-        bulk::resume(&mut transaction, &assignment).await?;
         let mut text = format!("{slug} ({title}), {}", if visible { "visible" } else { "hidden" });
         let changes = settings.changes(&before);
         if !changes.is_empty() {

@@ -111,9 +111,6 @@ pub struct Submission {
     pub is_withheld: bool,
     #[serde(skip)]
     pub(super) is_published: bool,
-    /// Whether it waits for staff: nothing can be graded by its suite.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub is_paused: bool,
     /// Why the grader failed on it last; for staff.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fault: Option<String>,
@@ -223,8 +220,6 @@ pub struct Queue {
     pub running: i64,
     /// Jobs that were given up, of which somebody should know.
     pub buried: i64,
-    /// Jobs of assignments that wait for staff.
-    pub paused: i64,
     /// Workers that were seen lately.
     pub workers: Vec<QueueWorker>,
 }
@@ -271,7 +266,7 @@ macro_rules! submissions {
                 submission.size, submission.created_at, submission.removed_at, submission.account, assignment.slug AS assignment,
                 assignment.title, assignment.published_at, account.login, account.name, job.id AS job, job.state,
                 job.scenes_done, job.scenes,
-                job.lane, job.last_fault, grade.result, result.verdict,
+                job.last_fault, grade.result, result.verdict,
                 result.code, result.points, result.max_points, result.summary, result.version, result.seconds,
                 result.grader, result.shown, result.created_at AS graded_at,
                 assignment.settings, extension.due_at AS own_due,
@@ -313,7 +308,6 @@ impl FromRow for Submission {
             grade: row.maybe_int("result")?.map(|result| read_grade(row, result)).transpose()?,
             is_withheld: false,
             is_published: row.maybe_int("published_at")?.is_some(),
-            is_paused: row.maybe_text("lane")?.as_deref() == Some("paused"),
             late: Late::of(row)?,
             mark: row.maybe_text("comment")?.map(|_| Mark::from_row(row)).transpose()?,
         });
@@ -379,7 +373,7 @@ pub(super) async fn submission(
     let statement = submissions!("submission.id = ? AND assignment.course = ?");
     let found: Option<Submission> = transaction.find(statement, values![id, course]).await?;
     let Some(mut submission) = found else { return Ok(None) };
-    if let Some(job) = submission.job.filter(|_| !submission.is_paused)
+    if let Some(job) = submission.job
         && let Some(place) = queue::place(transaction, &app.0.policy, Lane::Grading, job).await?
     {
         submission.ahead = Some(place.ahead);
@@ -500,7 +494,6 @@ pub(super) async fn queue(transaction: &mut Transaction, app: &App) -> Result<Qu
     let statement = "SELECT
         (SELECT count(*) FROM job WHERE lane = 'grading' AND state = 'waiting' AND campaign IS NULL) AS waiting,
         (SELECT count(*) FROM job WHERE lane = 'grading' AND state = 'waiting' AND campaign IS NOT NULL) AS regrades,
-        (SELECT count(*) FROM job WHERE lane = 'paused' AND state = 'waiting') AS paused,
         (SELECT count(*) FROM job WHERE lane = 'grading' AND state = 'running') AS running,
         (SELECT count(*) FROM job WHERE lane = 'grading' AND state = 'buried' AND replaced = 0) AS buried";
     let counts = &transaction.one(statement, values![]).await?;
@@ -509,5 +502,5 @@ pub(super) async fn queue(transaction: &mut Transaction, app: &App) -> Result<Qu
            (SELECT count(*) FROM job WHERE job.state = 'running' AND job.worker = worker.name) AS running
         FROM worker WHERE seen_at > {now} - ? AND seen_at <= {now} + ? ORDER BY name LIMIT 1000";
     let workers = transaction.all(statement, values![recent, recent]).await?;
-    Ok(read_row!(counts => Queue { waiting, regrades, running, buried, paused; workers }))
+    Ok(read_row!(counts => Queue { waiting, regrades, running, buried; workers }))
 }

@@ -189,8 +189,7 @@ answers! { ACCEPTED:
     /// Grades a submission once more, by the assignment's settings as they are.
     post "/api/v1/courses/{course}/submissions/{id}/again" "submissions"
         grade_again(staff: Staff, { id }) -> Again: staff.grade_again(id);
-    /// Grades all submissions to an assignment on which the grader failed once more, and goes on with it if it waits
-    /// for staff.
+    /// Grades all submissions to an assignment on which the grader failed once more.
     post "/api/v1/courses/{course}/assignments/{assignment}/judge-errors/again" "submissions"
         grade_errors_again(staff: Staff, { assignment }) -> Again: staff.grade_errors_again(Some(&assignment));
     /// The same for all assignments of a course.

@@ -8,11 +8,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-on_both_engines!(
-    staff_has_it_graded_again,
-    an_assignment_that_nothing_can_be_graded_of_waits_for_staff,
-    a_student_sees_how_far_the_grading_is,
-);
+on_both_engines!(staff_has_it_graded_again, a_student_sees_how_far_the_grading_is,);
 
 fn wait_for_state(client: &Client, id: i64, wanted: impl Fn(&serde_json::Value) -> bool) -> serde_json::Value {
     let start = Instant::now();
@@ -70,33 +66,6 @@ async fn staff_has_it_graded_again(fresh: Fresh) {
     let own = ada.get("/api/v1/courses/physics/assignments/m1/submissions").expect(200).json();
     assert_eq!(own.as_array().expect("a list").len(), 2, "a submission is one, however often it is graded");
     assert_eq!(admin.get("/api/v1/queue").expect(200).json()["buried"], 0);
-}
-
-async fn an_assignment_that_nothing_can_be_graded_of_waits_for_staff(fresh: Fresh) {
-    let mut server = Server::start(&fresh, &["--workers", "2", "--lease", "2"]);
-    let admin = server.admin();
-    server.course(&admin, "physics");
-    let ada = server.member(&admin, "physics", "ada", "student");
-    let ids: Vec<i64> = (0..8).map(|points| ada.submit("physics", &program("FAIL", points))).collect();
-    let start = Instant::now();
-    while admin.get("/api/v1/queue").expect(200).json()["paused"] != 8 {
-        assert!(start.elapsed() < Duration::from_secs(120), "{}", admin.get("/api/v1/queue").text());
-        std::thread::sleep(Duration::from_millis(50));
-    }
-    let audit = admin.get("/api/v1/courses/physics/audit").expect(200).text();
-    assert!(audit.contains("assignment paused"), "{audit}");
-    let page = ada.get(&format!("/c/physics/s/{}", ids[0])).expect(200).text();
-    assert!(
-        page.contains("waits for the course&#39;s staff") || page.contains("waits for the course's staff"),
-        "{page}"
-    );
-    fs::write(server.grader().with_extension("mended"), "").expect("a file");
-    let all = "/api/v1/courses/physics/assignments/m1/judge-errors/again";
-    assert_eq!(admin.post_json(all, "").expect(202).json()["jobs"], 8);
-    for (points, id) in ids.into_iter().enumerate() {
-        let submission = ada.wait_for_grade("physics", id);
-        assert_eq!(submission["grade"]["points"], points.to_string(), "no try was burnt: {submission}");
-    }
 }
 
 #[test]

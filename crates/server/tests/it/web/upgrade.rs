@@ -31,8 +31,6 @@ const BACK_TO_THE_FIRST: &[&str] = &[
     "ALTER TABLE worker DROP COLUMN faults",
     "ALTER TABLE worker DROP COLUMN in_a_row",
     "ALTER TABLE worker DROP COLUMN aside_since",
-    "ALTER TABLE assignment DROP COLUMN paused_at",
-    "ALTER TABLE assignment DROP COLUMN paused_fault",
     "CREATE INDEX result_campaign ON result (campaign)",
     "CREATE INDEX job_campaign ON job (campaign)",
     "DROP TRIGGER submission_comes",
