@@ -58,16 +58,6 @@ pub struct ScoreInfo {
 }
 
 impl App {
-    /// Registers a platform, or changes it, by the word of the person who starts the server.
-    ///
-    /// # Errors
-    /// When something in it makes no sense.
-    pub async fn set_platform(&self, name: &str, wish: &PlatformWish) -> Result<Platform, Problem> {
-        let (transaction, platform) = write(self, name, wish).await?;
-        transaction.commit().await?;
-        Ok(platform)
-    }
-
     /// The service's public keys.
     ///
     /// # Errors
@@ -75,31 +65,6 @@ impl App {
     pub async fn platform_keys(&self) -> Result<Value, Problem> {
         Ok(lti::published(&self.0.database).await?)
     }
-}
-
-/// Writes a platform, in a transaction that is still to be committed.
-async fn write(app: &App, name: &str, wish: &PlatformWish) -> Result<(Transaction, Platform), Problem> {
-    identity::check_slug("a platform's name", name)?;
-    wish.check(app.lti.over_http())?;
-    let mut transaction = app.0.database.begin().await?;
-    let statement = "SELECT name FROM platform WHERE issuer = ? AND client = ? AND name <> ?";
-    let taken = transaction.row(statement, values![&wish.issuer, &wish.client_id, name]).await?;
-    if let Some(taken) = taken {
-        let detail = format!("this issuer and client are registered as {}", taken.text("name")?);
-        return Err(Problem::conflict(detail, "change that one"));
-    }
-    // Accounts belong to an issuer's people: they must not become those of another.
-    let was = transaction.row("SELECT issuer FROM platform WHERE name = ?", values![name]).await?;
-    if was.is_some_and(|was| was.text("issuer").is_ok_and(|issuer| issuer != wish.issuer)) {
-        return Err(Problem::conflict("another issuer is registered by this name", "give it another name"));
-    }
-    let text = serde_json::to_string(wish).map_err(|_| Problem::fault())?;
-    let statement = "INSERT INTO platform (name, issuer, client, settings, created_at) VALUES (?, ?, ?, ?, {now})
-        ON CONFLICT (name) DO UPDATE SET client = excluded.client, settings = excluded.settings,
-           disabled_at = NULL
-        RETURNING id, name, settings";
-    let row = transaction.one(statement, values![name, &wish.issuer, &wish.client_id, text]).await?;
-    Ok((transaction, Platform::from_row(&row)?))
 }
 
 impl Admin {
@@ -118,11 +83,30 @@ impl Admin {
     /// # Errors
     /// When something in it makes no sense.
     pub async fn set_platform(&self, name: &str, wish: &PlatformWish) -> Result<Platform, Problem> {
-        let (mut transaction, platform) = write(&self.app, name, wish).await?;
+        identity::check_slug("a platform's name", name)?;
+        wish.check(self.app.lti.over_http())?;
+        let mut transaction = self.app.0.database.begin().await?;
+        let statement = "SELECT name FROM platform WHERE issuer = ? AND client = ? AND name <> ?";
+        let taken = transaction.row(statement, values![&wish.issuer, &wish.client_id, name]).await?;
+        if let Some(taken) = taken {
+            let detail = format!("this issuer and client are registered as {}", taken.text("name")?);
+            return Err(Problem::conflict(detail, "change that one"));
+        }
+        // Accounts belong to an issuer's people: they must not become those of another.
+        let was = transaction.row("SELECT issuer FROM platform WHERE name = ?", values![name]).await?;
+        if was.is_some_and(|was| was.text("issuer").is_ok_and(|issuer| issuer != wish.issuer)) {
+            return Err(Problem::conflict("another issuer is registered by this name", "give it another name"));
+        }
+        let text = serde_json::to_string(wish).map_err(|_| Problem::fault())?;
+        let statement = "INSERT INTO platform (name, issuer, client, settings, created_at) VALUES (?, ?, ?, ?, {now})
+            ON CONFLICT (name) DO UPDATE SET client = excluded.client, settings = excluded.settings,
+               disabled_at = NULL
+            RETURNING id, name, settings";
+        let row = transaction.one(statement, values![name, &wish.issuer, &wish.client_id, text]).await?;
         let text = format!("{name}: {}, client {}", wish.issuer, wish.client_id);
         self.note(&mut transaction, "platform", &text).await?;
         transaction.commit().await?;
-        Ok(platform)
+        Ok(Platform::from_row(&row)?)
     }
 
     /// Shuts a platform: nobody comes from it any more, and nothing goes there. Accounts and courses stay.

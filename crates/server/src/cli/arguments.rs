@@ -112,9 +112,6 @@ pub(super) struct Serve {
     /// For this many days uploads and reports are kept; 0 for ever. Grades and their history always stay.
     #[arg(long, value_name = "DAYS", default_value_t = 0, env = "FOSSSIM_KEEP_DAYS")]
     pub(super) keep_days: u32,
-    /// A file (TOML) with learning platforms to register; docs/lti.md shows one.
-    #[arg(long, value_name = "FILE")]
-    pub(super) platforms: Option<PathBuf>,
     /// Let learning platforms be reached, and people come from them, without HTTPS: to try it on one machine.
     #[arg(long)]
     pub(super) lti_over_http: bool,

@@ -10,7 +10,7 @@ use crate::{
     db::{self, Address, Database},
     instruments::Instruments,
     ledger,
-    lti::{self, Lti, PlatformWish},
+    lti::{self, Lti},
     net,
     queue::{Notifier, QueuePolicy},
     retention,
@@ -74,9 +74,6 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
         lti: lti.clone(),
     };
     let app = App::new(database.clone(), store.clone(), notifier.clone(), policy, Instruments::new()?, options);
-    if let Some(file) = &arguments.platforms {
-        register_platforms(&app, file).await?;
-    }
     let looking = database.clone();
     let look = move || {
         let database = looking.clone();
@@ -136,17 +133,6 @@ async fn greet(app: &App, [local, public]: [&str; 2], example: Option<&Path>, gr
         writeln!(output, "A program with a mistake, to hand in: {}", program.display())?;
     }
     Ok(output.flush()?)
-}
-
-/// Registers the learning platforms of a file: a table for each, by name.
-async fn register_platforms(app: &App, file: &Path) -> Result<()> {
-    let text = std::fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
-    let platforms: std::collections::BTreeMap<String, PlatformWish> =
-        toml::from_str(&text).with_context(|| format!("{} is not understood", file.display()))?;
-    for (name, wish) in &platforms {
-        app.set_platform(name, wish).await.map_err(|problem| anyhow!("platform {name}: {}", problem.detail))?;
-    }
-    Ok(())
 }
 
 /// Gives up what is older than is kept, and what a server that was killed left behind, every now and then, for ever.
