@@ -9,7 +9,7 @@ use crate::{
     queue::{Notifier, QueuePolicy},
     secret,
     store::Store,
-    worker::{self, JobSource, LocalSource, Program, RemoteSource, SourceError},
+    worker::{self, LocalSource, Program, RemoteSource},
 };
 use anyhow::{Context, Result, bail};
 use std::{
@@ -66,9 +66,6 @@ async fn work_for(server: &str, token_file: &Path, arguments: &WorkerArguments, 
     let name = unique_name(arguments.name.as_deref());
     folders.clear()?;
     let source = RemoteSource::new(server, token, &name);
-    if !greet(&source, server, &stop).await? {
-        return Ok(());
-    }
     let folder = folders.work(&name);
     heartbeat::ready();
     // A worker whose server is away is well: it goes on trying, and has what it holds.
@@ -81,23 +78,6 @@ async fn work_for(server: &str, token_file: &Path, arguments: &WorkerArguments, 
     worked.with_context(|| server.to_owned())?;
     tracing::info!(worker = name, "stopped");
     Ok(())
-}
-
-/// Says hello to a server, as often as it takes: one that is away may come back. False when the worker is to stop.
-async fn greet(source: &RemoteSource, server: &str, stop: &CancellationToken) -> Result<bool> {
-    let mut wait = Duration::from_secs(1);
-    loop {
-        match source.tick(0, None).await {
-            Ok(()) => return Ok(true),
-            Err(error @ (SourceError::Refused(_) | SourceError::Dismissed)) => bail!("{server}: {error}"),
-            Err(error) => tracing::warn!(%error, server, "the server does not answer yet"),
-        }
-        tokio::select! {
-            () = tokio::time::sleep(wait) => {}
-            () = stop.cancelled() => return Ok(false),
-        }
-        wait = (wait * 2).min(Duration::from_secs(30));
-    }
 }
 
 /// Two workers of one name are two workers: what tells them apart comes from the process.
