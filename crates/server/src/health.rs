@@ -136,11 +136,4 @@ mod tests {
             assert_eq!(without_paths(said), told);
         }
     }
-
-    #[test]
-    fn a_suite_is_found_in_its_tasks() {
-        let task = r#"{"submission":{"form":"program"},"suite":{"named":"t2m2@2"},"seconds":5}"#;
-        assert_eq!(suite_of(task).as_deref(), Some(r#"%"suite":{"named":"t2m2@2"}%"#));
-        assert_eq!(suite_of("score"), None);
-    }
 }

@@ -184,18 +184,6 @@ impl Store {
         Ok(())
     }
 
-    /// Stores bytes.
-    ///
-    /// # Errors
-    /// When the store fails.
-    pub async fn put(&self, bytes: Vec<u8>) -> Result<Artefact, StoreError> {
-        let artefact = Artefact { digest: Digest::of(&bytes), size: bytes.len() as u64 };
-        if !self.has_fresh(&artefact.digest).await? {
-            self.objects.put(&artefact.digest.key(KEPT), PutPayload::from(bytes)).await?;
-        }
-        Ok(artefact)
-    }
-
     /// Stores a file, without ever holding it whole.
     ///
     /// # Errors

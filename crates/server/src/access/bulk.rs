@@ -4,7 +4,6 @@ use crate::{
     db::{Transaction, Value},
     problem::Problem,
     task::{Form, Input},
-    values,
 };
 use std::ops::RangeInclusive;
 

@@ -72,7 +72,7 @@ impl TransferLimits {
     }
 }
 
-/// What the tasks of an account share, while one of them holds it.
+/// The thing that the tasks of an account share, while one of them holds it.
 fn shared<T>(all: &Mutex<HashMap<i64, Arc<T>>>, account: i64, new: impl FnOnce() -> T) -> Arc<T> {
     let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
     all.retain(|_, one| Arc::strong_count(one) > 1);

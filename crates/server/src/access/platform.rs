@@ -4,7 +4,7 @@ use super::{
     launch::{enrol, find_or_make},
 };
 use crate::{
-    db::{DbError, FromRow, Row, Transaction, read_row},
+    db::{DbError, FromRow, Row, read_row},
     lti::{self, Platform, PlatformWish, score},
     problem::{Problem, ensure},
     values,

@@ -92,17 +92,6 @@ pub async fn enqueue(transaction: &mut Transaction, job: &NewJob<'_>) -> Result<
     row.int("id")
 }
 
-/// Takes a job out of the queue, also from the worker that runs it; whether there was anything to take.
-///
-/// # Errors
-/// An error of the database.
-pub async fn cancel(transaction: &mut Transaction, job: i64) -> Result<bool, DbError> {
-    let statement = "UPDATE job SET state = 'cancelled', finished_at = {now}, lease_key = NULL, lease_until = NULL
-        WHERE id = ? AND state IN ('waiting', 'running')";
-    let changed = transaction.execute(statement, values![job]).await?;
-    Ok(changed > 0)
-}
-
 /// Whether a job of this turn waits, and goes on waiting until the caller's transaction ends: anybody who is about to
 /// change what it is about need not enqueue another one.
 ///

@@ -16,7 +16,7 @@ mod place;
 mod tick;
 
 pub use claim::{Claimant, claim, is_due};
-pub use enqueue::{NewJob, Turn, cancel, enqueue, waits};
+pub use enqueue::{NewJob, Turn, enqueue, waits};
 pub use hold::{Completion, Failure, Progress, complete, fail, payload, release, renew};
 pub use notifier::{Notifier, Subscription};
 pub use place::{Place, place};

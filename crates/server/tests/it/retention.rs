@@ -77,8 +77,8 @@ fn what_somebody_stores_meanwhile_is_not_lost() {
     run(async {
         let folder = tempfile::tempdir().expect("a folder");
         let store = Store::folder(folder.path()).expect("a store");
-        let one = store.put(b"one".to_vec()).await.expect("stored").digest;
-        let two = store.put(b"two".to_vec()).await.expect("stored").digest;
+        let one = crate::support::put(&store, b"one").await.digest;
+        let two = crate::support::put(&store, b"two").await.digest;
         let place =
             |kept: &str, name: &Digest| folder.path().join(kept).join(&name.as_str()[..2]).join(&name.as_str()[2..]);
         let age = |file: &std::path::Path, hours: u64| {
@@ -89,7 +89,7 @@ fn what_somebody_stores_meanwhile_is_not_lost() {
         age(&place("sha256", &one), 48);
         age(&place("sha256", &two), 48);
         // Stored once more it is young again, and its name may be on its way to the database.
-        store.put(b"two".to_vec()).await.expect("stored");
+        crate::support::put(&store, b"two").await;
         let day = Duration::from_secs(24 * 3600);
         // The parts that a killed server left of an upload, and that another is just writing.
         let part = |end: &str| place("sha256", &two).with_file_name(format!("{}#{end}", &two.as_str()[2..]));
@@ -177,7 +177,7 @@ mod bucket {
             let file = folder.path().join("large");
             std::fs::write(&file, &large).expect("written");
             let large_one = store.put_file(&file).await.expect("stored in parts").digest;
-            let small = store.put(b"small".to_vec()).await.expect("stored").digest;
+            let small = crate::support::put(&store, b"small").await.digest;
             assert!(crate::support::bytes(&store, &large_one).await == large);
             assert!(!store.has(&Digest::of(b"none")).await.expect("an answer"));
             let long = Duration::from_secs(3600);

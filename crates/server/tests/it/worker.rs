@@ -111,7 +111,7 @@ fn a_broken_worker_costs_no_job_its_tries() {
             let fresh = Fresh::sqlite().await.expect("SQLite").with_tables().await;
             let folder = tempfile::tempdir().expect("a folder");
             let store = Store::folder(&folder.path().join("store")).expect("a store");
-            let artefact = store.put(b"a program".to_vec()).await.expect("an artefact");
+            let artefact = crate::support::put(&store, b"a program").await;
             enqueue(&fresh, &artefact, 30).await;
             let stop = CancellationToken::new();
             let broken = Broken { knows, tried: Arc::default() };

@@ -132,7 +132,7 @@ impl Arena {
     /// Hands something in: stored first, then submission and job in one transaction, tried until it is known to stand.
     pub(super) async fn hand_in(&mut self, name: &str, line: &str, expected: Expected) {
         let store = Store::folder(&self.folder.path().join("store")).expect("a store");
-        let artefact = store.put(format!("{line}\n").into_bytes()).await.expect("an artefact");
+        let artefact = crate::support::put(&store, format!("{line}\n").as_bytes()).await;
         let task = Task {
             submission: Input { form: Form::Program, name: name.to_owned(), artefact },
             suite: Suite::Named("storm".to_owned()),

@@ -13,3 +13,11 @@ pub(crate) async fn bytes(store: &fosssim_server::store::Store, digest: &fosssim
     store.fetch(digest, &file).await.expect("an artefact");
     std::fs::read(file).expect("its bytes")
 }
+
+/// Stores bytes.
+pub(crate) async fn put(store: &fosssim_server::store::Store, bytes: &[u8]) -> fosssim_server::store::Artefact {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("artefact");
+    std::fs::write(&file, bytes).expect("written");
+    store.put_file(&file).await.expect("stored")
+}
