@@ -52,10 +52,18 @@ problems! {
     unknown_secret(what: &str, remedy: &str): 401, "unknown-secret", "Not signed in",
         format!("this {what} is unknown, used, too old or revoked"),
         remedy;
+    /// No account has this login and this password.
+    wrong_password(): 401, "wrong-password", "Not signed in",
+        "there is no account of this login with this password",
+        "try again, or ask the course's staff for a link that signs you in";
     /// Known, and not allowed.
     not_allowed(detail: impl Into<String>): 403, "not-allowed", "Not allowed",
         detail,
         "ask somebody whose role allows it";
+    /// The server is not started with passwords.
+    no_passwords(): 403, "not-allowed", "Not allowed",
+        "this server takes no passwords",
+        "sign in by a link, a token, or from your learning platform";
     /// Known, but it is not certain that it is the person.
     sign_in_again(detail: impl Into<String>): 403, "sign-in-again", "Sign in again",
         detail,

@@ -20,7 +20,7 @@ const SESSIONS: i64 = 50;
 /// How long a link that signs in is good for.
 const LINK: i64 = 7 * 24 * 3600 * 1000;
 
-/// How long after its beginning a session may make further ways in: tokens.
+/// How long after its beginning a session may make further ways in: tokens, a first password.
 const RECENT: i64 = 12 * 3600 * 1000;
 
 /// A session that was not seen for so long is noted again.
@@ -87,7 +87,7 @@ pub struct Link {
 /// How somebody came in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Way {
-    /// By a learning platform, or a link that the server or an administrator made.
+    /// By their password, a learning platform, or a link that the server or an administrator made.
     Own,
     /// By a link that a course's staff made, who may have used it themselves.
     Vouched,
@@ -215,7 +215,8 @@ pub(super) async fn use_link(transaction: &mut Transaction, link: &str) -> Resul
     let row = transaction.row(statement, values![digest(link)]).await?;
     let Some(row) = row else { return Ok(None) };
     let (account, way) = (row.int("account")?, if row.flag("vouched")? { Way::Vouched } else { Way::Own });
-    let statement = "SELECT id FROM account WHERE id = ? AND disabled_at IS NULL";
+    // Anybody who needs a link has forgotten the password: the next one is set without it.
+    let statement = "UPDATE account SET password = NULL WHERE id = ? AND disabled_at IS NULL RETURNING id";
     let able = transaction.row(statement, values![account]).await?;
     Ok(able.map(|_| (account, way)))
 }
@@ -228,7 +229,7 @@ pub(super) async fn end_sessions(transaction: &mut Transaction, account: i64) ->
 /// Ends every way into an account: it may do more from now on, or nothing at all.
 pub(super) async fn end_all(transaction: &mut Transaction, account: i64) -> Result<(), DbError> {
     end_sessions(transaction, account).await?;
-    transaction.execute("UPDATE account SET managed_by = NULL WHERE id = ?", values![account]).await?;
+    transaction.execute("UPDATE account SET password = NULL, managed_by = NULL WHERE id = ?", values![account]).await?;
     transaction.execute("DELETE FROM sign_in_link WHERE account = ? AND used_at IS NULL", values![account]).await?;
     let statement = "UPDATE token SET revoked_at = {now} WHERE account = ? AND revoked_at IS NULL";
     transaction.execute(statement, values![account]).await.map(drop)

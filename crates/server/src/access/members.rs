@@ -167,7 +167,7 @@ impl Staff {
     }
 
     /// A new link that signs a student in once. Staff makes it for accounts that are this course's alone: made here, in
-    /// no other course, without a platform of their own. Anybody who could sign in as somebody else could
+    /// no other course, without a password or a platform of their own. Anybody who could sign in as somebody else could
     /// do what they may do.
     ///
     /// # Errors
@@ -181,7 +181,7 @@ impl Staff {
         let Some(row) = row else { return Err(Problem::not_found("member")) };
         let is_ours = row.maybe_int("managed_by")? == Some(self.course) && row.text("role")? == "student";
         if row.flag("is_admin")? || !(is_ours || self.account.is_admin) {
-            let detail = "this account is its person's own, or more than a student of this course";
+            let detail = "this account is its person's own: more than a student of this course, or with a password";
             return Err(Problem::not_allowed(detail));
         }
         let link = self.link(&mut transaction, row.int("id")?, self.way()).await?;

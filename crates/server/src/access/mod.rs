@@ -18,6 +18,7 @@ mod limits;
 mod mark;
 mod member;
 mod members;
+mod password;
 mod person;
 mod platform;
 mod regrade;
@@ -46,6 +47,7 @@ pub use limits::{Transfer, TransferLimits};
 pub use mark::{Overview, Request, Work};
 pub use member::Member;
 pub use members::MemberInfo;
+pub use password::Passwords;
 pub use person::{CourseOf, Person};
 pub use platform::{RosterRead, RosterWish, ScoreInfo};
 pub use regrade::{Change, Regrade, RegradeState};
@@ -120,6 +122,8 @@ pub struct Options {
     pub requests_per_minute: u32,
     /// Transfers at one time, and bytes that are kept.
     pub limits: TransferLimits,
+    /// The parts that signing in with passwords needs; nothing where that is not allowed.
+    pub passwords: Option<Passwords>,
     /// Speaks with learning platforms.
     pub lti: Arc<Lti>,
 }

@@ -10,6 +10,7 @@ use crate::{
     values,
 };
 use serde::Serialize;
+use std::net::IpAddr;
 use utoipa::ToSchema;
 
 /// A course, and what somebody is in it.
@@ -27,6 +28,7 @@ pub struct Person {
     pub(crate) account: Account,
     /// The browser's session; nothing where a token asks.
     pub(super) session: Option<Seen>,
+    pub(super) address: Option<IpAddr>,
     pub(crate) app: App,
 }
 
@@ -36,11 +38,15 @@ impl Person {
         self.session.as_ref().is_none_or(|session| session.is_by_token)
     }
 
-    /// The session, where it is the person at a browser, who signed in lately: what a token can do, ends with the token,
-    /// and anybody who finds an open browser makes no further ways in.
-    fn lately_at_browser(&self) -> Result<&Seen, Problem> {
+    /// The session, where it is the person at a browser: what a token can do, ends with the token.
+    pub(super) fn at_browser(&self) -> Result<&Seen, Problem> {
         let session = self.session.as_ref().filter(|_| !self.is_by_token());
-        let session = session.ok_or_else(|| Problem::sign_in_again("a token can't do this, nor a session of one"))?;
+        session.ok_or_else(|| Problem::sign_in_again("a token can't do this, nor a session that was begun by one"))
+    }
+
+    /// The same, where they signed in lately: anybody who finds an open browser makes no further ways in.
+    pub(super) fn lately_at_browser(&self) -> Result<&Seen, Problem> {
+        let session = self.at_browser()?;
         match session.is_recent {
             true => Ok(session),
             false => Err(Problem::sign_in_again("you signed in more than twelve hours ago")),

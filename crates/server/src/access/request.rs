@@ -51,7 +51,7 @@ impl App {
     /// When nobody is, or they ask too often.
     pub async fn person(&self, secrets: &Secrets) -> Result<Person, Problem> {
         let (account, session) = self.account(secrets).await?;
-        Ok(Person { account, session, app: self.clone() })
+        Ok(Person { account, session, address: secrets.address, app: self.clone() })
     }
 
     /// A worker by its token; what it is called is its own to say.

@@ -109,6 +109,9 @@ pub(super) struct Serve {
     /// graded.
     #[arg(long, value_name = "MIB", default_value_t = 512)]
     pub(super) low_water: u64,
+    /// Let people sign in with passwords, too.
+    #[arg(long)]
+    pub(super) passwords: bool,
     /// For this many days uploads and reports are kept; 0 for ever. Grades and their history always stay.
     #[arg(long, value_name = "DAYS", default_value_t = 0, env = "FOSSSIM_KEEP_DAYS")]
     pub(super) keep_days: u32,

@@ -6,7 +6,7 @@ use super::{
     worker::{Local, grader, policy},
 };
 use crate::{
-    access::{App, Options, Suites, TransferLimits},
+    access::{App, Options, Passwords, Suites, TransferLimits},
     db::{self, Address, Database},
     instruments::Instruments,
     ledger,
@@ -71,6 +71,7 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
             arguments.keep_of_course * MIB,
             arguments.keep_in_all * MIB,
         ),
+        passwords: arguments.passwords.then(Passwords::default),
         lti: lti.clone(),
     };
     let app = App::new(database.clone(), store.clone(), notifier.clone(), policy, Instruments::new()?, options);

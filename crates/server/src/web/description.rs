@@ -34,7 +34,7 @@ const MOST: i64 = (1 << 53) - 1;
     servers((url = "/", description = "This server")),
     components(schemas(Problem, OutputFile, Slug, FileName, Digest)),
     tags(
-        (name = "accounts", description = "Oneself: account, tokens"),
+        (name = "accounts", description = "Oneself: account, password, tokens"),
         (name = "courses", description = "Courses and their members"),
         (name = "assignments", description = "Assignments, and how a class stands in them"),
         (name = "submissions", description = "What was handed in, and what it came to"),

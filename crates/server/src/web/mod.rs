@@ -21,7 +21,7 @@ use utoipa_axum::router::OpenApiRouter;
 /// The largest body of a request that is no upload.
 const BODY: usize = 1 << 20;
 
-/// The same of somebody who is not signed in: a token, or a learning platform's word. Thousands of them may
+/// The same of somebody who is not signed in: a password, a token, or a learning platform's word. Thousands of them may
 /// send one at the same time.
 const BODY_OF_NOBODY: usize = 32 << 10;
 

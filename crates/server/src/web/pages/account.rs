@@ -1,7 +1,7 @@
 //! One's courses and tokens.
 use super::{
     super::{
-        api::TokenName,
+        api::{PasswordWish, TokenName},
         input::{At, Fields},
     },
     Page, PageFrame, see, show, text,
@@ -51,5 +51,7 @@ pub(super) async fn new_token(person: Person, Fields(form): Fields<TokenName>) -
 }
 
 deeds! {
+    /// Everybody who is signed in as this person is to sign in again, by the new one.
+    set_password(person: Person, form: PasswordWish): person.set_password(&form.old, &form.new) => "/sign-in";
     revoke_token(person: Person, { id }): person.revoke_token(id) => "/account";
 }

@@ -21,6 +21,7 @@ use serde::Deserialize;
 #[template(path = "sign_in.html")]
 struct SignIn {
     frame: PageFrame,
+    takes_passwords: bool,
     /// The page to go on to.
     to: String,
 }
@@ -35,6 +36,14 @@ struct Welcome {
 #[derive(Deserialize)]
 pub(super) struct Token {
     token: String,
+    #[serde(default)]
+    to: String,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Password {
+    login: String,
+    password: String,
     #[serde(default)]
     to: String,
 }
@@ -66,8 +75,13 @@ pub(super) fn with_cookie(cookie: &str, to: &str) -> Response {
     response
 }
 
-pub(super) async fn page(Asked(NextPage { to }): Asked<NextPage>) -> Page {
-    show(&SignIn { frame: PageFrame::default(), to })
+pub(super) async fn page(visitor: Visitor, Asked(NextPage { to }): Asked<NextPage>) -> Page {
+    show(&SignIn { frame: PageFrame::default(), takes_passwords: visitor.app.takes_passwords(), to })
+}
+
+pub(super) async fn by_password(visitor: Visitor, Fields(form): Fields<Password>) -> Result<Response, Problem> {
+    let session = visitor.sign_in_by_password(form.login.trim(), &form.password).await?;
+    Ok(enter(&visitor.app, &session, local(&form.to)))
 }
 
 pub(super) async fn by_token(visitor: Visitor, Fields(form): Fields<Token>) -> Result<Response, Problem> {

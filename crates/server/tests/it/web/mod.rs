@@ -15,6 +15,7 @@ mod limits;
 mod messages;
 mod metrics;
 mod ownership;
+mod passwords;
 mod people;
 mod platforms;
 mod removal;

@@ -7,6 +7,7 @@ use crate::support::{
 on_both_engines!(
     being_in_two_courses_takes_nothing_away,
     what_staff_could_have_planted_ends_when_rights_grow,
+    an_account_with_a_password_is_its_persons_own,
     tokens_make_no_further_ways_in,
     a_session_lasts_from_the_last_visit
 );
@@ -97,8 +98,30 @@ async fn what_staff_could_have_planted_ends_when_rights_grow(fresh: Fresh) {
     }
 }
 
+async fn an_account_with_a_password_is_its_persons_own(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "0", "--passwords"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let teacher = server.member(&admin, "physics", "teacher", "staff");
+    let ada = server.visitor().welcome(&secret(&add(&teacher, "physics", "ada", "student")["link"]));
+    let planted = server.visitor().welcome(&secret(&new_link(&teacher, "physics", "ada").expect(200).json()["link"]));
+    let token = new_token(&server, &planted);
+    ada.send("PUT", "/api/v1/password", JSON, br#"{"new": "correct horse"}"#).expect(204);
+    token.get("/api/v1/me").expect(401);
+    planted.get("/api/v1/me").expect(401);
+    new_link(&teacher, "physics", "ada").expect(403);
+    teacher.send("DELETE", "/api/v1/courses/physics/members/ada", &[], b"").expect(204);
+    assert!(add(&teacher, "physics", "ada", "student")["link"].is_null());
+    server.visitor().post_form("/sign-in/password", "login=ada&password=correct+horse").expect(303);
+    // An account that is the course's alone is back at once.
+    add(&teacher, "physics", "eve", "student");
+    teacher.send("DELETE", "/api/v1/courses/physics/members/eve", &[], b"").expect(204);
+    add(&teacher, "physics", "eve", "student");
+    new_link(&teacher, "physics", "eve").expect(200);
+}
+
 async fn tokens_make_no_further_ways_in(fresh: Fresh) {
-    let mut server = Server::start(&fresh, &["--workers", "0"]);
+    let mut server = Server::start(&fresh, &["--workers", "0", "--passwords"]);
     let admin = server.admin();
     server.course(&admin, "physics");
     let session = server.visitor().welcome(&secret(&add(&admin, "physics", "ada", "student")["link"]));
@@ -113,6 +136,8 @@ async fn tokens_make_no_further_ways_in(fresh: Fresh) {
         leaked.get("/api/v1/me").expect(200);
         leaked.post_json("/api/v1/tokens", r#"{"name": "more"}"#).expect(403);
         leaked.post_form("/account/tokens", "name=more").expect(403);
+        leaked.send("PUT", "/api/v1/password", JSON, br#"{"new": "correct horse"}"#).expect(403);
+        leaked.post_form("/account/password", "new=correct+horse").expect(403);
     }
     // Revoked, it is gone with what it began.
     session.send("DELETE", &format!("/api/v1/tokens/{}", made["id"]), &[], b"").expect(204);

@@ -75,7 +75,6 @@ const BACK_TO_THE_FIRST: &[&str] = &[
     "DROP TABLE suite",
     "DROP TABLE server_secret",
     "ALTER TABLE assignment DROP COLUMN revision",
-    "ALTER TABLE account ADD COLUMN password TEXT",
     "DELETE FROM schema_change WHERE number > 1",
     "INSERT INTO account (login, name, created_at) VALUES ('ada', 'Ada', {now})",
 ];
