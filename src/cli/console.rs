@@ -90,12 +90,6 @@ pub(super) fn show(format: TextOrJson, text: impl FnOnce() -> String, json: impl
     }
 }
 
-/// The room for small pictures in a report on standard output: none where it is no terminal, or colours are not wanted
-/// either.
-pub(super) fn pictures() -> Option<usize> {
-    width().filter(|_| style() == Style::Colour)
-}
-
 /// Prints to standard output. Nobody listening any more is no error: the verdict is in the exit code.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! Scenes, traces and detections as pictures: SVG, PNG, animated PNG, GIF, plots, and small plots for terminals.
+//! Scenes, traces and detections as pictures: SVG, PNG, animated PNG, GIF and plots.
 //!
 //! Everything is a pure function from states and findings to bytes, or an encoder that is fed picture by picture:
 //! nothing here opens a file, starts a process or reads a clock, and no more than two pictures are held at a time. The
@@ -37,7 +37,6 @@ pub mod raster;
 pub mod shape;
 pub mod size;
 pub mod svg;
-pub mod terminal;
 pub mod view;
 
 pub use painter::{Painter, PictureOptions};

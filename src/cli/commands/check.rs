@@ -37,7 +37,7 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<u8> {
     let inputs: Vec<_> = scene.identity.into_iter().chain(trace.identity).collect();
     // An output that can't be written is said before the work is done, not after.
     let target = arguments.output.as_deref().map(|name| Output::create(name, &inputs)).transpose()?;
-    let (shown, lasts) = (ShownParts::of(arguments, target.is_some()), is_lasting(name));
+    let (shown, lasts) = (ShownParts::of(arguments), is_lasting(name));
     let mut wrong = wrong_steps(arguments, &scene)?;
     let mut bar = console::Bar::new(scene.scene.steps());
     let (options, heard) = (options(arguments), &mut Both(&mut bar, &mut wrong));
@@ -63,7 +63,7 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<u8> {
         console::remark(format!("{}\n", words::STATES_ONLY));
     }
     let evidence = || evidence_of(&examined, name, lasts);
-    write(target, arguments.format, check, shown.drawing, &examined, &evidence)?;
+    write(target, arguments.format, check, &examined, &evidence)?;
     let disagreements = outcome.searches.disagreements;
     if disagreements > 0 {
         bail!("{disagreements} disagreements between certificates and the root finder; please report this");
@@ -76,19 +76,15 @@ fn write(
     target: Option<Output>,
     format: CheckFormat,
     check: report::check::Check<'_>,
-    drawing: Drawing,
     examined: &Examined<'_>,
     evidence: &dyn Fn() -> Evidence,
 ) -> Result<()> {
     let style = if target.is_some() { Style::Plain } else { console::style() };
-    let text = match (format, drawing) {
-        (CheckFormat::Text, Drawing::Plots(columns)) if !check.accepted() => {
-            with_plots(check.text(style), &evidence(), columns)
-        }
-        (CheckFormat::Text, _) => check.text(style),
-        (CheckFormat::Json, _) => check.json(),
-        (CheckFormat::Github, _) => check.github(),
-        (CheckFormat::Html, _) => page::of_examined(check, examined, &evidence()),
+    let text = match format {
+        CheckFormat::Text => check.text(style),
+        CheckFormat::Json => check.json(),
+        CheckFormat::Github => check.github(),
+        CheckFormat::Html => page::of_examined(check, examined, &evidence()),
     };
     match (target, format) {
         (Some(target), format) => target.finish_and_tell(text.as_bytes(), format == CheckFormat::Html),
@@ -100,32 +96,18 @@ fn write(
 /// The parts besides the verdict that are shown; they decide what is kept of a trace.
 struct ShownParts {
     is_explained: bool,
-    drawing: Drawing,
-}
-
-/// Pictures of the trace.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Drawing {
-    None,
-    /// In the terminal, with this width.
-    Plots(usize),
-    Page,
+    is_drawn: bool,
 }
 
 impl ShownParts {
-    fn of(arguments: &CheckArguments, is_written: bool) -> Self {
+    fn of(arguments: &CheckArguments) -> Self {
         // Of single steps the numbers are asked for.
-        let is_whole = arguments.step.is_empty();
-        let drawing = match (arguments.format, console::pictures()) {
-            (CheckFormat::Html, _) => Drawing::Page,
-            (CheckFormat::Text, Some(columns)) if is_whole && !is_written => Drawing::Plots(columns),
-            _ => Drawing::None,
-        };
-        Self { is_explained: is_whole && !arguments.no_explain, drawing }
+        let is_explained = arguments.step.is_empty() && !arguments.no_explain;
+        Self { is_explained, is_drawn: arguments.format == CheckFormat::Html }
     }
 
     fn keep(&self, lasts: bool) -> Keep {
-        match (self.is_explained || self.drawing != Drawing::None, lasts) {
+        match (self.is_explained || self.is_drawn, lasts) {
             (false, _) => Keep::Nothing,
             (true, false) => Keep::Read,
             (true, true) => Keep::All,
@@ -174,11 +156,6 @@ fn refuse_unreadable(outcome: &Outcome, scene: &SceneInput, trace: &TraceInput) 
 fn evidence_of(examined: &Examined<'_>, name: &Path, lasts: bool) -> Evidence {
     let mut again = if lasts && !examined.trace.is_whole() { input::trace(name).ok() } else { None };
     examined.evidence(again.as_mut().map(|trace| &mut trace.reader as &mut dyn Read), evidence::BUDGET)
-}
-
-fn with_plots(text: String, evidence: &Evidence, columns: usize) -> String {
-    let plots = report::check::plots(evidence, columns);
-    text + if plots.is_empty() { "" } else { "\n" } + &plots
 }
 
 /// Whether a trace can be read a second time: then it need not be kept while it is judged.

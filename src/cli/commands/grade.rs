@@ -114,8 +114,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
         return Ok(exit::ACCEPTED);
     }
     let is_part = plan.scenes().count() < whole || arguments.failed;
-    let pictures = submissions.len() == 1 && console::pictures().is_some();
-    let pages = wanted_pages(arguments, folder.as_deref(), submissions.len() > 1, &reports, pictures)?;
+    let pages = wanted_pages(arguments, folder.as_deref(), submissions.len() > 1, &reports)?;
     let (plan, backend, cancellation) = (&plan, &backend, &cancellation);
     let session =
         GradingSession { arguments, plan, backend, cancellation, folder, pages, is_part, sharding, passed_over };
@@ -293,12 +292,7 @@ impl GradingSession<'_> {
         let shown = shown(self.arguments, grades.len() > 1);
         let trace = |submission: &str, scene: &str| self.trace(submission, scene).map(|place| place.path());
         let closer = Closer { arguments: self.arguments, plan: self.plan, submissions, trace: &trace };
-        let closer = |grade: &Grade, scene: &_| {
-            let plot =
-                self.pages.as_ref().filter(|_| console::pictures().is_some()).and_then(|pages| pages.card(scene));
-            let plot = plot.as_ref().map(|card| card.plot().lines().map(str::to_owned).collect()).unwrap_or_default();
-            [plot, closer.advice(grade, scene)].concat()
-        };
+        let closer = |grade: &Grade, scene: &_| closer.advice(grade, scene);
         text(grades, self.passed_over(), shown, HARDEST, Some(&closer))
     }
 

@@ -70,7 +70,7 @@ pub(super) fn refuse_several(reports: &[Report], submissions: usize, of_html: &s
     }
 }
 
-/// The pages of a grading, if somebody may look at them: in the folder for results, in a report, or as `pictures`.
+/// The pages of a grading, if somebody may look at them: in the folder for results or in a report.
 ///
 /// # Errors
 /// When there is no room for them.
@@ -79,14 +79,13 @@ pub(super) fn wanted_pages(
     folder: Option<&Path>,
     is_class: bool,
     reports: &[Report],
-    pictures: bool,
 ) -> Result<Option<Pages>> {
     let is_asked = arguments.staff_page.is_some()
         || arguments.published_page.is_some()
         || reports.iter().any(|report| report.format == Format::Html);
     // A class's pages may be asked for later, and nobody wants to run it again for them.
     let for_students = arguments.reader == Audience::Student || is_class;
-    (folder.is_some() || is_asked || pictures).then(|| Pages::new(folder, for_students)).transpose()
+    (folder.is_some() || is_asked).then(|| Pages::new(folder, for_students)).transpose()
 }
 
 /// The results of a grading, and where they go.

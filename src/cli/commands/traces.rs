@@ -39,7 +39,7 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report]) -> Resu
     if let Some(output) = folder {
         Folder::make(output).with_context(|| format!("cannot make {}", output.display()))?;
     }
-    let pages = wanted_pages(arguments, folder, arguments.programs.len() > 1, reports, false)?;
+    let pages = wanted_pages(arguments, folder, arguments.programs.len() > 1, reports)?;
     let paths: Vec<&Path> = arguments.programs.iter().map(PathBuf::as_path).collect();
     let named = paths.iter().zip(distinct_names(&paths));
     let grades: Vec<Grade> = named.map(|(folder, name)| grade(&plan, folder, name, pages.as_ref())).collect();

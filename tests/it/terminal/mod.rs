@@ -2,6 +2,5 @@
 mod bars;
 mod colours;
 mod completion;
-mod plots;
 mod scenes;
 mod usage;

@@ -13,13 +13,11 @@ mod fair_view;
 pub(crate) mod first;
 pub(crate) mod follows;
 mod looks_like;
-mod plots;
 mod steps;
 mod text;
 
 pub use asked::{is_wrong, no_verdict, not_read};
 pub use looks_like::{LOOKED_AT, looks_like};
-pub use plots::plots;
 pub use steps::{LISTED, StepChoice, WrongSteps};
 pub use text::stopped;
 pub(crate) use text::{headline, notes, problem};

@@ -1,6 +1,5 @@
 //! The card of a scene: what is drawn of a wrong trace while it is at hand, for pages that are put together later.
 use super::{Case, data, packed::Precision};
-use crate::check::plots;
 use fosssim_findings::Hints;
 use serde::{Deserialize, Serialize};
 
@@ -9,9 +8,6 @@ const KEY: &str = "\u{1}";
 
 /// The placeholder for what all scenes together say about its mistake, which is known later, too.
 const CAUSE: &str = "\u{2}";
-
-/// Columns of a small terminal.
-const TERMINAL: usize = 78;
 
 /// A card.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -23,8 +19,6 @@ pub struct Card {
     /// The same with rounded motions, for a page that has no room for exact ones; empty where that saves nothing.
     #[serde(default)]
     rounded: String,
-    /// The same for a terminal: a small plot.
-    plot: String,
 }
 
 /// Motions smaller than this are not worth rounding, in bytes.
@@ -42,7 +36,7 @@ impl Card {
         let data = blocks(Precision::AsRoomAllows);
         let rounded = if data.len() > SMALL { blocks(Precision::Rounded) } else { String::new() };
         let rounded = if rounded.len() < data.len() { rounded } else { String::new() };
-        Some(Self { html: case.trace_part(KEY, depth, CAUSE), data, rounded, plot: plot(case) })
+        Some(Self { html: case.trace_part(KEY, depth, CAUSE), data, rounded })
     }
 
     /// A card that only says something.
@@ -67,12 +61,6 @@ impl Card {
     #[must_use]
     pub fn from_kept(text: &str) -> Option<Self> {
         serde_json::from_str(text).ok()
-    }
-
-    /// A small plot for a terminal; empty where there is none.
-    #[must_use]
-    pub fn plot(&self) -> &str {
-        &self.plot
     }
 
     /// The bytes of what is there without script, and of the motions.
@@ -105,10 +93,4 @@ impl Card {
     pub(super) fn rounded(&self, key: &str) -> String {
         self.rounded.replace(KEY, key)
     }
-}
-
-/// The plot that is kept for terminals, with full hints only: it shows what is right.
-fn plot(case: &Case<'_>) -> String {
-    let evidence = case.evidence.filter(|_| case.hints == Hints::Full);
-    evidence.map(|evidence| plots(evidence, TERMINAL)).unwrap_or_default()
 }

@@ -87,7 +87,7 @@ mod tests {
 
     fn card(html: usize, data: usize, rounded: usize) -> Card {
         let text = |length| "x".repeat(length);
-        let kept = serde_json::json!({"html": text(html), "data": text(data), "rounded": text(rounded), "plot": ""});
+        let kept = serde_json::json!({"html": text(html), "data": text(data), "rounded": text(rounded)});
         Card::from_kept(&kept.to_string()).expect("a card")
     }
 
