@@ -157,19 +157,12 @@ Example:
   fosssim-oracle check scenes/test00.xml submission.bin
   fosssim-oracle check scenes/test00.xml submission.bin --step 14
   fosssim-oracle check scenes/test00.xml submission.bin --format html --output report.html
-  fosssim-oracle check scenes/test00.xml submission.bin --format json --output report.json
-  fosssim-oracle check --self scenes/*.xml")]
+  fosssim-oracle check scenes/test00.xml submission.bin --format json --output report.json")]
 pub(super) struct CheckArguments {
     /// The scene, a file or asset:Group/name.
-    #[arg(required_unless_present = "own")]
-    pub(super) scene: Option<PathBuf>,
+    pub(super) scene: PathBuf,
     /// The trace, a file, - for standard input, or asset:Group/name.
-    #[arg(required_unless_present = "own")]
-    pub(super) trace: Option<PathBuf>,
-    /// Judge the reference's own traces by the original's rules, at growing scale. This finds the scenes that these
-    /// rules can't grade fairly. By default the scenes of the suite t2m2.
-    #[arg(long = "self", value_name = "SCENE", num_args = 0.., conflicts_with_all = ["scene", "audit", "rules", "no_explain"])]
-    pub(super) own: Option<Vec<PathBuf>>,
+    pub(super) trace: PathBuf,
     /// The rule books.
     #[arg(long, value_parser = rules(), default_value = "both")]
     pub(super) rules: Rules,
@@ -180,14 +173,14 @@ pub(super) struct CheckArguments {
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
     /// Show all wrong steps, not only the first one, with expected and actual values.
-    #[arg(long, conflicts_with_all = ["step", "own"])]
+    #[arg(long, conflicts_with = "step")]
     pub(super) all: bool,
     /// Show tables, too: residuals, the used share of each tolerance, all kinds of findings with their first examples.
-    #[arg(long, conflicts_with = "own")]
+    #[arg(long)]
     pub(super) tables: bool,
 
     /// Show these steps alone, from 1; 0 is the first record. Several are separated by commas.
-    #[arg(long, short, value_name = "N", value_delimiter = ',', conflicts_with = "own", allow_negative_numbers = true, value_parser = step)]
+    #[arg(long, short, value_name = "N", value_delimiter = ',', allow_negative_numbers = true, value_parser = step)]
     pub(super) step: Vec<u32>,
     /// Do not look for the mistake that explains a wrong trace.
     #[arg(long)]

@@ -26,7 +26,6 @@ pub mod explanation;
 pub mod fair;
 pub mod finding;
 pub mod grade;
-pub mod headroom;
 mod hints;
 pub mod located;
 pub mod outcome;

@@ -36,7 +36,6 @@ mod form;
 pub mod grader;
 mod guard;
 #[cfg(target_os = "linux")]
-pub mod headroom;
 #[cfg(target_os = "linux")]
 mod key;
 pub mod library;

@@ -22,7 +22,6 @@ pub mod explain;
 pub mod foreign;
 pub mod formats;
 pub mod grade;
-pub mod headroom;
 pub mod number;
 pub mod page;
 pub mod problems;

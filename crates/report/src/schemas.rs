@@ -1,19 +1,16 @@
 //! The schemas of the JSON documents that reports write, made from the types of these documents.
-use super::{
-    check::CheckView, detect::DetectView, diagnosis::DiagnosisView, grade::GradeDocument, headroom::HeadroomView,
-};
+use super::{check::CheckView, detect::DetectView, diagnosis::DiagnosisView, grade::GradeDocument};
 use schemars::{JsonSchema, Schema, generate::SchemaSettings, transform::RecursiveTransform};
 use serde_json::Value;
 
 /// The schemas with the commands that write such documents. Each is `<command>.schema.json` in the folder `schemas`.
 #[must_use]
-pub fn all() -> [(&'static str, Schema); 5] {
+pub fn all() -> [(&'static str, Schema); 4] {
     [
         ("check", of::<CheckView<'_>>("check --format json")),
         ("detect", of::<DetectView<'_>>("detect --format json")),
         ("explain", of::<DiagnosisView<'_>>("explain --format json")),
         ("grade", of::<GradeDocument>("grade --format json")),
-        ("headroom", of::<HeadroomView>("check --self --format json")),
     ]
 }
 

@@ -1,5 +1,4 @@
 //! `check`: grades a trace.
-use super::headroom;
 use crate::{
     cli::{
         arguments::{CheckArguments, CheckFormat},
@@ -27,12 +26,8 @@ use anyhow::{Result, bail};
 use std::{io::Read, path::Path};
 
 pub(super) fn run(arguments: &CheckArguments) -> Result<u8> {
-    if let Some(scenes) = &arguments.own {
-        return headroom::run(scenes, arguments);
-    }
-    // The parser has seen to it that both are there.
-    let (Some(scene), Some(name)) = (&arguments.scene, &arguments.trace) else { bail!("name a scene and a trace") };
-    let scene = input::scene(scene)?;
+    let name = &arguments.trace;
+    let scene = input::scene(&arguments.scene)?;
     let mut trace = input::trace(name)?;
     let inputs: Vec<_> = scene.identity.into_iter().chain(trace.identity).collect();
     // An output that can't be written is said before the work is done, not after.

@@ -7,7 +7,6 @@ mod display;
 mod ending;
 mod explain;
 mod grade;
-mod headroom;
 mod host;
 mod last_run;
 mod merge;

@@ -20,7 +20,6 @@ pub mod original;
 mod problem;
 mod reader;
 mod rule;
-mod scale;
 mod tag;
 #[cfg(test)]
 mod tests;

@@ -392,25 +392,4 @@ mod tests {
         assert_eq!(simulation.state().velocities, [0.0, -5.0]);
         assert_eq!(simulation.state().positions, [0.0, -2.5]);
     }
-
-    /// Every force scales as it should ([`Scene::scaled`]): the motion is the same with other exponents, bit for bit.
-    #[test]
-    fn a_scaled_scene_moves_alike() {
-        let xml = r#"<scene><duration time="1"/><integrator type="symplectic-euler" dt="0.1"/>
-            <collision type="hybrid" COR="0.5" maxiters="3" k="7" thickness="0.01"/><simplegravity fx="0.1" fy="-1"/>
-            <particle m="1" px="-1" py="0.3" vx="0.2" vy="0" fixed="0" radius="0.1"/>
-            <particle m="2" px="1" py="0.1" vx="0" vy="0.4" fixed="0" radius="0.2"/>
-            <edge i="0" j="1" radius="0.05"/><springforce edge="0" k="3" l0="1.7" b="0.2"/>
-            <gravitationalforce i="0" j="1" G="0.3"/><vortexforce i="0" j="1" kbs="0.3" kvc="0.7"/>
-            <dragdamping b="0.1"/><halfplane px="0" py="-1" nx="0.3" ny="1"/></scene>"#;
-        let scene = crate::scene::read("scene", xml.as_bytes()).expect("a scene").scene;
-        let [own, scaled] = [scene.clone(), scene.scaled(5)].map(|scene| {
-            let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
-            (0..4).for_each(|_| simulation.step(&mut ()).expect("a step"));
-            simulation.state().clone()
-        });
-        let times = |numbers: &[f64]| numbers.iter().map(|number| 32.0 * number).collect::<Vec<f64>>();
-        assert_eq!(times(&own.positions), scaled.positions);
-        assert_eq!(times(&own.velocities), scaled.velocities);
-    }
 }
