@@ -76,7 +76,7 @@ pub(super) enum DetectFormat {
 #[command(after_help = "\
 Example:
   fosssim-oracle detect pe:3,1+4,1:5,9+2,6:5,3+5,8 --radii 1,1
-  fosssim-oracle detect --x1 1,4 --d1 1,4 --x2 2,1 --d2 3,5 --x3 6,2 --d3 3,7 --radii 1,2
+  fosssim-oracle detect pe:1,4+1,4:2,1+3,5:6,2+3,7 --radii 1,2
   fosssim-oracle detect --scene scenes/test00.xml --step 14 --pair pe:3,1
   fosssim-oracle detect --scene scenes/test00.xml --trace submission.bin --step 14 --pair pe:3,1 --pass 2
   fosssim-oracle detect pe:3,1+4,1:5,9+2,6:5,3+5,8 --radii 1,1 --format svg --output figure.svg
@@ -97,7 +97,7 @@ pub(super) struct DetectArguments {
     #[arg(long, value_name = "R,R", allow_hyphen_values = true)]
     pub(super) radii: Option<String>,
     /// Look at a pair of this scene instead.
-    #[arg(long, value_name = "SCENE", requires = "step", requires = "pair", conflicts_with_all = ["word", "radii", "Points"])]
+    #[arg(long, value_name = "SCENE", requires = "step", requires = "pair", conflicts_with_all = ["word", "radii"])]
     pub(super) scene: Option<PathBuf>,
     /// The trace that gives the states; by default the reference's run.
     #[arg(long, value_name = "TRACE", requires = "scene")]
@@ -117,47 +117,4 @@ pub(super) struct DetectArguments {
     /// Where to write it, instead of to standard output.
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
-    // Last, because its heading stands above all arguments that follow.
-    #[command(flatten)]
-    pub(super) points: Points,
-}
-
-/// A pair in the notation of the assignment.
-#[derive(Debug, Args)]
-#[group(multiple = true, conflicts_with = "word")]
-#[command(next_help_heading = "The pair in the notation of the assignment")]
-pub(super) struct Points {
-    /// Start of the particle.
-    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
-    pub(super) x1: Option<String>,
-    /// Its displacement.
-    #[arg(long, value_name = "DX,DY", allow_hyphen_values = true, conflicts_with = "e1")]
-    pub(super) d1: Option<String>,
-    /// Or its end.
-    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
-    pub(super) e1: Option<String>,
-    /// Start of the second particle, or of the edge's first end.
-    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
-    pub(super) x2: Option<String>,
-    /// Its displacement.
-    #[arg(long, value_name = "DX,DY", allow_hyphen_values = true, conflicts_with = "e2")]
-    pub(super) d2: Option<String>,
-    /// Or its end.
-    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
-    pub(super) e2: Option<String>,
-    /// Start of the edge's second end.
-    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, requires = "x2")]
-    pub(super) x3: Option<String>,
-    /// Its displacement.
-    #[arg(long, value_name = "DX,DY", allow_hyphen_values = true, conflicts_with = "e3")]
-    pub(super) d3: Option<String>,
-    /// Or its end.
-    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
-    pub(super) e3: Option<String>,
-    /// A point on the half-plane's boundary.
-    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, requires = "normal", conflicts_with = "x2")]
-    pub(super) point: Option<String>,
-    /// The half-plane's normal.
-    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, requires = "point")]
-    pub(super) normal: Option<String>,
 }

@@ -5,7 +5,7 @@ use crate::{
         console,
         input::{self, SceneInput, pair},
         output::Output,
-        pictures::{DetectArguments, DetectFormat, Points},
+        pictures::{DetectArguments, DetectFormat},
     },
     evidence::{self, InspectedPair, Logged},
     judge::{overlap::OverlapStudy, study::Study},
@@ -74,26 +74,8 @@ fn write(arguments: &DetectArguments, inputs: &[Identity], text: impl FnOnce(Sty
 fn typed(arguments: &DetectArguments) -> Result<PairMotion> {
     const NOTHING: &str = "name a pair: its points (detect pe:3,1+4,1:5,9+2,6:5,3+5,8 --radii 1,1), or where it is in a scene \
                            (--scene, --step, --pair)";
-    let radii = arguments.radii.as_deref();
-    if let Some(word) = &arguments.word {
-        return pair::motion(word, radii);
-    }
-    let Points { x1, d1, e1, x2, d2, e2, x3, d3, e3, point, normal } = &arguments.points;
-    let Some(x1) = x1 else { bail!(NOTHING) };
-    let words = |x: &String, d: &Option<String>, e: &Option<String>| match (d, e) {
-        (Some(d), _) => format!("{x}+{d}"),
-        (None, Some(e)) => format!("{x}..{e}"),
-        (None, None) => x.clone(),
-    };
-    let first = words(x1, d1, e1);
-    let word = match (x2, x3, point, normal) {
-        (Some(x2), None, ..) if d3.is_none() && e3.is_none() => format!("pp:{first}:{}", words(x2, d2, e2)),
-        (Some(x2), Some(x3), ..) => format!("pe:{first}:{}:{}", words(x2, d2, e2), words(x3, d3, e3)),
-        (None, None, Some(point), Some(normal)) => format!("ph:{first}:{point}:{normal}"),
-        (Some(_), None, ..) => bail!("the start of the edge's second end is missing: --x3"),
-        _ => bail!("the second object is missing: --x2 (and --x3 for an edge), or --point and --normal"),
-    };
-    pair::motion(&word, radii)
+    let word = arguments.word.as_deref().context(NOTHING)?;
+    pair::motion(word, arguments.radii.as_deref())
 }
 
 /// A pair of a scene, in a step of the reference's run or of a trace.
