@@ -57,7 +57,7 @@ pub(super) enum Command {
     Explain(Explain),
     /// Computes one pair: polynomials, zeros, intervals, decision, time of impact, normal.
     Detect(Box<DetectArguments>),
-    /// Draws a scene's motion: a picture per step, an animated PNG, a GIF, or a movie.
+    /// Draws a scene's motion: a picture per step, a GIF, or a movie.
     Render(Box<Render>),
     /// Shows what a trace holds, one of its steps, or how two traces differ.
     #[command(subcommand)]

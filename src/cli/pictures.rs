@@ -11,8 +11,6 @@ pub(super) enum RenderFormat {
     Svg,
     /// Pictures as PNG: a folder of them, or one with --step.
     Png,
-    /// An animated PNG.
-    Apng,
     /// A GIF.
     Gif,
     /// A movie, if ffmpeg is installed.
@@ -23,7 +21,7 @@ pub(super) enum RenderFormat {
 #[command(after_help = "\
 Example:
   fosssim-oracle render asset:HolisticTests/hourglass --output hourglass.gif
-  fosssim-oracle render scenes/test00.xml --overlay submission.bin --output both.apng
+  fosssim-oracle render scenes/test00.xml --overlay submission.bin --output both.gif
   fosssim-oracle render scenes/test00.xml submission.bin --step 14 --output step14.svg
   fosssim-oracle render scenes/creative.xml --format png --output pngs --size 1280x720
 

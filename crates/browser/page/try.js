@@ -193,7 +193,7 @@ $("save-svg").addEventListener("click", () =>
   ),
 );
 $("save-gif").addEventListener("click", () =>
-  saved({ do: "film", apng: false, width: 640, height: 400 }, `${stem()}.gif`, "image/gif"),
+  saved({ do: "film", width: 640, height: 400 }, `${stem()}.gif`, "image/gif"),
 );
 $("save-trace").addEventListener("click", () => saved({ do: "trace" }, `${stem()}.bin`, "application/octet-stream"));
 $("save-xml").addEventListener("click", () => save(`${stem()}.xml`, $("source").value, "application/xml"));

@@ -7,7 +7,7 @@ use fosssim_model::{
 };
 use fosssim_render::{
     Extent, Painter, PictureOptions, Raster, Size,
-    film::{Apng, Gif, Rate, png},
+    film::{Gif, Rate, png},
     svg,
 };
 use fosssim_report::describe::no_result;
@@ -54,8 +54,6 @@ enum PictureForm {
 pub(crate) struct FilmKind {
     width: u32,
     height: u32,
-    /// An animated PNG, and not a GIF.
-    apng: bool,
 }
 
 /// The motion of a scene.
@@ -188,17 +186,10 @@ impl Film {
             }
             Ok(())
         };
-        let made = if kind.apng {
-            Apng::new(&mut bytes, size, rate, pictures).and_then(|mut film| {
-                draw(&mut |raster| film.picture(raster))?;
-                film.finish()
-            })
-        } else {
-            Gif::new(&mut bytes, size, rate, &colours).and_then(|mut film| {
-                draw(&mut |raster| film.picture(raster))?;
-                film.finish()
-            })
-        };
+        let made = Gif::new(&mut bytes, size, rate, &colours).and_then(|mut film| {
+            draw(&mut |raster| film.picture(raster))?;
+            film.finish()
+        });
         made.map_err(|error| format!("the film can't be encoded: {error}"))?;
         Ok((json!({ "pictures": pictures }), vec![bytes]))
     }

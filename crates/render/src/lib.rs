@@ -1,4 +1,4 @@
-//! Scenes, traces and detections as pictures: SVG, PNG, animated PNG, GIF and plots.
+//! Scenes, traces and detections as pictures: SVG, PNG, GIF and plots.
 //!
 //! Everything is a pure function from states and findings to bytes, or an encoder that is fed picture by picture:
 //! nothing here opens a file, starts a process or reads a clock, and no more than two pictures are held at a time. The

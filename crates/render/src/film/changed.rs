@@ -11,13 +11,13 @@ pub struct ChangedArea {
 }
 
 impl ChangedArea {
-    /// The smallest part outside of which two pictures of `N` bytes per pixel are the same; one pixel where they are
+    /// The smallest part outside of which two pictures of a byte per pixel are the same; one pixel where they are
     /// the same everywhere, because a film has no empty pictures. All of a film's first picture, which has none before.
-    pub fn of<const N: usize>(size: Size, before: &[u8], after: &[u8]) -> Self {
+    pub fn of(size: Size, before: &[u8], after: &[u8]) -> Self {
         if before.is_empty() {
             return Self { left: 0, top: 0, width: size.width(), height: size.height() };
         }
-        let row = N * size.width() as usize;
+        let row = size.width() as usize;
         let differs = |y: &usize| before[y * row..(y + 1) * row] != after[y * row..(y + 1) * row];
         let rows = 0..size.height() as usize;
         let (Some(top), Some(bottom)) = (rows.clone().find(differs), rows.rev().find(differs)) else {
@@ -25,10 +25,7 @@ impl ChangedArea {
         };
         let (mut left, mut right) = (size.width() as usize - 1, 0);
         for y in top..=bottom {
-            let line = |bytes: &[u8]| -> Vec<[u8; N]> {
-                bytes[y * row..(y + 1) * row].chunks_exact(N).map(|p| std::array::from_fn(|k| p[k])).collect()
-            };
-            let (old, new) = (line(before), line(after));
+            let (old, new) = (&before[y * row..(y + 1) * row], &after[y * row..(y + 1) * row]);
             let differs = |x: &usize| old[*x] != new[*x];
             if let Some(first) = (0..left).find(differs) {
                 left = first;
@@ -49,12 +46,12 @@ impl ChangedArea {
     }
 
     /// The bytes of this part, row by row.
-    pub fn cut<const N: usize>(self, size: Size, bytes: &[u8]) -> Vec<u8> {
-        let row = N * size.width() as usize;
-        let mut part = Vec::with_capacity(N * self.width as usize * self.height as usize);
+    pub fn cut(self, size: Size, bytes: &[u8]) -> Vec<u8> {
+        let row = size.width() as usize;
+        let mut part = Vec::with_capacity(self.width as usize * self.height as usize);
         for y in self.top..self.top + self.height {
-            let start = y as usize * row + N * self.left as usize;
-            part.extend_from_slice(&bytes[start..start + N * self.width as usize]);
+            let start = y as usize * row + self.left as usize;
+            part.extend_from_slice(&bytes[start..start + self.width as usize]);
         }
         part
     }
@@ -78,9 +75,9 @@ mod tests {
         ] {
             let mut after = before.clone();
             dots.iter().for_each(|&(x, y)| after[y * 20 + x] = 1);
-            let part = ChangedArea::of::<1>(size, &before, &after);
+            let part = ChangedArea::of(size, &before, &after);
             assert_eq!([part.left, part.top, part.width, part.height], expected, "{dots:?}");
-            assert_eq!(part.cut::<1>(size, &after).iter().filter(|&&byte| byte == 1).count(), dots.len());
+            assert_eq!(part.cut(size, &after).iter().filter(|&&byte| byte == 1).count(), dots.len());
         }
     }
 }

@@ -1,10 +1,9 @@
-//! Pictures to files: one PNG, an animated PNG, a GIF. Encoders are fed picture by picture and hold two at most.
-mod apng;
+//! Pictures to files: one PNG, a GIF. Encoders are fed picture by picture and hold two at most.
 mod changed;
 mod gif;
 mod png;
 
-pub use self::{apng::Apng, gif::Gif, png::png};
+pub use self::{gif::Gif, png::png};
 
 /// How fast pictures follow each other, in pictures per second.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -12,12 +12,8 @@ pub fn png(raster: &Raster, out: impl Write) -> io::Result<()> {
     encoder.set_color(::png::ColorType::Rgb);
     encoder.set_depth(::png::BitDepth::Eight);
     let mut writer = encoder.write_header()?;
-    writer.write_image_data(&rgb(raster))?;
+    let rgb: Vec<u8> = raster.rgba().chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
+    writer.write_image_data(&rgb)?;
     writer.finish()?;
     Ok(())
-}
-
-/// Red, green and blue of each pixel.
-pub(super) fn rgb(raster: &Raster) -> Vec<u8> {
-    raster.rgba().chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect()
 }

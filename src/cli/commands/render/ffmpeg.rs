@@ -70,7 +70,7 @@ impl Ffmpeg {
             Ok(run) => String::from_utf8_lossy(&run.stdout).into_owned(),
             Err(error) if error.kind() == io::ErrorKind::NotFound => bail!(
                 "an MP4 needs ffmpeg, which is not installed; install it (on Debian and Ubuntu: apt install ffmpeg), or name \
-                 the output .apng or .gif, which need nothing"
+                 the output .gif, which needs nothing"
             ),
             Err(error) => return Err(error).context("ffmpeg can't be started"),
         };
@@ -79,7 +79,7 @@ impl Ffmpeg {
         let found = ENCODERS.into_iter().find(|(name, _)| has(name));
         found.context(
             "this ffmpeg has no encoder for MP4 (libx264, libopenh264, libvpx-vp9, mpeg4); name the output \
-            .apng or .gif",
+            .gif",
         )
     }
 

@@ -1,4 +1,4 @@
-//! `render`: a scene's motion as pictures, an animated PNG, a GIF or a movie.
+//! `render`: a scene's motion as pictures, a GIF or a movie.
 mod ffmpeg;
 mod motion;
 
@@ -11,7 +11,7 @@ use crate::{
     },
     render::{
         Extent, Painter, PictureOptions, Raster, Size,
-        film::{Apng, Gif, Rate, png},
+        film::{Gif, Rate, png},
         number::short,
         shape::Shape,
         svg,
@@ -80,19 +80,18 @@ fn form(arguments: &Render) -> Result<RenderFormat> {
     let by_name = |extension: &str| has_extension(output, extension);
     let format = match arguments.format {
         Some(format) => format,
-        None if by_name("apng") => RenderFormat::Apng,
         None if by_name("gif") => RenderFormat::Gif,
         None if by_name("mp4") => RenderFormat::Mp4,
         None if by_name("svg") && is_single => RenderFormat::Svg,
         None if by_name("png") && is_single => RenderFormat::Png,
         None if by_name("svg") || by_name("png") => bail!(
             "{} can hold one picture: add --step N, or name a folder and add --format svg or --format png; a name that \
-             ends in .apng or .gif becomes a film",
+             ends in .gif becomes a film",
             output.display()
         ),
         None => bail!(
             "say what to make of {}: --format svg or --format png for a folder with a picture per step, or a name that \
-             ends in .apng, .gif or .mp4",
+             ends in .gif or .mp4",
             output.display()
         ),
     };
@@ -108,7 +107,7 @@ fn form(arguments: &Render) -> Result<RenderFormat> {
 
 /// Whether pictures follow each other in time, beginning with the start of the scene.
 const fn is_film(form: RenderFormat) -> bool {
-    matches!(form, RenderFormat::Apng | RenderFormat::Gif | RenderFormat::Mp4)
+    matches!(form, RenderFormat::Gif | RenderFormat::Mp4)
 }
 
 /// Which steps are drawn.
@@ -283,17 +282,11 @@ impl RenderTarget {
                 encoder.finish(drawn)?;
                 Ok(film(0))
             }
-            (Self::Stream(output), form) => {
+            (Self::Stream(output), _) => {
                 let mut out = CountedWriter { out: BufWriter::new(output), bytes: 0 };
-                if form == RenderFormat::Gif {
-                    let mut film = Gif::new(&mut out, size, rate, &reel.painter.colours())?;
-                    reel.each_raster(|_, raster| Ok(film.picture(raster)?))?;
-                    film.finish()?;
-                } else {
-                    let mut film = Apng::new(&mut out, size, rate, pictures)?;
-                    reel.each_raster(|_, raster| Ok(film.picture(raster)?))?;
-                    film.finish()?;
-                }
+                let mut gif = Gif::new(&mut out, size, rate, &reel.painter.colours())?;
+                reel.each_raster(|_, raster| Ok(gif.picture(raster)?))?;
+                gif.finish()?;
                 let bytes = out.bytes;
                 out.out.into_inner().map_err(std::io::IntoInnerError::into_error)?.finish()?;
                 Ok(film(bytes))
