@@ -1,4 +1,4 @@
-//! The shortcuts of judging, bytes first and right at once: the outcome is that of the full way.
+//! The shortcut of judging for what is right at once: the outcome is that of the full way.
 use fosssim_oracle::{
     judge::replay::{self, Options},
     scene::original,

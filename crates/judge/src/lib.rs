@@ -30,7 +30,6 @@ pub mod budget;
 mod contacts;
 mod differing;
 pub mod fair;
-mod identical;
 pub mod kept;
 mod options;
 pub mod overlap;

@@ -1,9 +1,9 @@
 //! Reads the trace step by step, has the steps judged in batches, and puts the results together in their order.
 //!
 //! Once a step's frames are in memory the step depends on nothing else: the reference starts from the submission's own
-//! state (oracle-behaviour.md 4.2). So while one batch is judged, on all threads, the next one is read. Steps that are
-//! the reference's byte for byte are judged as they are read (`identical`): that takes hardly longer than decoding
-//! them. What is reported, and in which order, does not depend on the number of threads.
+//! state (oracle-behaviour.md 4.2). So while one batch is judged, on all threads, the next one is read. What is
+//! reported, and in which order, does not depend on the number of threads.
+mod contest;
 mod workers;
 
 pub use super::{
@@ -15,11 +15,11 @@ use super::{
     budget::Budget,
     fair::{self, Context, Judging, Reach, Records, StepJudgement},
     finding::FindingDetail,
-    identical::Identical,
     outcome::{Damage, Outcome, Stop},
     rules::Book,
     tally::{self, StepResult},
 };
+use contest::ContestOrder;
 use fosssim_model::{
     assignments::ImpulseList,
     scene::Scene,
@@ -35,9 +35,6 @@ const BATCH_BYTES: usize = 1 << 18;
 const LARGE_BATCH_BYTES: usize = 1 << 24;
 /// ... or this many steps ...
 const BATCH_STEPS: usize = 256;
-/// ... or this many that are done as they are read: for those nobody has to be called, and fewer slots take less
-/// memory.
-const DONE_STEPS: usize = 16;
 
 /// One step as read, and what judging it yields.
 #[derive(Debug, Default)]
@@ -102,15 +99,12 @@ pub(super) fn judge_within(
     progress: &mut dyn Progress,
 ) -> Outcome {
     let reader = Lenient::new(trace, Layout::of(scene)).with_limit(memory);
-    let mut replay = Replay::new(scene, reader, options.fair, options.root_search);
+    let mut replay = Replay::new(scene, reader, options.fair);
     if let Some(floor) = floor {
         replay.budgets = replay.budgets.map(|budget| budget.with_floor(floor));
     }
-    if options.one_by_one {
-        replay.identical.give_up();
-        if let Some(context) = &mut replay.shape.fair {
-            context.looks_closely = true;
-        }
+    if let (true, Some(context)) = (options.one_by_one, &mut replay.shape.fair) {
+        context.looks_closely = true;
     }
     replay.judge(options, progress)
 }
@@ -137,8 +131,7 @@ struct Replay<'a, R> {
     /// The work that is left to each book: the original's, which are asked always, and the fair one's. What one of them
     /// costs is nothing to the other.
     budgets: [Budget<'a>; 2],
-    /// Judges what is the reference's byte for byte.
-    identical: Identical,
+    order: ContestOrder,
     /// Damage of the record that could not be read at last.
     damage: Option<Damage>,
     /// Whether a record of the steps delivered so far, or the first one, is damaged.
@@ -199,8 +192,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             stop = stop_after;
             std::mem::swap(&mut current, &mut next);
         }
-        self.outcome.searches = self.identical.searches();
-        self.outcome.searches += workers.searches();
+        self.outcome.searches = workers.searches();
         self.conclude()
     }
 
@@ -220,7 +212,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         self.outcome
     }
 
-    fn new(scene: &'a Scene, reader: Lenient<R>, fair: bool, root_search: RootSearch) -> Self {
+    fn new(scene: &'a Scene, reader: Lenient<R>, fair: bool) -> Self {
         let layout = Layout::of(scene);
         let logs_impulses = scene.collision.handling().records.impulses == ImpulseList::Responses;
         Self {
@@ -231,7 +223,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             steps_read: 0,
             reach: fair.then(|| Reach::new(scene)),
             budgets: [false, true].map(|fair| Budget::new(scene, fair)),
-            identical: Identical::new(scene, root_search),
+            order: ContestOrder::new(scene),
             damage: None,
             damaged: false,
             judging: fair.then(Box::default),
@@ -278,8 +270,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
     /// Fills a batch. A stop is that of the first step that could not be read; the batch holds the steps before it.
     fn read_batch(&mut self, batch: &mut Batch) -> Option<Stop> {
         (batch.filled, batch.bytes) = (0, 0);
-        let mut most = DONE_STEPS;
-        while !self.complete() && batch.filled < most && batch.bytes < BATCH_BYTES {
+        while !self.complete() && batch.filled < BATCH_STEPS && batch.bytes < BATCH_BYTES {
             if batch.filled == batch.slots.len() {
                 batch.slots.push(Mutex::default());
             }
@@ -287,9 +278,6 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             if let Err(stop) = self.read_step(slot) {
                 self.damage = slot.damage.take();
                 return Some(stop);
-            }
-            if !slot.is_done {
-                most = BATCH_STEPS;
             }
             batch.bytes += slot.bytes;
             batch.filled += 1;
@@ -304,11 +292,8 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         slot.beyond_limit = false;
         (slot.is_done, slot.work) = (false, 0);
         (slot.is_done_fairly, slot.fair_work) = (self.shape.fair.is_none(), 0);
-        if self.read_at_once(slot) {
-            return Ok(());
-        }
         slot.before.clone_from(&self.state);
-        slot.order.clone_from(self.identical.order());
+        slot.order.clone_from(self.order.follow(slot.step, &self.state, self.budgets[0].rest()));
         let mut damage = None;
         let mut read = Ok(());
         if self.shape.layout.polynomials {
@@ -332,21 +317,6 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         slot.bytes = memory(&slot.end).max(memory(&slot.mid)) + self.shape.layout.state_bytes();
         self.steps_read += 1;
         Ok(())
-    }
-
-    /// Reads a step and judges it, if it is the reference's byte for byte.
-    fn read_at_once(&mut self, slot: &mut StepSlot) -> bool {
-        let (context, rest) = (self.shape.fair.as_ref(), self.budgets[0].rest());
-        let Some(found) = self.identical.find(&mut self.reader, slot.step, &self.state, context, rest) else {
-            return false;
-        };
-        self.state.clone_from(self.identical.state());
-        self.steps_read += 1;
-        slot.result.set_identical();
-        slot.fair = found.fair.unwrap_or_default();
-        (slot.bytes, slot.work, slot.is_done, slot.is_done_fairly) = (found.bytes, found.work, true, true);
-        (slot.is_extraordinary, slot.is_put_off) = (false, false);
-        true
     }
 
     /// Hands the batch's results on in the order of the steps. Whether judging is over.

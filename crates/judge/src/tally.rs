@@ -29,7 +29,7 @@ use fosssim_num::{
 /// differs from `O` by at most two roundings, 2 * 2^-53 * 1e5, which is less than a quarter of
 /// [`PARITY_COEFFICIENT`]. Above it the original may reject even its own output (oracle-behaviour.md 8.10), so the
 /// comparison is made as it is written.
-pub(super) const SAFE_SUM: f64 = 1e5;
+const SAFE_SUM: f64 = 1e5;
 
 /// The result of judging one step; reused from step to step.
 #[derive(Debug, Default)]
@@ -48,12 +48,6 @@ pub(super) struct StepResult {
 }
 
 impl StepResult {
-    /// Of a step that is the reference's bit for bit: no residual is above zero.
-    pub(super) fn set_identical(&mut self) {
-        self.clear();
-        self.identical = true;
-    }
-
     /// Of a step of which nothing is said.
     pub(super) fn clear(&mut self) {
         self.remarks.clear();
@@ -362,14 +356,6 @@ pub(super) fn accumulate(total: &mut Residuals, step: &[(f64, f64)]) {
 /// Whether two states are equal bit for bit.
 fn same_state(own: &State, other: &State) -> bool {
     same_bits(&own.positions, &other.positions) && same_bits(&own.velocities, &other.velocities)
-}
-
-/// Whether the original rejects a polynomial that is the reference's bit for bit (oracle-behaviour.md 6.2 and 8.10).
-pub(super) fn rejects_itself(coefficients: &[f64]) -> bool {
-    let sum = sum_of_moduli(coefficients);
-    // Written as the original asks: NaN passes.
-    let rejects = |c: f64| (c - (c * sum) / sum).abs() > PARITY_COEFFICIENT;
-    !(sum < SAFE_SUM) && coefficients.iter().any(|&c| rejects(c))
 }
 
 /// Whether the original finds nothing about a polynomial (oracle-behaviour.md 6.2): it is right up to a factor, or

@@ -1,4 +1,6 @@
 //! Batches and limits, tried from inside.
+mod ways;
+
 use super::*;
 use crate::{finding::FindingKind, rules::Ruling, samples::changed};
 use fosssim_model::trace::{Frame, Reader, Recorder, Writer};
@@ -30,8 +32,7 @@ fn a_batch_counts_all_lists() {
                 (0..polynomials).for_each(|_| frame.polynomials.push(&[]));
             }
         });
-        let mut replay =
-            Replay::new(&scene, Lenient::new(&trace[..], Layout::of(&scene)), true, RootSearch::WhereNeeded);
+        let mut replay = Replay::new(&scene, Lenient::new(&trace[..], Layout::of(&scene)), true);
         replay.read_initial().expect("a first record");
         let mut batch = Batch::default();
         assert!(replay.read_batch(&mut batch).is_none());

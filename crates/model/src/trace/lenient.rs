@@ -12,7 +12,6 @@ use super::{
     frame::{LoggedImpulse, PolynomialLog},
     layout::Layout,
     source::Source,
-    step_bytes::StepBytes,
 };
 use crate::{
     scene::{Collision, Scene},
@@ -194,28 +193,6 @@ impl<R: Read> Lenient<R> {
         frame.note = self.note.take();
         self.record += 1;
         Ok(())
-    }
-
-    /// Goes past the records of a step if they are these bytes, and says so; otherwise nothing is read. Records that
-    /// take more memory than allowed are not gone past.
-    pub fn passes(&mut self, step: &StepBytes) -> bool {
-        if self.failed || step.memory() > self.limit {
-            return false;
-        }
-        let start = self.source.offset();
-        let (mut begin, mut records) = (start, 0);
-        for pieces in step.records() {
-            begin = self.source.offset();
-            if !pieces.into_iter().all(|piece| self.source.follow(piece)) {
-                let seen = usize::try_from(self.source.offset() - start).unwrap_or(usize::MAX);
-                self.source.unread(seen, step.records().flatten());
-                return false;
-            }
-            records += 1;
-        }
-        self.begin = begin;
-        self.record += records;
-        true
     }
 
     /// Number of records read.

@@ -18,7 +18,6 @@ mod log;
 mod reader;
 mod recorder;
 mod source;
-mod step_bytes;
 mod summary;
 mod writer;
 
@@ -33,6 +32,5 @@ pub use layout::Layout;
 pub use lenient::{Lenient, LenientFrame, ReadStop, Unreadable, record_memory};
 pub use reader::{FRAME_LIMIT, Reader, TRAILING_LIMIT};
 pub use recorder::Recorder;
-pub use step_bytes::StepBytes;
 pub use summary::{StepView, Summary};
 pub use writer::{Writer, WrittenTrace};

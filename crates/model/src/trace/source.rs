@@ -107,42 +107,6 @@ impl<R: Read> Source<R> {
         self.offset += count as u64;
     }
 
-    /// Steps over the next bytes as far as they are those of `expected`, piece by piece. Whether they all are; if not,
-    /// some of those that are may have been stepped over, and [`Source::unread`] gives them back.
-    pub(crate) fn follow(&mut self, expected: &[u8]) -> bool {
-        let mut rest = expected;
-        while !rest.is_empty() {
-            let there = self.ensure(1).min(rest.len());
-            if there == 0 || self.window()[..there] != rest[..there] {
-                return false;
-            }
-            self.consume(there);
-            rest = &rest[there..];
-        }
-        true
-    }
-
-    /// Puts the `count` bytes that were consumed last in front of what follows; `bytes` are these, piece by piece, and
-    /// may go on.
-    pub(crate) fn unread<'a>(&mut self, count: usize, bytes: impl Iterator<Item = &'a [u8]>) {
-        self.offset -= count as u64;
-        if let Some(start) = self.start.checked_sub(count) {
-            // They are still there.
-            self.start = start;
-            return;
-        }
-        let size = self.buffer.len().max(count + self.window().len());
-        let mut buffer = Vec::with_capacity(size);
-        for piece in bytes {
-            buffer.extend_from_slice(&piece[..piece.len().min(count - buffer.len())]);
-        }
-        buffer.extend_from_slice(self.window());
-        (self.start, self.end) = (0, buffer.len());
-        // As long as it was at least, lest the stream be read in small pieces from now on.
-        buffer.resize(size, 0);
-        self.buffer = buffer;
-    }
-
     /// Consumes everything up to the end, but at most `limit` bytes, without keeping it. Gives how many there were;
     /// `None` when more follow.
     pub(crate) fn drain(&mut self, limit: u64) -> Option<u64> {
@@ -171,10 +135,8 @@ impl<R: Read> Source<R> {
             self.buffer = vec![0; usize::try_from(size).unwrap_or(WINDOW)];
         }
         self.buffer.copy_within(self.start..self.end, 0);
-        if self.buffer.len() < wanted || self.buffer.len() > WINDOW {
-            // It was small, or holds what was given back and is consumed by now.
+        if self.buffer.len() < wanted {
             self.buffer.resize(WINDOW, 0);
-            self.buffer.shrink_to_fit();
         }
         self.end -= self.start;
         self.start = 0;
@@ -232,53 +194,6 @@ mod tests {
         assert_eq!(source.left(), Some(93));
         assert_eq!(source.drain(93), Some(93));
         assert_eq!(source.ensure(1), 0);
-    }
-
-    #[test]
-    fn what_was_followed_can_be_given_back() {
-        let bytes: Vec<u8> = (0..=255).cycle().take(3 * WINDOW).collect();
-        let mut source = Source::new(&bytes[..]);
-        assert!(source.follow(&bytes[..2 * WINDOW]));
-        assert!(!source.follow(&[0; 9]) && !source.follow(&[&bytes[2 * WINDOW..], &[1]].concat()));
-        let count = usize::try_from(source.offset()).unwrap();
-        source.unread(count, [&bytes[..7], &bytes[7..]].into_iter());
-        assert_eq!((source.offset(), &source.window()[..9]), (0, &bytes[..9]));
-        let mut read = Vec::new();
-        while source.ensure(WINDOW) > 0 {
-            let there = source.window().len();
-            read.extend_from_slice(source.window());
-            source.consume(there);
-        }
-        assert!(read == bytes && source.offset() == bytes.len() as u64);
-    }
-
-    /// A stream that counts how often it is read.
-    struct Counting<'a>(&'a [u8], &'a mut usize);
-
-    impl Read for Counting<'_> {
-        fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
-            *self.1 += 1;
-            self.0.read(out)
-        }
-    }
-
-    /// Each call is one of the system: what is given back must not make them more.
-    #[test]
-    fn what_is_given_back_makes_no_smaller_pieces() {
-        let bytes = vec![7; 8 * WINDOW];
-        for followed in [5, WINDOW - 3, WINDOW + 9] {
-            let mut count = 0;
-            let mut source = Source::new(Counting(&bytes, &mut count));
-            assert!(source.follow(&bytes[..followed]));
-            source.unread(followed, [&bytes[..followed]].into_iter());
-            while source.ensure(4) > 0 {
-                let there = source.window().len();
-                source.consume(there);
-            }
-            assert_eq!(source.offset(), bytes.len() as u64);
-            drop(source);
-            assert!(count <= 12, "{count} pieces after {followed} bytes");
-        }
     }
 
     #[test]

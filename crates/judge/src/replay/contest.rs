@@ -1,0 +1,32 @@
+//! The order in which the reference looks at the bodies of a contest. It depends on all steps before, so that it is
+//! followed as steps are read.
+use fosssim_model::{
+    scene::Scene,
+    sim::{RootSearch, Simulation, State, SweepOrder},
+};
+
+/// Follows the order from step to step; does nothing for other scenes.
+pub(super) struct ContestOrder {
+    simulation: Simulation,
+    order: SweepOrder,
+}
+
+impl ContestOrder {
+    /// Before the first step.
+    pub(super) fn new(scene: &Scene) -> Self {
+        Self { simulation: Simulation::new(scene, RootSearch::WhereNeeded), order: SweepOrder::default() }
+    }
+
+    /// Steps from `before`, spending `most_work` at most. Returns the order from which the reference begins this step;
+    /// it is empty but in a contest.
+    pub(super) fn follow(&mut self, step: u32, before: &State, most_work: u64) -> &SweepOrder {
+        if self.simulation.penalty_pairs().is_some_and(|pairs| pairs.order(&mut self.order)) {
+            self.simulation.state_mut().clone_from(before);
+            self.simulation.set_steps_done(step - 1);
+            self.simulation.limit_work(self.simulation.work().saturating_add(most_work));
+            // Judging meets the same error.
+            let _ = self.simulation.step(&mut ());
+        }
+        &self.order
+    }
+}
