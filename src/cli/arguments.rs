@@ -59,7 +59,7 @@ pub(super) enum Command {
     Detect(Box<DetectArguments>),
     /// Draws a scene's motion: a picture per step, a GIF, or a movie.
     Render(Box<Render>),
-    /// Shows what a trace holds, one of its steps, or how two traces differ.
+    /// Shows what a trace holds, or one of its steps.
     #[command(subcommand)]
     Trace(Trace),
     /// Records the traces of all scenes of a folder, or checks that they are still the same.
@@ -246,7 +246,6 @@ Example:
 pub(super) enum Trace {
     Info(TraceInfo),
     Show(TraceShow),
-    Diff(TraceDiff),
 }
 
 /// Says what a trace holds, and where it is damaged.
@@ -280,27 +279,6 @@ pub(super) struct TraceShow {
     /// How the answer is written.
     #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
     pub(super) format: TextOrJson,
-}
-
-/// Compares two traces of one scene bit by bit, and shows the first difference.
-#[derive(Debug, Args)]
-#[command(after_help = "\
-Example:
-  fosssim-oracle trace diff scenes/test00.xml reference.bin submission.bin
-
-The exit code is 0 when they are the same, 1 when they differ.")]
-pub(super) struct TraceDiff {
-    /// The scene, which decides how the traces are to be read.
-    pub(super) scene: PathBuf,
-    /// One trace.
-    pub(super) left: PathBuf,
-    /// The other trace.
-    pub(super) right: PathBuf,
-    /// How the answer is written.
-    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
-    pub(super) format: TextOrJson,
-    #[command(flatten)]
-    pub(super) quiet: Quiet,
 }
 
 #[derive(Debug, Args)]
@@ -391,10 +369,10 @@ pub(super) struct Completions {
 #[command(after_help = "\
 Example:
   fosssim-oracle man | man -l -
-  fosssim-oracle man trace diff | man -l -
+  fosssim-oracle man trace show | man -l -
 
-The page refers to those of the commands: fosssim-oracle-trace-diff(1) is what man trace diff prints.")]
+The page refers to those of the commands: fosssim-oracle-trace-show(1) is what man trace show prints.")]
 pub(super) struct Man {
-    /// A command, such as check or trace diff. Without it the page is about the program.
+    /// A command, such as check or trace show. Without it the page is about the program.
     pub(super) command: Vec<String>,
 }

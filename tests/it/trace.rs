@@ -1,4 +1,4 @@
-//! `trace info`, `trace show`, `trace diff`.
+//! `trace info`, `trace show`.
 use super::workspace::{BEAM, BOUNCE, Workspace};
 use serde_json::Value;
 
@@ -35,42 +35,12 @@ fn show_puts_one_step_into_words() {
 }
 
 #[test]
-fn diff_shows_the_first_difference_first() {
-    let workspace = Workspace::with_trace(BOUNCE);
-    let trace = workspace.read("trace.bin");
-    let mut other = trace.clone();
-    other[40] ^= 1;
-    other[90] ^= 1;
-    workspace.write("other.bin", &other);
-    workspace.write("longer.bin", [&trace[..], b"x"].concat());
-    workspace.write("cut.bin", &trace[..200]);
-    let diff = |right: &str, format: &str| {
-        workspace.run(["trace", "diff", "scene.xml", "trace.bin", right, "--format", format])
-    };
-    insta::assert_snapshot!("diff_same", diff("trace.bin", "text").shown());
-    insta::assert_snapshot!("diff_other", diff("other.bin", "text").shown());
-    insta::assert_snapshot!("diff_other_json", diff("other.bin", "json").shown());
-    insta::assert_snapshot!("diff_longer", diff("longer.bin", "text").shown());
-    insta::assert_snapshot!("diff_cut", diff("cut.bin", "text").shown());
-    workspace.write("left.bin", [&trace[..], b"abc"].concat());
-    workspace.write("right.bin", [&trace[..], b"def"].concat());
-    let run = workspace.run(["trace", "diff", "scene.xml", "left.bin", "right.bin"]);
-    insta::assert_snapshot!("diff_same_trailing", run.shown());
-    let run = diff("nowhere.bin", "text");
-    assert_eq!(run.code, Some(2), "a trace that is not there is no difference");
-}
-
-#[test]
 fn streams_without_an_end_are_given_up() {
     let workspace = Workspace::with_trace(BOUNCE);
     insta::assert_snapshot!("info_endless", workspace.run(["trace", "info", "scene.xml", "/dev/zero"]).shown());
     let run = workspace.run(["trace", "info", "scene.xml", "/dev/zero", "--format", "json"]);
     let json: Value = serde_json::from_slice(&run.stdout).unwrap();
     assert_eq!((&json["sha256"], &json["all_bytes_read"]), (&Value::Null, &Value::Bool(false)));
-    insta::assert_snapshot!(
-        "diff_endless",
-        workspace.run(["trace", "diff", "scene.xml", "/dev/zero", "/dev/zero"]).shown()
-    );
     std::fs::File::create(workspace.path("sparse.bin")).unwrap().set_len(10_000_000_000).unwrap();
     let run = workspace.run(["trace", "info", "scene.xml", "sparse.bin"]);
     assert_eq!(run.code, Some(1));

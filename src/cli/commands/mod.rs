@@ -45,7 +45,6 @@ pub(super) fn run(command: &Command) -> Result<u8> {
         Command::Explain(arguments) => return explain::run(arguments),
         Command::Render(arguments) => return render::run(arguments),
         Command::Trace(Trace::Info(arguments)) => return trace::info(arguments),
-        Command::Trace(Trace::Diff(arguments)) => return trace::diff(arguments),
         Command::Record(arguments) => return record::run(arguments),
         Command::Grade(arguments) => return grade::run(arguments),
         Command::Merge(arguments) => return merge::run(arguments),
@@ -72,7 +71,6 @@ fn is_quiet(command: &Command) -> bool {
         Command::Simulate(arguments) => arguments.quiet.quiet,
         Command::Check(arguments) => arguments.quiet.quiet,
         Command::Explain(arguments) => arguments.quiet.quiet,
-        Command::Trace(arguments) => matches!(arguments, Trace::Diff(arguments) if arguments.quiet.quiet),
         Command::Record(arguments) => arguments.quiet.quiet,
         _ => false,
     }

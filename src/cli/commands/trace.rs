@@ -1,14 +1,14 @@
-//! `trace info`, `trace show`, `trace diff`: what traces hold.
+//! `trace info`, `trace show`: what traces hold.
 use crate::{
     cli::{
-        arguments::{TraceDiff, TraceInfo, TraceShow},
+        arguments::{TraceInfo, TraceShow},
         console, exit, input,
     },
     report::{
         number::counted,
         trace::{self as report, ShownRecord, ShownStep},
     },
-    trace::{Frame, Layout, Summary, compare, labels},
+    trace::{Frame, Layout, Summary, labels},
 };
 use anyhow::{Result, bail};
 
@@ -65,18 +65,4 @@ pub(super) fn show(arguments: &TraceShow) -> Result<()> {
     let labels = if step > 0 { labels(&scene.scene, &before.state) } else { Vec::new() };
     let shown = ShownStep { step, steps, records: &records, labels: &labels };
     console::show(arguments.format, || shown.text(console::style()), || shown.json(&scene.name, &trace.name))
-}
-
-/// Two traces side by side. Exit code 1 when they differ.
-pub(super) fn diff(arguments: &TraceDiff) -> Result<u8> {
-    let scene = input::scene(&arguments.scene)?;
-    let mut left = input::trace(&arguments.left)?;
-    let mut right = input::trace(&arguments.right)?;
-    let comparison = compare(left.records(&scene.scene), right.records(&scene.scene));
-    left.not_failed()?;
-    right.not_failed()?;
-    let names = report::TraceNames { scene: &scene.name, left: &left.name, right: &right.name };
-    let text = || report::diff_text(&names, &comparison, console::style());
-    console::show(arguments.format, text, || report::diff_json(&names, &comparison))?;
-    Ok(if report::same(&comparison) { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }

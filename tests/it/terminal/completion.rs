@@ -41,7 +41,7 @@ fn bash_completes_behind_a_command() {
     assert_eq!(offers(&["fosssim-oracle", "check", "--rules", "p"]), ["parity"]);
     assert_eq!(offers(&["fosssim-oracle", "trace", "sh"]), ["show"]);
     assert_eq!(offers(&["fosssim-oracle", "trace", "show", "--st"]), ["--step"]);
-    assert_eq!(offers(&["fosssim-oracle", "help", "trace", "di"]), ["diff"]);
+    assert_eq!(offers(&["fosssim-oracle", "help", "trace", "in"]), ["info"]);
 }
 
 #[test]
@@ -60,7 +60,7 @@ fn zsh_and_fish_can_read_their_scripts() {
 #[test]
 fn the_foot_of_a_manual_page_names_the_program_and_its_version() {
     let workspace = Workspace::new();
-    for page in [&["man"][..], &["man", "grade"], &["man", "trace", "diff"]] {
+    for page in [&["man"][..], &["man", "grade"], &["man", "trace", "show"]] {
         let text = workspace.run(page).out();
         let foot = format!("\"fosssim-oracle {}\"", env!("CARGO_PKG_VERSION"));
         let title = text.lines().find(|line| line.starts_with(".TH ")).expect("a title");

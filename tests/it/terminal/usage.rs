@@ -7,7 +7,7 @@ use std::{os::unix::fs::symlink, process::Command};
 #[test]
 fn help_is_wrapped_once() {
     let workspace = Workspace::new();
-    for command in [&["grade"][..], &["record"], &["explain"], &["trace", "diff"], &["check"], &[]] {
+    for command in [&["grade"][..], &["record"], &["explain"], &["trace", "show"], &["check"], &[]] {
         let text = workspace.run(command.iter().chain(&["--help"])).out();
         let lines: Vec<&str> = text.lines().collect();
         let begun = lines.iter().position(|line| *line == "Example:").unwrap_or(0);
@@ -44,8 +44,7 @@ fn a_trace_in_the_place_of_the_scene_is_told_in_one_line() {
 #[test]
 fn a_scene_in_the_place_of_the_trace_is_told_in_one_line() {
     let workspace = Workspace::with_trace(DRIFT);
-    for command in [&["check", "scene.xml", "scene.xml"][..], &["trace", "diff", "scene.xml", "trace.bin", "scene.xml"]]
-    {
+    for command in [&["check", "scene.xml", "scene.xml"][..], &["trace", "info", "scene.xml", "scene.xml"]] {
         let run = workspace.run(command);
         assert_eq!((run.code, run.err().lines().count()), (Some(2), 1), "{}", run.shown());
         assert!(run.err().contains("scene.xml is a scene and no trace"), "{}", run.err());
@@ -113,7 +112,6 @@ fn quiet_leaves_only_errors_and_the_exit_code() {
         (&["check", "scene.xml", "trace.bin", "-q"][..], 0),
         (&["check", "scene.xml", "short.bin", "--quiet", "--format", "json"], 1),
         (&["explain", "-q", "scene.xml", "short.bin"], 1),
-        (&["trace", "diff", "-q", "scene.xml", "trace.bin", "short.bin"], 1),
         (&["simulate", "-q", "scene.xml", "--output", "again.bin"], 0),
         (&["check", "scene.xml", "short.bin", "-q", "--output", "report.txt"], 1),
     ] {

@@ -15,6 +15,19 @@ pub struct Frame {
     pub polynomials: PolynomialLog,
 }
 
+impl Frame {
+    /// Whether both frames hold the same, bit for bit.
+    #[must_use]
+    pub fn is_same(&self, other: &Self) -> bool {
+        same_bits(&self.state.positions, &other.state.positions)
+            && same_bits(&self.state.velocities, &other.state.velocities)
+            && self.impulses.len() == other.impulses.len()
+            && self.impulses.iter().zip(&other.impulses).all(|(one, another)| one.is_same(another))
+            && self.polynomials.ends == other.polynomials.ends
+            && same_bits(&self.polynomials.coefficients, &other.polynomials.coefficients)
+    }
+}
+
 /// An impulse as a trace holds it: nothing about it is checked.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(try_from = "ImpulseForm", into = "ImpulseForm")]

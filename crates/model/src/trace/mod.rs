@@ -5,7 +5,6 @@
 
 mod counts;
 mod decode;
-mod diff;
 mod digest;
 mod encode;
 mod error;
@@ -22,7 +21,6 @@ mod summary;
 mod writer;
 
 pub use counts::EventCounts;
-pub use diff::{Block, Comparison, Difference, compare, difference};
 pub use digest::{Digests, Sha, Short};
 pub use error::{List, Malformation, TraceError};
 pub use frame::{Frame, ImpulsePair, LoggedImpulse, PolynomialLog};

@@ -79,15 +79,6 @@ impl<R: Read> Reader<R> {
         }
     }
 
-    /// The same reader, whatever the stream is.
-    pub(super) fn boxed<'a>(self) -> Reader<Box<dyn Read + 'a>>
-    where
-        R: 'a,
-    {
-        let Self { source, layout, objects, record, begin, notes, stopped, limit, keeps_raw, raw } = self;
-        Reader { source: source.boxed(), layout, objects, record, begin, notes, stopped, limit, keeps_raw, raw }
-    }
-
     /// Tells the reader how long the whole stream is, so that impossible counts are refused at once. Nothing beyond
     /// is read. To be called before the first record.
     #[must_use]

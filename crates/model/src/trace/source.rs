@@ -33,15 +33,6 @@ impl<R: Read> Source<R> {
         Self { stream, buffer, start: 0, end: 0, offset: 0, length, ended: false, error, tape }
     }
 
-    /// The same source, whatever the stream is.
-    pub(super) fn boxed<'a>(self) -> Source<Box<dyn Read + 'a>>
-    where
-        R: 'a,
-    {
-        let Self { stream, buffer, start, end, offset, length, ended, error, tape } = self;
-        Source { stream: Box::new(stream), buffer, start, end, offset, length, ended, error, tape }
-    }
-
     /// The same source, with a known length of the whole stream.
     pub(crate) fn with_length(mut self, bytes: u64) -> Self {
         self.length = Some(bytes);

@@ -47,8 +47,7 @@ impl ShownStep<'_> {
             step => format!("Step {step} of {}", self.steps),
         };
         let mut text = style.paint(Look::Strong, &heading) + "\n";
-        let same =
-            matches!(self.records, [mid, end] if fosssim_model::trace::difference(&mid.frame, &end.frame).is_none());
+        let same = matches!(self.records, [mid, end] if mid.frame.is_same(&end.frame));
         for record in self.records {
             if record.mid && same {
                 text += &format!(
