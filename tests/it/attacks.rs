@@ -107,20 +107,6 @@ fn hosts_without_namespaces_and_control_groups_hold_the_promises_too() {
     assert_all_held(&table, 160);
 }
 
-#[test]
-fn bubblewrap_holds_the_promises_too() {
-    let Some(backend) = backend() else { return };
-    let backend = match backend.in_bubblewrap() {
-        Ok(backend) => backend,
-        Err(error) => {
-            skip(Need::Walls, error);
-            return;
-        }
-    };
-    let Some(table) = attacked(&backend) else { return };
-    assert_all_held(&table, 160);
-}
-
 /// Root can try what an ordinary user's grader holds: the program alone, where everybody may execute it.
 #[test]
 fn an_ordinary_users_grader_holds_the_promises_too() {

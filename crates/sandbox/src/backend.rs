@@ -14,7 +14,6 @@ use std::{
 };
 
 use super::{
-    bubblewrap,
     collect::OpenFolder,
     fake::FakeRun,
     fault::{SandboxError, set_up_failed},
@@ -54,33 +53,24 @@ impl Supervisor {
         ["/proc/self/exe".into(), self.program.clone()]
     }
 
+    /// Its command, asked for this, without our environment.
     fn command(&self, mode: &str) -> Command {
-        let mut command = in_mode(Command::new(&self.program), mode);
+        let mut command = Command::new(&self.program);
+        command.arg(SUPERVISOR_ARGUMENT).arg(mode).env_clear().current_dir("/");
         // Copies of programs lie there, which the probe tries.
         command.env("TMPDIR", std::env::temp_dir());
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         command
-    }
-
-    /// The same inside bubblewrap, if it is there, with a folder that may be changed.
-    fn wrapped(&self, mode: &str, folder: Option<&Path>) -> io::Result<Command> {
-        let bwrap = bubblewrap::installed().ok_or_else(|| io::Error::other("bwrap is not installed"))?;
-        // Inside, our own entry in /proc would be another program's.
-        let program = self.program.canonicalize()?;
-        Ok(in_mode(bubblewrap::command(&bwrap, &program, folder, sys::user() == 0), mode))
     }
 
     /// Starts it for a run, with the descriptors that the run's walls need.
     fn spawn_for(&self, order: &RunOrder) -> Result<SpawnedSupervisor, SandboxError> {
-        let (name, command) = match order.walls.bubblewrap {
-            true => ("in bubblewrap".into(), self.wrapped(MODE_RUN, Some(&wire::path(&order.folder)))),
-            false => (self.program.display().to_string(), Ok(self.command(MODE_RUN))),
-        };
         let begin = || -> io::Result<_> {
-            let (mut child, control) = connected(command?)?;
+            let (mut child, control) = connected(self.command(MODE_RUN))?;
             let answers = child.stdout.take().ok_or(io::ErrorKind::BrokenPipe)?;
             Ok(SpawnedSupervisor { host: Host::Own(child), control, answers: OwnedFd::from(answers).into() })
         };
-        let asked = begin().map_err(|source| SandboxError::Supervisor { program: name, source })?;
+        let asked = begin().map_err(|source| self.not_started(source))?;
         // One that does not listen says why, or ends.
         let _ = wire::send(&asked.control, order);
         Ok(asked)
@@ -117,39 +107,9 @@ impl Supervisor {
         SandboxError::Supervisor { program: self.program.display().to_string(), source }
     }
 
-    /// The findings of a prober outside of bubblewrap.
-    fn probe_outside(&self) -> Result<Probe, SandboxError> {
-        Self::answer(self.command(MODE_PROBE).spawn().map_err(|source| self.not_started(source))?)
-    }
-
     /// Has every wall tried once.
     pub(super) fn probe(&self) -> Result<Probe, SandboxError> {
-        let mut probe = self.probe_outside()?;
-        if probe.namespaces.is_some() {
-            probe.bubblewrap = self.try_bubblewrap(&probe).err();
-        }
-        Ok(probe)
-    }
-
-    /// Whether all walls of this probe hold inside bubblewrap as well; the error is why not.
-    fn try_bubblewrap(&self, outside: &Probe) -> Result<(), String> {
-        let child = self.wrapped(MODE_PROBE, None).and_then(|mut command| command.spawn());
-        let inside = Self::answer(child.map_err(|error| error.to_string())?).map_err(|error| error.to_string())?;
-        let walls = |probe: &Probe| {
-            let active = |report: &LayerReport| report.active.then_some(report.layer);
-            layers::reports(probe).iter().filter_map(active).collect::<Vec<_>>()
-        };
-        let (inside, outside) = (walls(&inside), walls(outside));
-        // The temporary folder can't be changed inside, so that nothing can be tried there.
-        let own = [Layer::Namespaces, Layer::Bubblewrap, Layer::Execution];
-        match outside.iter().find(|layer| !own.contains(layer) && !inside.contains(layer)) {
-            Some(layer) => Err(format!("it takes away: {}", layer.name())),
-            None => Ok(()),
-        }
-    }
-
-    /// The answer of a prober.
-    fn answer(child: Child) -> Result<Probe, SandboxError> {
+        let child = self.command(MODE_PROBE).spawn().map_err(|source| self.not_started(source))?;
         let output = child.wait_with_output();
         let lost = |how: String| SandboxError::Lost { how };
         let output = output.map_err(|error| lost(error.to_string()))?;
@@ -158,13 +118,6 @@ impl Supervisor {
             lost(format!("the probe ended with {}: {text}", output.status))
         })
     }
-}
-
-/// A supervisor's command, asked for this, without an environment.
-fn in_mode(mut command: Command, mode: &str) -> Command {
-    command.arg(SUPERVISOR_ARGUMENT).arg(mode).env_clear().current_dir("/");
-    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    command
 }
 
 /// Starts a supervisor; the answer is also the other end of its standard input.
@@ -262,18 +215,6 @@ impl Backend {
     /// As for [`Backend::without`].
     pub fn with_landlock(&self, version: u8) -> Result<Self, SandboxError> {
         self.with(layers::with_landlock(&self.layers, version), version)
-    }
-
-    /// The same with bubblewrap in place of the grader's own namespaces, to prove that it holds, too. By itself a
-    /// backend takes bubblewrap only where the grader cannot make namespaces.
-    ///
-    /// # Errors
-    ///
-    /// [`SandboxError::Missing`] when bubblewrap is not installed or takes other walls away.
-    pub fn in_bubblewrap(&self) -> Result<Self, SandboxError> {
-        let Kind::Launcher { supervisor, .. } = &self.kind else { return Ok(self.clone()) };
-        supervisor.try_bubblewrap(&supervisor.probe_outside()?).map_err(lacking)?;
-        self.with(layers::in_bubblewrap(&self.layers), 0)
     }
 
     /// Every wall that holds on this host, however few: nothing is refused for a missing one. For

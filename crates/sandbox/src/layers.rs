@@ -31,13 +31,11 @@ pub enum Layer {
     Namespaces,
     /// A control group per run: the kernel's own counts, and an end for all at one word.
     ControlGroup,
-    /// Bubblewrap, in place of namespaces that the grader cannot make by itself.
-    Bubblewrap,
 }
 
 impl Layer {
     /// All of them, in the order of a report.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 11] = [
         Self::NoNewPrivileges,
         Self::Limits,
         Self::Reaper,
@@ -49,7 +47,6 @@ impl Layer {
         Self::OwnUser,
         Self::Namespaces,
         Self::ControlGroup,
-        Self::Bubblewrap,
     ];
 
     /// The name in reports.
@@ -67,7 +64,6 @@ impl Layer {
             Self::OwnUser => "a user per program",
             Self::Namespaces => "namespaces",
             Self::ControlGroup => "control group",
-            Self::Bubblewrap => "bubblewrap",
         }
     }
 }
@@ -204,7 +200,7 @@ fn of_calls_and_files(probe: &Probe) -> [LayerReport; 4] {
 }
 
 /// The walls that only some hosts have: users, namespaces, groups.
-fn of_surroundings(probe: &Probe) -> [LayerReport; 4] {
+fn of_surroundings(probe: &Probe) -> [LayerReport; 3] {
     let own_user = match (probe.root, probe.roots_group) {
         (true, _) => probe.own_user.clone(),
         (false, true) => Some("the grader is not root, but in root's group, and so are the programs".into()),
@@ -244,22 +240,6 @@ fn of_surroundings(probe: &Probe) -> [LayerReport; 4] {
             "use Linux 5.14 or newer with version 2 (or version 1, for the limits), and start the grader in a group of \
              its own, for example by systemd-run --user --scope -p Delegate=yes",
         ),
-        match (&probe.namespaces, &probe.bubblewrap) {
-            (None, _) => LayerReport {
-                layer: Layer::Bubblewrap,
-                active: false,
-                required: false,
-                detail: "not needed: the grader makes namespaces by itself".into(),
-                remedy: None,
-            },
-            (Some(_), problem) => report(
-                Layer::Bubblewrap,
-                problem.clone(),
-                "a run sees its own processes only, no network, and can change its folder only",
-                false,
-                "install bubblewrap; some systems allow it the namespaces that they refuse to others",
-            ),
-        },
     ]
 }
 
@@ -288,16 +268,6 @@ pub(super) fn with_landlock(reports: &[LayerReport], version: u8) -> Vec<LayerRe
     let mut reports = if version < SCOPES_SINCE { without(reports, Layer::Scopes) } else { reports.to_vec() };
     for report in reports.iter_mut().filter(|report| report.layer == Layer::FileRules && report.active) {
         report.detail = format!("version {version} on request");
-    }
-    reports
-}
-
-/// The same reports with bubblewrap in place of the grader's own namespaces.
-pub(super) fn in_bubblewrap(reports: &[LayerReport]) -> Vec<LayerReport> {
-    let mut reports = without(reports, Layer::Namespaces);
-    for report in reports.iter_mut().filter(|report| report.layer == Layer::Bubblewrap) {
-        report.active = true;
-        report.detail = "switched on on request".into();
     }
     reports
 }
@@ -344,7 +314,6 @@ fn active(reports: &[LayerReport]) -> Walls {
         own_user: active(Layer::OwnUser),
         namespaces: active(Layer::Namespaces),
         group: active(Layer::ControlGroup),
-        bubblewrap: active(Layer::Bubblewrap),
     }
 }
 
@@ -383,23 +352,10 @@ mod tests {
             own_user: true,
             namespaces: true,
             group: true,
-            bubblewrap: false,
         };
         assert_eq!(walls(&reports(&healthy(true))), Ok(all));
         assert_eq!(walls(&reports(&healthy(false))), Ok(Walls { own_user: false, ..all }));
         assert_eq!(reports(&healthy(true)).iter().map(|report| report.layer).collect::<Vec<_>>(), Layer::ALL);
-    }
-
-    #[test]
-    fn bubblewrap_steps_in_where_the_grader_makes_no_namespaces() {
-        let refused = Probe { namespaces: Some("not permitted".into()), ..healthy(false) };
-        let walls = super::walls(&reports(&refused)).unwrap();
-        assert!(walls.bubblewrap && !walls.namespaces);
-        let neither = Probe { bubblewrap: Some("it is not installed".into()), ..refused };
-        let walls = super::walls(&reports(&neither)).unwrap();
-        assert!(!walls.bubblewrap && walls.landlock, "it is never required");
-        let walls = super::walls(&in_bubblewrap(&reports(&healthy(true)))).unwrap();
-        assert!(walls.bubblewrap && !walls.namespaces && walls.own_user);
     }
 
     #[test]
@@ -409,8 +365,6 @@ mod tests {
         let bare = Probe { namespaces: Some("not permitted".into()), ..lacking(true) };
         let missing = walls(&reports(&bare)).unwrap_err();
         assert!(missing.contains("file rules") && missing.contains("this grader included"), "{missing}");
-        // Bubblewrap shows the host's files.
-        assert!(walls(&in_bubblewrap(&reports(&lacking(true)))).is_err());
         let bare = without(&without(&reports(&healthy(true)), Layer::Namespaces), Layer::FileRules);
         assert!(walls(&bare).is_err());
         let missing = walls(&reports(&lacking(false))).unwrap_err();

@@ -28,7 +28,6 @@
 //! ```
 
 mod backend;
-mod bubblewrap;
 pub mod collect;
 mod decide;
 mod doctor;

@@ -63,8 +63,6 @@ pub(super) struct Walls {
     pub(super) own_user: bool,
     pub(super) namespaces: bool,
     pub(super) group: bool,
-    /// Whether the supervisor itself is inside bubblewrap.
-    pub(super) bubblewrap: bool,
 }
 
 /// The order for one run.
@@ -191,8 +189,6 @@ pub(super) struct Probe {
     pub(super) from_memory: bool,
     pub(super) namespaces: Option<String>,
     pub(super) group: Option<String>,
-    /// Why bubblewrap does not help. Only tried when the supervisor cannot make namespaces by itself.
-    pub(super) bubblewrap: Option<String>,
     /// The quantities that the kernel limits for a group here.
     pub(super) group_controls: Vec<String>,
     /// Whether a group here ends as a whole.

@@ -27,7 +27,7 @@ impl AttackNeed {
         // Files of the host are closed to programs, or out of sight.
         Self::of("hidden files", &[Layer::FileRules, Layer::Namespaces]),
         // Files of the host are in mounts of the run's own.
-        Self::of("private mounts", &[Layer::Namespaces, Layer::Bubblewrap]),
+        Self::of("private mounts", &[Layer::Namespaces]),
         Self::of("private processes", &[Layer::Namespaces]),
         Self::of("signal scope", &[Layer::Scopes, Layer::OwnUser]),
         Self::of("named violations", &[Layer::NamedCalls]),
