@@ -1,17 +1,11 @@
 //! The author of a program: the mistakes that are made in it.
-use super::{
-    Area, Mistake,
-    hooks::{Change, Mutation},
-};
+use super::{Area, Mistake};
 
 /// The program's author: makes one mistake, none, or several of different parts of the assignment.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Student {
     mistakes: [Option<Mistake>; Student::MOST],
     right_approach: bool,
-    /// The student's change that the catalogue does not have.
-    pub(super) change: Option<&'static Change>,
-    pub(super) mutation: Option<Mutation>,
 }
 
 impl Student {
@@ -64,18 +58,6 @@ impl Student {
     #[must_use]
     pub fn with_right_approach(self) -> Self {
         Self { right_approach: true, ..self }
-    }
-
-    /// The same student, who makes a mistake that the catalogue does not have, too.
-    #[must_use]
-    pub fn with_change(self, change: &'static Change) -> Self {
-        Self { change: Some(change), ..self }
-    }
-
-    /// The same student, in whose program an operator has changed a place, too.
-    #[must_use]
-    pub fn with_mutation(self, mutation: Mutation) -> Self {
-        Self { mutation: Some(mutation), ..self }
     }
 
     /// Whether the particle-edge approach is mathematically right, not the supplied one.

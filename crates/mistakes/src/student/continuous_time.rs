@@ -1,7 +1,6 @@
 //! Collision type `continuous-time`: one pass, each contact resolved as soon as it is found (collisions.md 4).
 use super::{
     Mistake, detection,
-    hooks::Place,
     objects::State,
     response::respond,
     step_failure::StepFailure,
@@ -18,8 +17,7 @@ pub fn handle(world: &World, q_start: &[f64], state: &mut State, log: &mut StepL
     for _ in 0..passes {
         let predicted = state.x.clone();
         for pair in world.pairs() {
-            let is_old =
-                student.makes(Mistake::ContinuousOldPrediction) || student.is_stale(Place::ContinuousPrediction);
+            let is_old = student.makes(Mistake::ContinuousOldPrediction);
             let q_end = if is_old { &predicted } else { &state.x };
             let Some(contact) = detection::detect(world, pair, q_start, q_end, log)? else { continue };
             if student.makes(Mistake::ContinuousFirstOnly) && !log.impulses.is_empty() {

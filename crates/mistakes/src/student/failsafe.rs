@@ -7,7 +7,6 @@ use fosssim_num::{
 use super::{
     Area, Mistake,
     author::Student,
-    hooks::{Change, Place, ZoneTurn},
     objects::{State, Zone},
     rounding::single,
     world::World,
@@ -39,13 +38,10 @@ pub fn perform(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
         return;
     }
     if stops(world, zone) {
-        if !world.student.leaves(Place::HeldZone, || 0.0) {
-            stop(world, zone, q_start, state);
-        }
+        stop(world, zone, q_start, state);
     } else {
         let rigid = Rigid::new(world, zone, q_start, state);
-        let leaves = world.student.leaves(Place::FreeZone, || rigid.momentum);
-        if !leaves && (mistake != Some(Mistake::FailsafeUnturnedUnmoved) || rigid.angle != 0.0) {
+        if mistake != Some(Mistake::FailsafeUnturnedUnmoved) || rigid.angle != 0.0 {
             rigid.carry_out(zone, state);
         }
     }
@@ -54,10 +50,8 @@ pub fn perform(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
 /// Whether something in the zone cannot move.
 fn stops(world: &World, zone: &Zone) -> bool {
     let student = world.student;
-    let asked = particles(world, Place::AskedWhetherFixed, zone);
-    let fixed = student.holds(Place::FixedHolds, asked.into_iter().any(|particle| world.fixed(particle)));
-    let half_plane = student.holds(Place::HalfPlaneHolds, zone.half_plane);
-    let half_plane = half_plane && !student.makes(Mistake::FailsafeHalfPlaneForgotten);
+    let fixed = particles(world, zone).into_iter().any(|particle| world.fixed(particle));
+    let half_plane = zone.half_plane && !student.makes(Mistake::FailsafeHalfPlaneForgotten);
     let fixed = match () {
         () if student.makes(Mistake::FailsafeFixedForgotten) => false,
         () if student.makes(Mistake::FailsafeAllFixedOnly) => {
@@ -69,28 +63,23 @@ fn stops(world: &World, zone: &Zone) -> bool {
 }
 
 /// The particles of a zone in the order in which a loop goes through them.
-fn particles(world: &World, place: Place, zone: &Zone) -> Vec<usize> {
-    let all = match (zone.particles.first(), zone.particles.last()) {
+fn particles(world: &World, zone: &Zone) -> Vec<usize> {
+    match (zone.particles.first(), zone.particles.last()) {
         (Some(&first), Some(&last)) if world.student.makes(Mistake::FailsafeRange) => (first..=last).collect(),
         _ => zone.particles.iter().copied().collect(),
-    };
-    world.student.items(place, all)
+    }
 }
 
 fn stop(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
-    for particle in particles(world, Place::StoppedParticles, zone) {
+    for particle in particles(world, zone) {
         if world.student.makes(Mistake::FailsafeStopsFixedOnly) && !world.fixed(particle) {
             continue;
         }
-        let keeps = |place, row| world.student.is_stale(place) || world.student.makes(row);
-        if !keeps(Place::StoppedPosition, Mistake::FailsafeStopKeepsPosition) {
+        if !world.student.makes(Mistake::FailsafeStopKeepsPosition) {
             put(&mut state.x, particle, at(q_start, particle));
         }
-        if !keeps(Place::StoppedVelocity, Mistake::FailsafeStopKeepsVelocity) {
-            let stopped = match world.student.change {
-                Some(Change::Stopped(change)) => change(at(&state.v, particle)),
-                _ => at(&state.v, particle) * 0.0,
-            };
+        if !world.student.makes(Mistake::FailsafeStopKeepsVelocity) {
+            let stopped = at(&state.v, particle) * 0.0;
             put(&mut state.v, particle, stopped);
         }
     }
@@ -118,28 +107,7 @@ impl<'a> Rigid<'a> {
         let mut rigid = Self { world, q_start, centre, shift, momentum: 0.0, angle: 0.0, inertia: 0.0 };
         rigid.translation(zone, state);
         rigid.rotation(zone, state);
-        if let Some(Change::Rigid(change)) = world.student.change {
-            let mut turn = rigid.turn(zone);
-            change(&mut turn);
-            (rigid.shift, rigid.angle) = (turn.shift, turn.angle);
-        }
         rigid
-    }
-
-    /// The motion, for what the catalogue does not have.
-    fn turn(&self, zone: &Zone) -> ZoneTurn {
-        let disc = |&particle: &usize| {
-            let particle = &self.world.scene.particles[particle];
-            particle.mass * particle.radius * particle.radius
-        };
-        ZoneTurn {
-            centre: self.centre,
-            shift: self.shift,
-            angle: self.angle,
-            inertia: self.inertia,
-            discs: zone.particles.iter().map(disc).sum(),
-            h: self.world.scene.time_step,
-        }
     }
 
     fn mistake(&self) -> Option<Mistake> {
@@ -151,8 +119,6 @@ impl<'a> Rigid<'a> {
         if self.mistake() == Some(Mistake::FailsafeUnweighted) {
             return 1.0;
         }
-        let student = self.world.student;
-        let particle = student.index(Place::SumMass, particle, 0, self.world.scene.particles.len());
         let index = match self.mistake() {
             Some(Mistake::FailsafeMassIndex) => particle,
             Some(Mistake::FailsafeMassCounter) => 2 * number,
@@ -166,8 +132,7 @@ impl<'a> Rigid<'a> {
         let mut total = 0.0;
         let (student, both) = (self.world.student, self.mistake() == Some(Mistake::FailsafeMeansUnweighted));
         let is_unweighted = |alone| both || student.makes(alone);
-        let h = self.world.scene.time_step;
-        for (number, particle) in particles(self.world, Place::SummedParticles, zone).into_iter().enumerate() {
+        for (number, particle) in particles(self.world, zone).into_iter().enumerate() {
             let mass = self.mass(number, particle);
             let start = at(self.q_start, particle);
             let moved = at(&state.x, particle) - start;
@@ -175,7 +140,7 @@ impl<'a> Rigid<'a> {
             let weight = |forgotten| if is_unweighted(forgotten) { 1.0 } else { mass };
             let motion = match self.mistake() {
                 Some(Mistake::FailsafeMomentumVelocity) => at(&state.v, particle),
-                _ => student.fresh(Place::SumMotion, moved, h * at(&state.v, particle)),
+                _ => moved,
             };
             self.centre = student.add_scaled(self.centre, weight(Mistake::FailsafeCentreUnweighted), position);
             self.shift = student.add_scaled(self.shift, weight(Mistake::FailsafeMomentumUnweighted), motion);
@@ -201,14 +166,13 @@ impl<'a> Rigid<'a> {
     fn rotation(&mut self, zone: &Zone, state: &State) {
         let mut momentum = 0.0;
         let mut inertia = 0.0;
-        let (h, student) = (self.world.scene.time_step, self.world.student);
-        for (number, particle) in particles(self.world, Place::TurningParticles, zone).into_iter().enumerate() {
+        let student = self.world.student;
+        for (number, particle) in particles(self.world, zone).into_iter().enumerate() {
             let start = at(self.q_start, particle);
             let moved = at(&state.x, particle) - start;
-            let moved = student.fresh(Place::TurnMotion, moved, h * at(&state.v, particle));
             let arm = match self.mistake() {
                 Some(Mistake::FailsafeAboutOrigin) => start,
-                _ => student.fresh(Place::TurnArm, start, at(&state.x, particle)) - self.centre,
+                _ => start - self.centre,
             };
             let relative = match self.mistake() {
                 Some(Mistake::FailsafeWholeDisplacement) => moved,
@@ -248,8 +212,6 @@ impl<'a> Rigid<'a> {
                 _ => {}
             }
         }
-        let momentum = student.number(Place::AngularMomentum, momentum);
-        let inertia = student.number(Place::Inertia, inertia);
         (self.momentum, self.inertia) = (momentum, inertia);
         self.angle = match self.mistake() {
             Some(Mistake::FailsafeRotationSign) => -(momentum / inertia),
@@ -257,7 +219,7 @@ impl<'a> Rigid<'a> {
             Some(Mistake::FailsafeTinyTurnIgnored) if (momentum / inertia).abs() < 1e-3 => 0.0,
             Some(Mistake::FailsafeAnglePerStep) => momentum / inertia * self.world.scene.time_step,
             Some(Mistake::FailsafeNoInertia) => momentum,
-            _ => student.number(Place::Angle, momentum / inertia),
+            _ => momentum / inertia,
         };
     }
 
@@ -280,18 +242,17 @@ impl<'a> Rigid<'a> {
             _ => (elementary::cos(self.angle), elementary::sin(self.angle)),
         };
         let student = self.world.student;
-        let (cosine, sine) = (student.number(Place::Cosine, cosine), student.number(Place::Sine, sine));
-        for particle in particles(self.world, Place::CarriedParticles, zone) {
+        for particle in particles(self.world, zone) {
             let start = at(self.q_start, particle);
             let arm = match self.mistake() {
                 Some(Mistake::FailsafeTurnsEnd) => at(&state.x, particle) - self.centre - self.shift,
-                _ => student.fresh(Place::CarriedArm, start, at(&state.x, particle)) - self.centre,
+                _ => start - self.centre,
             };
             let across = match self.mistake() {
                 Some(Mistake::FailsafePerpendicular) => Vec2::new(arm.y, arm.x),
                 _ => Vec2::new(-arm.y, arm.x),
             };
-            let mut x = match self.mistake() {
+            let x = match self.mistake() {
                 Some(Mistake::FailsafeNoCentre) => self.shift + cosine * arm + sine * across,
                 Some(Mistake::FailsafeShiftTwice) => self.centre + 2.0 * self.shift + cosine * arm + sine * across,
                 Some(Mistake::FailsafeRotationMatrix) => {
@@ -299,23 +260,19 @@ impl<'a> Rigid<'a> {
                     self.centre + (self.shift + turned)
                 }
                 _ => {
-                    let centre = student.vector(Place::CarriedCentre, self.centre);
-                    let to = centre + student.vector(Place::CarriedShift, self.shift);
+                    let to = self.centre + self.shift;
                     student.add_scaled(student.add_scaled(to, cosine, arm), sine, across)
                 }
             };
             let (h, before) = (self.world.scene.time_step, at(&state.v, particle));
-            let mut v = match self.mistake() {
+            let v = match self.mistake() {
                 Some(Mistake::FailsafeVelocityKept) => before,
                 Some(Mistake::FailsafeVelocityNoStep) => x - start,
                 Some(Mistake::FailsafeVelocityAdded) => before + over(x - start, h),
                 Some(Mistake::FailsafeVelocityFromPrediction) => over(x - at(&state.x, particle), h),
                 Some(Mistake::FailsafeVelocityOfCentre) => over(self.shift, h),
-                _ => student.vector(Place::CarriedVelocity, over(x - start, h)),
+                _ => over(x - start, h),
             };
-            if let Some(Change::Moved(change)) = student.change {
-                change(start, &self.turn(zone), &mut x, &mut v);
-            }
             put(&mut state.x, particle, x);
             put(&mut state.v, particle, v);
         }

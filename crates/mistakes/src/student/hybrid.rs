@@ -1,8 +1,6 @@
 //! Collision type `hybrid`: impulses first, and rigid impact zones where they do not suffice (collisions.md 5).
 use super::{
-    Area, Mistake, detection, failsafe,
-    hooks::{Change, Place},
-    impulses,
+    Area, Mistake, detection, failsafe, impulses,
     objects::{State, Zone},
     step_failure::StepFailure,
     world::{StepLog, World},
@@ -34,7 +32,7 @@ pub fn handle(
     if !resolved && world.student.makes(Mistake::GeometricMovesPrediction) {
         *state = prediction;
     }
-    if world.student.holds(Place::NeedsZones, !resolved) && !world.student.makes(Mistake::GeometricEmpty) {
+    if !resolved && !world.student.makes(Mistake::GeometricEmpty) {
         let before = world.student.makes(Mistake::GeometricVelocitiesKept).then(|| state.v.clone());
         geometric(world, q_start, state, log)?;
         if let Some(before) = before {
@@ -49,20 +47,18 @@ fn geometric(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLo
     let student = world.student;
     let prediction = state.clone();
     log.prediction = None;
-    let contacts = student.items(Place::FirstZoneContacts, detection::pass(world, q_start, &state.x, log)?);
+    let contacts = detection::pass(world, q_start, &state.x, log)?;
     let mut zones = zones::merge(student, contacts.iter().map(|contact| zones::zone_of(world, contact)).collect());
-    let most_rounds = if let Some(Change::GeometricRounds(most)) = student.change { *most } else { u32::MAX };
     let mut round = 0;
     if zones.is_empty() && student.makes(Mistake::GeometricStopsWhenEmpty) {
         return Ok(());
     }
     let mut moved: Vec<Zone> = Vec::new();
-    let mut kept = contacts;
     loop {
         if student.makes(Mistake::GeometricRestarts) {
             state.clone_from(&prediction);
         }
-        let mut chosen = student.items(Place::ZonesMoved { later: usize::from(round > 0) }, zones.clone());
+        let mut chosen = zones.clone();
         if student.makes(Mistake::GeometricNewZonesOnly) {
             chosen.retain(|zone| !moved.contains(zone));
         } else if student.makes(Mistake::GeometricGrownStay) {
@@ -71,29 +67,22 @@ fn geometric(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLo
         move_zones(world, q_start, &chosen, state);
         moved.clone_from(&zones);
         round += 1;
-        if student.makes(Mistake::GeometricOneRound) || round >= most_rounds {
+        if student.makes(Mistake::GeometricOneRound) {
             return Ok(());
         }
-        let is_old = student.makes(Mistake::GeometricDetectsPrediction) || student.is_stale(Place::ZonePrediction);
+        let is_old = student.makes(Mistake::GeometricDetectsPrediction);
         let q_end = if is_old { &prediction.x } else { &state.x };
-        let mut contacts = student.items(Place::LaterZoneContacts, detection::pass(world, q_start, q_end, log)?);
-        if student.is_stale(Place::ZoneContactsKept) {
-            kept.append(&mut contacts);
-            contacts.clone_from(&kept);
-        }
+        let contacts = detection::pass(world, q_start, q_end, log)?;
         let found = contacts.iter().map(|contact| zones::zone_of(world, contact));
         let stops_when_clear = contacts.is_empty() && student.makes(Mistake::GeometricStopsWhenClear);
         if stops_when_clear || student.makes(Mistake::GeometricFindsInVain) {
             return Ok(());
         }
-        let mut next: Vec<Zone> = if student.makes(Mistake::GeometricForgetsZones) {
-            Vec::new()
-        } else {
-            student.items(Place::ZonesBefore, zones.clone())
-        };
+        let mut next: Vec<Zone> =
+            if student.makes(Mistake::GeometricForgetsZones) { Vec::new() } else { zones.clone() };
         next.extend(found);
         let next = zones::merge(student, next);
-        let same = student.holds(Place::ZonesAreTheSame, zones::equal(student, &zones, &next));
+        let same = zones::equal(student, &zones, &next);
         if same || round > MOST_ROUNDS {
             if student.makes(Mistake::GeometricExtraPass) {
                 detection::pass(world, q_start, &state.x, log)?;

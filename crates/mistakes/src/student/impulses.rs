@@ -3,7 +3,6 @@ use fosssim_num::vector::{at, length, put};
 
 use super::{
     Area, Mistake, detection,
-    hooks::{Change, Place},
     objects::{Contact, State},
     response::respond,
     step_failure::StepFailure,
@@ -34,23 +33,22 @@ pub fn apply(
     let limit = limit(world, max_iterations);
     let mut list: Vec<Contact> = Vec::new();
     while rounds < limit {
-        let is_old = student.makes(Mistake::ImpulsesDetectPrediction) || student.is_stale(Place::RoundPrediction);
+        let is_old = student.makes(Mistake::ImpulsesDetectPrediction);
         let q_end = if is_old { &prediction.x } else { &state.x };
-        let found = student.items(Place::RoundContacts, detection::pass(world, &start, q_end, log)?);
+        let found = detection::pass(world, &start, q_end, log)?;
         let is_as_before = rounds > 0 && found.len() == list.len();
-        if !student.makes(Mistake::ImpulsesListKept) && !student.is_stale(Place::RoundContactsKept) {
+        if !student.makes(Mistake::ImpulsesListKept) {
             list.clear();
         }
         list.extend(found);
         let contacts = &list;
-        let enough = if let Some(Change::Enough(most)) = student.change { *most } else { 0 };
-        if student.holds(Place::RoundIsEmpty, contacts.len() <= enough) {
+        if contacts.is_empty() {
             if student.makes(Mistake::ImpulsesVelocityRestored) {
                 state.v.clone_from(&prediction.v);
             }
             let fails = student.mistake_in(&[Area::ImpulseLoop]);
             let succeeds = !matches!(fails, Some(Mistake::ImpulsesAlwaysFail | Mistake::ImpulsesInverted));
-            return Ok(student.holds(Place::LoopSucceeds, succeeds));
+            return Ok(succeeds);
         }
         if is_as_before && student.makes(Mistake::ImpulsesSameCountFails) {
             return Ok(false);
@@ -72,9 +70,6 @@ pub fn apply(
     }
     if student.makes(Mistake::ImpulsesOneLeftSucceeds) && list.len() == 1 {
         return Ok(true);
-    }
-    if let Some(Change::Failed(change)) = student.change {
-        change(q_start, state);
     }
     // All rounds found contacts: a correct program does nothing more.
     match student.mistake_in(&[Area::ImpulseLoop]) {
@@ -120,16 +115,13 @@ fn end_before_rounds(
 
 /// How many rounds this program allows itself.
 fn limit(world: &World, max_iterations: i32) -> i32 {
-    if let Some(Change::Limit(change)) = world.student.change {
-        return change(max_iterations);
-    }
     match world.student.mistake_in(&[Area::ImpulseLoop]) {
         Some(Mistake::ImpulsesOneFewer) => max_iterations.saturating_sub(1),
         Some(Mistake::ImpulsesOneMore) => max_iterations.saturating_add(1),
         Some(Mistake::ImpulsesOnlyOne) => max_iterations.min(1),
         Some(Mistake::ImpulsesAlwaysTen) => 10,
         Some(Mistake::ImpulsesDouble) => max_iterations.saturating_mul(2),
-        _ => world.student.count(Place::RoundLimit, max_iterations),
+        _ => max_iterations,
     }
 }
 

@@ -18,7 +18,6 @@ mod encounter;
 mod failsafe;
 mod forces;
 mod hessians;
-pub mod hooks;
 mod hybrid;
 mod impulses;
 mod integrators;

@@ -3,7 +3,6 @@
 use super::{
     Area, Mistake,
     author::Student,
-    hooks::Place,
     objects::{Contact, State},
     rounding::single,
     step::step,
@@ -123,7 +122,7 @@ fn impulses(student: Student, impulses: &[Contact]) -> Vec<Contact> {
         Some(Mistake::LogNoImpulses) => Vec::new(),
         Some(Mistake::LogDuplicateImpulses) => impulses.iter().flat_map(|impulse| [*impulse, *impulse]).collect(),
         Some(Mistake::LogImpulsesReversed) => impulses.iter().rev().copied().collect(),
-        _ => student.items(Place::LoggedImpulses, impulses.to_vec()),
+        _ => impulses.to_vec(),
     };
     if student.makes(Mistake::LogNanContacts) {
         listed.iter_mut().for_each(|impulse| impulse.n = Vec2::new(f64::NAN, f64::NAN));

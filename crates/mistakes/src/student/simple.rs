@@ -4,7 +4,6 @@ use fosssim_num::vector::{Vec2, at, length, unit};
 
 use super::{
     Slip, Term,
-    author::Student,
     edited::TermPart,
     objects::{Contact, Object, State},
     penalty::closest,
@@ -172,8 +171,7 @@ impl SimplePass<'_> {
         let [x1, x2, x3] = [one, two, three].map(|particle| at(&state.x, particle));
         let [v1, v2, v3] = [one, two, three].map(|particle| at(&state.v, particle));
         let on_line = (x1 - x2).dot(&(x3 - x2)) / (x3 - x2).dot(&(x3 - x2));
-        let limited = |alpha: f64| clamped(Student::default(), alpha);
-        let alpha = closest(student, Term::ClosestPoint, on_line, limited);
+        let alpha = closest(student, Term::ClosestPoint, on_line, clamped);
         let n = x2 + alpha * (x3 - x2) - x1;
         let seen = match () {
             () if self.makes(kind.approach, Slip::Middle) => 0.5,
@@ -189,7 +187,7 @@ impl SimplePass<'_> {
             return None;
         }
         let n = self.returned(kind, n);
-        self.push_edge(state, [one, two, three], n, closest(student, kind.response, on_line, limited));
+        self.push_edge(state, [one, two, three], n, closest(student, kind.response, on_line, clamped));
         Some(n)
     }
 

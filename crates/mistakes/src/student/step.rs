@@ -1,8 +1,6 @@
 //! One step with its records.
 use super::{
-    Area, Mistake, continuous_time,
-    hooks::Place,
-    hybrid, integrators,
+    Area, Mistake, continuous_time, hybrid, integrators,
     objects::State,
     simple,
     step_failure::StepFailure,
@@ -32,7 +30,6 @@ pub fn step(
     let advanced = integrators::advance(world, state, &mut solves);
     log.long_searches += u64::from(solves) * solve_work(world);
     advanced?;
-    let q_start = if student.is_stale(Place::StepStart) { state.x.clone() } else { q_start };
     if !student.makes(Mistake::LogImpulsesKept) {
         log.impulses.clear();
     }

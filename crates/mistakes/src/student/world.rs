@@ -10,7 +10,6 @@ use std::sync::Arc;
 use super::{
     Mistake,
     author::Student,
-    hooks::{Change, Place},
     objects::{Contact, Object, Pair, State},
 };
 
@@ -23,8 +22,6 @@ pub struct World {
     pub student: Student,
     /// The mass of each particle twice, in the order of the state.
     pub masses: Arc<[f64]>,
-    /// The pairs of a student who changes their list in a way that the catalogue does not have.
-    changed: Option<Vec<Pair>>,
 }
 
 /// The log of a step for the trace.
@@ -62,25 +59,18 @@ impl World {
     pub fn new(scene: impl Into<Arc<Scene>>, student: Student) -> Self {
         let scene = scene.into();
         let masses = scene.particles.iter().flat_map(|particle| [particle.mass, particle.mass]).collect();
-        Self { scene, student: Student::default(), masses, changed: None }.of(student)
+        Self { scene, student, masses }
     }
 
     /// The same scene for another student's program.
     #[must_use]
     pub fn of(&self, student: Student) -> Self {
-        let mut changed = None;
-        if let Some(Change::Pairs(change)) = student.change {
-            change(changed.insert(pairs(&self.scene, student).collect()));
-        } else if student.changes(Place::PairsOfPass) {
-            changed = Some(student.items(Place::PairsOfPass, pairs(&self.scene, student).collect()));
-        }
-        Self { scene: Arc::clone(&self.scene), student, masses: Arc::clone(&self.masses), changed }
+        Self { scene: Arc::clone(&self.scene), student, masses: Arc::clone(&self.masses) }
     }
 
     /// The pairs of one detection pass, in order (collisions.md 1).
     pub fn pairs(&self) -> impl Iterator<Item = Pair> {
-        let own = self.changed.is_none().then(|| pairs(&self.scene, self.student));
-        self.changed.iter().flatten().copied().chain(own.into_iter().flatten())
+        pairs(&self.scene, self.student)
     }
 
     /// The state at time zero.
@@ -93,12 +83,13 @@ impl World {
     }
 
     /// The particle's mass as collisions see it: nothing moves a fixed particle, so its mass is infinite.
-    ///
-    /// It is asked for a body of a pair of this kind, in this role.
-    pub fn collision_mass(&self, kind: usize, role: usize, particle: usize) -> f64 {
+    pub fn collision_mass(&self, particle: usize) -> f64 {
         let particle = &self.scene.particles[particle];
-        let is_infinite = self.student.holds(Place::InfiniteMass { kind, role }, particle.fixed);
-        if is_infinite && !self.student.makes(Mistake::ResponseFixedMassFinite) { f64::INFINITY } else { particle.mass }
+        if particle.fixed && !self.student.makes(Mistake::ResponseFixedMassFinite) {
+            f64::INFINITY
+        } else {
+            particle.mass
+        }
     }
 
     /// Whether the particle is fixed.
@@ -150,8 +141,7 @@ impl<'a> OfParticle<'a> {
     fn edges(self, particle: usize) -> impl Iterator<Item = Pair> + use<'a> {
         let is_fixed = move |one: usize| self.scene.particles[one].fixed;
         self.scene.edges.iter().enumerate().filter_map(move |(index, edge)| {
-            let is_endpoint = self.student.holds(Place::OwnFirstEnd, edge.first == particle)
-                || self.student.holds(Place::OwnSecondEnd, edge.second == particle);
+            let is_endpoint = edge.first == particle || edge.second == particle;
             let is_still = [particle, edge.first, edge.second].into_iter().all(is_fixed);
             let is_left_out = (is_endpoint && !self.student.makes(Mistake::PairsEndpointsToo))
                 || (is_still && self.student.makes(Mistake::PairsFixedSkipped))

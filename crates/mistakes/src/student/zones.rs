@@ -4,7 +4,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::{
     Area, Mistake,
     author::Student,
-    hooks::{Change, Place},
     objects::{Contact, Object, Zone},
     world::World,
 };
@@ -19,30 +18,22 @@ pub fn zone_of(world: &World, contact: &Contact) -> Zone {
     let mut particles = BTreeSet::from([one]);
     let mut half_plane = false;
     match contact.pair.object {
-        Object::Particle(other) => particles.extend([student.index(Place::ZoneOther, other, one, all)]),
+        Object::Particle(other) => particles.extend([other]),
         Object::Edge(index) => {
             let edge = world.scene.edges[index];
-            let first = student.index(Place::ZoneEnd { role: 1 }, edge.first, edge.second, all);
-            let second = student.index(Place::ZoneEnd { role: 2 }, edge.second, edge.first, all);
             match student.mistake_in(HERE) {
                 Some(Mistake::ZonesOneEndpoint) => particles.extend([edge.first]),
                 Some(Mistake::ZonesOtherEndpoint) => particles.extend([edge.second]),
                 Some(Mistake::ZonesNextParticle) => particles.extend([edge.first, (edge.first + 1).min(all - 1)]),
                 Some(Mistake::ZonesEdgeIndex) => particles.extend([index.min(all - 1)]),
                 Some(Mistake::ZonesEdgeWithoutParticle) => particles = BTreeSet::from([edge.first, edge.second]),
-                _ => particles.extend([first, second]),
+                _ => particles.extend([edge.first, edge.second]),
             }
             half_plane = student.makes(Mistake::ZonesFlagOfEdges);
         }
         Object::HalfPlane(_) => half_plane = !student.makes(Mistake::ZonesNoHalfPlaneFlag),
     }
-    let (kind, _) = contact.pair.object.numbers();
-    let half_plane = student.holds(Place::ZoneFlag { kind }, half_plane);
-    let mut zone = Zone { particles, half_plane };
-    if let Some(Change::Zone(change)) = student.change {
-        change(contact, &mut zone);
-    }
-    zone
+    Zone { particles, half_plane }
 }
 
 /// Joins zones until no two share a particle.
@@ -53,11 +44,7 @@ pub fn merge(student: Student, zones: Vec<Zone>) -> Vec<Zone> {
         Some(Mistake::ZonesUnionFind) => return disjoint_sets(&zones),
         _ => {}
     }
-    let mut merged = merged(student, zones);
-    if let Some(Change::Zones(change)) = student.change {
-        change(&mut merged);
-    }
-    merged
+    merged(student, zones)
 }
 
 fn merged(student: Student, mut zones: Vec<Zone>) -> Vec<Zone> {
@@ -68,21 +55,19 @@ fn merged(student: Student, mut zones: Vec<Zone>) -> Vec<Zone> {
         let meet = |one: &Zone, other: &Zone| {
             let most = if student.makes(Mistake::ZonesJoinTwoShared) {
                 one.particles.len().min(other.particles.len()).min(2)
-            } else if student.changes(Place::ZonesShare) {
-                2
             } else {
                 return !one.particles.is_disjoint(&other.particles);
             };
             one.particles.intersection(&other.particles).count() >= most
         };
-        for zone in student.items(Place::ZonesToMerge, zones) {
-            match merged.iter_mut().find(|other| student.holds(Place::ZonesMeet, meet(other, &zone))) {
+        for zone in zones {
+            match merged.iter_mut().find(|other| meet(other, &zone)) {
                 Some(other) => join(student, other, zone),
                 None => merged.push(zone),
             }
         }
         zones = merged;
-        let again = student.holds(Place::MergedAgain, zones.len() != before);
+        let again = zones.len() != before;
         if !again || student.makes(Mistake::ZonesMergedOnce) {
             return zones;
         }
@@ -94,12 +79,12 @@ fn join(student: Student, zone: &mut Zone, other: Zone) {
         Some(Mistake::ZonesFlagLost) => zone.half_plane,
         Some(Mistake::ZonesFlagOverwritten) => other.half_plane,
         Some(Mistake::ZonesFlagBoth) => zone.half_plane && other.half_plane,
-        _ => student.holds(Place::FlagOfOld, zone.half_plane) || student.holds(Place::FlagOfNew, other.half_plane),
+        _ => zone.half_plane || other.half_plane,
     };
     if student.makes(Mistake::ZonesJoinOneParticle) {
         zone.particles.extend(other.particles.last());
     } else {
-        zone.particles.extend(student.items(Place::JoinedParticles, Vec::from_iter(other.particles)));
+        zone.particles.extend(other.particles);
     }
 }
 
@@ -148,10 +133,7 @@ pub fn equal(student: Student, old: &[Zone], new: &[Zone]) -> bool {
         Some(Mistake::ZonesEqualByCount) => true,
         Some(Mistake::ZonesEqualNoFlag) => one.particles == other.particles,
         Some(Mistake::ZonesEqualBySize) => one.particles.len() == other.particles.len(),
-        _ => {
-            student.holds(Place::SameParticles, one.particles == other.particles)
-                && student.holds(Place::SameFlag, one.half_plane == other.half_plane)
-        }
+        _ => one.particles == other.particles && one.half_plane == other.half_plane,
     };
     old.len() == new.len() && new.iter().all(|zone| old.iter().any(|other| same(zone, other)))
 }

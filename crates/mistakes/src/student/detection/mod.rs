@@ -12,7 +12,6 @@ use crate::student::{
     Area, Mistake,
     author::Student,
     encounter::{Encounter, MovingBody, alpha},
-    hooks::{Change, Place},
     objects::{Contact, Object, Pair},
     rounding::single,
     step_failure::StepFailure,
@@ -61,7 +60,6 @@ impl Encounter {
         let frame = axes_of(world.student, pair);
         let (student, all) = (world.student, world.scene.particles.len());
         let (kind, _) = pair.object.numbers();
-        let other = if let Object::Particle(other) = pair.object { other } else { pair.particle };
         let slip = IndexSlip::of(student, kind);
         let body = |role: usize, index: usize| {
             let place = |list: &[f64]| {
@@ -69,29 +67,21 @@ impl Encounter {
             };
             let start = frame.point(place(q_start), at(q_start, pair.particle));
             let end = frame.point(place(q_end), at(q_end, pair.particle));
-            let partner = if role == 0 { other } else { pair.particle };
-            let radius = student.index(Place::SeenRadius { kind, role }, index, partner, all);
             let (_, number) = pair.object.numbers();
             let radius = match slip.radius {
-                Some(RadiusSlip::Next) => (radius + 1) % all,
+                Some(RadiusSlip::Next) => (index + 1) % all,
                 Some(RadiusSlip::OfObject) if role == 0 => number % all,
-                _ => radius,
+                _ => index,
             };
-            let displacement = student.vector(Place::SeenMotion { kind, role }, end - start);
-            MovingBody { start, displacement, radius: world.scene.particles[radius].radius }
+            MovingBody { start, displacement: end - start, radius: world.scene.particles[radius].radius }
         };
         let particle = body(0, pair.particle);
         match pair.object {
-            Object::Particle(other) => {
-                Self::Particles(particle, body(1, student.index(Place::SeenOther, other, pair.particle, all)))
-            }
+            Object::Particle(other) => Self::Particles(particle, body(1, other)),
             Object::Edge(index) => {
                 let edge = world.scene.edges[index];
-                let first = student.index(Place::SeenEnd { role: 1 }, edge.first, edge.second, all);
-                let second = student.index(Place::SeenEnd { role: 2 }, edge.second, edge.first, all);
                 let measured = if student.makes(Mistake::ParticleEdgeFirstEdgeRadius) { 0 } else { index };
-                let measured = student.index(Place::SeenRadius { kind, role: 1 }, measured, 0, world.scene.edges.len());
-                let bodies = [particle, body(1, first), body(2, second)];
+                let bodies = [particle, body(1, edge.first), body(2, edge.second)];
                 let radius = match student.mistake_in(&[Area::ParticleEdge]) {
                     Some(Mistake::ParticleEdgeFirstEndRadius) => bodies[1].radius,
                     Some(Mistake::ParticleEdgeSecondEndRadius) => bodies[2].radius,
@@ -101,7 +91,6 @@ impl Encounter {
             }
             Object::HalfPlane(index) => {
                 let index = if student.makes(Mistake::HalfPlaneFirst) { 0 } else { index };
-                let index = student.index(Place::SeenHalfPlane, index, 0, world.scene.half_planes.len());
                 let plane = world.scene.half_planes[index];
                 let point = frame.point(plane.point, at(q_start, pair.particle));
                 Self::HalfPlane(particle, point, frame.direction(plane.normal))
@@ -240,15 +229,6 @@ pub fn detect(
     if student.makes(Mistake::ThroughBernstein) {
         lists.iter_mut().for_each(|list| *list = basis::through_bernstein(list));
     }
-    let (kind, _) = pair.object.numbers();
-    for (polynomial, list) in lists.iter_mut().enumerate() {
-        for (index, coefficient) in list.iter_mut().enumerate() {
-            *coefficient = student.number(Place::Coefficient { kind, polynomial, index }, *coefficient);
-        }
-    }
-    if let Some(Change::Polynomials(change)) = student.change {
-        change(&encounter, &mut lists);
-    }
     let polynomials = handover::hand_over(student, pair.object, lists);
     if polynomials.is_empty() {
         return Ok(None);
@@ -260,29 +240,14 @@ pub fn detect(
     {
         return Err(StepFailure::Refused);
     }
-    let mut searched = polynomials;
-    if let Some(Change::Searched(change)) = student.change {
-        change(&mut searched);
-    }
-    let mut time = searched_time(&searched, log)?;
-    if let Some(Change::Time(change)) = student.change {
-        time = change(time);
-    }
+    let mut time = searched_time(&polynomials, log)?;
     if student.makes(Mistake::ContactTimeSingle) {
         time = single(time);
     }
-    let counts = match student.change {
-        Some(Change::Counts(counts)) => counts(&encounter, time),
-        _ => within_step(student, time, world.scene.time_step),
-    };
-    if !counts {
+    if !within_step(student, time, world.scene.time_step) {
         return Ok(None);
     }
-    let n = axes_of(student, pair).back(encounter.contact_vector(student, time));
-    let mut n = student.vector(Place::ContactVector { kind }, n);
-    if let Some(Change::Vector(change)) = student.change {
-        n = change(&encounter, time, n);
-    }
+    let mut n = axes_of(student, pair).back(encounter.contact_vector(student, time));
     if matches!(encounter, Encounter::Edge(..)) && length(n) == 0.0 {
         return Ok(None);
     }
@@ -296,7 +261,6 @@ pub fn detect(
         _ => {}
     }
     let time = if student.makes(Mistake::ContactTimeZero) { 0.0 } else { time };
-    let time = student.number(Place::ContactTime { kind }, time);
     Ok(Some(Contact { pair, n, time }))
 }
 
@@ -313,9 +277,6 @@ pub fn pass(world: &World, q_start: &[f64], q_end: &[f64], log: &mut StepLog) ->
     let mut contacts = Vec::new();
     for pair in world.pairs() {
         contacts.extend(detect(world, pair, q_start, q_end, log)?);
-    }
-    if let Some(Change::Contacts(change)) = world.student.change {
-        change(&mut contacts);
     }
     Ok(contacts)
 }
@@ -334,7 +295,7 @@ fn within_step(student: Student, time: f64, time_step: f64) -> bool {
         Some(Mistake::DecisionTolerance) => time <= 1.0 + 1e-6,
         Some(Mistake::DecisionTruth) => time != 0.0,
         Some(Mistake::DecisionNever | Mistake::HostileForgedVerdict) => false,
-        _ => time <= student.number(Place::LastTime, 1.0),
+        _ => time <= 1.0,
     }
 }
 

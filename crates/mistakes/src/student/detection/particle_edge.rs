@@ -11,7 +11,6 @@ use crate::student::{
     Area, Mistake,
     author::Student,
     encounter::{MovingBody, alpha},
-    hooks::Place,
 };
 
 /// The parts of the assignment whose mistakes are made in the polynomials.
@@ -247,7 +246,6 @@ pub fn contact_vector(student: Student, bodies: &[MovingBody; 3], t: f64) -> Vec
         Some(Mistake::ParticleEdgeContactSecondEnd) => 1.0,
         _ => alpha(bodies, t),
     };
-    let alpha = student.number(Place::ContactAlpha, alpha);
     match mistake {
         Some(Mistake::ParticleEdgeContactReversed) => -(two.at(t) + alpha * along - one.start - t * one.displacement),
         Some(Mistake::ParticleEdgeContactParticleStill) => two.at(t) + alpha * along - one.start,
