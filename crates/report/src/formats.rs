@@ -12,66 +12,57 @@ use std::borrow::Cow;
 const OTHERS: &str =
     "points, verdict and likely mistakes are those of the groups shown here; the grade has others, too";
 
-/// The formats, in the order in which help lists them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
+/// A row has the format's name, and whether one document holds the grades of several submissions.
+macro_rules! formats {
+    ($($(#[$about:meta])+ $format:ident $name:literal $takes_several:literal;)+) => {
+        /// The formats, in the order in which help lists them.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum Format {
+            $($(#[$about])+ $format,)+
+        }
+
+        impl Format {
+            /// All formats.
+            pub const ALL: &'static [Self] = &[$(Self::$format),+];
+
+            /// The name under which the command line knows it.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$format => $name,)+ }
+            }
+
+            /// Whether one document holds the grades of several submissions.
+            #[must_use]
+            pub const fn takes_several(self) -> bool {
+                match self { $(Self::$format => $takes_several,)+ }
+            }
+        }
+    };
+}
+
+formats! {
     /// For people.
-    Text,
+    Text "text" true;
     /// Our own, versioned (`schemas/grade.schema.json`).
-    Json,
+    Json "json" true;
     /// JUnit XML (`schemas/junit.xsd`).
-    Junit,
+    Junit "junit" true;
     /// Gradescope's results.json (`schemas/gradescope.schema.json`).
-    Gradescope,
+    Gradescope "gradescope" false;
     /// PrairieLearn's results.json (`schemas/prairielearn.schema.json`).
-    Prairielearn,
+    Prairielearn "prairielearn" false;
     /// GitHub Actions annotations.
-    Github,
+    Github "github" true;
     /// A Markdown summary, for GitHub's step summary.
-    Markdown,
+    Markdown "markdown" true;
     /// One row per scene, for spreadsheets.
-    Csv,
+    Csv "csv" true;
     /// One file to look at ([`page::GradePage`](crate::page::GradePage)); without cards here, because these lie on a
     /// disk.
-    Html,
+    Html "html" false;
 }
 
 impl Format {
-    /// All formats.
-    pub const ALL: &'static [Self] = &[
-        Self::Text,
-        Self::Json,
-        Self::Junit,
-        Self::Gradescope,
-        Self::Prairielearn,
-        Self::Github,
-        Self::Markdown,
-        Self::Csv,
-        Self::Html,
-    ];
-
-    /// The name under which the command line knows it.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Text => "text",
-            Self::Json => "json",
-            Self::Junit => "junit",
-            Self::Gradescope => "gradescope",
-            Self::Prairielearn => "prairielearn",
-            Self::Github => "github",
-            Self::Markdown => "markdown",
-            Self::Csv => "csv",
-            Self::Html => "html",
-        }
-    }
-
-    /// Whether one document holds the grades of several submissions.
-    #[must_use]
-    pub const fn takes_several(self) -> bool {
-        !matches!(self, Self::Gradescope | Self::Prairielearn | Self::Html)
-    }
-
     /// The document. Formats for one submission ([`Format::takes_several`]) show the first.
     #[must_use]
     pub fn render(self, grades: &[Grade]) -> String {
