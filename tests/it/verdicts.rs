@@ -4,6 +4,7 @@ use super::{
     workspace::{Run, Workspace},
 };
 use serde_json::Value;
+use similar::TextDiff;
 use std::path::Path;
 
 /// The rows of `verdicts.jsonl`.
@@ -60,7 +61,8 @@ fn compare(row: &Value, workspace: &Workspace, run: &Run) {
     // The corpus holds bytes as Latin-1.
     let actual: String = run.stdout.iter().map(|&byte| char::from(byte)).collect();
     if actual != expected {
-        let diff = fosssim_textdiff::unified(("original", expected), ("drop-in", &actual));
+        let diff = TextDiff::from_lines(expected, actual.as_str());
+        let diff = diff.unified_diff().header("original", "drop-in").to_string();
         panic!("{}: standard output differs\n{}", name(row), diff.chars().take(4000).collect::<String>());
     }
     assert_eq!(run.err(), row["oracle_stderr"].as_str().unwrap(), "{}", name(row));

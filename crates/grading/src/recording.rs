@@ -8,6 +8,7 @@ use fosssim_model::{
     sim::{RootSearch, Simulation, StepError},
     trace::{Digests, Layout, Recorder},
 };
+use similar::TextDiff;
 use std::io::{self, Read};
 
 /// How hard zstd tries; recordings are made seldom and shipped often.
@@ -102,7 +103,8 @@ pub fn manifest<'a>(recordings: impl IntoIterator<Item = &'a Recording>) -> Stri
 #[must_use]
 pub fn diff(name: &str, recorded: &str, now: &str) -> String {
     let (old, new) = (format!("recorded/{name}"), format!("simulated/{name}"));
-    fosssim_textdiff::unified((&old, &recorded.replace("\r\n", "\n")), (&new, now))
+    let recorded = recorded.replace("\r\n", "\n");
+    TextDiff::from_lines(recorded.as_str(), now).unified_diff().context_radius(1).header(&old, &new).to_string()
 }
 
 /// The trace of a scene.
