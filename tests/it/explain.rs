@@ -314,7 +314,7 @@ fn a_program_of_any_milestone_is_explained() {
         assert_eq!(right.code, Some(0), "{milestone}: {}", right.shown());
     }
     for (program, milestone, key) in
-        [(1, "t1m2", "spring-direction"), (2, "t1m2", "drag-sign"), (3, "t2m3", "near-pairs-last-missing")]
+        [(1, "t1m2", "spring-direction"), (2, "t1m2", "drag-sign"), (3, "t2m3", "near-pairs")]
     {
         let wrong = explain(&programs[program], milestone);
         assert!(wrong.code == Some(1) && wrong.out().contains(&format!("\"key\": \"{key}\"")), "{}", wrong.shown());

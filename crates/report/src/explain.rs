@@ -70,7 +70,7 @@ impl From<&Explanation> for Told {
         let (is_likely, evidence) = match (about, *reproduced) {
             _ if *samples == 0 => (false, None),
             (_, 0) => (false, Some(format!("{samples} looked at"))),
-            (About::Unfinished, _) => (false, None),
+            (About::Unfinished | About::Pairs(_), _) => (false, None),
             (About::Mistake, _) => (true, Some(format!("in {reproduced} of {samples} differing steps tried"))),
             _ => (true, Some(format!("fits {reproduced} of {samples} polynomials looked at"))),
         };

@@ -2,6 +2,7 @@
 use super::{
     fault::{NotFinite, StageFault},
     guess::Guess,
+    near::WrongPairs,
     subject::Subject,
 };
 use fosssim_model::sim::PairKind;
@@ -28,6 +29,8 @@ pub enum About {
     },
     /// A stage of a step: what it leaves is wrong, and everything before is right.
     Stage(StageFault),
+    /// Near pairs that a contest's search leaves out or reports twice: an observation.
+    Pairs(WrongPairs),
     /// Values that are no finite numbers: an observation, which comes before all guesses.
     NotFinite(NotFinite),
 }

@@ -6,6 +6,7 @@ pub mod example;
 pub mod fault;
 pub mod guess;
 mod input;
+pub mod near;
 mod reading;
 mod subject;
 
@@ -20,6 +21,7 @@ pub use fault::{
 };
 pub use guess::{CoefficientGuess, Guess, ListGuess, QuantityGuess};
 pub use input::Input;
+pub use near::{PairCounts, WrongPairs};
 pub use reading::Reading;
 pub use subject::Subject;
 
@@ -61,6 +63,9 @@ impl Explanation {
 
     /// The key of pairs that are looked at in another order.
     pub const ORDER: &'static str = StageFault::Order.key();
+
+    /// The key of near pairs that a contest's search leaves out or reports twice.
+    pub const PAIRS: &'static str = "near-pairs";
 
     /// The key of what is no finite number.
     pub const NOT_FINITE: &'static str = "not-a-number";

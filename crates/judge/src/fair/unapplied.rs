@@ -44,6 +44,24 @@ impl NearPair {
     }
 }
 
+/// How often a step from `before` applied the force of each near pair: never, once or twice. The reference ends in
+/// `own`. Pairs of which the velocities do not tell it are left out.
+#[must_use]
+pub fn applied(scene: &Scene, before: &State, own: &State, logged: &State) -> Vec<(Pair, usize)> {
+    let context = Context::new(scene);
+    let tolerances = Tolerances::of(&context, own, None);
+    let Some(near) = NearPairs::find(scene, &tolerances, before, own, logged) else { return Vec::new() };
+    let wrong = near.candidates.iter().filter_map(|one| {
+        let times = match one.excess? {
+            excess if excess < 0.0 => 0,
+            excess if excess > 0.0 => 2,
+            _ => 1,
+        };
+        Some((one.pair, times))
+    });
+    wrong.chain(near.right.iter().map(|pair| (*pair, 1))).collect()
+}
+
 /// The pairs that explain wrong velocities of a step from `before`, and the reference's result with these faults;
 /// `None` where nothing is explained.
 pub(super) fn explain(
@@ -55,52 +73,8 @@ pub(super) fn explain(
 ) -> Option<(Vec<FindingDetail>, State)> {
     let scene = context.scene;
     let h = scene.time_step;
-    let moves = match scene.integrator {
-        Integrator::ExplicitEuler => false,
-        Integrator::ForwardBackwardEuler | Integrator::SymplecticEuler => true,
-        // There all forces together have one effect.
-        Integrator::LinearizedImplicitEuler | Integrator::ImplicitEuler => return None,
-    };
-    let layer = layer_of_contest(scene, &before.positions);
-    let mut terms = match &layer {
-        Some((all_pairs, _)) => PenaltyTerms::of(all_pairs)?,
-        None => PenaltyTerms::of(scene)?,
-    };
-    let particles = scene.particles.len();
-    let mut rest: Vec<Vec2> =
-        (0..particles).map(|index| at(&logged.velocities, index) - at(&own.velocities, index)).collect();
-    let is_settled = |rest: &[Vec2], particle: usize| length(rest[particle]) <= tolerances.velocity(particle);
-    let wrong: Vec<bool> = (0..particles).map(|particle| !is_settled(&rest, particle)).collect();
-    let mut candidates = Vec::new();
-    terms.visit(&before.positions, |pair, forces| {
-        let mut candidate = NearPair { pair, changes: [(0, Vec2::zeros()); 3], count: 0, excess: None };
-        for &(particle, force) in forces.iter().filter(|(particle, _)| !scene.particles[*particle].fixed) {
-            let change = (h / scene.particles[particle].mass) * force;
-            candidate.changes[candidate.count] = (particle, change);
-            candidate.count += 1;
-        }
-        let moved =
-            || candidate.changes().iter().filter(|(particle, change)| length(*change) > tolerances.velocity(*particle));
-        if moved().next().is_some() && moved().all(|(particle, _)| wrong[*particle]) {
-            candidates.push(candidate);
-        }
-    });
-    if candidates.is_empty() || candidates.len() > MOST_PAIRS {
-        return None;
-    }
-    let mut of_particle: Vec<Vec<usize>> = vec![Vec::new(); particles];
-    for (index, candidate) in candidates.iter().enumerate() {
-        candidate.changes().iter().for_each(|(particle, _)| of_particle[*particle].push(index));
-    }
-    settle(&mut candidates, &of_particle, &mut rest, &wrong, tolerances);
-    // A pair stays only if it explains all its particles; taking one away may expose its neighbours.
-    while let Some(index) = candidates.iter().position(|candidate| {
-        let is_named = candidate.excess.is_some_and(|excess| excess != 0.0);
-        is_named && !candidate.changes().iter().all(|(particle, _)| is_settled(&rest, *particle))
-    }) {
-        let excess = candidates[index].excess.take().unwrap_or(0.0);
-        candidates[index].changes().iter().for_each(|&(particle, change)| rest[particle] += excess * change);
-    }
+    let moves = scene.integrator != Integrator::ExplicitEuler;
+    let NearPairs { candidates, layer, .. } = NearPairs::find(scene, tolerances, before, own, logged)?;
     let (mut faulty, mut is_explained) = (own.clone(), false);
     let mut found = Vec::new();
     for candidate in &candidates {
@@ -120,6 +94,78 @@ pub(super) fn explain(
         }
     }
     is_explained.then_some((found, faulty))
+}
+
+/// The near pairs of a step.
+struct NearPairs {
+    /// Those whose particles all have wrong velocities.
+    candidates: Vec<NearPair>,
+    /// Those whose force was applied once: a particle has a right velocity, and its forces do not cancel out.
+    right: Vec<Pair>,
+    /// See [`layer_of_contest`].
+    layer: Option<(Scene, BTreeSet<Pair>)>,
+}
+
+impl NearPairs {
+    /// Finds how often the force of each pair was applied, as far as the velocities tell.
+    fn find(scene: &Scene, tolerances: &Tolerances<'_>, before: &State, own: &State, logged: &State) -> Option<Self> {
+        if scene.integrator.is_implicit() {
+            // There all forces together have one effect.
+            return None;
+        }
+        let h = scene.time_step;
+        let layer = layer_of_contest(scene, &before.positions);
+        let mut terms = match &layer {
+            Some((all_pairs, _)) => PenaltyTerms::of(all_pairs)?,
+            None => PenaltyTerms::of(scene)?,
+        };
+        let particles = scene.particles.len();
+        let mut rest: Vec<Vec2> =
+            (0..particles).map(|index| at(&logged.velocities, index) - at(&own.velocities, index)).collect();
+        let is_settled = |rest: &[Vec2], particle: usize| length(rest[particle]) <= tolerances.velocity(particle);
+        let wrong: Vec<bool> = (0..particles).map(|particle| !is_settled(&rest, particle)).collect();
+        let mut near: Vec<NearPair> = Vec::new();
+        let mut sums = vec![Vec2::zeros(); particles];
+        terms.visit(&before.positions, |pair, forces| {
+            let mut candidate = NearPair { pair, changes: [(0, Vec2::zeros()); 3], count: 0, excess: None };
+            for &(particle, force) in forces.iter().filter(|(particle, _)| !scene.particles[*particle].fixed) {
+                let change = (h / scene.particles[particle].mass) * force;
+                candidate.changes[candidate.count] = (particle, change);
+                candidate.count += 1;
+            }
+            candidate.changes().iter().for_each(|&(particle, change)| sums[particle] += change);
+            near.push(candidate);
+        });
+        let (mut candidates, mut right) = (Vec::new(), Vec::new());
+        for one in near {
+            let is_felt = |(particle, change): &&(usize, Vec2)| length(*change) > tolerances.velocity(*particle);
+            let felt: Vec<usize> = one.changes().iter().filter(is_felt).map(|(particle, _)| *particle).collect();
+            let shows =
+                |particle: &usize| !wrong[*particle] && length(sums[*particle]) > tolerances.velocity(*particle);
+            if felt.iter().any(shows) {
+                right.push(one.pair);
+            } else if !felt.is_empty() && felt.iter().all(|particle| wrong[*particle]) {
+                candidates.push(one);
+            }
+        }
+        if candidates.len() > MOST_PAIRS {
+            return None;
+        }
+        let mut of_particle: Vec<Vec<usize>> = vec![Vec::new(); particles];
+        for (index, candidate) in candidates.iter().enumerate() {
+            candidate.changes().iter().for_each(|(particle, _)| of_particle[*particle].push(index));
+        }
+        settle(&mut candidates, &of_particle, &mut rest, &wrong, tolerances);
+        // A pair stays only if it explains all its particles; taking one away may expose its neighbours.
+        while let Some(index) = candidates.iter().position(|candidate| {
+            let is_named = candidate.excess.is_some_and(|excess| excess != 0.0);
+            is_named && !candidate.changes().iter().all(|(particle, _)| is_settled(&rest, *particle))
+        }) {
+            let excess = candidates[index].excess.take().unwrap_or(0.0);
+            candidates[index].changes().iter().for_each(|&(particle, change)| rest[particle] += excess * change);
+        }
+        Some(Self { candidates, right, layer })
+    }
 }
 
 /// Of a contest with a layer: the scene with the force between all pairs, and the pairs whose force is due at positions

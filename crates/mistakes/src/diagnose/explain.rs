@@ -4,7 +4,7 @@ use super::{
     about::About,
     known::{Known, is_empty_stage, known_or_open},
     naming::is_in_other_words,
-    not_finite, polynomial,
+    near, not_finite, polynomial,
     sampling::{KeptStep, Sampled, Source, sampled},
     stages,
 };
@@ -14,6 +14,7 @@ use crate::{
 };
 use fosssim_judge::kept::KeptTrace;
 use fosssim_model::{
+    assignments::Assignment,
     scene::Scene,
     sim::{PairKind, pairs},
     trace::Layout,
@@ -48,6 +49,9 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
         return not_finite::of_source(scene, source);
     }
     let Sampled { mut reference, not_finite, scan, detections } = sampled(scene, source);
+    // Of a contest's program only the search for near pairs is its student's.
+    let is_contest = scene.assignment() == Assignment::T2M3;
+    let pairs = if is_contest { near::explain(&mut reference, scene, &scan) } else { None };
     let Known { explanations: mut known, open, denies } = known_or_open(&mut reference, scene, scan);
     if known.iter().any(Explanation::is_other_scene) {
         return known;
@@ -93,6 +97,7 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
         };
         one.is_complete() || !polynomials.iter().any(is_told)
     });
+    let open = open.filter(|_| !is_contest);
     let stage = open.and_then(|scan| {
         let is_of_numbers = |kept: &&KeptStep| kept.records.is_finite();
         stages::explain(&mut reference, scene, scan.wrong.iter().chain(&scan.right).filter(is_of_numbers))
@@ -103,6 +108,7 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     }
     let mut all = known;
     all.append(&mut polynomials);
+    all.extend(pairs);
     all.iter_mut().for_each(explain_letters);
     all.extend(stage);
     // A stable sort: among equals the known mistake stays first.

@@ -8,6 +8,7 @@ use super::{
     fault::StepStage,
     known::is_empty_stage,
     naming::{as_row, is_named_in},
+    near,
 };
 use crate::{
     assignments::t2m2::Subject,
@@ -79,6 +80,7 @@ pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted:
         found.retain(|one| !one.is_of_stage());
         found.insert(0, head);
     }
+    near::unite(&mut found, &traces);
     let end = not_finite(&traces).filter(|one| !refuted.contains(&one.key));
     unfinished(empty).into_iter().chain(found).chain(end).collect()
 }

@@ -9,6 +9,7 @@ mod explain;
 mod heads;
 mod known;
 mod naming;
+mod near;
 mod not_finite;
 pub mod polynomial;
 mod ruled_out;
@@ -21,15 +22,16 @@ pub use crate::{assignments::probe_scenes, plain::formula_in};
 pub use explain::{explain, explain_kept};
 pub use fosssim_findings::explanation::{
     About, Amount, ChangeCause, ChangeRatio, Changed, ChangedParticles, CoefficientGuess, Detail, Example,
-    ExamplePlace, ExampleValue, Explanation, Guess, ListGuess, LoopEnd, NanStage, NotFinite, OfPolynomials,
+    ExamplePlace, ExampleValue, Explanation, Guess, ListGuess, LoopEnd, NanStage, NotFinite, OfPolynomials, PairCounts,
     PolynomialDetail, Quantity, QuantityGuess, Ratios, StageDetail, StageFault, Stand, StepRecord, StepStage, Weight,
-    WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber, WrongPositions, WrongResponses,
+    WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber, WrongPairs, WrongPositions, WrongResponses,
     WrongVectors, WrongZoneRounds, WrongZones,
 };
 use fosssim_findings::explanation::{about, fault, guess};
 pub use heads::several;
 pub use known::{can_show, known, shows};
 pub use naming::is_named_in;
+pub use near::{PairTrait, pair_traits};
 pub use not_finite::not_finite;
 pub use ruled_out::refuted;
 pub use settled::{Settled, settled};

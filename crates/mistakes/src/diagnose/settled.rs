@@ -1,5 +1,5 @@
 //! One trace's own explanations, in the light of what all traces of its program say together.
-use super::{About, Explanation, is_named_in, naming::as_row};
+use super::{About, Explanation, WrongPairs, is_named_in, naming::as_row};
 use crate::student::find;
 
 /// The explanations of one trace, once all traces of its program have been heard.
@@ -51,7 +51,11 @@ fn agreed(own: &[Explanation], likely: &Explanation) -> Vec<Explanation> {
         // Steps are counted for known mistakes, and polynomials for guesses about these.
         let has_same_counts = matches!(one.about, About::Mistake) == matches!(likely.about, About::Mistake);
         let (reproduced, samples) = if has_same_counts { (one.reproduced, one.samples) } else { (0, 0) };
-        Explanation { reproduced, samples, example: one.example.clone(), ..likely.clone() }
+        let about = match (&one.about, &likely.about) {
+            (About::Pairs(own), About::Pairs(all)) => About::Pairs(WrongPairs { first: own.first, ..all.clone() }),
+            (_, about) => about.clone(),
+        };
+        Explanation { reproduced, samples, about, example: one.example.clone(), ..likely.clone() }
     };
     shown.map(as_shown).into_iter().collect()
 }

@@ -10,10 +10,14 @@ use fosssim_model::{
 };
 
 /// The rows that may explain a trace of this scene, in the order of the catalogue: mistakes in what the student of the
-/// scene's assignment writes. Records that are missing are looked for elsewhere.
+/// scene's assignment writes. Records that are missing are looked for elsewhere, and so are near pairs
+/// ([`near`](super::super::near)).
 pub(super) fn applicable(scene: &Scene) -> impl Iterator<Item = &'static Row> {
-    let is_tried =
-        |row: &&Row| row.kind != RowKind::Hostile && !matches!(row.mistake, Mistake::LogNoInitial | Mistake::LogNoMid);
+    let is_tried = |row: &&Row| {
+        let is_elsewhere =
+            row.area == Area::NearPairs || matches!(row.mistake, Mistake::LogNoInitial | Mistake::LogNoMid);
+        row.kind != RowKind::Hostile && !is_elsewhere
+    };
     let (counts, assignment) = (pairs(scene).counts(), scene.assignment());
     let is_theirs = move |row: &&Row| is_written(row, assignment);
     all_rows().filter(is_tried).filter(is_theirs).filter(move |row| shows(scene, &counts, row))

@@ -3,6 +3,7 @@
 //! Sentences that belong to an assignment (what its known mistakes are, what its letters mean) stand with its data,
 //! found by their keys; all others are made here.
 mod letters;
+mod near;
 mod not_finite;
 mod places;
 mod polynomials;
@@ -27,6 +28,7 @@ pub fn what(explanation: &Explanation) -> String {
         }
         About::Polynomials { subjects, found } => polynomials::what(subjects, found),
         About::Stage(fault) => stages::what(fault),
+        About::Pairs(wrong) => near::what(wrong),
         About::NotFinite(found) => not_finite::what(found),
     };
     debug_assert!(formula_in(&sentence).is_none(), "a sentence gives a formula away: {sentence}");
@@ -56,6 +58,9 @@ pub fn details(explanation: &Explanation) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     let is_exact = explanation.details.iter().any(|detail| matches!(detail, Detail::Term(_)));
     let is_doubt = |detail: &Detail| matches!(detail, Detail::Polynomial(PolynomialDetail::Alternative(_)));
+    if let (About::Pairs(wrong), [_, ..]) = (&explanation.about, &explanation.details[..]) {
+        lines.extend(near::details(wrong));
+    }
     for detail in explanation.details.iter().filter(|detail| !(is_exact && is_doubt(detail))) {
         let line = match detail {
             Detail::Term(key) => find(key).map(|row| row.term.to_owned()),

@@ -1,0 +1,154 @@
+//! Where the bodies of near pairs are.
+use fosssim_model::{
+    scene::{Edge, HalfPlane, Scene},
+    sim::{Pair, PairKind, State},
+};
+use fosssim_num::vector::{Vec2, at, length};
+
+/// A body's extent with its radius: its lower and its upper corner.
+pub(super) type BoundingBox = [Vec2; 2];
+
+/// A scene at the start of a step.
+pub(super) struct Moment<'a> {
+    pub scene: &'a Scene,
+    pub before: &'a State,
+    /// The scene's first positions.
+    pub start: Vec<f64>,
+    /// The diameter of the largest particle.
+    pub largest: f64,
+    /// The lower corner of all bodies.
+    pub corner: Vec2,
+    /// The boxes of particles, then of edges.
+    boxes: Vec<BoundingBox>,
+}
+
+/// A near pair of a step.
+#[derive(Clone, Copy)]
+pub(super) struct PlacedPair<'a> {
+    pub moment: &'a Moment<'a>,
+    pub pair: Pair,
+}
+
+impl<'a> Moment<'a> {
+    pub fn new(scene: &'a Scene, before: &'a State) -> Self {
+        let bodies = scene.particles.len() + scene.edges.len();
+        let boxes: Vec<BoundingBox> = (0..bodies).map(|body| bounds(scene, &before.positions, body)).collect();
+        Self {
+            scene,
+            before,
+            start: State::of(scene).positions,
+            largest: scene.particles.iter().fold(0.0, |largest, particle| largest.max(2.0 * particle.radius)),
+            corner: boxes.iter().fold(Vec2::repeat(f64::INFINITY), |low, one| low.inf(&one[0])),
+            boxes,
+        }
+    }
+}
+
+impl<'a> PlacedPair<'a> {
+    /// The numbers of its bodies.
+    pub const fn numbers(&self) -> [usize; 2] {
+        [self.pair.first as usize, self.pair.second as usize]
+    }
+
+    pub fn edge(&self) -> Option<&'a Edge> {
+        (self.pair.kind == PairKind::ParticleEdge).then(|| &self.moment.scene.edges[self.numbers()[1]])
+    }
+
+    pub fn half_plane(&self) -> Option<&'a HalfPlane> {
+        (self.pair.kind == PairKind::ParticleHalfPlane).then(|| &self.moment.scene.half_planes[self.numbers()[1]])
+    }
+
+    pub fn place(&self, particle: usize) -> Vec2 {
+        at(&self.moment.before.positions, particle)
+    }
+
+    /// The first body's centre.
+    pub fn centre(&self) -> Vec2 {
+        self.place(self.numbers()[0])
+    }
+
+    /// The radius of the first body.
+    pub fn radius(&self) -> f64 {
+        self.moment.scene.particles[self.numbers()[0]].radius
+    }
+
+    /// The radius of the second body; half-planes have none.
+    pub fn other_radius(&self) -> f64 {
+        match (self.pair.kind, self.edge()) {
+            (PairKind::ParticleParticle, _) => self.moment.scene.particles[self.numbers()[1]].radius,
+            (_, edge) => edge.map_or(0.0, |edge| edge.radius),
+        }
+    }
+
+    /// The numbers of its bodies in an array of particles and edges: of a half-plane, the particle's again.
+    fn bodies(&self) -> [usize; 2] {
+        let [first, second] = self.numbers();
+        match self.pair.kind {
+            PairKind::ParticleParticle => [first, second],
+            PairKind::ParticleEdge => [first, self.moment.scene.particles.len() + second],
+            PairKind::ParticleHalfPlane => [first, first],
+        }
+    }
+
+    /// The boxes of its bodies: of a half-plane, the particle's again.
+    pub fn boxes(&self) -> [BoundingBox; 2] {
+        self.bodies().map(|body| self.moment.boxes[body])
+    }
+
+    /// The first body's centre, and the second body's nearest point.
+    pub fn points(&self) -> [Vec2; 2] {
+        [self.centre(), self.nearest(&self.moment.before.positions)]
+    }
+
+    /// Whether it is near at other positions, too: boxes that overlap, or a half-plane within reach.
+    pub fn is_near(&self, x: &[f64]) -> bool {
+        if self.half_plane().is_some() {
+            return length(self.nearest(x) - at(x, self.numbers()[0])) < self.radius();
+        }
+        let [one, other] = self.bodies().map(|body| bounds(self.moment.scene, x, body));
+        (0..2).all(|axis| one[0][axis] <= other[1][axis] && other[0][axis] <= one[1][axis])
+    }
+
+    /// Whether the bodies do not approach each other.
+    pub fn is_parting(&self) -> bool {
+        let State { positions, velocities } = self.moment.before;
+        let later: Vec<f64> = positions.iter().zip(velocities).map(|(x, v)| x + 1e-6 * v).collect();
+        let distance = |x: &[f64]| length(self.nearest(x) - at(x, self.numbers()[0]));
+        distance(&later) >= distance(positions)
+    }
+
+    /// The boxes of all other bodies that begin between the two on an axis, as a sweep meets them.
+    pub fn between(&self, axis: usize) -> impl Iterator<Item = BoundingBox> {
+        let own = self.bodies();
+        let [one, other] = self.boxes().map(|one| one[0][axis]);
+        let all = self.moment.boxes.iter().enumerate().filter(move |(body, _)| !own.contains(body));
+        all.map(|(_, one)| *one).filter(move |body| (one.min(other)..=one.max(other)).contains(&body[0][axis]))
+    }
+
+    /// The point of the second body that is nearest to the first one's centre.
+    fn nearest(&self, x: &[f64]) -> Vec2 {
+        let [first, second] = self.numbers();
+        let own = at(x, first);
+        if let Some(edge) = self.edge() {
+            let (from, along) = (at(x, edge.first), at(x, edge.second) - at(x, edge.first));
+            return from + ((own - from).dot(&along) / along.dot(&along)).clamp(0.0, 1.0) * along;
+        }
+        self.half_plane().map_or_else(
+            || at(x, second),
+            |plane| own + (plane.point - own).dot(&plane.normal) / plane.normal.dot(&plane.normal) * plane.normal,
+        )
+    }
+}
+
+/// The box of a particle or, with higher numbers, of an edge.
+fn bounds(scene: &Scene, x: &[f64], body: usize) -> BoundingBox {
+    let (ends, radius) = match scene.particles.get(body) {
+        Some(particle) => ([body; 2], particle.radius),
+        None => {
+            let edge = &scene.edges[body - scene.particles.len()];
+            ([edge.first, edge.second], edge.radius)
+        }
+    };
+    let [one, other] = ends.map(|end| at(x, end));
+    [one.inf(&other) - Vec2::repeat(radius), one.sup(&other) + Vec2::repeat(radius)]
+}

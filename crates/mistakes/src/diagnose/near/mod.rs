@@ -1,0 +1,133 @@
+//! The faults of a contest's search for near pairs.
+//!
+//! A contest's programs write nothing else, so nothing else is named: neither the force nor the integrator. The fair
+//! rules tell how often a step applied the force of each near pair. The trait of [`traits`] that tells wrong pairs from
+//! right ones best says where the search goes wrong; all traces of a program are counted together.
+mod geometry;
+mod traits;
+
+use super::{
+    Detail, Explanation, PairCounts, WrongPairs,
+    about::About,
+    sampling::{Reference, Scan},
+};
+use crate::student::Area;
+use fosssim_judge::fair::applied;
+use fosssim_model::{
+    scene::Scene,
+    sim::{Pair, PairKind},
+};
+use geometry::{Moment, PlacedPair};
+use std::collections::BTreeSet;
+use traits::Variant;
+
+/// Wrong steps that are looked at, and a quarter as many right ones.
+const MOST_STEPS: usize = 24;
+
+/// Pairs times bodies that are looked at in a trace: some traits look at all bodies between two.
+const WORK: usize = 4_000_000;
+
+/// A trait is told if pairs by chance have it in common with less than this probability, shared by the variants of its
+/// row.
+const CHANCE: f64 = 2e-3;
+
+/// One in this number of wrong pairs may lack a trait.
+const EXCEPTION: u64 = 20;
+
+/// The greatest number of traits that are told, where several tell pairs apart as well.
+const MOST_TOLD: usize = 3;
+
+/// A trait that wrong pairs have in common.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PairTrait {
+    /// The trait in plain words.
+    pub what: String,
+    /// Its exact form.
+    pub exact: String,
+    /// The number of right pairs that have it, too.
+    pub right: u64,
+    /// The number of wrong pairs that lack it.
+    pub exceptions: u64,
+}
+
+/// The near pairs that wrong steps leave out or apply twice, and those that they apply once.
+pub(super) fn explain(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan) -> Option<Explanation> {
+    let steps = scan.wrong.iter().take(MOST_STEPS).chain(scan.right.iter().take(MOST_STEPS / 4));
+    let mut left = WORK / (scene.particles.len() + scene.edges.len() + 1);
+    let variants: Vec<Variant> = traits::variants().collect();
+    let of_kind = |kind| PairCounts { kind, times: [0; 3], traits: vec![[0; 3]; variants.len()] };
+    let mut wrong = WrongPairs { first: None, kinds: PairKind::ALL.map(of_kind).into() };
+    let mut seen: BTreeSet<(Pair, usize)> = BTreeSet::new();
+    for kept in steps {
+        let own = reference.step(kept.step, &kept.before, &mut ())?;
+        let moment = Moment::new(scene, &kept.before);
+        for (pair, times) in applied(scene, &kept.before, own, &kept.records.end.state) {
+            if left == 0 || !seen.insert((pair, times)) {
+                continue;
+            }
+            left -= 1;
+            if times != 1 && wrong.first.is_none_or(|(_, step)| kept.step < step) {
+                wrong.first = Some((pair, kept.step));
+            }
+            let near = PlacedPair { moment: &moment, pair };
+            let counts = &mut wrong.kinds[pair.kind as usize];
+            counts.times[times] += 1;
+            let held = variants.iter().zip(&mut counts.traits).filter(|(one, _)| one.holds(&near));
+            held.for_each(|(_, counts)| counts[times] += 1);
+        }
+    }
+    wrong.first?;
+    let samples = scan.wrong.len() as u64;
+    Some(Explanation {
+        details: vec![Detail::Look(Area::NearPairs)],
+        reproduced: samples,
+        samples,
+        ..Explanation::about(Explanation::PAIRS, About::Pairs(wrong))
+    })
+}
+
+/// The traits that tell pairs of a kind that are reported never (0) or twice (2) from those that are reported once. Of
+/// several, those with the fewest exceptions.
+#[must_use]
+#[expect(clippy::cast_precision_loss, reason = "a share")]
+pub fn pair_traits(pairs: &PairCounts, times: usize) -> Vec<PairTrait> {
+    let (wrong, right) = (pairs.times[times], pairs.times[1]);
+    let counts = traits::variants().zip(&pairs.traits).map(|(one, counts)| (one, wrong - counts[times], counts[1]));
+    let is_telling = |(one, exceptions, with): &(Variant, u64, u64)| {
+        // Of all choices of as many pairs, the share of those in which each has the trait.
+        let chance: f64 = (1..=wrong - exceptions).map(|i| (with + i) as f64 / (right + i) as f64).product();
+        EXCEPTION * exceptions <= wrong && 2 * with <= right && chance * (one.row.variants() as f64) < CHANCE
+    };
+    let telling: Vec<_> = counts.filter(is_telling).collect();
+    let Some(fewest) = telling.iter().map(|(_, exceptions, with)| exceptions + with).min() else { return Vec::new() };
+    let mut told: Vec<(Variant, u64, u64)> = Vec::new();
+    for one in telling.into_iter().filter(|(_, exceptions, with)| exceptions + with == fewest) {
+        // Of a row's variants the strictest one.
+        told.retain(|other| !std::ptr::eq(other.0.row, one.0.row));
+        told.push(one);
+    }
+    let as_told = |(one, exceptions, right): (Variant, u64, u64)| PairTrait {
+        what: one.what(),
+        exact: one.exact(),
+        right,
+        exceptions,
+    };
+    told.into_iter().take(MOST_TOLD).map(as_told).collect()
+}
+
+/// Counts the pairs of all traces together in what is told of a program.
+pub(super) fn unite(told: &mut [Explanation], traces: &[&[Explanation]]) {
+    for one in told.iter_mut() {
+        let About::Pairs(sum) = &mut one.about else { continue };
+        let mut all = traces.iter().copied().flatten().filter_map(|one| match &one.about {
+            About::Pairs(wrong) => Some(wrong),
+            _ => None,
+        });
+        let Some(first) = all.next() else { continue };
+        *sum = first.clone();
+        all.for_each(|other| sum.add(other));
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,266 @@
+//! The traits by which pairs that a search loses, or doubles, may differ from the others: one row each.
+use super::geometry::{BoundingBox, PlacedPair};
+use fosssim_model::sim::{PairKind, State};
+use fosssim_num::vector::{Vec2, length};
+
+/// A row of the table.
+pub(super) struct TraitRow {
+    /// The trait in plain words, behind "in all of them"; `{axis}` is horizontally or vertically.
+    what: &'static str,
+    /// Its exact form; `{axis}` is x or y, `{n}` a number.
+    exact: &'static str,
+    axes: &'static [TraitAxis],
+    /// The numbers with which it is asked, the strictest last.
+    numbers: &'static [f64],
+    holds: fn(&PlacedPair<'_>, usize, f64) -> bool,
+}
+
+impl TraitRow {
+    pub const fn variants(&self) -> usize {
+        self.axes.len() * self.numbers.len()
+    }
+}
+
+/// The axis that a trait is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum TraitAxis {
+    X,
+    Y,
+    Either,
+}
+
+/// A row with its axis and its number.
+#[derive(Clone, Copy)]
+pub(super) struct Variant {
+    pub row: &'static TraitRow,
+    axis: TraitAxis,
+    n: f64,
+}
+
+impl Variant {
+    pub fn holds(&self, pair: &PlacedPair<'_>) -> bool {
+        let holds = |axis| (self.row.holds)(pair, axis, self.n);
+        match self.axis {
+            TraitAxis::X => holds(0),
+            TraitAxis::Y => holds(1),
+            TraitAxis::Either => holds(0) || holds(1),
+        }
+    }
+
+    pub fn what(&self) -> String {
+        let name = match self.axis {
+            TraitAxis::X => "horizontally",
+            TraitAxis::Y => "vertically",
+            TraitAxis::Either => "horizontally or vertically",
+        };
+        self.row.what.replace("{axis}", name)
+    }
+
+    pub fn exact(&self) -> String {
+        let name = match self.axis {
+            TraitAxis::X => "x",
+            TraitAxis::Y => "y",
+            TraitAxis::Either => "x or y",
+        };
+        self.row.exact.replace("{axis}", name).replace("{n}", &self.n.to_string())
+    }
+}
+
+/// All rows with their axes and numbers.
+pub(super) fn variants() -> impl Iterator<Item = Variant> {
+    TRAITS.iter().flat_map(|row| {
+        row.axes.iter().flat_map(move |&axis| row.numbers.iter().map(move |&n| Variant { row, axis, n }))
+    })
+}
+
+/// Traits that are about no axis are asked of one.
+const NO_AXIS: &[TraitAxis] = &[TraitAxis::X];
+const ONE_AXIS: &[TraitAxis] = &[TraitAxis::X, TraitAxis::Y];
+const ANY_AXIS: &[TraitAxis] = &[TraitAxis::Either, TraitAxis::X, TraitAxis::Y];
+const NO_NUMBER: &[f64] = &[1.0];
+const COUNTS: &[f64] =
+    &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 12.0, 15.0, 16.0, 20.0, 32.0, 50.0, 64.0, 100.0, 128.0];
+const FACTORS: &[f64] = &[0.5, 1.0, 2.0, 4.0, 8.0];
+const SHARES: &[f64] = &[0.9, 0.75, 0.5, 0.25, 0.1];
+/// Steps before.
+const STEPS: &[f64] = &[16.0, 8.0, 4.0, 2.0, 1.0];
+const LENGTHS: &[f64] = &[0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 5.0, 8.0, 10.0];
+
+macro_rules! traits {
+    ($($axes:ident $numbers:ident $what:literal $exact:literal $holds:expr;)*) => {
+        /// The table; of rows that tell pairs apart as well, the first ones are told.
+        const TRAITS: &[TraitRow] = &[$(TraitRow {
+            what: $what, exact: $exact, axes: $axes, numbers: $numbers, holds: $holds,
+        },)*];
+    };
+}
+
+traits! {
+    NO_AXIS NO_NUMBER "the particle's centre is behind the half-plane" "(x - p) . n is negative"
+        |pair, _, _| pair.half_plane().is_some_and(|plane| (pair.centre() - plane.point).dot(&plane.normal) < 0.0);
+    NO_AXIS NO_NUMBER "the particle's centre is in front of the half-plane" "(x - p) . n is not negative"
+        |pair, _, _| pair.half_plane().is_some_and(|plane| (pair.centre() - plane.point).dot(&plane.normal) >= 0.0);
+    NO_AXIS NO_NUMBER
+        "the half-plane's normal is so long that the particle seems out of reach, as if it were a unit vector"
+        "|(x - p) . n| is greater than r" |pair, _, _| {
+            let product = pair.half_plane().map(|plane| (pair.centre() - plane.point).dot(&plane.normal));
+            product.is_some_and(|product| product.abs() > pair.radius())
+        };
+    NO_AXIS NO_NUMBER "a particle is fixed" "fixed is 1"
+        |pair, _, _| particles(pair).any(|particle| pair.moment.scene.particles[particle].fixed);
+    NO_AXIS NO_NUMBER "the bodies move apart or rest, although their places alone count"
+        "(v1 - v2) . n is not positive" |pair, _, _| pair.is_parting();
+    NO_AXIS NO_NUMBER "the bodies approach, although their places alone count"
+        "(v1 - v2) . n is positive" |pair, _, _| !pair.is_parting();
+    NO_AXIS NO_NUMBER "the bodies were apart at the start of the scene, as if places of then were used"
+        "The boxes at time 0 do not overlap" |pair, _, _| !pair.is_near(&pair.moment.start);
+    NO_AXIS STEPS "the bodies were still apart shortly before, as if old places were used"
+        "The boxes some {n} steps before do not overlap" |pair, _, n| !pair.is_near(&earlier(pair, n));
+    NO_AXIS NO_NUMBER "there is no near pair with the numbers of particle and edge exchanged"
+        "(edge, particle) is used instead of (particle, edge)" |pair, _, _| is_lost_when_exchanged(pair);
+    NO_AXIS NO_NUMBER "the first body of its kind takes part" "i or j is 0" |pair, _, _| pair.numbers().contains(&0);
+    NO_AXIS NO_NUMBER "the last particle takes part" "i or j is the last number"
+        |pair, _, _| particles_of(pair).any(|one| one + 1 == pair.moment.scene.particles.len());
+    NO_AXIS NO_NUMBER "the last edge or half-plane takes part" "Its number is the last one"
+        |pair, _, _| match pair.pair.kind {
+            PairKind::ParticleParticle => false,
+            PairKind::ParticleEdge => pair.numbers()[1] + 1 == pair.moment.scene.edges.len(),
+            PairKind::ParticleHalfPlane => pair.numbers()[1] + 1 == pair.moment.scene.half_planes.len(),
+        };
+    NO_AXIS NO_NUMBER "the edge or half-plane is not the first one" "Its number is greater than 0"
+        |pair, _, _| pair.pair.kind != PairKind::ParticleParticle && pair.numbers()[1] > 0;
+    NO_AXIS COUNTS "the numbers of the particles are far apart" "|i - j| is greater than {n}"
+        |pair, _, n| pair.pair.kind == PairKind::ParticleParticle && apart(pair.numbers()) > n;
+    ANY_AXIS NO_NUMBER "the bodies are on two sides of where the coordinate is zero {axis}" "0 is between their {axis}"
+        |pair, axis, _| are_split(pair.points(), axis, f64::INFINITY, 0.0);
+    ANY_AXIS LENGTHS "a border at whole multiples of a round number is between the bodies {axis}"
+        "A multiple of {n} is between their {axis}" |pair, axis, n| are_split(pair.points(), axis, n, 0.0);
+    ANY_AXIS LENGTHS "the bodies begin in different cells of a grid with round borders {axis}"
+        "A multiple of {n} is between their smallest {axis}" |pair, axis, n| are_split(lows(pair), axis, n, 0.0);
+    ANY_AXIS FACTORS "a border at multiples of the largest diameter is between the bodies {axis}"
+        "A multiple of {n} times the largest diameter is between their {axis}"
+        |pair, axis, n| are_split(pair.points(), axis, n * pair.moment.largest, 0.0);
+    ANY_AXIS FACTORS "the bodies begin in different cells of a grid of the largest diameter {axis}"
+        "A multiple of {n} times the largest diameter is between their smallest {axis}"
+        |pair, axis, n| are_split(lows(pair), axis, n * pair.moment.largest, 0.0);
+    ANY_AXIS FACTORS "the bodies begin in different cells of a grid from the lowest body on {axis}"
+        "A multiple of {n} times the largest diameter from the smallest {axis} of all is between their smallest {axis}"
+        |pair, axis, n| are_split(lows(pair), axis, n * pair.moment.largest, pair.moment.corner[axis]);
+    ANY_AXIS LENGTHS "both bodies reach over the same border at a round number {axis}"
+        "Both hold a multiple of {n} on {axis}" |pair, axis, n| have_common_border(pair, axis, n);
+    ANY_AXIS FACTORS "both bodies reach over the same border at a multiple of the largest diameter {axis}"
+        "Both hold a multiple of {n} times the largest diameter on {axis}"
+        |pair, axis, n| have_common_border(pair, axis, n * pair.moment.largest);
+    ANY_AXIS NO_NUMBER "a body reaches to negative coordinates {axis}" "Its {axis} is less than 0"
+        |pair, axis, _| pair.boxes().iter().any(|[low, _]| low[axis] < 0.0);
+    ANY_AXIS LENGTHS "a body is far from the origin {axis}" "|{axis}| is greater than {n}"
+        |pair, axis, n| pair.boxes().iter().any(|[low, high]| high[axis].max(-low[axis]) > n);
+    ANY_AXIS FACTORS "no body is among the first ones of the scene {axis}"
+        "Both are more than {n} times the largest diameter from the smallest {axis} of all"
+        |pair, axis, n| lows(pair).iter().all(|low| low[axis] - pair.moment.corner[axis] > n * pair.moment.largest);
+    ONE_AXIS NO_NUMBER
+        "a body that is apart from the first of the two begins between them {axis}, where a sweep may end"
+        "One between them on {axis} does not overlap the first one on the other axis"
+        |pair, axis, _| has_gap(pair, axis);
+    ONE_AXIS COUNTS "many bodies begin between the two {axis}, as if a sweep gave up early"
+        "More than {n} begin between them on {axis}" |pair, axis, n| pair.between(axis).count() as f64 > n;
+    ONE_AXIS NO_NUMBER "the particle begins after the other body {axis}" "Its smallest {axis} is greater"
+        |pair, axis, _| lows(pair)[0][axis] > lows(pair)[1][axis];
+    ONE_AXIS NO_NUMBER "the particle begins before the other body {axis}" "Its smallest {axis} is less"
+        |pair, axis, _| lows(pair)[0][axis] < lows(pair)[1][axis];
+    NO_AXIS NO_NUMBER "the particle's centre is outside of the other body's box" "The box lacks r1 on a side"
+        |pair, _, _| {
+            let (centre, [_, [low, high]]) = (pair.centre(), pair.boxes());
+            centre.inf(&low) != low || centre.sup(&high) != high
+        };
+    ANY_AXIS SHARES "the bodies' boxes overlap little {axis}, as if boxes were too small"
+        "They overlap on {axis} by less than {n} of the smaller one" |pair, axis, n| overlap(pair, axis) < n;
+    NO_AXIS FACTORS "the particle is far from both ends of the edge" "Both distances are greater than {n} (r1 + r2)"
+        |pair, _, n| from_ends(pair).is_some_and(|ends| ends.iter().all(|end| *end > n));
+    NO_AXIS FACTORS "the particle is far from the edge's first end" "The distance is greater than {n} (r1 + r2)"
+        |pair, _, n| from_ends(pair).is_some_and(|[first, _]| first > n);
+    NO_AXIS FACTORS "the particle is far from the edge's second end" "The distance is greater than {n} (r1 + r2)"
+        |pair, _, n| from_ends(pair).is_some_and(|[_, second]| second > n);
+    ONE_AXIS NO_NUMBER "the edge's first end is the greater one {axis}" "The first end's {axis} is greater"
+        |pair, axis, _| pair.edge().is_some_and(|edge| pair.place(edge.first)[axis] > pair.place(edge.second)[axis]);
+    NO_AXIS FACTORS "the bodies are of unequal sizes" "One radius is more than {n} times the other"
+        |pair, _, n| {
+            let [one, other] = [pair.radius(), pair.other_radius()];
+            n >= 1.0 && pair.half_plane().is_none() && one.max(other) > n * one.min(other)
+        };
+    NO_AXIS NO_NUMBER "a particle is larger than the first one" "r is greater than r0" |pair, _, _| {
+        let radius = |particle: usize| pair.moment.scene.particles[particle].radius;
+        particles_of(pair).any(|particle| radius(particle) > radius(0))
+    };
+}
+
+/// The particles that are bodies of the pair.
+fn particles_of(pair: &PlacedPair<'_>) -> impl Iterator<Item = usize> {
+    let bodies = if pair.pair.kind == PairKind::ParticleParticle { 2 } else { 1 };
+    pair.numbers().into_iter().take(bodies)
+}
+
+/// All particles that take part, ends of an edge, too.
+fn particles(pair: &PlacedPair<'_>) -> impl Iterator<Item = usize> {
+    particles_of(pair).chain(pair.edge().into_iter().flat_map(|edge| [edge.first, edge.second]))
+}
+
+/// The places of bodies a number of steps before, had they moved as they do now.
+fn earlier(pair: &PlacedPair<'_>, steps: f64) -> Vec<f64> {
+    let State { positions, velocities } = pair.moment.before;
+    let h = pair.moment.scene.time_step;
+    positions.iter().zip(velocities).map(|(x, v)| x - steps * h * v).collect()
+}
+
+fn is_lost_when_exchanged(pair: &PlacedPair<'_>) -> bool {
+    let scene = pair.moment.scene;
+    let [particle, edge] = pair.numbers();
+    let mut other = *pair;
+    (other.pair.first, other.pair.second) = (pair.pair.second, pair.pair.first);
+    let is_there = edge < scene.particles.len() && particle < scene.edges.len();
+    pair.edge().is_some() && !(is_there && other.is_near(&pair.moment.before.positions))
+}
+
+fn apart([one, other]: [usize; 2]) -> f64 {
+    one.abs_diff(other) as f64
+}
+
+/// Whether points are in different cells on an axis; with infinite cells, on two sides of the start.
+fn are_split([one, other]: [Vec2; 2], axis: usize, size: f64, start: f64) -> bool {
+    ((one[axis] - start) / size).floor() != ((other[axis] - start) / size).floor()
+}
+
+fn lows(pair: &PlacedPair<'_>) -> [Vec2; 2] {
+    pair.boxes().map(|[low, _]| low)
+}
+
+fn has_gap(pair: &PlacedPair<'_>, axis: usize) -> bool {
+    let [one, other] = pair.boxes();
+    let across = 1 - axis;
+    let begins = if one[0][axis] <= other[0][axis] { one } else { other };
+    pair.between(axis).any(|body| body[0][across] > begins[1][across] || begins[0][across] > body[1][across])
+}
+
+/// The part of an axis that two boxes have in common.
+fn common([one, other]: [BoundingBox; 2], axis: usize) -> [f64; 2] {
+    [one[0][axis].max(other[0][axis]), one[1][axis].min(other[1][axis])]
+}
+
+/// How much the boxes overlap on an axis, as a share of the smaller one.
+fn overlap(pair: &PlacedPair<'_>, axis: usize) -> f64 {
+    let [from, to] = common(pair.boxes(), axis);
+    let sides = pair.boxes().map(|[low, high]| high[axis] - low[axis]);
+    (to - from) / sides[0].min(sides[1])
+}
+
+/// How far the particle is from the edge's ends, in sums of the radii.
+fn from_ends(pair: &PlacedPair<'_>) -> Option<[f64; 2]> {
+    let edge = pair.edge()?;
+    let reach = pair.radius() + pair.other_radius();
+    Some([edge.first, edge.second].map(|end| length(pair.place(end) - pair.centre()) / reach))
+}
+
+fn have_common_border(pair: &PlacedPair<'_>, axis: usize, size: f64) -> bool {
+    let [from, to] = common(pair.boxes(), axis);
+    pair.half_plane().is_none() && (from / size).floor() != (to / size).floor()
+}

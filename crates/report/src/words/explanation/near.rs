@@ -1,0 +1,118 @@
+//! Sentences about a contest's search for near pairs.
+use crate::number::{count, counted};
+use fosssim_findings::PairWords;
+use fosssim_mistakes::diagnose::{PairCounts, PairTrait, WrongPairs, pair_traits};
+use fosssim_model::sim::PairKind;
+
+/// A fault of a search, with pairs of some kinds.
+struct PairFault<'a> {
+    kinds: Vec<&'a PairCounts>,
+    times: usize,
+    share: &'static str,
+    traits: Vec<PairTrait>,
+}
+
+/// Kinds with the same fault and the same traits are one.
+fn faults(wrong: &WrongPairs) -> Vec<PairFault<'_>> {
+    let mut all: Vec<PairFault<'_>> = Vec::new();
+    for (times, pairs) in [0, 2].iter().flat_map(|&times| wrong.kinds.iter().map(move |pairs| (times, pairs))) {
+        if pairs.times[times] == 0 {
+            continue;
+        }
+        let traits = pair_traits(pairs, times);
+        let words = |traits: &[PairTrait]| traits.iter().map(|one| one.what.clone()).collect::<Vec<_>>();
+        let share = share(pairs, times);
+        let is_same = |other: &&mut PairFault<'_>| {
+            other.times == times && other.share == share && words(&other.traits) == words(&traits)
+        };
+        match all.iter_mut().find(is_same) {
+            Some(other) => other.kinds.push(pairs),
+            None => all.push(PairFault { kinds: vec![pairs], times, share, traits }),
+        }
+    }
+    all
+}
+
+/// The pairs, what happens to them, and what they have in common.
+pub(super) fn what(wrong: &WrongPairs) -> String {
+    let faults = faults(wrong);
+    let [missing, once, twice] = [0, 1, 2].map(|times| wrong.kinds.iter().map(|pairs| pairs.times[times]).sum::<u64>());
+    // Of pairs that press on each other, velocities may tell too much.
+    if 50 * (once + twice) <= missing {
+        return "Not written yet: the search for near pairs. No pair is reported.".to_owned();
+    }
+    let of_fault = |fault: &PairFault<'_>| {
+        let names = fault.kinds.iter().map(|pairs| name(pairs.kind)).collect::<Vec<_>>().join(" and ");
+        let common: Vec<&str> = fault.traits.iter().map(|one| one.what.as_str()).collect();
+        let told = format!("{} {names} are {}", fault.share, happens(fault.times));
+        if common.is_empty() {
+            return told;
+        }
+        let all = if fault.traits.iter().all(|one| one.exceptions == 0) { "all" } else { "nearly all" };
+        format!("{told}. In {all} of these, {}", common.join(", or "))
+    };
+    let told: Vec<String> = faults.iter().map(of_fault).collect();
+    format!("Near pairs: {}.", told.join(". Besides, "))
+}
+
+/// The first pair, how many there are, and the exact form of what they have in common.
+pub(super) fn details(wrong: &WrongPairs) -> Vec<String> {
+    let first = wrong.first.map(|(pair, step)| format!("The first one is in step {step}: {}.", PairWords(pair)));
+    let of_fault = |fault: &PairFault<'_>| {
+        let sum = |times: usize| fault.kinds.iter().map(|pairs| pairs.times[times]).sum::<u64>();
+        let (wrong, right) = (sum(fault.times), sum(1));
+        let numbers =
+            format!("Pairs that are {}: {}. Reported once: {}.", happens(fault.times), count(wrong), count(right));
+        let traits = fault.traits.iter().map(|one| {
+            let others = counted(right, "other");
+            format!("{}: also in {} of {others}.", one.exact, count(one.right))
+        });
+        std::iter::once(numbers).chain(traits).collect::<Vec<_>>()
+    };
+    first.into_iter().chain(faults(wrong).iter().flat_map(of_fault)).collect()
+}
+
+const fn happens(times: usize) -> &'static str {
+    if times == 0 { "missing" } else { "reported twice" }
+}
+
+/// Returns how many of the pairs of a kind are reported this number of times.
+const fn share(pairs: &PairCounts, times: usize) -> &'static str {
+    match pairs.times[1] {
+        0 => "all",
+        right if 20 * right <= pairs.times[times] => "nearly all",
+        _ => "some",
+    }
+}
+
+const fn name(kind: PairKind) -> &'static str {
+    match kind {
+        PairKind::ParticleParticle => "pairs of two particles",
+        PairKind::ParticleEdge => "pairs of a particle and an edge",
+        PairKind::ParticleHalfPlane => "pairs of a particle and a half-plane",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pairs(kind: PairKind, times: [u64; 3]) -> PairCounts {
+        PairCounts { kind, times, traits: Vec::new() }
+    }
+
+    #[test]
+    fn each_kind_of_pair_is_told_by_how_many_are_wrong() {
+        let [particles, edges, half_planes] = PairKind::ALL;
+        let told = |kinds: [PairCounts; 3]| what(&WrongPairs { first: None, kinds: kinds.into() });
+        assert_eq!(
+            told([pairs(particles, [90, 1, 0]), pairs(edges, [4, 0, 0]), pairs(half_planes, [0; 3])]),
+            "Not written yet: the search for near pairs. No pair is reported."
+        );
+        assert_eq!(
+            told([pairs(particles, [3, 5, 0]), pairs(edges, [4, 0, 0]), pairs(half_planes, [0, 1, 30])]),
+            "Near pairs: some pairs of two particles are missing. Besides, all pairs of a particle and an edge are \
+             missing. Besides, nearly all pairs of a particle and a half-plane are reported twice."
+        );
+    }
+}
