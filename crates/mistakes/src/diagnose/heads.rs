@@ -183,8 +183,8 @@ fn is_needed(next: &Explanation, open: &[OpenTrace]) -> bool {
     open.iter().any(|trace| trace.is_covered && trace.needs(&said))
 }
 
-/// Whether a further mistake is one that was told, in other words: a program has one formula for a polynomial, and what
-/// is seen of a stage may follow from what is told of that one or of one before it.
+/// Whether a further mistake is one that was told, in other words: a program has one formula for a polynomial and for a
+/// contact vector, and what is seen of a stage may follow from what is told of that one or of one before it.
 fn is_said_already(found: &[Explanation], next: &Explanation, open: &[OpenTrace]) -> bool {
     let are_needed = is_needed(next, open);
     let subjects = next.subjects();
@@ -211,7 +211,10 @@ fn is_said_already(found: &[Explanation], next: &Explanation, open: &[OpenTrace]
             (About::Stage(fault), _) => find(&next.key).is_some_and(|row| fault.areas().contains(&row.area)),
             _ => false,
         };
-        in_one_formula || in_one_stage
+        let is_of_vector = |row: &&Row| row.area == Area::ContactVector && row.kind_of_pair().is_some();
+        let of_vectors = find(&one.key).filter(is_of_vector).zip(find(&next.key).filter(is_of_vector));
+        let in_one_vector = of_vectors.is_some_and(|(one, next)| one.kind_of_pair() == next.kind_of_pair());
+        in_one_formula || in_one_stage || in_one_vector
     };
     found.iter().any(is_said)
 }

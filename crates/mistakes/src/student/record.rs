@@ -140,7 +140,6 @@ fn polynomial(student: Student, log: &StepLog, index: usize) -> Vec<f64> {
         Some(Mistake::LogNegated) => list.iter_mut().for_each(|coefficient| *coefficient = -*coefficient),
         Some(Mistake::LogNan) => list.fill(f64::NAN),
         Some(Mistake::LogTiny) => list.fill(1e-11),
-        Some(Mistake::LogZeros) => list.fill(0.0),
         Some(Mistake::LogPadded) => list.insert(0, 0.0),
         Some(Mistake::LogTrailingZero) => list.push(0.0),
         Some(Mistake::LogRounded) => {

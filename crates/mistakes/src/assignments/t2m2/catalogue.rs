@@ -414,7 +414,6 @@ rows! {
         LogNegated "log-negated": "The logged coefficients are negated." => "Every logged coefficient is multiplied by -1.";
         LogNan "log-nan": "All logged coefficients are not a number." => "NaN stands in the place of every coefficient.";
         LogTiny "log-tiny": "All logged coefficients are the same number." => "1e-11 stands in the place of every coefficient.";
-        LogZeros "log-zeros": "All logged coefficients are zero." => "0 stands in the place of every coefficient.";
         LogSwapped "log-swapped": "Each two neighbouring polynomials are logged in the wrong order." => "Polynomial 2 stands before polynomial 1, 4 before 3, and so on.";
         LogTrailingZero "log-trailing-zero": "Every logged polynomial has a zero too many at the end." => "A 0 behind the constant coefficient multiplies the polynomial by t.";
         LogRounded "log-rounded": "Logged coefficients are rounded to a few digits." => "6 digits stand where all 17 belong.";

@@ -190,6 +190,18 @@ fn mistakes_of_different_traces_are_no_rivals() {
     assert_eq!((told.len(), told[0].same_as.len()), (1, 0), "one trace knows which: {told:#?}");
 }
 
+/// A program has one contact vector for each kind of pair: what another trace says of it is no second mistake.
+#[test]
+fn a_contact_vector_has_one_mistake() {
+    let told_beside = |first: &str, second: &str| {
+        let (first, second) = (vec![row(first, &[])], vec![row(second, &[])]);
+        let told = several([&first, &first, &second].map(Vec::as_slice), &[]);
+        told.into_iter().map(|one| one.key).collect::<Vec<_>>()
+    };
+    assert_eq!(told_beside("pe-contact-nearest-end", "pe-contact-second-end"), ["pe-contact-nearest-end"]);
+    assert_eq!(told_beside("pe-contact-nearest-end", "ph-contact-at-start").len(), 2, "another kind of pair");
+}
+
 /// All traces say together what each of them allows among others.
 #[test]
 fn forms_are_intersected_over_traces() {
