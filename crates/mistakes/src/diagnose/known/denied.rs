@@ -44,7 +44,10 @@ fn right_kinds(scene: &Scene, sample: &KeptStep) -> Vec<PairKind> {
         if next > right {
             break;
         }
-        if !kinds.contains(&pair.kind) {
+        // A constant is the same as any other of its sign, of whatever pair.
+        let list = &sample.records.end.polynomials;
+        let says_something = (next - pair.kind.polynomials()..next).any(|index| list.get(index).len() > 1);
+        if says_something && !kinds.contains(&pair.kind) {
             kinds.push(pair.kind);
         }
     }
