@@ -1,5 +1,5 @@
 //! Serving: connections are taken until the server is to end, and what was asked is answered then. The proxy that
-//! docs/service.md asks for limits their number, slow heads and slow readers.
+//! docs/server/operation.md asks for limits their number, slow heads and slow readers.
 use axum::Router;
 use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 use std::{io, net::SocketAddr, time::Duration};

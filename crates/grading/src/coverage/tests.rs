@@ -58,6 +58,6 @@ fn the_newest_version_contains_more_than_the_one_before() {
     };
     let (first, newest) = (covered("t2m2@1"), covered("t2m2@2"));
     assert_eq!(first.1, newest.1);
-    // The numbers in `suite check t2m2`, and in docs/fair.md.
+    // The numbers in `suite check t2m2`, and in docs/rules/measurements.md.
     assert_eq!((first, newest), ((1393, 2117), (1936, 2117)));
 }
