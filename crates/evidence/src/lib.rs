@@ -26,7 +26,7 @@
 //! let examined = examine(&scene, &trace[..], Keep::All, &options, &mut ());
 //! assert_eq!(examined.outcome.parity.findings.wrong_steps, 0);
 //! assert!(examined.explain().is_empty());
-//! assert_eq!(examined.bytes(), trace);
+//! assert_eq!(examined.trace.bytes(), trace);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 #![forbid(unsafe_code)]
