@@ -171,7 +171,10 @@ fn documents_say_how_many_mistakes_and_variants_there_are() {
     let (wrong, variants) = (count("wrong") - states, count("variant"));
     for (document, sentences) in [
         ("README.md", [format!("Of {wrong} documented mistakes"), format!("of {variants} correct variants")]),
-        ("docs/rules/measurements.md", [format!("all {wrong} mistakes and"), format!("and {variants} correct variants")]),
+        (
+            "docs/rules/measurements.md",
+            [format!("all {wrong} mistakes and"), format!("and {variants} correct variants")],
+        ),
         ("docs/rules/mistakes.md", [format!("{states} mistakes of forces"), "Two mistakes at once".to_owned()]),
     ] {
         let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(document)).expect(document);
