@@ -76,7 +76,7 @@ pub struct NewJob<'a> {
 }
 
 /// Enqueues a job within the caller's transaction and returns its number. Workers are told by
-/// [`super::Notifier::notify`], within the same transaction.
+/// [`super::Notifier::commit`].
 ///
 /// # Errors
 /// An error of the database.

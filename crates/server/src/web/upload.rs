@@ -240,7 +240,7 @@ pub(super) fn is_program(start: &[u8]) -> bool {
 }
 
 /// The form of an archive, and whether it can be that: sources must hold the `program`, where nothing builds it. It runs
-/// in a process of its own ([`super::look`]).
+/// in a process of its own (`web::look`).
 ///
 /// # Errors
 /// Why it is refused.
