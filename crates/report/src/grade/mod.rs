@@ -1,6 +1,6 @@
 //! Grades in every format that courses use: pure functions from [`Grade`] to text.
 //!
-//! Names and program output are somebody else's words. Each format has [`plain`] or [`one_line`] take control
+//! Names and program output are somebody else's words. Each format has `plain` or `one_line` of `foreign` take control
 //! characters out of them, and escapes what its own syntax gives a meaning; a test sends hostile words through every
 //! format.
 
