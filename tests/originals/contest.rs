@@ -127,7 +127,7 @@ fn submission(seed: u64, trace: &[u8]) -> Vec<u8> {
 }
 
 /// Standard output without the times that steps took.
-fn timeless(run: &Run) -> String {
+pub fn timeless(run: &Run) -> String {
     let mut text = String::new();
     for line in run.out().lines() {
         let names = ["Preparation: ", "Collision detection: ", "Collision handling: ", "Frame run time: "];
