@@ -1,13 +1,16 @@
 //! Which rows of the catalogue a scene can show at all: no others are tried on it.
 use crate::{
     diagnose::written::{is_written, term},
-    student::{Area, Mistake, Row, RowKind, Term, all_rows},
+    student::{Area, Mistake, Row, RowKind, StepMistake, Term, all_rows},
 };
 use fosssim_model::{
     assignments::{ForceKind, Integrator, Part},
     scene::{Collision, Scene},
     sim::{ByKind, pairs},
 };
+
+/// Penalty forces between bodies that are apart are tried on scenes with at most this number of pairs.
+const MOST_APART: usize = 5_000;
 
 /// The rows that may explain a trace of this scene, in the order of the catalogue: mistakes in what the student of the
 /// scene's assignment writes. Records that are missing are looked for elsewhere, and so are near pairs
@@ -20,7 +23,15 @@ pub(super) fn applicable(scene: &Scene) -> impl Iterator<Item = &'static Row> {
     };
     let (counts, assignment) = (pairs(scene).counts(), scene.assignment());
     let is_theirs = move |row: &&Row| is_written(row, assignment);
-    all_rows().filter(is_tried).filter(is_theirs).filter(move |row| shows(scene, &counts, row))
+    let is_small = counts.iter().map(|(_, count)| count).sum::<usize>() <= MOST_APART;
+    let is_cheap = move |row: &&Row| is_small || !reaches_apart(row);
+    all_rows().filter(is_tried).filter(is_theirs).filter(is_cheap).filter(move |row| shows(scene, &counts, row))
+}
+
+/// Whether a penalty force with this mistake looks at all pairs, near or not.
+fn reaches_apart(row: &Row) -> bool {
+    let Mistake::Step(StepMistake::Edit(edit)) = row.mistake else { return false };
+    !edit.slip.keeps_distance() && matches!(term(row).row().part, Part::Penalty(_))
 }
 
 /// Whether the mistake is one of forces, integrators, penalties or simple responses.
@@ -104,5 +115,22 @@ mod tests {
             }
         }
         assert!(left_out > 1000, "{left_out}");
+    }
+
+    /// A force between bodies that are apart takes as long as there are pairs.
+    #[test]
+    fn on_a_large_scene_no_program_looks_at_all_pairs() {
+        let balls = |count: u32| {
+            let ball = |at: u32| format!(r#"<particle m="1" px="{at}" py="0" vx="0" vy="1" fixed="0" radius="0.1"/>"#);
+            let text = format!(
+                r#"<scene><duration time="0.1"/><integrator type="symplectic-euler" dt="0.1"/>
+                <collision type="penalty" k="100" thickness="0.01"/>{}</scene>"#,
+                (0..count).map(ball).collect::<String>()
+            );
+            fosssim_model::scene::read("balls", text.as_bytes()).expect("a scene").scene
+        };
+        let of_apart = |count: u32| applicable(&balls(count)).filter(|row| reaches_apart(row)).count();
+        assert!(of_apart(10) > 0);
+        assert_eq!(of_apart(400), 0);
     }
 }
