@@ -156,13 +156,9 @@ fn only_archive(folder: &Path, is_alone: bool) -> Result<Option<File>, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::staging::digest;
+    use crate::staging::{digest, make_odd_entries};
     use fosssim_sandbox::{Ended, FakeRun};
-    use std::{
-        os::unix::fs::{PermissionsExt, symlink},
-        path::PathBuf,
-        process::Command,
-    };
+    use std::{os::unix::fs::PermissionsExt, path::PathBuf, process::Command};
 
     /// Stages as a suite without a build does.
     fn staged(stage: impl FnOnce(Recipe<'_>) -> Result<Staged, String>) -> Staged {
@@ -178,10 +174,7 @@ mod tests {
     fn a_submission_that_is_no_file_is_told_so() {
         let folder = tempfile::tempdir().unwrap();
         let sources = folder.path().join("sources");
-        std::fs::create_dir(&sources).unwrap();
-        assert!(Command::new("mkfifo").arg(sources.join("pipe")).status().unwrap().success());
-        let _socket = std::os::unix::net::UnixListener::bind(sources.join("socket")).unwrap();
-        symlink("/etc/passwd", sources.join("link")).unwrap();
+        let _socket = make_odd_entries(&sources);
         for name in ["pipe", "socket"] {
             let staged = program(&sources.join(name));
             assert!(staged.refused.is_some() && digest(&sources.join(name)).is_none(), "{name}");

@@ -335,10 +335,18 @@ fn find_tool(command: &str, sources: &Path) -> Option<PathBuf> {
     candidates.into_iter().find(|path| path.is_file())
 }
 
+/// Makes a folder with a pipe, a socket and a link; the socket lives as long as its listener.
+#[cfg(test)]
+pub(crate) fn make_odd_entries(folder: &Path) -> std::os::unix::net::UnixListener {
+    std::fs::create_dir(folder).unwrap();
+    assert!(std::process::Command::new("mkfifo").arg(folder.join("pipe")).status().unwrap().success());
+    std::os::unix::fs::symlink("/etc/passwd", folder.join("link")).unwrap();
+    std::os::unix::net::UnixListener::bind(folder.join("socket")).unwrap()
+}
+
 #[cfg(test)]
 mod tests {
     use std::os::unix::fs::symlink;
-    use std::process::Command;
 
     use super::*;
 
@@ -371,10 +379,7 @@ mod tests {
     fn only_files_and_folders_are_copied_and_nothing_is_waited_for() {
         let folder = tempfile::tempdir().unwrap();
         let sources = folder.path().join("sources");
-        std::fs::create_dir(&sources).unwrap();
-        assert!(Command::new("mkfifo").arg(sources.join("pipe")).status().unwrap().success());
-        let _socket = std::os::unix::net::UnixListener::bind(sources.join("socket")).unwrap();
-        symlink("/etc/passwd", sources.join("link")).unwrap();
+        let _socket = make_odd_entries(&sources);
         symlink("/etc", sources.join("way")).unwrap();
         std::fs::write(sources.join("file"), "text").unwrap();
         let copy = folder.path().join("copy");
