@@ -53,8 +53,8 @@ pub fn printed(text: &str) -> String {
     plain(&without_codes(text))
 }
 
-/// Returns whether a character changes the direction of the text, which could show a report's words in another order, or
-/// has no width, which makes two names look alike.
+/// Returns whether a character changes the direction of the text, which could show a report's words in another order,
+/// or has no width, which makes two names look alike.
 pub(crate) const fn is_unseen(c: char) -> bool {
     matches!(c, '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}'
         | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}')

@@ -244,8 +244,8 @@ fn last_name(path: &Path) -> OsString {
 }
 
 /// The names of what lies at these paths, none twice: the last names; where several of these look the same, those that
-/// only look so are shown exactly, equal ones get as much of their paths as it takes, and names that still look the same
-/// get a number.
+/// only look so are shown exactly, equal ones get as much of their paths as it takes, and names that still look the
+/// same get a number.
 pub(super) fn distinct_names(paths: &[&Path]) -> Vec<String> {
     let own: Vec<OsString> = paths.iter().map(|path| last_name(path)).collect();
     let mut alike: BTreeMap<String, BTreeMap<&OsStr, usize>> = BTreeMap::new();

@@ -216,8 +216,8 @@ pub enum Malformation {
 }
 
 impl Malformation {
-    /// Positions and velocities that are cut, or not there at all, behind `records` records, of which `whole` were whole.
-    /// `left` bytes are left.
+    /// Positions and velocities that are cut, or not there at all, behind `records` records, of which `whole` were
+    /// whole. `left` bytes are left.
     pub(super) fn no_state(layout: Layout, records: u64, whole: u64, left: u64) -> Self {
         match (left, records) {
             (0, 0) => Self::Empty,

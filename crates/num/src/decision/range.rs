@@ -21,8 +21,8 @@ const UNDERFLOW: f64 = f64::MIN_POSITIVE * (1.0 / 1_048_576.0);
 /// A bound on the error of the Bernstein coefficients, in units of the sum of the moduli of the power coefficients.
 const CONVERSION: f64 = 16.0 * UNIT_ROUNDOFF;
 
-/// Roundings on the way to a Bernstein coefficient: of a weight, of a product, and of all sums but the first, and one of
-/// that sum of moduli. The proof allows for twice as many.
+/// Roundings on the way to a Bernstein coefficient: of a weight, of a product, and of all sums but the first, and one
+/// of that sum of moduli. The proof allows for twice as many.
 const ROUNDINGS: usize = 1 + 1 + (MAX_COEFFICIENTS - 1) + 1;
 const _: () = assert!(CONVERSION >= 2.0 * ROUNDINGS as f64 * UNIT_ROUNDOFF, "the margin of the proof");
 

@@ -37,8 +37,8 @@ pub(super) fn data(value: &serde_json::Value) -> String {
     value.to_string().replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")
 }
 
-/// The beginning of a table up to its first row, in a box that scrolls: the box's classes and name, the table's classes,
-/// and the headings of its columns. Those of numbers begin with `#`.
+/// The beginning of a table up to its first row, in a box that scrolls: the box's classes and name, the table's
+/// classes, and the headings of its columns. Those of numbers begin with `#`.
 pub(super) fn table(look: &str, label: &str, class: &str, headings: &[&str]) -> String {
     let class = if class.is_empty() { String::new() } else { format!(" class=\"{class}\"") };
     let heading = |name: &&str| match name.strip_prefix('#') {

@@ -84,7 +84,8 @@ impl ServiceFolders {
         }
     }
 
-    /// Makes the folders of uploads and of jobs, and removes what dead servers and workers left behind in them long ago.
+    /// Makes the folders of uploads and of jobs, and removes what dead servers and workers left behind in them long
+    /// ago.
     pub(super) fn clear(&self) -> Result<()> {
         for folder in [self.incoming.clone(), self.data.join("work")] {
             fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;

@@ -6,7 +6,8 @@
 //! worker knows: whatever a worker says is looked at together with them, so that one who is late changes nothing. A job
 //! that failed waits again, later each time, and after [`QueuePolicy::max_failures`] failures it is **buried**:
 //! somebody is to look at it. A worker that died, or went silent, is no failure of its job; only a job that was there
-//! far more often than it may fail is buried, too. What a job is about, and what is written when it ends, is the concern of the rooms above.
+//! far more often than it may fail is buried, too. What a job is about, and what is written when it ends, is the
+//! concern of the rooms above.
 
 mod claim;
 mod enqueue;
@@ -89,8 +90,8 @@ impl QueuePolicy {
         self.lease / 2
     }
 
-    /// So often a worker may die with a job. Far more often than a job may fail: a server in a crash loop, whatever kills
-    /// it, is no fault of what it is at.
+    /// So often a worker may die with a job. Far more often than a job may fail: a server in a crash loop, whatever
+    /// kills it, is no fault of what it is at.
     fn max_deaths(&self) -> i64 {
         8 * i64::from(self.max_failures)
     }

@@ -239,8 +239,8 @@ pub(super) fn is_program(start: &[u8]) -> bool {
     FileKind::of(start) == FileKind::Program
 }
 
-/// The form of an archive, and whether it can be that: sources must hold the `program`, where nothing builds it. It runs
-/// in a process of its own (`web::look`).
+/// The form of an archive, and whether it can be that: sources must hold the `program`, where nothing builds it. It
+/// runs in a process of its own (`web::look`).
 ///
 /// # Errors
 /// Why it is refused.

@@ -73,8 +73,8 @@ pub(super) fn run(arguments: &Render) -> Result<u8> {
     Ok(if stopped.is_empty() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }
 
-/// The form of the output, by `--format` or by its name. SVG and PNG are one picture with `--step`, else a folder with a
-/// picture per step.
+/// The form of the output, by `--format` or by its name. SVG and PNG are one picture with `--step`, else a folder with
+/// a picture per step.
 fn form(arguments: &Render) -> Result<RenderFormat> {
     let (output, is_single) = (&arguments.output, arguments.step.is_some());
     let by_name = |extension: &str| has_extension(output, extension);

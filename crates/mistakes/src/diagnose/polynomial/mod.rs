@@ -5,8 +5,8 @@
 //! coefficients (`structure`: reversed, negated, cut, exchanged), the inputs (end positions, radii squared apart),
 //! misunderstandings with a formula of their own, one letter of a formula (`slips`), and the terms of single
 //! coefficients (`terms`: sparse least squares over the products of dot products, with weights that are multiples of
-//! 1/4). Correct polynomials are those of collisions.md 2, up to a positive factor each. The quintic may be the one that
-//! is supplied, or the mathematically right one.
+//! 1/4). Correct polynomials are those of collisions.md 2, up to a positive factor each. The quintic may be the one
+//! that is supplied, or the mathematically right one.
 //!
 //! It reads no trace, judges nothing and never looks at decisions or responses.
 mod compare;

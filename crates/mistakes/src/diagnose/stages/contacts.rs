@@ -85,8 +85,8 @@ pub(super) fn detection(facts: &[StepFacts]) -> Option<Explanation> {
     contacts.times().or_else(|| contacts.decisions()).or_else(|| contacts.vectors())
 }
 
-/// The fault in the contacts at the end of steps, each with the reference's: what parts first counts, since what follows
-/// in the pass may follow from it.
+/// The fault in the contacts at the end of steps, each with the reference's: what parts first counts, since what
+/// follows in the pass may follow from it.
 pub(super) fn of_overlaps(steps: &[(Vec<LoggedImpulse>, Vec<LoggedImpulse>)]) -> Option<Explanation> {
     let mut contacts = ContactStage::default();
     for (ours, theirs) in steps {

@@ -203,8 +203,8 @@ impl Shared {
             programs.init(&folder.join("data"));
             programs.server(&folder, false).process_group(0).spawn().expect("postgres");
             programs.wait_until_ready(&folder);
-            // Ends the server when nobody uses it any more: tests hold the lock `users` together. The next test waits at
-            // the door until the server is gone.
+            // Ends the server when nobody uses it any more: tests hold the lock `users` together. The next test waits
+            // at the door until the server is gone.
             let script = "cd \"$0\" && pid=$(head -n1 data/postmaster.pid) &&
                 while sleep 15 && [ \"$(head -n1 data/postmaster.pid)\" = \"$pid\" ]; do
                     if flock door -c \"flock --nonblock users true &&

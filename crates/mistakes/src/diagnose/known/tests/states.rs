@@ -70,8 +70,8 @@ fn names(told: &[Explanation], id: &str) -> bool {
     told.iter().any(|one| one.key == id || one.same_as.iter().any(|other| other == id))
 }
 
-/// Each row leaves a wrong trace of a scene of its milestone, of which it is named, and of the scenes before that one it
-/// is taken for no other.
+/// Each row leaves a wrong trace of a scene of its milestone, of which it is named, and of the scenes before that one
+/// it is taken for no other.
 #[test]
 fn every_mistake_of_states_is_named_and_taken_for_no_other() {
     let (mut named, mut asked, mut mistaken) = (BTreeSet::<&str>::new(), BTreeSet::new(), Vec::new());
@@ -170,8 +170,8 @@ fn forces_that_are_not_cleared_between_steps_are_named() {
     assert!(told.len() == 1 && told[0].key == "explicit-velocities-not-cleared", "{told:#?}");
 }
 
-/// Other arithmetic, another one in each scene: forces summed in another order, products fused with sums, and states with
-/// the round-off of another solver.
+/// Other arithmetic, another one in each scene: forces summed in another order, products fused with sums, and states
+/// with the round-off of another solver.
 #[test]
 fn correct_programs_of_these_milestones_are_accused_of_nothing() {
     for (index, (name, scene)) in scenes().into_iter().enumerate() {
