@@ -9,7 +9,6 @@ use super::{
 };
 use fosssim_mistakes::diagnose::{About, Example, ExampleValue, Explanation};
 use serde::Serialize;
-use std::collections::BTreeSet;
 
 /// The greatest number of other mistakes listed that can't be told apart.
 const LISTED: usize = 3;
@@ -17,17 +16,6 @@ const LISTED: usize = 3;
 /// The lines about explanations, the likeliest first; nothing without any. Indented by two below each sentence.
 #[must_use]
 pub fn lines(explanations: &[Explanation]) -> Vec<String> {
-    explanations.iter().flat_map(of_one).collect()
-}
-
-/// The same, with no more than the sentence of a mistake whose exact form stands in a text already. `told` holds the
-/// sentences of these.
-pub(crate) fn lines_once(explanations: &[Explanation], told: &mut BTreeSet<String>) -> Vec<String> {
-    let of_one = |explanation| {
-        let all = of_one(explanation);
-        let shown = if told.insert(what(explanation)) { all.len() } else { 1 };
-        all.into_iter().take(shown)
-    };
     explanations.iter().flat_map(of_one).collect()
 }
 
@@ -282,16 +270,6 @@ pub(crate) mod tests {
             sentence(&["pp-no-two", "response-sign"].map(known)),
             Some(format!("likely mistakes: {}", sentences.join(" ")))
         );
-    }
-
-    /// Sixty scenes with one mistake would tell its exact form sixty times.
-    #[test]
-    fn the_exact_form_of_a_mistake_is_told_once() {
-        let mut told = BTreeSet::new();
-        assert_eq!(lines_once(&explanations(), &mut told), lines(&explanations()));
-        let again = lines_once(&explanations(), &mut told);
-        let sentences = lines(&explanations()).into_iter().filter(|line| !line.starts_with(' '));
-        assert_eq!(again, sentences.collect::<Vec<_>>());
     }
 
     /// The reference has made the mistake and wrote the same: other weights that fit its polynomials are no news.

@@ -1,5 +1,5 @@
-//! The scenes of a submission, group by group: what is accepted is counted, what is not is told, and what is told of
-//! many scenes in the same words is told once.
+//! The scenes of a submission, group by group. Accepted scenes are counted. Scenes that fail for the same cause are
+//! described once.
 use super::{Text, TextDetail, look, output, some};
 use crate::foreign::one_line;
 use crate::{
@@ -11,10 +11,7 @@ use crate::{
     wrap::columns,
 };
 use fosssim_findings::{Grade, GroupGrade, SceneGrade, Verdict};
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    fmt::Write,
-};
+use std::{collections::BTreeMap, fmt::Write};
 
 /// The greatest number of scenes named that end the same way.
 const NAMED: usize = 3;
@@ -28,74 +25,84 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
     let shown = |scene: &SceneGrade| options.shown == TextDetail::All || !scene.verdict.is_accepted();
     let names = grade.scenes().filter(|scene| shown(scene)).map(|scene| columns(&one_line(&scene.scene)));
     let width = names.max().unwrap_or(0);
-    let mut scenes = Scenes { options, width, mistakes: BTreeSet::new(), alike: alike(grade) };
+    let scenes = Scenes { options, width, by_cause: by_cause(grade) };
     let groups = grade.groups.iter().filter(|group| group.scenes.iter().any(shown));
     groups.map(|group| scenes.group(group)).collect()
 }
 
-/// The words about a scene whose program failed: scenes with the same words are listed once.
-type Words = (Verdict, String, Vec<String>);
+/// The cause of a scene's verdict, in words. Scenes with the same cause are described once.
+type Cause = (Verdict, Vec<String>);
 
-/// A wrong trace differs from scene to scene; a program that does not run ends in the same words each time.
-fn told(scene: &SceneGrade) -> Option<Words> {
-    let fails = !matches!(scene.verdict, Verdict::Accepted | Verdict::WrongAnswer | Verdict::BadTrace);
-    // Where nothing is logged, it does not matter where that shows first.
-    let details = || if scene.verdict == Verdict::Unwritten { Vec::new() } else { words::details(scene) };
-    fails.then(|| (scene.verdict, words::ending(scene), details()))
+/// Returns the cause of a scene that is not accepted: how its program ended, its likely mistakes, or the kind of what
+/// is wrong first. A scene that the rule books judge differently has a cause of its own.
+fn cause(scene: &SceneGrade) -> Option<Cause> {
+    if scene.verdict.is_accepted() || scene.differs.is_some() {
+        return None;
+    }
+    if !matches!(scene.verdict, Verdict::WrongAnswer | Verdict::BadTrace) {
+        // Where nothing is logged, it does not matter where that shows first.
+        let details = if scene.verdict == Verdict::Unwritten { Vec::new() } else { words::details(scene) };
+        return Some((scene.verdict, std::iter::once(words::ending(scene)).chain(details).collect()));
+    }
+    if scene.settled.is_empty() {
+        let first = scene.disclosure.as_ref()?.official().first_divergence.as_ref()?;
+        return Some((scene.verdict, vec![format!("{:?}", first.kind())]));
+    }
+    Some((scene.verdict, scene.settled.iter().map(words::explanation::what).collect()))
 }
 
-/// The scenes of which the same is told.
-fn alike(grade: &Grade) -> BTreeMap<Words, Vec<&str>> {
-    let mut alike: BTreeMap<Words, Vec<&str>> = BTreeMap::new();
+/// Returns the scenes of each cause.
+fn by_cause(grade: &Grade) -> BTreeMap<Cause, Vec<&str>> {
+    let mut scenes: BTreeMap<Cause, Vec<&str>> = BTreeMap::new();
     for scene in grade.scenes() {
-        if let Some(words) = told(scene) {
-            alike.entry(words).or_default().push(&scene.scene);
+        if let Some(cause) = cause(scene) {
+            scenes.entry(cause).or_default().push(&scene.scene);
         }
     }
-    alike
+    scenes
 }
 
 struct Scenes<'a, 'b> {
     options: &'b Text<'b>,
     /// Columns of the longest name.
     width: usize,
-    /// Sentences of mistakes that have been told in full.
-    mistakes: BTreeSet<String>,
-    alike: BTreeMap<Words, Vec<&'a str>>,
+    by_cause: BTreeMap<Cause, Vec<&'a str>>,
 }
 
 impl<'a> Scenes<'a, '_> {
-    fn group(&mut self, group: &'a GroupGrade) -> String {
+    fn group(&self, group: &'a GroupGrade) -> String {
         let style = self.options.style;
         let name = style.paint(Look::Strong, &one_line(&group.name));
         let extra = if group.extra { " extra" } else { "" };
         let mut text = format!("\n{name} ({} of {}{extra})\n", reached(group.points), points(group.max_points));
-        let accepted = group.scenes.iter().filter(|scene| scene.verdict.is_accepted()).count();
-        let folds = self.options.shown < TextDetail::All;
-        if folds && accepted > 0 {
-            let code = style.paint(Look::Good, "AC ");
-            let _ = writeln!(text, "  {code} {}", counted(accepted as u64, "scene"));
+        let mut folded: BTreeMap<Verdict, u64> = BTreeMap::new();
+        for scene in group.scenes.iter().filter(|scene| self.is_folded(scene)) {
+            *folded.entry(scene.verdict).or_default() += 1;
         }
-        for scene in &group.scenes {
-            if !(folds && scene.verdict.is_accepted()) {
-                text += &self.scene(scene, folds);
-            }
+        let row = |verdict: Verdict, count: u64, above: &str| {
+            let code = style.paint(look(verdict), &format!("{:<3}", verdict.code()));
+            format!("  {code} {}{above}\n", counted(count, "scene"))
+        };
+        if let Some(accepted) = folded.remove(&Verdict::Accepted) {
+            text += &row(Verdict::Accepted, accepted, "");
         }
+        for scene in group.scenes.iter().filter(|scene| !self.is_folded(scene)) {
+            text += &self.row(scene);
+            text += &self.details(scene);
+        }
+        text.extend(folded.into_iter().map(|(verdict, count)| row(verdict, count, " as above")));
         text
     }
 
-    fn scene(&mut self, scene: &'a SceneGrade, folds: bool) -> String {
-        // The first one tells it for all that are alike.
-        let first = told(scene).and_then(|words| self.alike.get(&words)?.first().copied());
-        let is_first = first.is_none_or(|first| std::ptr::eq(first, scene.scene.as_str()));
-        let mut text = String::new();
-        if is_first || !folds {
-            text += &self.row(scene);
-        }
-        if is_first {
-            text += &self.details(scene);
-        }
-        text
+    /// Returns whether a scene is only counted: it is accepted, or another one with its cause is described.
+    fn is_folded(&self, scene: &SceneGrade) -> bool {
+        self.options.shown < TextDetail::All
+            && (scene.verdict.is_accepted() || !self.alike(scene).first().is_none_or(|first| *first == scene.scene))
+    }
+
+    /// Returns the scenes with the cause of this one, in order.
+    fn alike(&self, scene: &SceneGrade) -> &[&'a str] {
+        cause(scene).and_then(|cause| self.by_cause.get(&cause)).map_or(&[][..], Vec::as_slice)
     }
 
     fn row(&self, scene: &SceneGrade) -> String {
@@ -105,7 +112,7 @@ impl<'a> Scenes<'a, '_> {
         format!("  {code} {name}{blanks}  {} of {}\n", reached(scene.points), points(scene.max_points))
     }
 
-    fn details(&mut self, scene: &SceneGrade) -> String {
+    fn details(&self, scene: &SceneGrade) -> String {
         let mut lines = Vec::new();
         if !scene.verdict.is_accepted() {
             lines.push(one_line(&words::summary(scene)));
@@ -114,9 +121,11 @@ impl<'a> Scenes<'a, '_> {
         if scene.verdict != Verdict::Unwritten {
             lines.extend(words::details(scene).iter().map(|line| one_line(line)));
         }
-        lines.extend(explain::lines_once(&scene.settled, &mut self.mistakes).iter().map(|line| one_line(line)));
-        let alike = told(scene).and_then(|words| self.alike.get(&words)).map_or(&[][..], |names| &names[1..]);
-        if !alike.is_empty() {
+        lines.extend(explain::lines(&scene.settled).iter().map(|line| one_line(line)));
+        if let [first, alike @ ..] = self.alike(scene)
+            && *first == scene.scene
+            && !alike.is_empty()
+        {
             let (many, names) = (counted(alike.len() as u64, "more scene"), some(alike, NAMED));
             lines.push(format!("the same in {many}: {names}"));
         }
