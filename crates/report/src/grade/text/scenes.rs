@@ -31,11 +31,11 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
 }
 
 /// The cause of a scene's verdict, in words. Scenes with the same cause are described once.
-type Cause = (Verdict, Vec<String>);
+type SceneCause = (Verdict, Vec<String>);
 
 /// Returns the cause of a scene that is not accepted: how its program ended, its likely mistakes, or the kind of what
 /// is wrong first. A scene that the rule books judge differently has a cause of its own.
-fn cause(scene: &SceneGrade) -> Option<Cause> {
+fn cause(scene: &SceneGrade) -> Option<SceneCause> {
     if scene.verdict.is_accepted() || scene.differs.is_some() {
         return None;
     }
@@ -52,8 +52,8 @@ fn cause(scene: &SceneGrade) -> Option<Cause> {
 }
 
 /// Returns the scenes of each cause.
-fn by_cause(grade: &Grade) -> BTreeMap<Cause, Vec<&str>> {
-    let mut scenes: BTreeMap<Cause, Vec<&str>> = BTreeMap::new();
+fn by_cause(grade: &Grade) -> BTreeMap<SceneCause, Vec<&str>> {
+    let mut scenes: BTreeMap<SceneCause, Vec<&str>> = BTreeMap::new();
     for scene in grade.scenes() {
         if let Some(cause) = cause(scene) {
             scenes.entry(cause).or_default().push(&scene.scene);
@@ -66,7 +66,7 @@ struct Scenes<'a, 'b> {
     options: &'b Text<'b>,
     /// Columns of the longest name.
     width: usize,
-    by_cause: BTreeMap<Cause, Vec<&'a str>>,
+    by_cause: BTreeMap<SceneCause, Vec<&'a str>>,
 }
 
 impl<'a> Scenes<'a, '_> {
@@ -97,7 +97,7 @@ impl<'a> Scenes<'a, '_> {
     /// Returns whether a scene is only counted: it is accepted, or another one with its cause is described.
     fn is_folded(&self, scene: &SceneGrade) -> bool {
         self.options.shown < TextDetail::All
-            && (scene.verdict.is_accepted() || !self.alike(scene).first().is_none_or(|first| *first == scene.scene))
+            && (scene.verdict.is_accepted() || self.alike(scene).first().is_some_and(|first| *first != scene.scene))
     }
 
     /// Returns the scenes with the cause of this one, in order.
