@@ -11,7 +11,7 @@ use crate::{
 use fosssim_findings::{Grade, GroupGrade, Verdict};
 use std::fmt::Write;
 
-/// The greatest number of groups that are listed; with more of them, those that are not accepted come first.
+/// The number of groups that are listed where there are at least two more; those that are not accepted come first.
 const GROUPS: usize = 8;
 
 /// The closing lines below the verdict. `alone` says that nothing else stands above them.
@@ -60,10 +60,11 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
 fn groups(options: &Text<'_>, grade: &Grade) -> String {
     let mut table = Table::new([Align::Left, Align::Right, Align::Left, Align::Left]);
     let mut listed: Vec<&GroupGrade> = grade.groups.iter().collect();
-    if listed.len() > GROUPS {
+    let shown = if listed.len() > GROUPS + 1 { GROUPS } else { listed.len() };
+    if shown < listed.len() {
         listed.sort_by_key(|group| group.verdict.is_accepted());
     }
-    for group in listed.iter().take(GROUPS) {
+    for group in listed.iter().take(shown) {
         let name = one_line(&group.name);
         let extra = if group.extra { " extra" } else { "" };
         let score = format!("{} of {}{extra}", reached(group.points), points(group.max_points));
@@ -78,8 +79,8 @@ fn groups(options: &Text<'_>, grade: &Grade) -> String {
     for (group, speed) in grade.groups.iter().filter_map(|group| Some((group, group.speed.as_ref()?))) {
         let _ = writeln!(text, "  {}: {}", one_line(&group.name), speed_words(speed));
     }
-    if listed.len() > GROUPS {
-        let _ = writeln!(text, "  and {}", counted((listed.len() - GROUPS) as u64, "more group"));
+    if shown < listed.len() {
+        let _ = writeln!(text, "  and {}", counted((listed.len() - shown) as u64, "more group"));
     }
     text
 }
