@@ -21,8 +21,6 @@ pub(in crate::cli) struct TraceInput {
     pub(in crate::cli) name: String,
     /// Its bytes, decompressed.
     pub(in crate::cli) reader: Box<dyn Read + Send>,
-    /// Its length, when it is a plain file.
-    pub(in crate::cli) length: Option<u64>,
     /// The file, when there is one.
     pub(in crate::cli) identity: Option<Identity>,
     /// The kind of file that it seems to be, if it can't be a trace.
@@ -49,11 +47,7 @@ impl TraceInput {
 
     /// Reads its records, as those of a trace of this scene.
     pub(in crate::cli) fn records(&mut self, scene: &Scene) -> Reader<&mut Box<dyn Read + Send>> {
-        let reader = Reader::new(&mut self.reader, Layout::of(scene)).with_scene(scene);
-        match self.length {
-            Some(length) => reader.with_length(length),
-            None => reader,
-        }
+        Reader::new(&mut self.reader, Layout::of(scene)).with_scene(scene)
     }
 }
 
@@ -79,12 +73,12 @@ pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
     let shown = shown(name);
     let failure = Failure::default();
     let watched = |reader| WatchedReader { reader, failure: failure.clone() };
-    let (mut reader, length, identity): (Box<dyn Read + Send>, _, _) = if let Some(asset) = asset(name) {
+    let (mut reader, identity): (Box<dyn Read + Send>, _) = if let Some(asset) = asset(name) {
         let recording = library::recording(asset).with_context(|| no_asset("recording", asset))?;
-        (decompressed(Box::new(Cursor::new(recording)), &[], &failure)?, None, None)
+        (decompressed(Box::new(Cursor::new(recording)), &[], &failure)?, None)
     } else if name == Path::new("-") {
         let reader = maybe_packed(Box::new(watched(Box::new(io::stdin()))), false, &failure);
-        (reader.context("cannot read the trace from standard input")?.0, None, None)
+        (reader.context("cannot read the trace from standard input")?, None)
     } else {
         // A slip of the user, and no wrong trace: refused where name and content agree.
         if is_scene(name) {
@@ -92,18 +86,16 @@ pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
         }
         let context = || format!("cannot read the trace {shown}");
         let (file, metadata) = open(name).with_context(context)?;
-        let plain = metadata.is_file().then_some(metadata.len());
         let file = patient(file, &metadata).with_context(context)?;
-        let (reader, packed) =
-            maybe_packed(Box::new(watched(file)), has_extension(name, "zst"), &failure).with_context(context)?;
-        (reader, plain.filter(|_| !packed), Some(Identity::of(&metadata)))
+        let reader = maybe_packed(Box::new(watched(file)), has_extension(name, "zst"), &failure);
+        (reader.with_context(context)?, Some(Identity::of(&metadata)))
     };
     let mut start = Vec::new();
     // The second reading reports bytes that can't be read.
     let _ = reader.by_ref().take(LOOKED_AT).read_to_end(&mut start);
     let looks_like = if failure.get().is_none() { looks_like(&start) } else { None };
     let reader = Box::new(Cursor::new(start).chain(reader));
-    Ok(TraceInput { name: shown, reader, length, identity, looks_like, failure })
+    Ok(TraceInput { name: shown, reader, identity, looks_like, failure })
 }
 
 /// Whether a file is a scene by its name and by how it begins.
@@ -143,21 +135,17 @@ pub(super) const ZSTD_MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 /// latter, with which recordings are packed.
 const ZSTD_WINDOW: u32 = 23;
 
-/// The reader, decompressed when it starts like a zstd file, and whether it does.
-fn maybe_packed(
-    mut reader: Box<dyn Read + Send>,
-    must: bool,
-    failure: &Failure,
-) -> Result<(Box<dyn Read + Send>, bool)> {
+/// The reader, decompressed when it starts like a zstd file.
+fn maybe_packed(mut reader: Box<dyn Read + Send>, must: bool, failure: &Failure) -> Result<Box<dyn Read + Send>> {
     let mut start = Vec::new();
     reader.by_ref().take(ZSTD_MAGIC.len() as u64).read_to_end(&mut start)?;
     if start == ZSTD_MAGIC {
-        return Ok((decompressed(reader, &start, failure)?, true));
+        return decompressed(reader, &start, failure);
     }
     if must {
         bail!("it is not zstd data although its name ends in .zst; rename it, or compress it with zstd");
     }
-    Ok((Box::new(Cursor::new(start).chain(reader)), false))
+    Ok(Box::new(Cursor::new(start).chain(reader)))
 }
 
 /// The bytes of a trace that may be packed, at most this number of them, or why its zstd data can't be unpacked.
@@ -169,7 +157,7 @@ pub(in crate::cli) fn unpacked(file: impl Read + Send + 'static, most: u64) -> i
     let mut bytes = Vec::new();
     let read = maybe_packed(Box::new(file), false, &failure)
         .map_err(io::Error::other)
-        .and_then(|(reader, _)| reader.take(most).read_to_end(&mut bytes));
+        .and_then(|reader| reader.take(most).read_to_end(&mut bytes));
     match (read, failure.get()) {
         (_, Some(why)) => Ok(Err(why)),
         (Err(error), None) => Err(error),

@@ -1,4 +1,4 @@
-//! Bytes to the blocks of a record: what both readers share.
+//! Bytes to the blocks of a record.
 //!
 //! The functions decode in bulk from the source's window and never allocate before the bytes are there.
 use super::{
@@ -53,17 +53,6 @@ pub(crate) fn numbers<R: Read>(source: &mut Source<R>, count: usize, out: &mut V
 /// Replaces `state` by the next record's; false when the source ends before its end.
 pub(crate) fn state<R: Read>(source: &mut Source<R>, particles: usize, state: &mut State) -> bool {
     numbers(source, 2 * particles, &mut state.positions) && numbers(source, 2 * particles, &mut state.velocities)
-}
-
-/// The next four bytes as a count or size; `Err` with the number of bytes left when there are fewer.
-pub(crate) fn count<R: Read>(source: &mut Source<R>) -> Result<i32, usize> {
-    let there = source.ensure(4);
-    if there < 4 {
-        return Err(there);
-    }
-    let count = integer(&source.window()[..4]);
-    source.consume(4);
-    Ok(count)
 }
 
 /// Appends up to `count` impulses from the window and gives their number; 0 only at the end of the source.
@@ -145,15 +134,6 @@ pub(crate) fn pass_over(bytes: &[u8], most: u64) -> (usize, u64, bool) {
         done += 1;
     }
     (at, done, false)
-}
-
-/// Appends up to `count` coefficients from the window and gives their number; 0 only at the end of the source.
-pub(crate) fn coefficients<R: Read>(source: &mut Source<R>, count: usize, out: &mut Vec<f64>) -> usize {
-    let wanted = (8 * count.min(WINDOW)).min(WINDOW);
-    let whole = source.ensure(wanted).min(wanted) / 8;
-    out.extend(source.window()[..8 * whole].chunks_exact(8).map(number));
-    source.consume(8 * whole);
-    whole
 }
 
 /// Memory that the log's content takes, in bytes.

@@ -1,7 +1,7 @@
 //! Faults of a trace's bytes, and where they are.
 //!
-//! One type for all readers: the strict [`Reader`](super::Reader) stops at it, the [`Lenient`](super::Lenient) one
-//! notes it and goes on as the original does.
+//! The strict [`Reader`](super::Reader) stops at them. [`Lenient`](super::Lenient) notes them, and goes on as the
+//! original does.
 use super::layout::Layout;
 use serde::{Deserialize, Serialize};
 use std::{borrow::Cow, fmt};

@@ -70,6 +70,9 @@ const STORABLE_POLYNOMIALS: u64 = 1 << 27;
 /// And a polynomial of this number of coefficients.
 const STORABLE_COEFFICIENTS: usize = 1 << 28;
 
+/// At most this many notes are kept per record.
+pub(super) const NOTES: usize = 16;
+
 /// A record as the original reads it. Buffers are reused from record to record.
 #[derive(Debug, Clone, Default)]
 pub struct LenientFrame {
@@ -139,14 +142,16 @@ pub enum Unreadable {
 /// Reads records as the original does.
 #[derive(Debug)]
 pub struct Lenient<R> {
-    source: Source<R>,
+    pub(super) source: Source<R>,
     layout: Layout,
     record: u64,
     begin: u64,
     /// Once a read has found fewer bytes than it wanted, no read finds any.
     failed: bool,
-    note: Option<TraceError>,
+    notes: Vec<TraceError>,
     limit: usize,
+    /// Whether damage ends the reading, and all coefficients are kept: the way of [`Reader`](super::Reader).
+    strict: bool,
 }
 
 impl<'a> Lenient<&'a [u8]> {
@@ -162,7 +167,14 @@ impl<'a> Lenient<&'a [u8]> {
 impl<R: Read> Lenient<R> {
     /// A reader at the beginning of `stream`, which needs no buffer of its own.
     pub fn new(stream: R, layout: Layout) -> Self {
-        Self { source: Source::new(stream), layout, record: 0, begin: 0, failed: false, note: None, limit: LIMIT }
+        let (source, notes) = (Source::new(stream), Vec::new());
+        Self { source, layout, record: 0, begin: 0, failed: false, notes, limit: LIMIT, strict: false }
+    }
+
+    /// Lets the first damage end the reading.
+    pub(super) fn strict(mut self) -> Self {
+        self.strict = true;
+        self
     }
 
     /// Bounds the memory that the lists of one record may take, in bytes; see [`record_memory`].
@@ -178,7 +190,7 @@ impl<R: Read> Lenient<R> {
     /// [`ReadStop`]; `frame` is unspecified then.
     pub fn next(&mut self, frame: &mut LenientFrame) -> Result<(), ReadStop> {
         self.begin = self.source.offset();
-        self.note = None;
+        self.notes.clear();
         frame.impulses.clear();
         frame.polynomials.clear();
         frame.logged = 0;
@@ -190,7 +202,7 @@ impl<R: Read> Lenient<R> {
         if self.layout.polynomials {
             self.polynomials(frame)?;
         }
-        frame.note = self.note.take();
+        frame.note = self.notes.first().cloned();
         self.record += 1;
         Ok(())
     }
@@ -236,10 +248,34 @@ impl<R: Read> Lenient<R> {
         decode::memory(&frame.polynomials) > self.limit
     }
 
+    /// The last record's notes.
+    pub(super) fn notes(&self) -> &[TraceError] {
+        &self.notes
+    }
+
+    /// Notes what keeps no reader from reading on.
     fn note(&mut self, offset: u64, what: Malformation) {
-        if self.note.is_none() {
-            self.note = Some(self.error(offset, what));
+        if self.notes.len() < NOTES {
+            self.notes.push(self.error(offset, what));
         }
+    }
+
+    /// Notes what the original passes over and the strict reader does not.
+    fn damage(&mut self, offset: u64, what: Malformation) -> Result<(), ReadStop> {
+        if self.strict {
+            return Err(self.stop(Unreadable::State, offset, what));
+        }
+        self.note(offset, what);
+        Ok(())
+    }
+
+    /// Refuses, for the strict reader, a record whose polynomials take too much memory.
+    fn check_room(&self, frame: &LenientFrame, offset: u64) -> Result<(), ReadStop> {
+        if self.strict && self.is_full(frame) {
+            let what = Malformation::FrameTooLarge { limit: self.limit as u64 };
+            return Err(self.stop(Unreadable::Limit, offset, what));
+        }
+        Ok(())
     }
 
     /// Reads into `value`: bytes that are missing leave the high-order ones as they are.
@@ -279,7 +315,7 @@ impl<R: Read> Lenient<R> {
             return Err(self.stop(Unreadable::Impulses, offset, Malformation::CountCut { list, left: begin - offset }));
         }
         if count < 0 {
-            self.note(offset, Malformation::NegativeCount { list, count });
+            self.damage(offset, Malformation::NegativeCount { list, count })?;
         }
         let entries = usize::try_from(count).unwrap_or(0);
         while impulses.len() < entries {
@@ -303,9 +339,9 @@ impl<R: Read> Lenient<R> {
         let begin = self.source.offset();
         if self.failed {
             frame.plain = false;
-            self.note(offset, Malformation::CountCut { list, left: begin - offset });
+            self.damage(offset, Malformation::CountCut { list, left: begin - offset })?;
         } else if count < 0 {
-            self.note(offset, Malformation::NegativeCount { list, count });
+            self.damage(offset, Malformation::NegativeCount { list, count })?;
         }
         let entries = u64::try_from(count).unwrap_or(0);
         let mut done = 0;
@@ -313,10 +349,13 @@ impl<R: Read> Lenient<R> {
             let (window, most) = (self.source.window(), entries - done);
             let (used, ordinary, trimmed) = if self.is_full(frame) {
                 decode::pass_over(window, most)
+            } else if self.strict {
+                decode::polynomials::<false>(window, most, &mut frame.polynomials)
             } else {
                 decode::polynomials::<true>(window, most, &mut frame.polynomials)
             };
             self.source.consume(used);
+            self.check_room(frame, offset)?;
             frame.plain &= !trimmed;
             done += ordinary;
             if entries > STORABLE_POLYNOMIALS && self.source.offset() - begin > self.limit as u64 {
@@ -348,32 +387,40 @@ impl<R: Read> Lenient<R> {
         let offset = self.source.offset();
         let written = self.integer();
         if self.failed {
-            self.note(offset, Malformation::PolynomialCut { polynomial: number, count });
+            self.damage(offset, Malformation::PolynomialCut { polynomial: number, count })?;
         } else if written < 0 {
             self.note(offset, Malformation::NegativeSize { polynomial: number, size: written });
         }
         let size = usize::try_from(written).unwrap_or(0);
-        if size > STORABLE_COEFFICIENTS {
+        if self.strict && size > MAX_COEFFICIENTS {
+            self.note(offset, Malformation::OversizedPolynomial { polynomial: number, size: written });
+        } else if size > STORABLE_COEFFICIENTS {
             let what = Malformation::FrameTooLarge { limit: 8 * STORABLE_COEFFICIENTS as u64 };
             return Err(self.stop(Unreadable::Memory, offset, what));
         }
         let whole = !self.failed;
         let begin = self.source.offset();
         let keeps = !self.is_full(frame);
-        let log = &mut frame.polynomials;
-        let start = log.coefficients.len();
-        let most = start + if keeps { LONGEST_POLYNOMIAL } else { 0 };
-        let mut is_leading = true;
+        let start = frame.polynomials.coefficients.len();
+        let most = if self.strict { usize::MAX } else { start + if keeps { LONGEST_POLYNOMIAL } else { 0 } };
+        let mut is_leading = !self.strict;
         // The bytes that were read so far and not dropped, as the original keeps them, coefficient by coefficient.
         let mut value = [0; 8];
         for read in 0..size {
             self.bytes(&mut value);
+            if self.strict {
+                self.check_room(frame, offset)?;
+                if self.failed {
+                    break;
+                }
+            }
             let coefficient = f64::from_le_bytes(value);
             is_leading &= coefficient.abs() < LEADING_COEFFICIENT;
             frame.plain &= !is_leading;
             // Once the stream has failed, all the others repeat this one.
             let times = if self.failed { size - read } else { 1 };
             if !is_leading {
+                let log = &mut frame.polynomials;
                 log.coefficients.resize((log.coefficients.len() + times).min(most), coefficient);
             }
             if self.failed {
@@ -381,12 +428,12 @@ impl<R: Read> Lenient<R> {
             }
         }
         if keeps {
-            log.ends.push(log.coefficients.len());
+            frame.polynomials.ends.push(frame.polynomials.coefficients.len());
         }
         frame.plain &= !self.failed && written >= 0;
         if whole && self.failed {
             let left = self.source.offset() - begin;
-            self.note(offset, Malformation::SizeBeyondEnd { polynomial: number, size: written, left });
+            self.damage(offset, Malformation::SizeBeyondEnd { polynomial: number, size: written, left })?;
         }
         Ok(())
     }

@@ -28,7 +28,7 @@ pub use histogram::Histogram;
 pub use labels::{Label, labels};
 pub use layout::Layout;
 pub use lenient::{Lenient, LenientFrame, ReadStop, Unreadable, record_memory};
-pub use reader::{FRAME_LIMIT, Reader, TRAILING_LIMIT};
+pub use reader::{Reader, TRAILING_LIMIT};
 pub use recorder::Recorder;
 pub use summary::{StepView, Summary};
 pub use writer::{Writer, WrittenTrace};

@@ -1,26 +1,17 @@
-//! The strict reader: bytes to frames, and every malformation named.
+//! The strict reader: [`Lenient`], which ends at the first damage instead of passing over it.
 //!
-//! Memory is bounded by one frame whatever the trace's size, and counts are held against the bytes that are left
-//! before anything is allocated. For the original's reading, which passes over damage, see [`Lenient`](super::Lenient).
+//! Memory is bounded by one frame whatever the trace's size, and grows only with bytes that arrive.
 use super::{
-    decode,
     error::{List, Malformation, TraceError},
     frame::{Frame, LoggedImpulse},
     layout::Layout,
-    source::{Source, WINDOW},
+    lenient::{Lenient, LenientFrame, NOTES},
 };
 use crate::{scene::Scene, sim::PairKind};
-use fosssim_num::polynomial::MAX_COEFFICIENTS;
-use std::io::Read;
-
-/// Memory that one decoded frame may take, in bytes.
-pub const FRAME_LIMIT: u64 = 256 * 1024 * 1024;
+use std::{io::Read, mem::swap};
 
 /// At most this many bytes behind the last record are read, 64 MiB: a stream need not have an end.
 pub const TRAILING_LIMIT: u64 = 64 * 1024 * 1024;
-
-/// At most this many notes are kept per record.
-const NOTES: usize = 16;
 
 /// Reads frame after frame (trace-format.md 1, 2).
 ///
@@ -41,15 +32,13 @@ const NOTES: usize = 16;
 /// ```
 #[derive(Debug)]
 pub struct Reader<R> {
-    source: Source<R>,
+    records: Lenient<R>,
+    read: LenientFrame,
     layout: Layout,
     /// Edges and half-planes of the scene, where they are known.
     objects: Option<(usize, usize)>,
-    record: u64,
-    begin: u64,
     notes: Vec<TraceError>,
     stopped: Option<TraceError>,
-    limit: u64,
     keeps_raw: bool,
     raw: Vec<u8>,
 }
@@ -58,46 +47,33 @@ impl<'a> Reader<&'a [u8]> {
     /// A reader of a trace in memory.
     #[must_use]
     pub fn of_slice(trace: &'a [u8], layout: Layout) -> Self {
-        Self::new(trace, layout).with_length(trace.len() as u64)
+        Self::over(Lenient::of_slice(trace, layout), layout)
     }
 }
 
 impl<R: Read> Reader<R> {
     /// A reader at the beginning of `stream`, which needs no buffer of its own.
     pub fn new(stream: R, layout: Layout) -> Self {
+        Self::over(Lenient::new(stream, layout), layout)
+    }
+
+    fn over(records: Lenient<R>, layout: Layout) -> Self {
         Self {
-            source: Source::new(stream),
+            records: records.strict(),
+            read: LenientFrame::default(),
             layout,
             objects: None,
-            record: 0,
-            begin: 0,
             notes: Vec::new(),
             stopped: None,
-            limit: FRAME_LIMIT,
             keeps_raw: false,
             raw: Vec::new(),
         }
-    }
-
-    /// Tells the reader how long the whole stream is, so that impossible counts are refused at once. Nothing beyond
-    /// is read. To be called before the first record.
-    #[must_use]
-    pub fn with_length(mut self, bytes: u64) -> Self {
-        self.source = self.source.with_length(bytes);
-        self
     }
 
     /// Lets the reader note impulses that name edges or half-planes which the scene does not have.
     #[must_use]
     pub fn with_scene(mut self, scene: &Scene) -> Self {
         self.objects = Some((scene.edges.len(), scene.half_planes.len()));
-        self
-    }
-
-    /// Replaces [`FRAME_LIMIT`].
-    #[must_use]
-    pub fn with_frame_limit(mut self, bytes: u64) -> Self {
-        self.limit = bytes;
         self
     }
 
@@ -117,28 +93,27 @@ impl<R: Read> Reader<R> {
             return Err(error.clone());
         }
         self.notes.clear();
-        if self.record == self.layout.records() {
+        if self.records() == self.layout.records() {
             return Ok(false);
         }
-        self.begin = self.source.offset();
         if self.keeps_raw {
-            self.source.start_tape(std::mem::take(&mut self.raw));
+            self.records.source.start_tape(std::mem::take(&mut self.raw));
         }
-        let read = self.read(frame);
+        let read = self.records.next(&mut self.read);
         if self.keeps_raw {
-            self.raw = self.source.stop_tape();
+            self.raw = self.records.source.stop_tape();
         }
-        match read {
-            Ok(()) => {
-                self.record += 1;
-                Ok(true)
-            }
-            Err((offset, what)) => {
-                let error = self.error(offset, what);
-                self.stopped = Some(error.clone());
-                Err(error)
-            }
+        if let Err(stop) = read {
+            self.stopped = Some(stop.at.clone());
+            return Err(stop.at);
         }
+        swap(&mut frame.state, &mut self.read.state);
+        swap(&mut frame.impulses, &mut self.read.impulses);
+        swap(&mut frame.polynomials, &mut self.read.polynomials);
+        self.note_impulses(&frame.impulses);
+        self.notes.extend_from_slice(self.records.notes());
+        self.notes.truncate(NOTES);
+        Ok(true)
     }
 
     /// Oddities of the last record that do not keep it from being read: impulses of unknown type or of objects that do
@@ -157,19 +132,19 @@ impl<R: Read> Reader<R> {
     /// Number of records read.
     #[must_use]
     pub fn records(&self) -> u64 {
-        self.record
+        self.records.records()
     }
 
     /// Byte offset of the last record (of the next one before the first call of [`Reader::next`]).
     #[must_use]
     pub fn record_offset(&self) -> u64 {
-        self.begin
+        self.records.record_offset()
     }
 
     /// Byte offset behind the last record.
     #[must_use]
     pub fn offset(&self) -> u64 {
-        self.source.offset()
+        self.records.offset()
     }
 
     /// The layout.
@@ -183,101 +158,28 @@ impl<R: Read> Reader<R> {
     /// # Errors
     /// An error of the stream, or [`Malformation::Endless`] when more than [`TRAILING_LIMIT`] bytes follow.
     pub fn trailing(&mut self) -> Result<u64, TraceError> {
-        let offset = self.source.offset();
-        let drained = self.source.drain(TRAILING_LIMIT);
-        match (self.source.error(), drained) {
-            (Some(what), _) => Err(self.error(self.source.offset(), what)),
+        let (offset, record) = (self.offset(), self.records());
+        let source = &mut self.records.source;
+        match (source.drain(TRAILING_LIMIT), source.error()) {
+            (_, Some(what)) => Err(TraceError::new(self.layout, record, source.offset(), what)),
             (None, None) => {
                 // The place is the end of the last record: there may be none that could come next.
-                let frame = self.record.saturating_sub(1);
                 let what = Malformation::Endless { limit: TRAILING_LIMIT };
-                Err(TraceError::new(self.layout, frame, offset, what))
+                Err(TraceError::new(self.layout, record.saturating_sub(1), offset, what))
             }
-            (None, Some(trailing)) => Ok(trailing),
+            (Some(trailing), None) => Ok(trailing),
         }
     }
 
-    fn error(&self, offset: u64, what: Malformation) -> TraceError {
-        TraceError::new(self.layout, self.record, offset, what)
-    }
-
-    fn note(&mut self, offset: u64, what: Malformation) {
-        if self.notes.len() < NOTES {
-            let note = self.error(offset, what);
-            self.notes.push(note);
-        }
-    }
-
-    fn too_large(&self) -> Malformation {
-        Malformation::FrameTooLarge { limit: self.limit }
-    }
-
-    /// The failure that missing bytes are: the stream's own error, or else `what`.
-    fn missing(&self, offset: u64, what: Malformation) -> Failure {
-        (offset, self.source.error().unwrap_or(what))
-    }
-
-    fn read(&mut self, frame: &mut Frame) -> Result<(), Failure> {
-        let begin = self.begin;
-        if !decode::state(&mut self.source, self.layout.particles, &mut frame.state) {
-            let left = self.source.offset() - begin + self.source.ensure(1) as u64;
-            let what = Malformation::no_state(self.layout, self.record, self.record, left);
-            return Err(self.missing(begin, what));
-        }
-        frame.impulses.clear();
-        frame.polynomials.clear();
-        if self.layout.impulses {
-            self.impulses(&mut frame.impulses)?;
-        }
-        if self.layout.polynomials {
-            self.polynomials(frame)?;
-        }
-        Ok(())
-    }
-
-    /// A list's count, which may not be negative, nor larger than the bytes left or the frame's memory allow.
-    fn count(&mut self, list: List, memory: u64) -> Result<(u64, i32), Failure> {
-        let offset = self.source.offset();
-        let count = decode::count(&mut self.source).map_err(|left| {
-            let empty = left == 0 && self.layout.particles == 0 && offset == 0;
-            let what = if empty { Malformation::Empty } else { Malformation::CountCut { list, left: left as u64 } };
-            self.missing(offset, what)
-        })?;
-        let entries = u64::try_from(count).map_err(|_| (offset, Malformation::NegativeCount { list, count }))?;
-        if let Some(left) = self.source.left() {
-            let needs = entries * list.entry_bytes();
-            if needs > left {
-                return Err(self.missing(offset, Malformation::CountBeyondEnd { list, count, needs, left }));
-            }
-            if entries * memory > self.limit {
-                return Err((offset, self.too_large()));
-            }
-        }
-        Ok((entries, count))
-    }
-
-    fn impulses(&mut self, impulses: &mut Vec<LoggedImpulse>) -> Result<(), Failure> {
-        let list = List::Impulses;
-        let (entries, count) = self.count(list, decode::IMPULSE_MEMORY as u64)?;
-        let begin = self.source.offset();
-        while (impulses.len() as u64) < entries {
-            let missing = usize::try_from(entries).unwrap_or(usize::MAX) - impulses.len();
-            let first = impulses.len();
-            if decode::impulses(&mut self.source, missing, impulses) == 0 {
-                let left = self.source.offset() - begin + self.source.ensure(1) as u64;
-                let needs = entries * list.entry_bytes();
-                return Err(self.missing(begin - 4, Malformation::CountBeyondEnd { list, count, needs, left }));
-            }
-            if (impulses.len() * decode::IMPULSE_MEMORY) as u64 > self.limit {
-                return Err((begin - 4, self.too_large()));
-            }
-            for (number, impulse) in impulses.iter().enumerate().skip(first) {
-                if let Some(what) = self.odd(number as u64, impulse) {
-                    self.note(begin + number as u64 * list.entry_bytes(), what);
-                }
-            }
-        }
-        Ok(())
+    /// Notes the odd ones of the last record's impulses.
+    fn note_impulses(&mut self, impulses: &[LoggedImpulse]) {
+        let (record, list) = (self.records() - 1, self.record_offset() + self.layout.state_bytes() as u64 + 4);
+        let odd = (0..).zip(impulses).filter_map(|(number, impulse)| {
+            let offset = list + number * List::Impulses.entry_bytes();
+            Some(TraceError::new(self.layout, record, offset, self.odd(number, impulse)?))
+        });
+        let odd: Vec<_> = odd.take(NOTES).collect();
+        self.notes.extend(odd);
     }
 
     /// An oddity of an impulse.
@@ -300,85 +202,24 @@ impl<R: Read> Reader<R> {
             (!inside).then_some(what)
         })
     }
-
-    fn polynomials(&mut self, frame: &mut Frame) -> Result<(), Failure> {
-        let (entries, count) = self.count(List::Polynomials, 8)?;
-        let begin = self.source.offset();
-        let log = &mut frame.polynomials;
-        let mut done = 0;
-        while done < entries {
-            let (used, ordinary, _) = decode::polynomials::<false>(self.source.window(), entries - done, log);
-            self.source.consume(used);
-            done += ordinary;
-            if decode::memory(log) as u64 > self.limit {
-                return Err((begin - 4, self.too_large()));
-            }
-            if done == entries {
-                break;
-            }
-            // The next one is not wholly in the window, or its size is not ordinary.
-            if decode::has_ordinary(&mut self.source) {
-                continue;
-            }
-            let offset = self.source.offset();
-            let Ok(size) = decode::count(&mut self.source) else {
-                return Err(self.cut(begin, count, (offset, Malformation::PolynomialCut { polynomial: done, count })));
-            };
-            if let Err(failure) = self.odd_polynomial(offset, done, size, log) {
-                return Err(self.cut(begin, count, failure));
-            }
-            log.ends.push(log.coefficients.len());
-            done += 1;
-        }
-        Ok(())
-    }
-
-    /// The failure that the end of the stream inside a polynomial list is: the count's own, when not even as many empty
-    /// polynomials would have had room behind it (`begin`), else `failure`. So the answer does not depend on whether
-    /// the length was known.
-    fn cut(&mut self, begin: u64, count: i32, failure: Failure) -> Failure {
-        let (list, needs) = (List::Polynomials, 4 * u64::from(count.unsigned_abs()));
-        match self.source.left().map(|left| self.source.offset() + left - begin) {
-            Some(left) if needs > left => {
-                self.missing(begin - 4, Malformation::CountBeyondEnd { list, count, needs, left })
-            }
-            _ => self.missing(failure.0, failure.1),
-        }
-    }
-
-    /// Reads the coefficients of a polynomial whose size is negative, above six, or more than what is left.
-    fn odd_polynomial(
-        &mut self,
-        offset: u64,
-        polynomial: u64,
-        size: i32,
-        log: &mut super::PolynomialLog,
-    ) -> Result<(), Failure> {
-        let Ok(coefficients) = usize::try_from(size) else {
-            self.note(offset, Malformation::NegativeSize { polynomial, size });
-            return Ok(());
-        };
-        if let Some(left) = self.source.left().filter(|left| 8 * coefficients as u64 > *left) {
-            return Err(self.missing(offset, Malformation::SizeBeyondEnd { polynomial, size, left }));
-        }
-        self.note(offset, Malformation::OversizedPolynomial { polynomial, size });
-        let end = log.coefficients.len() + coefficients;
-        while log.coefficients.len() < end {
-            let missing = end - log.coefficients.len();
-            if decode::coefficients(&mut self.source, missing, &mut log.coefficients) == 0 {
-                let left = self.source.offset() - offset - 4 + self.source.ensure(1) as u64;
-                return Err(self.missing(offset, Malformation::SizeBeyondEnd { polynomial, size, left }));
-            }
-            if decode::memory(log) as u64 > self.limit {
-                return Err((offset, self.too_large()));
-            }
-        }
-        Ok(())
-    }
 }
 
-/// Where reading failed, and why.
-type Failure = (u64, Malformation);
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-// The window must be able to show every ordinary polynomial at once.
-const _: () = assert!(WINDOW >= 4 + 8 * MAX_COEFFICIENTS);
+    #[test]
+    fn a_frame_beyond_the_limit_is_refused_before_it_is_in_memory() {
+        let layout = Layout { particles: 0, impulses: true, polynomials: true, steps: 0 };
+        for list in [[0, i32::MAX, 0], [0, 1, 1 << 28]] {
+            // As many empty polynomials, or coefficients of one, as there are bytes of zeros.
+            let head = list.map(i32::to_le_bytes).concat();
+            let endless = Read::chain(&head[..], std::io::repeat(0));
+            let mut reader = Reader::new(endless, layout);
+            reader.records = reader.records.with_limit(1 << 20);
+            let error = reader.next(&mut Frame::default()).unwrap_err();
+            assert_eq!(error.what, Malformation::FrameTooLarge { limit: 1 << 20 });
+            assert!(reader.offset() < 1 << 21);
+        }
+    }
+}

@@ -1,8 +1,7 @@
-//! A stream with a buffer that can be looked at before it is consumed, an absolute offset, and, where it is known, the
-//! number of bytes left.
+//! A stream with a buffer that can be looked at before it is consumed, and an absolute offset.
 //!
-//! An error of the stream counts as its end and is kept, so that both readers treat it like missing bytes and can
-//! still name it.
+//! An error of the stream counts as its end and is kept, so that a reader treats it like missing bytes and can still
+//! name it.
 use super::error::Malformation;
 use std::io::{self, Read};
 
@@ -54,15 +53,6 @@ impl<R: Read> Source<R> {
     #[inline]
     pub(crate) fn offset(&self) -> u64 {
         self.offset
-    }
-
-    /// Bytes from here to the end: known with a known length and once the end has been seen.
-    pub(crate) fn left(&self) -> Option<u64> {
-        if self.ended {
-            Some((self.end - self.start) as u64)
-        } else {
-            self.length.map(|length| length.saturating_sub(self.offset))
-        }
     }
 
     /// The error that ended the stream.
@@ -179,10 +169,9 @@ mod tests {
         assert_eq!(source.ensure(10), 10);
         assert_eq!(source.window(), &bytes[..10]);
         source.consume(7);
-        assert_eq!((source.offset(), source.left()), (7, None));
+        assert_eq!(source.offset(), 7);
         assert_eq!(source.ensure(200), 93);
         assert_eq!(source.window(), &bytes[7..]);
-        assert_eq!(source.left(), Some(93));
         assert_eq!(source.drain(93), Some(93));
         assert_eq!(source.ensure(1), 0);
     }
@@ -190,7 +179,6 @@ mod tests {
     #[test]
     fn nothing_beyond_the_known_length_is_read() {
         let mut source = Source::new(&[1_u8; 50][..]).with_length(20);
-        assert_eq!(source.left(), Some(20));
         assert_eq!(source.ensure(30), 20);
         assert_eq!(source.drain(u64::MAX), Some(20));
     }
