@@ -13,10 +13,12 @@
 #![forbid(unsafe_code)]
 
 mod kinds;
+mod meter;
 
 pub use kinds::{ArchiveKind, FileKind, KNOWN, START, described};
 
 use flate2::read::GzDecoder;
+use meter::Meter;
 use std::{
     collections::BTreeSet,
     ffi::OsStr,
@@ -38,6 +40,15 @@ pub struct ArchiveLimits {
 
 /// The greatest depth of its folders.
 const DEEPEST: usize = 64;
+
+/// The most bytes of an archive's list of files, and of what an archive says of a single file beside its contents. A
+/// list of 20,000 usual names has 4 MiB.
+const LONGEST_LIST: u64 = 16 << 20;
+/// See [`LONGEST_LIST`].
+const LONGEST_HEADER: u64 = 1 << 20;
+
+/// The bytes that may be read for a file beside its contents: headers, padding, and what is read ahead.
+const BESIDE: u64 = 64 << 10;
 
 impl ArchiveLimits {
     /// Enough for a suite with all its scenes, and for a student's sources with a library in them.
@@ -181,6 +192,13 @@ fn start_of(file: &mut File) -> io::Result<Vec<u8>> {
     Ok(start)
 }
 
+/// Reads what an archive says of the next file.
+fn header(entry: &mut impl Read) -> Result<Vec<u8>, ArchiveError> {
+    let mut header = Vec::new();
+    entry.take(LONGEST_HEADER + 1).read_to_end(&mut header).map_err(damaged)?;
+    if header.len() as u64 > LONGEST_HEADER { Err(damaged("a header is too long")) } else { Ok(header) }
+}
+
 /// A name for a message.
 fn shown(name: &[u8]) -> String {
     String::from_utf8_lossy(name).chars().take(200).flat_map(char::escape_default).collect()
@@ -204,7 +222,11 @@ impl Walk<'_> {
         if announced.is_some_and(|announced| announced > self.limits.entries as u64) {
             return Err(ArchiveError::Entries(self.limits.entries));
         }
-        let mut archive = zip::ZipArchive::new(BufReader::new(file)).map_err(damaged)?;
+        let packed = file.metadata().map_err(ArchiveError::Read)?.len();
+        let meter = Meter::new(LONGEST_LIST);
+        let mut archive = zip::ZipArchive::new(BufReader::new(meter.reader(file))).map_err(damaged)?;
+        // Files may lie in one another, and be empty however long they are.
+        meter.set(packed.saturating_mul(2).saturating_add(BESIDE * archive.len() as u64));
         // The library keeps one entry of each name, and nobody could tell which one was meant.
         if announced.is_some_and(|announced| announced > archive.len() as u64) {
             return Err(ArchiveError::Twice("a name".to_owned()));
@@ -227,11 +249,34 @@ impl Walk<'_> {
     }
 
     fn tar(&mut self, input: impl Read) -> Result<(), ArchiveError> {
-        let mut archive = tar::Archive::new(input);
-        for entry in archive.entries().map_err(damaged)? {
+        let meter = Meter::new(self.limits.bytes.saturating_add(BESIDE * self.limits.entries as u64));
+        let mut archive = tar::Archive::new(meter.reader(input));
+        // The name that a header of its own gives the next file. The library would read such a header whole.
+        let mut long_name = None;
+        for entry in archive.entries().map_err(damaged)?.raw(true) {
             let mut entry = entry.map_err(damaged)?;
-            let name = entry.path_bytes().into_owned();
-            match entry.header().entry_type() {
+            let kind = entry.header().entry_type();
+            if kind == tar::EntryType::GNULongName {
+                let mut name = header(&mut entry)?;
+                name.truncate(name.iter().position(|byte| *byte == 0).unwrap_or(name.len()));
+                long_name = Some(name);
+                continue;
+            }
+            if kind == tar::EntryType::XHeader {
+                let header = header(&mut entry)?;
+                for said in tar::PaxExtensions::new(&header) {
+                    let said = said.map_err(damaged)?;
+                    match said.key_bytes() {
+                        b"path" => long_name = Some(said.value_bytes().to_vec()),
+                        // Files have it that are larger than any may be here.
+                        b"size" => return Err(ArchiveError::Bytes(self.limits.bytes)),
+                        _ => {}
+                    }
+                }
+                continue;
+            }
+            let name = long_name.take().unwrap_or_else(|| entry.path_bytes().into_owned());
+            match kind {
                 tar::EntryType::Directory => self.folder(&name)?,
                 tar::EntryType::Regular | tar::EntryType::Continuous => {
                     let executable = entry.header().mode().is_ok_and(|mode| mode & 0o111 != 0);
@@ -395,5 +440,63 @@ mod tests {
         assert!(told.contains("more than 52428800 bytes"), "{told}");
         let deep = zip(&[(&"d/".repeat(DEEPEST + 1), None, b"")]);
         assert!(matches!(look_through(deep, ArchiveLimits::USUAL), Err(ArchiveError::Depth(_))));
+    }
+
+    /// An archive with an entry of this kind and size, and then a file.
+    fn tar(kind: tar::EntryType, size: usize, path: &str) -> File {
+        let mut builder = tar::Builder::new(Vec::new());
+        let mut header = tar::Header::new_gnu();
+        header.set_entry_type(kind);
+        header.set_size(size as u64);
+        builder.append_data(&mut header, "entry", io::repeat(b'n').take(size as u64)).unwrap();
+        builder.append_pax_extensions([("mtime", b"1.5".as_slice()), ("path", path.as_bytes())]).unwrap();
+        let mut header = tar::Header::new_gnu();
+        header.set_size(0);
+        builder.append_data(&mut header, "short", io::empty()).unwrap();
+        let mut file = tempfile::tempfile().unwrap();
+        file.write_all(&builder.into_inner().unwrap()).unwrap();
+        file
+    }
+
+    #[test]
+    fn headers_of_tar_archives_name_files_and_are_limited() {
+        let long = format!("{}FOSSSim", "folder/".repeat(40));
+        let look = |kind, size, path: &str| look_through(tar(kind, size, path), ArchiveLimits::USUAL);
+        let files = look(tar::EntryType::Regular, 7, &long).unwrap();
+        assert_eq!(files, [Path::new("entry"), Path::new(&long)]);
+        for kind in [tar::EntryType::GNULongName, tar::EntryType::XHeader] {
+            let told = look(kind, (1 << 20) + 1, &long).unwrap_err().to_string();
+            assert!(told.contains("a header is too long"), "{told}");
+        }
+        assert!(matches!(look(tar::EntryType::GNUSparse, 0, &long), Err(ArchiveError::Kind(_))));
+        let passed_over = ArchiveLimits { bytes: 1 << 20, entries: 2 };
+        let told = look_through(tar(tar::EntryType::XGlobalHeader, 2 << 20, &long), passed_over).unwrap_err();
+        assert!(told.to_string().contains("too much reading"), "{told}");
+    }
+
+    #[test]
+    fn files_that_lie_in_one_another_are_read_so_often_only() {
+        const FILES: u16 = 200;
+        // A mebibyte of blocks that hold nothing.
+        let content = [&[0, 0, 0, 0xff, 0xff].repeat(200_000)[..], &[3, 0]].concat();
+        let fields = |numbers: &[(u64, usize)]| -> Vec<u8> {
+            numbers.iter().flat_map(|(number, size)| number.to_le_bytes()[..*size].to_vec()).collect()
+        };
+        let sizes = [(8, 2), (0, 4), (0, 4), (content.len() as u64, 4), (0, 4), (4, 2), (0, 2)];
+        let mut bytes = [b"PK\x03\x04", &fields(&[(20, 2), (0, 2)])[..], &fields(&sizes), b"0000", &content].concat();
+        let directory = bytes.len() as u64;
+        for file in 0..FILES {
+            let beside = fields(&[(0, 2), (0, 2), (0, 2), (0, 4), (0, 4)]);
+            let name = format!("{file:04}");
+            bytes.extend([b"PK\x01\x02", &fields(&[(20, 2), (20, 2), (0, 2)])[..], &fields(&sizes)].concat());
+            bytes.extend([&beside, name.as_bytes()].concat());
+        }
+        let (count, size) = (u64::from(FILES), bytes.len() as u64 - directory);
+        let end = fields(&[(0, 2), (0, 2), (count, 2), (count, 2), (size, 4), (directory, 4), (0, 2)]);
+        bytes.extend([b"PK\x05\x06", &end[..]].concat());
+        let mut file = tempfile::tempfile().unwrap();
+        file.write_all(&bytes).unwrap();
+        let told = look_through(file, ArchiveLimits::USUAL).unwrap_err().to_string();
+        assert!(told.contains("too much reading"), "{told}");
     }
 }

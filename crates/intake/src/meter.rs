@@ -1,0 +1,51 @@
+//! How much may be read, whatever reads it: what an archive makes its readers do has an end.
+use std::{
+    cell::Cell,
+    io::{self, Read, Seek, SeekFrom},
+    rc::Rc,
+};
+
+/// The bytes that may still be read.
+#[derive(Debug, Clone)]
+pub(crate) struct Meter(Rc<Cell<u64>>);
+
+/// A reader that fails where the bytes of its meter are used up.
+#[derive(Debug)]
+pub(crate) struct MeteredReader<R> {
+    inner: R,
+    meter: Meter,
+}
+
+impl Meter {
+    /// Lets this many bytes be read.
+    pub(crate) fn new(bytes: u64) -> Self {
+        Self(Rc::new(Cell::new(bytes)))
+    }
+
+    /// Lets this many bytes be read from now on.
+    pub(crate) fn set(&self, bytes: u64) {
+        self.0.set(bytes);
+    }
+
+    /// Makes a reader count for this meter.
+    pub(crate) fn reader<R>(&self, inner: R) -> MeteredReader<R> {
+        MeteredReader { inner, meter: self.clone() }
+    }
+}
+
+impl<R: Read> Read for MeteredReader<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let read = self.inner.read(buffer)?;
+        let Some(left) = self.meter.0.get().checked_sub(read as u64) else {
+            return Err(io::Error::other("it takes too much reading for what it holds"));
+        };
+        self.meter.0.set(left);
+        Ok(read)
+    }
+}
+
+impl<R: Seek> Seek for MeteredReader<R> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.inner.seek(to)
+    }
+}
