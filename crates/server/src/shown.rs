@@ -130,6 +130,11 @@ impl Shown {
     }
 }
 
+/// The full hour before a moment: a grade's own would tell how long hidden groups took.
+pub fn hour(milliseconds: i64) -> i64 {
+    milliseconds - milliseconds.rem_euclid(3_600_000)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -119,6 +119,7 @@ impl Member {
         };
         if let Some(shown) = Shown::read(&kept) {
             shown.cover(&mut grade.outcome, SHOWN);
+            grade.created_at = shown::hour(grade.created_at);
             submission.is_withheld = true;
             grade.outcome.shown = Some(kept);
             submission.overrule();

@@ -5,7 +5,7 @@ use crate::{
     health,
     late::Late,
     queue::{self, Lane, Progress},
-    shown::Shown,
+    shown::{Shown, hour},
     store::Artefact,
     task::{Outcome, OutputFile, Suite, Task},
     values,
@@ -150,7 +150,7 @@ pub struct Graded {
     /// The result.
     #[serde(flatten)]
     pub outcome: Outcome,
-    /// When it was graded, in milliseconds since 1970.
+    /// When it was graded, in milliseconds since 1970. The full hour while groups that the suite hides are withheld.
     pub created_at: i64,
 }
 
@@ -165,7 +165,7 @@ impl Deref for Graded {
 /// How a result came to count.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct History {
-    /// When, in milliseconds since 1970.
+    /// When, in milliseconds since 1970. The full hour while groups that the suite hides are withheld.
     pub changed_at: i64,
     /// Why, as students read it.
     pub reason: String,
@@ -433,7 +433,8 @@ pub(super) async fn history(
             given = row.maybe_text("given")?;
         }
         Ok(read_row!(row => History {
-            changed_at, reason, by = "login", result, version, grader;
+            reason, by = "login", result, version, grader;
+            changed_at: if withheld { hour(row.int("changed_at")?) } else { row.int("changed_at")? },
             old_code,
             old_points,
             new_code,

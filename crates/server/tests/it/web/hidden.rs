@@ -39,13 +39,17 @@ async fn reports_that_tell_of_hidden_groups_are_for_staff(fresh: Fresh) {
     let told = |by: &Client, id: i64| {
         let mut told = by.get(&format!("/api/v1/courses/physics/submissions/{id}")).expect(200).json();
         let mut grade = told["grade"].take();
-        grade["created_at"].take();
+        let is_hour = |moment: Value| moment.as_i64().expect("a moment") % 3_600_000 == 0;
+        let graded = is_hour(grade["created_at"].take());
         grade["files"].as_array_mut().expect("a list").retain(|file| file["name"] != "staff.html");
         let mut history = by.get(&format!("/api/v1/courses/physics/submissions/{id}/history")).expect(200).json();
         let mut history = history[0].take();
-        for own in ["changed_at", "result", "task", "by_what"] {
+        let changed = is_hour(history["changed_at"].take());
+        for own in ["result", "task", "by_what"] {
             history[own].take();
         }
+        // How long the hidden groups took is told neither.
+        assert_eq!([graded, changed], [told["is_withheld"] == true; 2]);
         (grade, history, told["is_withheld"].take())
     };
     let (grade, history, withheld) = told(&ada, hidden);
