@@ -70,13 +70,41 @@ impl Staff {
     /// signs in once. An account that another course's staff made, who may sign in as it, an administrator adds.
     ///
     /// # Errors
-    /// When a name is none.
-    pub async fn set_member(&self, login: &str, name: &str, role: &str) -> Result<Link, Problem> {
+    /// When a name is none, or somebody changed the member since the event that was `seen`.
+    pub async fn set_member(&self, login: &str, name: &str, role: &str, seen: Option<i64>) -> Result<Link, Problem> {
         check_member(login, name, role)?;
         let mut transaction = self.app.0.database.begin().await?;
+        self.check_seen(&mut transaction, login, seen).await?;
         let link = self.add(&mut transaction, login, name, role).await?;
         transaction.commit().await?;
         Ok(Link { link })
+    }
+
+    /// The number of the course's last event: what somebody who reads the members now has seen.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn last_event(&self) -> Result<i64, Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        let statement = "SELECT coalesce(max(id), 0) AS id FROM event WHERE course = ?";
+        Ok(transaction.one(statement, values![self.course]).await?.int("id")?)
+    }
+
+    /// Refuses a change of a member whom somebody else changed meanwhile, and says who, and what.
+    async fn check_seen(&self, transaction: &mut Transaction, login: &str, seen: Option<i64>) -> Result<(), Problem> {
+        let Some(seen) = seen else { return Ok(()) };
+        let statement = "SELECT account.login, event.text FROM event LEFT JOIN account ON account.id = event.actor
+            WHERE event.course = ? AND event.id > ? AND event.kind = 'member' AND event.text IN (?, ?, ?)
+            ORDER BY event.id DESC LIMIT 1";
+        let [out, student, staff] = ["out", "student", "staff"].map(|role| format!("{login} is {role}"));
+        let Some(row) = transaction.row(statement, values![self.course, seen, out, student, staff]).await? else {
+            return Ok(());
+        };
+        let (who, what) = (row.maybe_text("login")?.unwrap_or_default(), row.text("text")?);
+        Err(Problem::conflict(
+            format!("{who} changed it meanwhile: {what}"),
+            "load the page again, and change it there",
+        ))
     }
 
     pub(super) async fn add(
@@ -155,9 +183,10 @@ impl Staff {
     /// Takes somebody out of the course; what they handed in stays.
     ///
     /// # Errors
-    /// When they are no member.
-    pub async fn remove_member(&self, login: &str) -> Result<(), Problem> {
+    /// When they are no member, or somebody changed them since the event that was `seen`.
+    pub async fn remove_member(&self, login: &str, seen: Option<i64>) -> Result<(), Problem> {
         let mut transaction = self.app.0.database.begin().await?;
+        self.check_seen(&mut transaction, login, seen).await?;
         self.check_left(&mut transaction, login, "out").await?;
         let statement = "DELETE FROM member WHERE course = ? AND account = (SELECT id FROM account WHERE login = ?)";
         let removed = transaction.execute(statement, values![self.course, login]).await?;

@@ -29,6 +29,10 @@ pub(super) struct MemberWish {
     /// `student` or `staff`.
     #[schema(pattern = "^(student|staff)$")]
     role: String,
+    /// The last event of the audit log that the sender has seen: with it a change is refused when there is a later one
+    /// of this member.
+    #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
+    seen: Option<i64>,
 }
 
 /// Removes a course with its assignments, submissions and log, for ever. Accounts stay.
@@ -96,7 +100,7 @@ answers! { OK:
     /// once.
     put "/api/v1/courses/{course}/members/{login}" "courses"
         set_member(staff: Staff, { login }, wish: MemberWish) -> Link:
-            staff.set_member(&login, &wish.name, &wish.role);
+            staff.set_member(&login, &wish.name, &wish.role, wish.seen);
     /// A new link that signs a student of this course in once.
     post "/api/v1/courses/{course}/members/{login}/link" "courses"
         member_link(staff: Staff, { login }) -> Link: staff.new_link(&login);
@@ -109,5 +113,5 @@ answers! { OK:
 deeds! { NO_CONTENT:
     /// Takes somebody out of the course; what they handed in stays.
     delete "/api/v1/courses/{course}/members/{login}" "courses"
-        remove_member(staff: Staff, { login }) -> "They are out": staff.remove_member(&login);
+        remove_member(staff: Staff, { login }) -> "They are out": staff.remove_member(&login, None);
 }

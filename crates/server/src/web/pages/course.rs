@@ -83,6 +83,8 @@ struct MembersPage {
     /// The address of the next page.
     after: Option<String>,
     platforms: Vec<String>,
+    /// The last event of the course that the page shows.
+    seen: i64,
     /// A link to be handed on, and to whom.
     link: Option<(String, String)>,
 }
@@ -113,6 +115,12 @@ pub(super) struct NewMember {
     login: String,
     name: String,
     role: String,
+    seen: Option<i64>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct MemberRemoval {
+    seen: Option<i64>,
 }
 
 pub(super) async fn course(member: Member) -> Page {
@@ -156,9 +164,11 @@ impl People {
 async fn members_page(staff: &Staff, look: People, link: Option<(String, String)>) -> Page {
     let slug = staff.slug.clone();
     let frame = PageFrame::course(staff).then(format!("/c/{slug}/members"), "Members");
+    // Before the members: what somebody changes in between is not seen.
+    let seen = staff.last_event().await?;
     let (members, has_more) = staff.members_page(&look.q, &look.after).await?;
     let after = look.next(members.last().filter(|_| has_more).map(|last| last.login.as_str()));
-    show(&MembersPage { frame, slug, members, look, after, platforms: staff.platforms().await?, link })
+    show(&MembersPage { frame, slug, members, look, after, platforms: staff.platforms().await?, seen, link })
 }
 
 pub(super) async fn members(staff: Staff, Asked(look): Asked<People>) -> Page {
@@ -167,7 +177,7 @@ pub(super) async fn members(staff: Staff, Asked(look): Asked<People>) -> Page {
 
 pub(super) async fn set_member(staff: Staff, Fields(form): Fields<NewMember>) -> Page {
     let login = form.login.trim();
-    let link = staff.set_member(login, form.name.trim(), &form.role).await?.link;
+    let link = staff.set_member(login, form.name.trim(), &form.role, form.seen).await?.link;
     members_page(&staff, People::default(), link.map(|link| (login.to_owned(), link))).await
 }
 
@@ -188,6 +198,7 @@ pub(super) async fn queue(staff: Staff) -> Page {
 }
 
 deeds! {
-    remove_member(staff: Staff, { course, login }): staff.remove_member(&login) => "/c/{course}/members";
+    remove_member(staff: Staff, { course, login }, form: MemberRemoval):
+        staff.remove_member(&login, form.seen) => "/c/{course}/members";
     grade_errors_again(staff: Staff, { course }): staff.grade_errors_again(None) => "/c/{course}/queue";
 }

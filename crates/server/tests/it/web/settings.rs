@@ -95,6 +95,20 @@ async fn nothing_is_overwritten_unseen(fresh: Fresh) {
     let one = admin.send("PUT", path, JSON, br#"{"title": "M", "settings": {"hints": "what"}}"#).expect(200).json();
     assert_eq!((&one["settings"]["attempts"], &one["settings"]["hints"]), (&3.into(), &"what".into()));
     admin.send("PUT", path, JSON, br#"{"title": "M", "settings": {"attempts": null}}"#).expect(400);
+    // A member, too.
+    let members = || admin.get("/c/physics/members").expect(200).text();
+    let seen = members().split_once("name=\"seen\" value=\"").expect("a field").1.split('"').next().map(str::to_owned);
+    let seen = seen.expect("a number");
+    server.member(&colleague, "physics", "bob", "staff");
+    let demoted = format!("login=bob&name=Bob&role=student&seen={seen}");
+    let refused = admin.post_form("/c/physics/members", &demoted).expect(409).text();
+    assert!(refused.contains("colleague changed it meanwhile: bob is staff"), "{refused}");
+    admin.post_form("/c/physics/members/bob/remove", &format!("seen={seen}")).expect(409);
+    let wish = format!(r#"{{"name": "Bob", "role": "student", "seen": {seen}}}"#);
+    admin.send("PUT", "/api/v1/courses/physics/members/bob", JSON, wish.as_bytes()).expect(409);
+    assert!(members().contains("<td>staff</td>"));
+    admin.post_form("/c/physics/members", &format!("login=eve&name=Eve&role=student&seen={seen}")).expect(200);
+    admin.post_form("/c/physics/members/bob/remove", "").expect(303);
     // A mark, too.
     let ada = server.member(&admin, "physics", "ada", "student");
     let id = ada.submit("physics", b"#!grade WA 1\n");
