@@ -193,7 +193,7 @@ fn a_suite_says_which_known_mistakes_no_scene_of_it_shows() {
 fn a_grade_names_what_its_scenes_show_together() {
     let Some(workspace) = grading::workspace() else { return };
     let cases = [
-        ("penalty-first-half-plane-only", "t2m1", "The penalty force looks at the first half-plane only."),
+        ("penalty-first-half-plane-only", "t2m1", "The penalty force is computed for the first half-plane only."),
         ("near-pairs-half-planes-doubled", "t2m3@1", "all pairs of a particle and a half-plane are reported twice."),
         ("jacobian-drag-missing", "t1m3", "The derivative of drag by velocities is not written yet, or adds nothing."),
         ("gravitation-no-masses,spring-no-rest-length", "t1m3", "The gravitational force ignores the masses."),

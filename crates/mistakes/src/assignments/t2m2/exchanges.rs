@@ -72,7 +72,7 @@ exchanges! {
         => "The formulas use positions at the end of the step"
         => "the positions x are those at the end of the step, expected those at its start";
     "end-for-displacement" [PP, PE, PH] 4.0: |inputs| inputs.d = ends(inputs)
-        => "Positions at the end of the step stand where displacements belong"
+        => "Positions at the end of the step are used instead of displacements"
         => "the displacements dx are end positions, expected end minus start";
     "displacement-reversed" [PP, PE, PH] 4.2: |inputs| inputs.d = inputs.d.map(|d| NOTHING - d)
         => "All displacements have the wrong sign"
@@ -88,9 +88,9 @@ exchanges! {
     "second-end-still" [PE] 4.1: |inputs| inputs.d[2] = NOTHING
         => "The displacement of the edge's second endpoint is forgotten" => "dx3 is 0 in the formulas";
     "first-displacement-twice" [PE] 4.2: |inputs| inputs.d[2] = inputs.d[1]
-        => "The first endpoint's displacement is used for both endpoints" => "dx2 stands for dx3";
+        => "The first endpoint's displacement is used for both endpoints" => "dx2 is used instead of dx3";
     "second-displacement-twice" [PE] 4.2: |inputs| inputs.d[1] = inputs.d[2]
-        => "The second endpoint's displacement is used for both endpoints" => "dx3 stands for dx2";
+        => "The second endpoint's displacement is used for both endpoints" => "dx3 is used instead of dx2";
     "displacements-swapped" [PE] 4.2: |inputs| inputs.d.swap(1, 2)
         => "The endpoints' displacements are exchanged" => "dx2 and dx3 are exchanged";
     "endpoints-swapped" [PE] 4.3: |inputs| { inputs.x.swap(1, 2); inputs.d.swap(1, 2); }
@@ -99,40 +99,40 @@ exchanges! {
         => "The first particle's position is the one at the end of the step"
         => "x1 is the position at the end of the step";
     "radii-squared-apart" [PP, PE] 2.6: |inputs| inputs.square = square(inputs.radii[0]) + square(inputs.radii[1])
-        => "Each radius is squared for itself" => "r1^2 + r2^2 stands for R^2 = (r1 + r2)^2";
+        => "Each radius is squared for itself" => "r1^2 + r2^2 is used instead of R^2 = (r1 + r2)^2";
     "radius-not-squared" [PP, PE, PH] 2.7: |inputs| inputs.square = inputs.radii[0] + inputs.radii[1]
-        => "The radius, or the sum of the radii, is not squared" => "R stands for R^2";
+        => "The radius, or the sum of the radii, is not squared" => "R is used instead of R^2";
     "no-radius" [PP, PE, PH] 2.9: |inputs| inputs.square = Bounded::exact(0.0)
-        => "The radii are forgotten" => "0 stands for R^2";
+        => "The radii are forgotten" => "0 is used instead of R^2";
     "first-radius-only" [PP, PE] 2.75: |inputs| inputs.square = square(inputs.radii[0])
-        => "The second object's radius is forgotten" => "r1^2 stands for R^2 = (r1 + r2)^2";
+        => "The second object's radius is forgotten" => "r1^2 is used instead of R^2 = (r1 + r2)^2";
     "second-radius-only" [PP, PE] 2.8: |inputs| inputs.square = square(inputs.radii[1])
-        => "The first particle's radius is forgotten" => "r2^2 stands for R^2 = (r1 + r2)^2";
+        => "The first particle's radius is forgotten" => "r2^2 is used instead of R^2 = (r1 + r2)^2";
     "first-radius-twice" [PP, PE] 3.1: |inputs| inputs.square = 4.0 * square(inputs.radii[0])
-        => "The first object's radius is used for both objects" => "(r1 + r1)^2 stands for R^2 = (r1 + r2)^2";
+        => "The first object's radius is used for both objects" => "(r1 + r1)^2 is used instead of R^2 = (r1 + r2)^2";
     "second-radius-twice" [PP, PE] 3.1: |inputs| inputs.square = 4.0 * square(inputs.radii[1])
-        => "The second object's radius is used for both objects" => "(r2 + r2)^2 stands for R^2 = (r1 + r2)^2";
+        => "The second object's radius is used for both objects" => "(r2 + r2)^2 is used instead of R^2 = (r1 + r2)^2";
     "radii-subtracted" [PP, PE] 4.5: |inputs| inputs.square = square(inputs.radii[0] - inputs.radii[1])
-        => "The radii are subtracted instead of added" => "(r1 - r2)^2 stands for R^2 = (r1 + r2)^2";
+        => "The radii are subtracted instead of added" => "(r1 - r2)^2 is used instead of R^2 = (r1 + r2)^2";
     "diameters" [PP, PE, PH] 3.05: |inputs| inputs.square = 4.0 * inputs.square
-        => "Diameters stand where radii belong" => "(2 R)^2 stands for R^2";
+        => "Diameters are used instead of radii" => "(2 R)^2 is used instead of R^2";
     "radius-subtracted" [PP, PE, PH] 4.4: |inputs| inputs.square = -inputs.square
-        => "The radius terms have the wrong sign" => "-R^2 stands for R^2";
+        => "The radius terms have the wrong sign" => "-R^2 is used instead of R^2";
     "radius-halved" [PP, PE, PH] 4.2: |inputs| inputs.square = 0.25 * inputs.square
-        => "Half the radius is used" => "(R/2)^2 stands for R^2";
+        => "Half the radius is used" => "(R/2)^2 is used instead of R^2";
     "no-point" [PH] 4.0: |inputs| inputs.x[1] = NOTHING
-        => "The half-plane's point is forgotten, as if the boundary went through the origin" => "-x stands for p - x";
+        => "The half-plane's point is forgotten, as if the boundary went through the origin" => "-x is used instead of p - x";
     "point-and-normal-swapped" [PH] 4.2: |inputs| {
         inputs.x.swap(1, 2);
         inputs.normal_square = inputs.normal().dot(inputs.normal());
     }
-        => "The half-plane's point and its normal are exchanged" => "p and n stand in each other's places";
+        => "The half-plane's point and its normal are exchanged" => "p and n are exchanged";
     "no-normal-square" [PH] 2.6: |inputs| inputs.normal_square = Bounded::exact(1.0)
-        => "The radius term is right for unit normals only" => "r^2 stands for r^2 (n.n)";
+        => "The radius term is right for unit normals only" => "r^2 is used instead of r^2 (n.n)";
     "normal-length" [PH] 2.7: |inputs| inputs.normal_square = root(inputs.normal_square)
-        => "The radius term has the length of the normal where its square belongs" => "r^2 |n| stands for r^2 (n.n)";
+        => "The radius term has the length of the normal instead of its square" => "r^2 |n| is used instead of r^2 (n.n)";
     "reversed-offset" [PH] 4.1: |inputs| inputs.x.swap(0, 1)
-        => "The vector from the particle to the half-plane is taken the other way round" => "x - p stands for p - x";
+        => "The vector from the particle to the half-plane is taken the other way round" => "x - p is used instead of p - x";
     "x-only" [PP, PE, PH] 5.0: |inputs| without(inputs, |vector| &mut vector.y)
         => "The second components of all vectors are left out" => "all dot products are x x' without y y'";
     "y-only" [PP, PE, PH] 5.0: |inputs| without(inputs, |vector| &mut vector.x)

@@ -27,14 +27,14 @@ pub const SPECIALS: &[Special] = &[
     Special {
         subject: Subject::EdgeApproach,
         key: "constant-alpha",
-        sentence: "alpha is taken for constant during the step",
+        sentence: "alpha is treated as constant during the step",
         detail: "alpha is (x12.x32)/(x32.x32) at the start of the step and does not depend on t",
         polynomial: constant_alpha,
     },
     Special {
         subject: Subject::EdgeOverlap,
         key: "overlap-constant-alpha",
-        sentence: "alpha is taken for constant in the overlap, so that the point of the edge that is closest at the start counts",
+        sentence: "alpha is treated as constant in the overlap, so the point of the edge that is closest at the start counts",
         detail: "alpha is (x12.x32)/(x32.x32) at the start of the step and does not depend on t",
         polynomial: |inputs| {
             let (closing, n) = closest_at_start(inputs);
@@ -45,7 +45,7 @@ pub const SPECIALS: &[Special] = &[
         subject: Subject::EdgeOverlap,
         key: "radius-unscaled",
         sentence: "The radii are not multiplied by the edge's squared length when the denominator is cleared",
-        detail: "R^2 stands for R^2 (x32 + t d32).(x32 + t d32)",
+        detail: "R^2 is used instead of R^2 (x32 + t d32).(x32 + t d32)",
         polynomial: |inputs| {
             let quartic = &readings(Subject::EdgeOverlap)[0];
             let mut list = quartic.polynomial(&Inputs { square: Bounded::exact(0.0), ..*inputs });
@@ -57,7 +57,7 @@ pub const SPECIALS: &[Special] = &[
         subject: Subject::AlphaHigh,
         key: "one-unscaled",
         sentence: "The whole in alpha < 1 is not multiplied by the edge's squared length when the denominator is cleared",
-        detail: "1 stands for (x32 + t d32).(x32 + t d32)",
+        detail: "1 is used instead of (x32 + t d32).(x32 + t d32)",
         polynomial: |inputs| {
             let (w0, w1, e0, e1) = (inputs.x12(), inputs.d12(), inputs.x32(), inputs.d32());
             vec![-w1.dot(e1), -(w0.dot(e1) + w1.dot(e0)), Bounded::exact(1.0) - w0.dot(e0)]
@@ -86,7 +86,7 @@ pub const SPECIALS: &[Special] = &[
     Special {
         subject: Subject::HalfPlaneApproach,
         key: "speed-only",
-        sentence: "The approach looks at the velocity alone, not at the side of the half-plane",
+        sentence: "The approach uses only the velocity, not the side of the half-plane",
         detail: "the polynomial is (dx.n), a constant",
         polynomial: |inputs| vec![inputs.d[0].dot(inputs.normal())],
     },

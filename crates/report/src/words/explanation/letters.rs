@@ -81,14 +81,14 @@ mod tests {
 
     #[test]
     fn radii_have_the_names_of_their_pair() {
-        let line = "r1^2 + r2^2 stands for R^2 = (r1 + r2)^2";
+        let line = "r1^2 + r2^2 is used instead of R^2 = (r1 + r2)^2";
         let of_kinds = |kinds: &[PairKind]| {
             let line = radii(line, kinds == [PairKind::ParticleEdge]);
             let told = of(std::slice::from_ref(&line), kinds).expect("it has short names");
             (line, told)
         };
         let (edge, told) = of_kinds(&[PairKind::ParticleEdge]);
-        assert_eq!(edge, "r1^2 + re^2 stands for R^2 = (r1 + re)^2");
+        assert_eq!(edge, "r1^2 + re^2 is used instead of R^2 = (r1 + re)^2");
         assert!(told.contains("R is r1 + re"), "{told}");
         let (both, told) = of_kinds(&[PairKind::ParticleParticle, PairKind::ParticleEdge]);
         assert_eq!(both, line);
@@ -101,7 +101,7 @@ mod tests {
     fn short_names_are_explained() {
         let text = told("t^2 lacks -4 e h, with e = d21.x21 and h = d32.x32.").expect("it has short names");
         assert!(text.starts_with("Here d21 is dx2 - dx1, and so on;") && text.contains("edge's ends"), "{text}");
-        let text = told("t: -x21.d21 stands where -2 x21.d21 belongs.").expect("it has short names");
+        let text = told("t: -x21.d21 is used instead of -2 x21.d21.").expect("it has short names");
         assert!(text.starts_with("Here x21 is x2 - x1,") && text.contains("first particle"), "{text}");
         let text = told("t^2: R^2 i has weight 2, expected 1 (i = d32.d32)").expect("it has short names");
         assert!(text.contains("R is r1 + re") && text.contains("edge's ends"), "{text}");
@@ -113,7 +113,7 @@ mod tests {
     fn the_letter_r_is_the_rotation_where_zones_move() {
         let text = told("dx_cm is missing in x_cm + dx_cm + R (xs - x_cm).").expect("it has short names");
         assert!(text.contains("R turns a vector by the zone's angle") && !text.contains("r1"), "{text}");
-        let text = told("sum(xs) / N stands where x_cm belongs.").expect("it has short names");
+        let text = told("sum(xs) / N is used instead of x_cm.").expect("it has short names");
         assert!(!text.contains("R "), "{text}");
         let failsafe = fosssim_mistakes::student::CATALOGUE.iter().filter(|row| row.id.starts_with("failsafe-"));
         let false_ones: Vec<&str> =
@@ -123,6 +123,6 @@ mod tests {
 
     #[test]
     fn nothing_is_explained_where_nothing_needs_it() {
-        assert_eq!(told("dx2 stands where dx3 belongs."), None);
+        assert_eq!(told("dx2 is used instead of dx3."), None);
     }
 }

@@ -6,7 +6,7 @@ pub(super) fn what(found: &NotFinite) -> String {
     let what = if found.is_nan { "NaN (not a number)" } else { "an infinite number" };
     let where_from = match (found.step, found.stage) {
         (_, NanStage::FirstRecord) => "In the first record".to_owned(),
-        (Some(step), _) if found.ends => format!("In step {step}, but not in all steps behind it,"),
+        (Some(step), _) if found.ends => format!("In step {step}, but not in all steps after it,"),
         (Some(step), _) => format!("From step {step} on"),
         (None, _) if found.ends => "In some steps".to_owned(),
         (None, _) => "From some step on".to_owned(),

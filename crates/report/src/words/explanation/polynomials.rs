@@ -39,7 +39,7 @@ fn of_guess(guess: &Guess) -> String {
 const fn of_list(guess: ListGuess) -> &'static str {
     match guess {
         ListGuess::AllZero => "All coefficients are zero, or none is logged",
-        ListGuess::Constant => "A constant stands in the place of the polynomial",
+        ListGuess::Constant => "A constant is used instead of the polynomial",
         ListGuess::AllEqual => "All coefficients are the same constant",
         ListGuess::SinglePrecision => "The coefficients have single precision only",
         ListGuess::Monic => "The polynomial is divided by its leading coefficient, whose sign gets lost",
@@ -47,14 +47,14 @@ const fn of_list(guess: ListGuess) -> &'static str {
         ListGuess::Reversed => "The coefficients are in the wrong order, lowest power first",
         ListGuess::Negated => "The whole polynomial has the wrong sign",
         ListGuess::ReversedNegated => "The coefficients are in the wrong order and have the wrong sign",
-        ListGuess::TwoExchanged => "Two coefficients stand in each other's places",
+        ListGuess::TwoExchanged => "Two coefficients are exchanged",
         ListGuess::TrailingZero => "A zero is appended, which raises the degree by one",
-        ListGuess::OtherPolynomial => "Polynomials of a pair stand in each other's places",
+        ListGuess::OtherPolynomial => "Polynomials of a pair are exchanged",
         ListGuess::OtherPolynomialNegated => {
-            "A polynomial of the pair stands in another one's place, with the wrong sign"
+            "A polynomial of the pair is used instead of another one, with the wrong sign"
         }
         ListGuess::ConstantOnly => {
-            "The polynomial is cut to its constant coefficient: it is looked at when the step begins only"
+            "The polynomial is cut to its constant coefficient: it is tested at the start of the step only"
         }
         ListGuess::Cut => "The polynomial is cut: leading coefficients are missing",
         ListGuess::CutEnd => "The polynomial is cut: its last coefficients are missing",
@@ -69,7 +69,7 @@ const fn of_quantity(guess: QuantityGuess) -> &'static str {
         QuantityGuess::Sign => "A dot product of the formula has the wrong sign",
         QuantityGuess::Zero => "A quantity of the formula is zero",
         QuantityGuess::Factor => "A quantity of the formula has a wrong factor",
-        QuantityGuess::Other => "Another quantity stands where a dot product of the formula belongs",
+        QuantityGuess::Other => "Another quantity is used instead of a dot product of the formula",
     }
 }
 
@@ -80,7 +80,7 @@ const fn of_coefficients(guess: CoefficientGuess) -> &'static str {
         CoefficientGuess::Zero => "The {} coefficient is zero",
         CoefficientGuess::Sign => "The {} coefficient has the wrong sign",
         CoefficientGuess::Factor => "The {} coefficient has a wrong factor",
-        CoefficientGuess::TermForeign => "The {} coefficient contains a term that does not belong there",
+        CoefficientGuess::TermForeign => "The {} coefficient has a term too many",
         CoefficientGuess::TermMissing => "A term of the {} coefficient is missing",
         CoefficientGuess::TermSign => "A term of the {} coefficient has the wrong sign",
         CoefficientGuess::TermFactor => "A term of the {} coefficient has a wrong factor",
@@ -113,10 +113,10 @@ pub(super) fn detail(detail: &PolynomialDetail) -> String {
         PolynomialDetail::Every(value) => format!("every coefficient is {value}"),
         PolynomialDetail::SinglePrecision => "every value is a float".to_owned(),
         PolynomialDetail::InPlaceOf { stands, belongs } => {
-            format!("the {} polynomial stands where {} belongs", stands.name(), belongs.name())
+            format!("the {} polynomial is used instead of {}", stands.name(), belongs.name())
         }
         PolynomialDetail::Exchanged { powers: [one, other] } => {
-            format!("the coefficients of t^{one} and t^{other} stand in each other's places")
+            format!("the coefficients of t^{one} and t^{other} are exchanged")
         }
         PolynomialDetail::LastOnly(1) => "only the constant coefficient is there".to_owned(),
         PolynomialDetail::LastOnly(length) => format!("only the last {length} coefficients are there"),
@@ -156,8 +156,8 @@ fn stands_for(reading: Reading, letter: &str, stand: &Stand) -> String {
         Stand::One => "1".to_owned(),
     };
     match meaning(reading, letter) {
-        None => format!("{stand} stands for {letter}"),
-        Some(meaning) => format!("{letter}: {stand} stands for {meaning}"),
+        None => format!("{stand} is used instead of {letter}"),
+        Some(meaning) => format!("{letter}: {stand} is used instead of {meaning}"),
     }
 }
 

@@ -48,7 +48,7 @@ fn area_name(area: Area) -> String {
 
 fn of_fault(fault: &StageFault) -> String {
     let fixed = match fault {
-        StageFault::Order => "the polynomials are right, but the pairs are looked at in another order",
+        StageFault::Order => "the polynomials are right, but the pairs are tested in another order",
         StageFault::Decisions { wrong, .. } => match wrong {
             WrongDecisions::Missed => "contacts that its polynomials show are not counted",
             WrongDecisions::Superfluous => "contacts are counted that its polynomials do not show",
@@ -84,7 +84,7 @@ fn of_fault(fault: &StageFault) -> String {
              where it should"
         }
         StageFault::RoundsOfPrediction => {
-            "rounds behind the first one detect on the predicted positions again, not on those that the round before \
+            "rounds after the first one detect on the predicted positions again, not on those that the round before \
             left"
         }
         StageFault::BehindFirstRound => {
@@ -97,18 +97,18 @@ fn of_fault(fault: &StageFault) -> String {
             "when the rounds run out, a geometric pass follows in some steps only"
         }
         StageFault::Geometric(WrongGeometric::Superfluous) => {
-            "the geometric part runs though a round has found nothing"
+            "the geometric part runs although a round has found nothing"
         }
         StageFault::ZonePositions(positions) => match positions {
             WrongPositions::Prediction => {
-                "the first zones are looked for on the predicted positions, not on those that the impulse rounds leave"
+                "the first zones are searched on the predicted positions, not on those that the impulse rounds leave"
             }
             WrongPositions::First => {
-                "the first zones are looked for on other positions than those that the impulse rounds leave"
+                "the first zones are searched on other positions than those that the impulse rounds leave"
             }
-            WrongPositions::BeforeFailsafe => "the detection behind the failsafe looks at the positions before it",
+            WrongPositions::BeforeFailsafe => "the detection after the failsafe uses the positions before it",
         },
-        StageFault::AfterRounds => "the impulse rounds are right, what follows them is not",
+        StageFault::AfterRounds => "the impulse rounds are right, but not what follows them",
         StageFault::ZoneRounds(rounds) => match rounds {
             WrongZoneRounds::Growth => "zones are right in the first round, but not as they grow",
             WrongZoneRounds::Fewer => "the zones make fewer rounds than they should",
@@ -138,14 +138,14 @@ fn of_change(wrong: &WrongChange) -> String {
     };
     let whose = match wrong.particles {
         ChangedParticles::Any => "",
-        ChangedParticles::Fixed => " of fixed particles alone",
-        ChangedParticles::First => " of the first particle alone",
-        ChangedParticles::Last => " of the last particle alone",
+        ChangedParticles::Fixed => " of fixed particles only",
+        ChangedParticles::First => " of the first particle only",
+        ChangedParticles::Last => " of the last particle only",
     };
     let axis = match wrong.axis {
         None => "",
-        Some(0) => ", in their horizontal component alone,",
-        Some(_) => ", in their vertical component alone,",
+        Some(0) => ", in their horizontal component only,",
+        Some(_) => ", in their vertical component only,",
     };
     let how = match wrong.ratio {
         ChangeRatio::Nothing => "stay as they were",
@@ -160,7 +160,7 @@ const fn of_overlaps(wrong: WrongDecisions) -> &'static str {
     match wrong {
         WrongDecisions::Missed => "collisions of bodies that overlap and approach each other are missed",
         WrongDecisions::Superfluous => {
-            "collisions are found of bodies that do not overlap, or do not approach each other"
+            "collisions are found between bodies that do not overlap, or do not approach each other"
         }
         WrongDecisions::Both => "some collisions are missed, and others are found where there are none",
     }
@@ -171,7 +171,7 @@ const fn of_vectors(wrong: WrongVectors) -> &'static str {
         WrongVectors::Perpendicular => "it is perpendicular to what it should be",
         WrongVectors::Direction => "it has the wrong direction",
         WrongVectors::Zero => "it has no length",
-        WrongVectors::Inexact => "it is right but for its last digits",
+        WrongVectors::Inexact => "it is right except for its last digits",
         WrongVectors::Reversed => "it points the other way round",
         WrongVectors::Length => "it has the right direction, but not the right length",
     }
@@ -180,15 +180,15 @@ const fn of_vectors(wrong: WrongVectors) -> &'static str {
 const fn of_zones(wrong: WrongZones) -> &'static str {
     match wrong {
         WrongZones::Partly => "some of a zone's particles are not moved with it",
-        WrongZones::PartlyStopped => "in zones that have to stop, some particles do not",
-        WrongZones::Unmoved => "zones are not moved that should be",
+        WrongZones::PartlyStopped => "in zones that must stop, some particles do not",
+        WrongZones::Unmoved => "some zones that should move do not",
         WrongZones::NotMerged => "zones that share particles are moved one after the other, not as one",
         WrongZones::Joined => "zones that share no particle are moved as one",
-        WrongZones::Others => "particles are moved with a zone that do not belong to it",
-        WrongZones::MoveOn => "zones that have to stop move on as rigid bodies",
-        WrongZones::Stop => "zones stop in which nothing is fixed",
-        WrongZones::KeepPositions => "zones that have to stop do not go back to their start",
-        WrongZones::KeepVelocities => "zones that have to stop do not lose their velocity",
+        WrongZones::Others => "zones move particles that are not theirs",
+        WrongZones::MoveOn => "zones that must stop move on as rigid bodies",
+        WrongZones::Stop => "zones stop although nothing in them is fixed",
+        WrongZones::KeepPositions => "zones that must stop do not go back to their start",
+        WrongZones::KeepVelocities => "zones that must stop do not lose their velocity",
     }
 }
 
