@@ -113,7 +113,7 @@ pub(super) struct Grade {
     #[arg(long)]
     pub(super) fail_fast: bool,
     /// Compare with the recorded traces instead of simulating from the submission's states. Everything after the first
-    /// divergence then differs.
+    /// wrong step then differs.
     #[arg(long)]
     pub(super) recorded: bool,
     /// Grade again whenever the program changes, until interrupted.

@@ -51,7 +51,7 @@ pub(super) fn rules() -> impl TypedValueParser<Value = Rules> {
 pub(super) fn hints() -> impl TypedValueParser<Value = Hints> {
     one_of(&[
         ("none", Hints::None, "The verdict only"),
-        ("where", Hints::Where, "Where the first divergence is"),
+        ("where", Hints::Where, "Where the first difference is"),
         ("what", Hints::What, "Also the likely mistake, in a sentence"),
         ("full", Hints::Full, "Everything, formulas and values included"),
     ])

@@ -71,7 +71,7 @@ for (const name of Object.keys(CASES)) {
 test("without script the essentials are there", async () => {
   const { page, close } = await open(report("polynomial"), { script: false });
   const text = await page.locator("main").innerText();
-  for (const words of [/wrong answer/, /Likely mistake/, /Where it goes wrong first/, /differs/, /needs JavaScript/])
+  for (const words of [/wrong answer/, /Likely mistake/, /First difference/, /differs/, /needs JavaScript/])
     assert.match(text, words);
   assert.ok((await page.locator("figure svg").count()) >= 1);
   await close();

@@ -314,8 +314,7 @@ fn what_is_left_of_the_record_in_which_a_trace_breaks_off_is_nobodys_mistake() {
     let lengths = (1..60).map(|part| trace.len() * part / 60);
     for length in lengths.chain([trace.len() - 1, trace.len() - 8, trace.len() - 60]) {
         let text = broken_off(&trace, length);
-        for blame in ["likely mistake", "No simple mistake", "First divergence", "wrong coefficient", "What to look at"]
-        {
+        for blame in ["likely mistake", "No simple mistake", "First difference", "wrong coefficient", "Where to look"] {
             assert!(!text.contains(blame), "cut at {length} of {}: {blame} in\n{text}", trace.len());
         }
         assert!(text.starts_with("BAD TRACE") || text.contains("the trace is damaged"), "{text}");
@@ -327,7 +326,7 @@ fn a_mistake_before_the_break_is_still_told() {
     let mut trace = changed(BEAM, |frames| scale(&mut frames[2], 0, 2.0));
     trace.truncate(trace.len() - 8);
     let text = broken_off(&trace, trace.len());
-    assert!(text.contains("1 of ") && text.contains("First divergence: step 1 of"), "{text}");
+    assert!(text.contains("1 of ") && text.contains("First difference: step 1 of"), "{text}");
 }
 
 #[test]
@@ -339,7 +338,7 @@ fn another_scenes_trace_is_asked_about_and_not_explained() {
         let out = text.out();
         let first = out.lines().next().unwrap_or_default();
         assert!(first.ends_with("its length.") == longer && first.contains("Is this trace of this scene?"), "{first}");
-        for blame in ["likely mistake", "First divergence", "What to look at", "What explains it"] {
+        for blame in ["likely mistake", "First difference", "Where to look", "Likely cause"] {
             assert!(!out.contains(blame), "{blame} in\n{out}");
         }
         assert_eq!(json["explanations"][0]["key"], "other-scene");
@@ -425,7 +424,7 @@ fn json_says_what_the_text_says() {
         for words in lists.chain([&json["summary"]]) {
             assert!(text.contains(words.as_str().expect("words")), "{words} is not in {text}");
         }
-        for heading in ["What to look at", "Notes"] {
+        for heading in ["Where to look", "Notes"] {
             let list = if heading == "Notes" { "notes" } else { "advice" };
             assert_eq!(text.contains(heading), !json[list].as_array().expect(list).is_empty(), "{text}");
         }
@@ -439,7 +438,7 @@ fn the_cause_comes_first_and_tables_when_they_are_asked_for() {
     workspace.write("trace.bin", changed(BOUNCE, |frames| scale(&mut frames[2], 0, 2.0)));
     let short = workspace.run(["check", "scene.xml", "trace.bin"]).out();
     let place = |words: &str| short.find(words).unwrap_or_else(|| panic!("no {words} in {short}"));
-    assert!(place("likely mistake") < place("First divergence") && place("First divergence") < place("Rule books"));
+    assert!(place("likely mistake") < place("First difference") && place("First difference") < place("Rule books"));
     assert!(!short.contains("tolerance  "), "{short}");
     let whole = workspace.run(["check", "scene.xml", "trace.bin", "--tables"]).out();
     assert!(whole.contains("accumulated position") && whole.contains("first example"), "{whole}");
@@ -472,7 +471,7 @@ fn what_is_no_trace_is_told_in_one_line() {
 fn a_detection_that_is_not_written_yet_is_asked_about() {
     let empty = changed(BOUNCE, |frames| frames.iter_mut().for_each(|frame| frame.polynomials.clear()));
     let (text, _) = reports(BOUNCE, &empty);
-    assert!(text.out().contains("about no pair; is it written yet?"), "{}", text.shown());
+    assert!(text.out().contains("never calls the course's root finder; is it written yet?"), "{}", text.shown());
 }
 
 #[test]
@@ -493,5 +492,5 @@ fn the_commands_that_look_closer_work_as_they_stand() {
     }
     assert!(workspace.exists("step1.svg"));
     workspace.write("right.bin", trace_of(BOUNCE));
-    assert!(!workspace.run(["check", "my scene.xml", "right.bin"]).out().contains("Look closer"));
+    assert!(!workspace.run(["check", "my scene.xml", "right.bin"]).out().contains("Next"));
 }

@@ -188,7 +188,7 @@ fn a_dropped_term_is_named_with_an_example() {
     let (_, told) = text.split_once("likely mistake: ").expect("a likely mistake");
     assert!(told.starts_with("Particle-edge: A product is missing"), "{text}");
     let told = told.lines().next().unwrap_or_default();
-    let sentence = told.split(" (in ").next().unwrap_or_default();
+    let sentence = told.split(" (reproduces ").next().unwrap_or_default();
     assert_eq!(formula_in(sentence), None, "no formula: {text}");
     assert!(!text.contains("expected") && !text.contains("t^2"), "no value: {text}");
 }
@@ -204,7 +204,7 @@ fn the_headline_names_the_coefficient_that_differs() {
         let first = &report["first_divergence"];
         assert_eq!(first["coefficient"], 1, "{rules}: {first}");
         let text = workspace.run(["check", SPINNING, "submission.bin", "--rules", rules]).out();
-        let (_, block) = text.split_once("First divergence").expect("a first divergence");
+        let (_, block) = text.split_once("First difference").expect("a first difference");
         let headline = block.lines().nth(1).expect("a headline");
         let (_, expected) = headline.split_once("expected ").expect("one number");
         assert!(headline.contains("coefficient of t: "), "{headline}");
@@ -277,7 +277,7 @@ fn without_a_trace_there_is_nothing_to_explain() {
         .expect("ours");
     let run = workspace.run(["explain", "--program", "./older", "--suite", "T2M2"]);
     assert!(run.code == Some(1) && run.err().contains("another milestone"), "{}", run.shown());
-    let said = "exited with code 1 and wrote no trace; its error output ends with: invalid collision type hybrid";
+    let said = "exited with code 1 and wrote no trace; its standard error ends with: invalid collision type hybrid";
     assert!(run.out().contains(said), "{}", run.shown());
     workspace.write("notes.txt", "nothing but some words\n");
     let run = workspace.run(["explain", SPINNING, "notes.txt"]);

@@ -56,7 +56,7 @@ fn a_wrong_trace_comes_with_its_likely_mistake_unless_nobody_asks() {
     let (run, json) = report(&workspace, "both");
     assert_eq!((run.code, &json["explanations"][0]["key"]), (Some(1), &"pe-square-no-eh".into()), "{json:#}");
     let text = workspace.run(["check", "scene.xml", "trace.bin"]);
-    assert!(text.out().contains("What explains it\n  likely mistake: "), "{}", text.shown());
+    assert!(text.out().contains("Likely cause\n  likely mistake: "), "{}", text.shown());
     let silent = workspace.run(["check", "scene.xml", "trace.bin", "--no-explain"]);
     assert!(!silent.out().contains("likely mistake"), "{}", silent.shown());
     // Correct programs that the original fails make no mistake.

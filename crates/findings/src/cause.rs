@@ -66,8 +66,8 @@ impl std::fmt::Display for Cause {
                  factor or a rounding moves them across that bound"
             }
             Self::VanishingPolynomial => {
-                "the original takes a polynomial below an absolute 1e-10 for zero, and its round-off elsewhere \
-                 for wrong"
+                "the original treats a polynomial below an absolute 1e-10 as zero, and its round-off elsewhere \
+                 as wrong"
             }
             Self::ApproachForm => {
                 "the original has the course's slip in t^3 of the approach polynomial of a particle and an edge, and \
@@ -86,20 +86,20 @@ impl std::fmt::Display for Cause {
             Self::BorderlineDecision => {
                 "the original knows one outcome of a decision that round-off may flip, and the trace has the other"
             }
-            Self::FirstRecord => "the original takes over the first record without comparing it with the scene",
-            Self::MidRecord => "the original takes over a step's mid record without comparing it",
+            Self::FirstRecord => "the original never checks the first record against the scene",
+            Self::MidRecord => "the original never checks a step's mid record",
             Self::ContactTime => "the original does not compare times of impact",
-            Self::RepeatedCollision => "the original takes a collision that is logged several times for one",
+            Self::RepeatedCollision => "the original counts a collision that is logged several times as one",
             Self::OwnPolynomials => {
                 "the original decides with its own polynomials, so it does not see what follows from the trace's"
             }
-            Self::ImpossibleLog => "the original does not ask whether the course's library can have written the log",
-            Self::NotANumber => "the original lets values pass that are not numbers",
+            Self::ImpossibleLog => "the original does not check whether the course's library can have written the log",
+            Self::NotANumber => "the original accepts values that are not numbers",
             Self::SmallErrors => {
                 "the original compares at absolute bounds: what is below them passes, however wrong for its size"
             }
-            Self::TrailingBytes => "the original does not look behind the last record",
-            Self::Damage => "the original reads on over damage in silence",
+            Self::TrailingBytes => "the original does not check what follows the last record",
+            Self::Damage => "the original skips damage silently",
         })
     }
 }

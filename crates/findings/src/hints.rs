@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 pub enum Hints {
     /// The verdict only.
     None,
-    /// Where: kind, step, pair and polynomial of the first divergence.
+    /// Where: kind, step, pair and polynomial of the first difference.
     Where,
     /// The likely mistake in a sentence, too.
     What,
@@ -25,8 +25,8 @@ impl Hints {
     pub const fn words(self) -> (&'static str, &'static str) {
         match self {
             Self::None => ("none", "the verdict only"),
-            Self::Where => ("where", "where the first divergence is"),
-            Self::What => ("what", "where the first divergence is, and the likely mistake in a sentence"),
+            Self::Where => ("where", "where the first difference is"),
+            Self::What => ("what", "where the first difference is, and the likely mistake in a sentence"),
             Self::Full => ("full", "everything, formulas and values included"),
         }
     }

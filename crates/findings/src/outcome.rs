@@ -49,7 +49,7 @@ pub struct Outcome {
     /// Judged steps whose records are damaged, or come after one that is. Their findings count for the original, but
     /// say nothing about the program that wrote the trace: they are no wrong steps, and no example is among them.
     pub damaged_steps: u32,
-    /// Whether bytes follow the last record; the original never looks at them.
+    /// Whether bytes follow the last record; the original never reads them.
     pub trailing_bytes: bool,
     /// Root searches of the reference.
     pub searches: SearchCounts,

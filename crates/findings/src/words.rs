@@ -35,7 +35,7 @@ impl Finding {
 /// The reason why a decision is another one, and where coefficients may have gone. Whether a factor explains it, the
 /// trace's other polynomials tell.
 const LACKING: &str = "the trace's polynomials lack coefficients for that";
-const OTHER_FORM: &str = "the other one of the two accepted forms; a program uses one of them throughout";
+const OTHER_FORM: &str = "the other of the two accepted forms; a program must use one of them throughout";
 const LEFT_OUT: &str = "are within reach of the penalty force, no force was applied between them";
 const DOUBLED: &str = "are within reach of the penalty force, the force between them was applied twice";
 const DROPPING: &str = "the course's library drops leading ones below 1e-12";

@@ -1,6 +1,6 @@
 //! Judging against a recording instead of the reference simulator: frame by frame, by the same tolerances.
 //!
-//! Unlike lock step, errors accumulate here: after the first divergence the two runs are two different runs, and what
+//! Unlike lock step, errors accumulate here: after the first difference the two runs are two different runs, and what
 //! follows says little. But nothing is taken over from the submission, so wrong initial states, responses and
 //! integrators show, which the original's rules let pass (oracle-behaviour.md 8.1 to 8.3). Both frames of a step are
 //! compared, and the initial record.

@@ -77,8 +77,8 @@ impl Diagnosis {
                 likely += 1;
                 match (likely, common.is_unexplained()) {
                     (_, true) => "What is wrong in most",
-                    (1, _) => "What explains most",
-                    _ => "What explains others, or the same together with it",
+                    (1, _) => "Likely cause of most",
+                    _ => "Likely cause of the others, or of the same ones together with it",
                 }
             };
             let heading = format!("{most} ({explained} of {})", counted(wrong as u64, "wrong trace"));
@@ -153,7 +153,7 @@ fn alone(case: &Case, style: Style) -> String {
     if explanations.is_empty() && first.is_none() {
         text += "No known mistake explains it.\n";
     } else if explanations.is_empty() {
-        text += "No known mistake explains it. The first divergence is where to look: the step starts from the trace's own\n\
+        text += "No known mistake explains it. The first difference is where to look: the step starts from the trace's own\n\
                  state, so nothing before it is to blame.\n";
     } else {
         text.push('\n');

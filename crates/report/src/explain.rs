@@ -57,10 +57,10 @@ impl From<&Explanation> for Told {
         // An explanation that reproduces nothing is an observation, not a mistake that is likely.
         let (is_likely, evidence) = match (about, *reproduced) {
             _ if *samples == 0 => (false, None),
-            (_, 0) => (false, Some(format!("{samples} looked at"))),
+            (_, 0) => (false, Some(format!("{samples} checked"))),
             (About::Unfinished | About::Pairs(_), _) => (false, None),
-            (About::Mistake, _) => (true, Some(format!("in {reproduced} of {samples} differing steps tried"))),
-            _ => (true, Some(format!("fits {reproduced} of {samples} polynomials looked at"))),
+            (About::Mistake, _) => (true, Some(format!("reproduces {reproduced} of {samples} wrong steps"))),
+            _ => (true, Some(format!("fits {reproduced} of {samples} polynomials"))),
         };
         let mut details = details(explanation);
         if !explanation.is_unfinished() {
@@ -243,14 +243,14 @@ pub(crate) mod tests {
     #[test]
     fn the_likeliest_mistake_comes_first_with_all_that_is_known() {
         insta::assert_snapshot!(lines(&explanations()).join("\n"), @r"
-        likely mistake: Particle-edge: The sum of the radii is not squared. (in 11 of 12 differing steps tried)
+        likely mistake: Particle-edge: The sum of the radii is not squared. (reproduces 11 of 12 wrong steps)
           t^2: i R^2 has weight 0, expected 1 (i = d32.d32)
           Can't be told apart here from 5 other formulas
           example: step 3, particle 3 and edge 1, pass 0, overlap polynomial
             given     x1 = (0.5, -1), re = 0.25
             expected  1, -0.125
             actual    1, nan
-        No simple mistake explains the polynomial: particle-edge overlap. (9 looked at)
+        No simple mistake explains the polynomial: particle-edge overlap. (9 checked)
         ");
         assert_eq!(
             sentence(&explanations()).as_deref(),

@@ -33,11 +33,11 @@ pub fn summary(result: &SceneResult) -> String {
         Reason::Right => share::right(result.steps, number),
         Reason::Wrong(wrong) => of_wrong(wrong, result.steps),
         Reason::Trace(bad) => of_bad_trace(bad),
-        Reason::NoTrace => "the program wrote no trace; it has to write the file that -o names".to_owned(),
+        Reason::NoTrace => "the program wrote no trace; it must write the file that -o names".to_owned(),
         Reason::Program(reached) => ending(result) + &how_far(*reached, result.steps),
         Reason::LeftOut(why) => of_left_out(*why),
         Reason::Stopped => "grading was stopped".to_owned(),
-        Reason::Withheld => "more is not told of a single scene, because the suite has hidden groups".to_owned(),
+        Reason::Withheld => "details of single scenes are not shown, because the suite has hidden groups".to_owned(),
         Reason::DoesNotBuild => "the sources do not build".to_owned(),
         Reason::Unusable(why) => of_unusable(why),
         Reason::Failed(failure) => of_failure(failure),
@@ -56,14 +56,14 @@ pub(crate) fn ending(result: &SceneResult) -> String {
     format!("the program {ended}{limit}")
 }
 
-/// Further lines about a scene: the first divergence, counts, damage, where a trace is kept.
+/// Further lines about a scene: the first difference, counts, damage, where a trace is kept.
 #[must_use]
 pub fn details(result: &SceneResult) -> Vec<String> {
     let mut lines = Vec::new();
     if result.ended == Some(Ended::Exited(NOT_FOUND)) {
         lines.push(
-            "exit code 127 usually means that something was not found: the program is alone when it runs, and files \
-             that lie beside it are not there"
+            "exit code 127 usually means that something was not found: the program runs alone, without the files \
+             next to it"
                 .to_owned(),
         );
     }
@@ -160,7 +160,7 @@ fn of_wrong(wrong: &Wrong, steps: u32) -> String {
         Wrong::SmallErrors => "small errors add up beyond the tolerance".to_owned(),
         Wrong::NoResult(error) => no_result(error),
         Wrong::Borderline => {
-            "most of the trace's decisions are not the reference's, though round-off may flip them".to_owned()
+            "most of the trace's decisions are not the reference's, although round-off may flip them".to_owned()
         }
         Wrong::Undecided => "nothing is wrong so far, but judging the trace would take too long".to_owned(),
     }
@@ -171,7 +171,7 @@ fn of_bad_trace(bad: &BadTrace) -> String {
         BadTrace::Unreadable { frame, step, cause, offset, damage } => {
             let what = match cause {
                 Unreadable::State | Unreadable::Impulses => "the trace ends too early",
-                Unreadable::Memory => "the trace holds a count that it can not satisfy",
+                Unreadable::Memory => "the trace holds a count that it cannot satisfy",
                 Unreadable::Limit => "the trace is beyond a limit of this grader",
                 Unreadable::Io => "the trace could not be read",
             };
@@ -221,7 +221,8 @@ fn of_unusable(why: &Unusable) -> String {
                 FolderContents::Nothing => format!("{sought}; it is empty"),
                 FolderContents::Others { names, more, elsewhere } => {
                     let more = if *more > 0 { format!(" and {more} more") } else { String::new() };
-                    let elsewhere = elsewhere.as_ref().map(|path| format!("; {path} is not where it is looked for"));
+                    let elsewhere =
+                        elsewhere.as_ref().map(|path| format!("; {path} is not in the place that is searched"));
                     format!("{sought}; it holds {}{more}{}", names.join(", "), elsewhere.unwrap_or_default())
                 }
             }
@@ -247,7 +248,7 @@ fn of_failure(failure: &Failure) -> String {
 /// Where a trace parts from the reference, as far as it may be told.
 pub(crate) fn first_divergence(first: &DisclosedFinding) -> String {
     match first {
-        DisclosedFinding::Full(finding) => format!("first divergence: {finding}"),
+        DisclosedFinding::Full(finding) => format!("first difference: {finding}"),
         DisclosedFinding::Place { step, kind, place } => {
             let place = match place {
                 FindingPlace::Step => String::new(),
@@ -256,7 +257,7 @@ pub(crate) fn first_divergence(first: &DisclosedFinding) -> String {
                 FindingPlace::Particle(particle) => format!(", particle {particle}"),
                 FindingPlace::Objects(first, second) => format!(", objects {first} and {second}"),
             };
-            format!("first divergence: step {step}{place}: {kind}")
+            format!("first difference: step {step}{place}: {kind}")
         }
     }
 }

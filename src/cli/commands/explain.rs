@@ -237,7 +237,7 @@ fn own_milestone(runner: &Runner<'_>, program: &Path) -> Result<Assignment> {
 fn said(stderr: &[u8]) -> String {
     let text = printed(&String::from_utf8_lossy(stderr));
     let last = text.lines().rev().map(str::trim).find(|line| !line.is_empty());
-    last.map(|line| format!("; its error output ends with: {}", one_line(line))).unwrap_or_default()
+    last.map(|line| format!("; its standard error ends with: {}", one_line(line))).unwrap_or_default()
 }
 
 /// The properties that the failing scenes have in common, by the end of the program in each and the number of complete

@@ -14,7 +14,7 @@ use fosssim_mistakes::together::told_to_students;
 use fosssim_sandbox::Job;
 use std::{path::Path, time::Duration};
 
-/// Step and particle of a wrong position that is the first divergence.
+/// Step and particle of a wrong position that is the first difference.
 fn first_divergence(result: &SceneResult) -> (u32, usize) {
     let told = result.disclosure.as_ref().expect("full hints");
     match &told.official().first_divergence {

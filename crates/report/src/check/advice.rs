@@ -65,14 +65,14 @@ fn of_finding(finding: &Finding, collisions: CollisionType) -> &'static [&'stati
             "is it taken from the positions at that time, and not from those at the end of the step?",
         ],
         FindingDetail::PolynomialCount { actual: 0, .. } => &[
-            "the detection: in this step it asks the course's root finder about no pair; is it written yet?",
-            "it is to ask about every pair in every pass, also about pairs that are far apart",
+            "the detection: in this step it never calls the course's root finder; is it written yet?",
+            "it must ask about every pair in every pass, even about pairs that are far apart",
         ],
         FindingDetail::PolynomialCount { expected, actual, .. } | FindingDetail::PassCount { expected, actual, .. }
             if actual > expected =>
         {
             &[
-                "the loop over detection passes: it runs too often, or looks at pairs that the reference leaves out",
+                "the loop over detection passes: it runs too often, or tests pairs that the reference leaves out",
                 "an earlier response of this step that differs also makes the loop go on",
             ]
         }
@@ -100,7 +100,7 @@ fn of_finding(finding: &Finding, collisions: CollisionType) -> &'static [&'stati
             "is it the time that the root finder returned, and not the step's number or the simulation's time?",
         ],
         FindingDetail::RepeatedCollision { .. } => {
-            &["each pair is looked at once in a step: is it added to the list twice?"]
+            &["each pair is tested once in a step: is it added to the list twice?"]
         }
         FindingDetail::PassPositions { .. } => &[
             "the response (or the rigid failsafe) before this detection pass: what it does to the end positions",

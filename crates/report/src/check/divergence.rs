@@ -1,4 +1,4 @@
-//! The first divergence: expected and actual values side by side.
+//! The first difference: expected and actual values side by side.
 use super::super::{
     number::{exact, general},
     style::{Look, Style},
@@ -11,7 +11,7 @@ use fosssim_model::trace::LoggedImpulse;
 pub(super) fn render(finding: &Finding, steps: u32, style: Style) -> String {
     format!(
         "{}\n{}",
-        style.paint(Look::Strong, &format!("First divergence: {}", place(finding, steps))),
+        style.paint(Look::Strong, &format!("First difference: {}", place(finding, steps))),
         block(finding, style)
     )
 }
@@ -128,7 +128,7 @@ pub(crate) fn side_by_side(detail: &FindingDetail) -> SideBySide {
             let mut sides = polynomials_with(place, reference, trace, factor, Some(*power));
             sides.original = rescaled.as_ref().map(|Rescaled { power, expected, actual, .. }| {
                 let (power, actual, expected) = (Power(*power), exact(*actual), exact(*expected));
-                format!("(the original rescales by sums of moduli before it compares: {power} {actual}, {expected})")
+                format!("(after the original's rescaling: {power} {actual}, expected {expected})")
             });
             sides
         }
@@ -154,7 +154,7 @@ fn numbers(name: &'static str, expected: f64, actual: f64) -> Row {
 }
 
 fn logged_by(place: &fosssim_judge::PolynomialPlace) -> String {
-    format!("number {} in the record's list", place.index)
+    format!("polynomial {} of the record", place.index)
 }
 
 /// Two polynomials by power, marked where they part once the factor on which most coefficients agree is taken out.

@@ -37,7 +37,7 @@ pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
     if fair.borderline > 0 {
         let (verb, plural) = if fair.borderline == 1 { ("was", "") } else { ("were", "s") };
         line(format!(
-            "{} decision{plural} that round-off or small coefficients may flip {verb} followed, not charged",
+            "{} decision{plural} that round-off or small coefficients may flip {verb} followed, not counted",
             count(fair.borderline)
         ));
         for decision in &fair.borderline_examples {

@@ -1,4 +1,4 @@
-//! The report on one trace: verdict, residuals, the fair rules, findings, first divergence.
+//! The report on one trace: verdict, residuals, the fair rules, findings, first difference.
 //!
 //! [`text`](Check::text) is for people, [`json`](Check::json) for programs (`schemas/check.schema.json`). Both say the
 //! same and depend on nothing but the outcome.
@@ -191,7 +191,7 @@ pub(crate) struct CheckView<'a> {
     trace: &'a str,
     /// The rule books that were asked.
     rules: Rules,
-    /// The book that gives the verdict, the first divergence, findings and wrong steps.
+    /// The book that gives the verdict, the first difference, findings and wrong steps.
     official: Book,
     /// By the official book. Undecided: nothing is wrong so far, but judging was given up. Bad trace: it could not be
     /// read to the scene's last step; by the fair rules also: it is damaged, or goes on after its last record.

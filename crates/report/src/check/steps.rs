@@ -173,7 +173,7 @@ fn nothing_wrong(check: &Check<'_>, step: u32) -> String {
         0 => "First record: only the fair rules look at it".to_owned(),
         _ if step <= sound => format!("Step {step} of {}: nothing is wrong", outcome.steps),
         _ if step <= outcome.steps_judged => {
-            format!("Step {step} of {}: not looked at, because the trace is damaged there or before", outcome.steps)
+            format!("Step {step} of {}: not checked, because the trace is damaged there or before", outcome.steps)
         }
         _ => format!("Step {step} of {}: not judged, because the trace can't be followed so far", outcome.steps),
     }

@@ -48,7 +48,7 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     // It comes again where all are shown.
     let first = first(check).filter(|_| !steps::all(check));
     parts.extend(first.map(|first| divergence::render(first, outcome.steps, style)));
-    parts.extend(section("What to look at", "  - ", &advice::lines(check), style));
+    parts.extend(section("Where to look", "  - ", &advice::lines(check), style));
     parts.extend(steps::render(check, style).filter(|_| is_told));
     let has_tables = check.tables;
     if has_tables {
@@ -64,7 +64,7 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     }
     parts.extend(section("Notes", "  - ", &notes(check), style));
     let more = "  --tables shows all kinds of findings, and how much of each tolerance is used\n";
-    let commands = section("Look closer", "  $ ", &closer::commands(check), style);
+    let commands = section("Next", "  $ ", &closer::commands(check), style);
     parts.extend(commands.map(|commands| commands + if has_tables { "" } else { more }));
     parts.join("\n")
 }
@@ -80,15 +80,15 @@ fn section(heading: &str, mark: &str, lines: &[impl Display], style: Style) -> O
 fn explanations(check: &Check<'_>, style: Style) -> Option<String> {
     let most = if check.tables { usize::MAX } else { EXPLANATIONS };
     let (shown, more) = check.explanations.split_at(check.explanations.len().min(most));
-    // The first divergence follows, which is an example, too.
+    // The first difference follows, which is an example, too.
     let has_example = check.tables || first(check).is_none();
     let without = |one: &Explanation| Explanation { example: None, ..one.clone() };
     let shown = if has_example { shown.to_vec() } else { shown.iter().map(without).collect() };
     let mut lines = explain::lines(&shown);
     if !more.is_empty() {
-        lines.push(format!("and {} of less weight (--tables)", counted(more.len() as u64, "more explanation")));
+        lines.push(format!("and {} (--tables)", counted(more.len() as u64, "less likely explanation")));
     }
-    section("What explains it", "  ", &lines, style)
+    section("Likely cause", "  ", &lines, style)
 }
 
 fn head(check: &Check<'_>, style: Style) -> String {
@@ -267,17 +267,15 @@ pub(crate) fn notes(check: &Check<'_>) -> Vec<String> {
     let mut notes = Vec::new();
     if let Some(damage) = &outcome.damage {
         notes.push(format!(
-            "frame {} (step {}), byte {}: {}; the original reads over this in silence",
+            "frame {} (step {}), byte {}: {}; the original skips this silently",
             damage.frame, damage.step, damage.offset, damage.what
         ));
         if outcome.damaged_steps > 0 && outcome.parity.findings.counts.total() > 0 {
-            notes.push(
-                "the original counts the rest of a damaged record; the fair rules charge nothing for it".to_owned(),
-            );
+            notes.push("the original counts the rest of a damaged record; the fair rules do not".to_owned());
         }
     }
     if outcome.trailing_bytes {
-        notes.push("bytes follow the last record; the original never looks at them".to_owned());
+        notes.push("bytes follow the last record; the original never reads them".to_owned());
     }
     if check.audit {
         let searches = outcome.searches;

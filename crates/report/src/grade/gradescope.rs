@@ -160,7 +160,7 @@ fn output(scene: &SceneGrade) -> String {
     lines.extend(words::details(scene).iter().map(|detail| plain(detail)));
     lines.extend(explain::lines(&scene.settled).iter().map(|line| plain(line)));
     if scene.verdict >= Verdict::NoOutput && !scene.stderr.is_empty() {
-        lines.push(format!("The program's error output:\n{}", printed(&scene.stderr)));
+        lines.push(format!("The program's standard error:\n{}", printed(&scene.stderr)));
     }
     lines.join("\n")
 }

@@ -53,9 +53,9 @@ pub(super) fn wrong_first<'a>(groups: impl Iterator<Item = &'a GroupGrade>) -> V
 pub fn difference(scene: &SceneGrade) -> Option<String> {
     scene.differs.map(|cause| {
         let verdicts = if cause.original_fails() {
-            "the original fails it, the fair rules accept it"
+            "the original rejects it, the fair rules accept it"
         } else {
-            "the original passes it, the fair rules reject it"
+            "the original accepts it, the fair rules reject it"
         };
         format!("the rule books differ: {verdicts}: {cause}")
     })

@@ -68,7 +68,7 @@ impl Card {
         (self.html.len(), self.data.len())
     }
 
-    /// Whether it shows the first divergence with its values.
+    /// Whether it shows the first difference with its values.
     pub(super) fn has_values(&self) -> bool {
         self.html.contains(super::case::FIRST)
     }

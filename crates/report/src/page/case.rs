@@ -32,8 +32,8 @@ use std::fmt::Write;
 /// The greatest number of calls that are shown.
 const CALLS: usize = 6;
 
-/// The heading of the first divergence.
-pub(super) const FIRST: &str = "Where it goes wrong first";
+/// The heading of the first difference.
+pub(super) const FIRST: &str = "First difference";
 
 impl Case<'_> {
     /// A page about this case alone; the title is that of the window.
@@ -143,7 +143,7 @@ impl Case<'_> {
                 text(&subject(first)),
                 values(&divergence::side_by_side(&first.detail))
             );
-            out += &list(&heading("What to look at"), &advice::lines(&self.check));
+            out += &list(&heading("Where to look"), &advice::lines(&self.check));
         }
         out += &books(&self.check, &heading("Rule books"));
         out += &list(&heading("Notes"), &notes(&self.check));
@@ -339,7 +339,7 @@ fn plots(evidence: &Evidence, book: Book, key: &str, first: Option<u32>) -> Stri
         title: "How far each step ends from where it should",
         series: &series,
         tolerance,
-        mark: first.map(|step| (step, "first divergence")),
+        mark: first.map(|step| (step, "first difference")),
     };
     let expected: Vec<u32> = evidence.steps.iter().map(|step| step.expected_passes).collect();
     let actual: Vec<Option<u32>> = evidence.steps.iter().map(|step| step.actual_passes).collect();

@@ -51,7 +51,7 @@ impl Explained<'_> {
         // A single trace says it itself.
         for one in common.iter().filter(|_| cases.len() > 1) {
             let explained = cases.iter().filter(|case| is_named_in(one, &case.explanations)).count();
-            let _ = writeln!(body, "<h2>What explains {explained} of {wrong} wrong traces</h2>");
+            let _ = writeln!(body, "<h2>Likely cause of {explained} of {wrong} wrong traces</h2>");
             body += &mistakes(std::slice::from_ref(one), false);
         }
         let all: Vec<ExplainedCase<'_>> =

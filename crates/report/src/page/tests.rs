@@ -59,15 +59,9 @@ fn the_essentials_need_no_script() {
     let html = page(&scene, "spinning", "mine.bin", &of_mistake(&scene, "pe-linear-one-ab"));
     let without: String =
         html.split("<script").map(|part| part.split_once("</script>").map_or(part, |p| p.1)).collect();
-    for words in [
-        "wrong answer",
-        "Likely mistake",
-        "Where it goes wrong first",
-        "differs",
-        "the fair rules",
-        "All steps",
-        "<svg",
-    ] {
+    for words in
+        ["wrong answer", "Likely mistake", "First difference", "differs", "the fair rules", "All steps", "<svg"]
+    {
         assert!(without.contains(words), "{words} is missing in {without}");
     }
 }
@@ -79,7 +73,7 @@ fn a_page_says_where_and_why_a_trace_ends_and_agrees_with_the_text() {
     let whole = of_mistake(&scene, "pe-linear-one-ab");
     for (trace, words) in [
         (whole[..whole.len() / 2 + 3].to_vec(), ["Stopped at step", "did the program crash, or was it stopped"]),
-        ([&whole[..], &[0; 100]].concat(), ["bytes follow the last record", "the original never looks at them"]),
+        ([&whole[..], &[0; 100]].concat(), ["bytes follow the last record", "the original never reads them"]),
     ] {
         let html = page(&scene, "spinning", "mine.bin", &trace);
         assert!(!html.contains("rules agree"), "{html}");
@@ -109,13 +103,13 @@ fn a_wrong_state_comes_before_the_polynomials_that_follow_from_it() {
         let scene = asset(name);
         let trace = of_mistake(&scene, id);
         let html = page(&scene, "scene", "mine.bin", &trace);
-        let first = html.split_once("Where it goes wrong first").expect("it is told").1;
+        let first = html.split_once("First difference").expect("it is told").1;
         let first = first.split_once("</section>").expect("a card").0;
         assert!(first.contains("where particle") && first.contains("<mark>"), "{first}");
         assert!(html.contains("Polynomials that follow from wrong positions"), "{id}");
         assert!(!html.contains("The detection calls that are wrong"), "{id}");
         let told = text_of(&scene, &trace);
-        let first = told.split_once("First divergence").expect("it is told").1.lines().nth(1).expect("a line");
+        let first = told.split_once("First difference").expect("it is told").1.lines().nth(1).expect("a line");
         assert!(first.contains("ends at"), "{first}");
     }
 }
@@ -293,7 +287,7 @@ fn what_the_hints_hide_is_not_in_the_file() {
             "id=\"what-",
             "\"whatIf\":{",
             "Coefficients",
-            "Where it goes wrong first",
+            "First difference",
             "differs",
             "expected",
             "data-plot",
@@ -303,7 +297,7 @@ fn what_the_hints_hide_is_not_in_the_file() {
         }
         assert!(!html.contains(row.term), "{level}");
         assert_eq!(html.contains(row.what), level == "what", "{level}");
-        assert_eq!(html.contains("first divergence: step"), level != "none", "{level}");
+        assert_eq!(html.contains("first difference: step"), level != "none", "{level}");
         assert_eq!(html.contains("id=\"submission-"), level != "none", "{level}");
         assert_eq!(html.contains("class=\"steps\""), level != "none", "{level}");
     }
@@ -311,7 +305,7 @@ fn what_the_hints_hide_is_not_in_the_file() {
         "id=\"reference-",
         "\"whatIf\":{",
         "Coefficients",
-        "Where it goes wrong first",
+        "First difference",
         "differs",
         "data-plot",
         "Proof",

@@ -21,7 +21,7 @@ fn what_is_there_instead_of_the_program_is_one_sentence() {
     assert_eq!(
         says(FolderContents::Others { names: names(&["a", "work/"]), more: 6, elsewhere }),
         "no program called FOSSSim in the upload; it holds a, work/ and 6 more; \
-         work/build/FOSSSim is not where it is looked for"
+         work/build/FOSSSim is not in the place that is searched"
     );
 }
 
@@ -96,7 +96,7 @@ fn details_are_what_is_told_and_nothing_else() {
     assert_eq!(
         lines[1..],
         [
-            "first divergence: step 4, particle 2: wrong position",
+            "first difference: step 4, particle 2: wrong position",
             "counts: superfluous collision (2), wrong position (7)",
             "damaged at byte 77 (frame 1): polynomial 3 has the negative size -1",
             "bytes follow the last record",

@@ -121,7 +121,8 @@ exchanges! {
     "radius-halved" [PP, PE, PH] 4.2: |inputs| inputs.square = 0.25 * inputs.square
         => "Half the radius is used" => "(R/2)^2 is used instead of R^2";
     "no-point" [PH] 4.0: |inputs| inputs.x[1] = NOTHING
-        => "The half-plane's point is forgotten, as if the boundary went through the origin" => "-x is used instead of p - x";
+        => "The half-plane's point is forgotten, as if the boundary went through the origin"
+        => "-x is used instead of p - x";
     "point-and-normal-swapped" [PH] 4.2: |inputs| {
         inputs.x.swap(1, 2);
         inputs.normal_square = inputs.normal().dot(inputs.normal());
@@ -130,9 +131,11 @@ exchanges! {
     "no-normal-square" [PH] 2.6: |inputs| inputs.normal_square = Bounded::exact(1.0)
         => "The radius term is right for unit normals only" => "r^2 is used instead of r^2 (n.n)";
     "normal-length" [PH] 2.7: |inputs| inputs.normal_square = root(inputs.normal_square)
-        => "The radius term has the length of the normal instead of its square" => "r^2 |n| is used instead of r^2 (n.n)";
+        => "The radius term has the length of the normal instead of its square"
+        => "r^2 |n| is used instead of r^2 (n.n)";
     "reversed-offset" [PH] 4.1: |inputs| inputs.x.swap(0, 1)
-        => "The vector from the particle to the half-plane is taken the other way round" => "x - p is used instead of p - x";
+        => "The vector from the particle to the half-plane is taken the other way round"
+        => "x - p is used instead of p - x";
     "x-only" [PP, PE, PH] 5.0: |inputs| without(inputs, |vector| &mut vector.y)
         => "The second components of all vectors are left out" => "all dot products are x x' without y y'";
     "y-only" [PP, PE, PH] 5.0: |inputs| without(inputs, |vector| &mut vector.x)

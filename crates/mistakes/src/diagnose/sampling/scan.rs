@@ -75,7 +75,7 @@ impl Scan {
         self.right.truncate(MOST_RIGHT);
     }
 
-    /// Wrong steps to be tried first: one of each sort, the cheapest first. The first divergence is among them, which
+    /// Wrong steps to be tried first: one of each sort, the cheapest first. The first difference is among them, which
     /// has to be reproduced, whatever it is.
     pub fn probes(&self) -> Vec<&KeptStep> {
         let mut signatures = BTreeSet::new();

@@ -131,7 +131,7 @@ impl<'a> Scenes<'a, '_> {
         }
         let mut text: String = lines.iter().map(|line| format!("      {line}\n")).collect();
         if scene.verdict >= Verdict::NoOutput && !scene.stderr.trim().is_empty() {
-            let _ = writeln!(text, "      its error output:\n{}", output(&scene.stderr, SHOWN_LINES));
+            let _ = writeln!(text, "      its standard error:\n{}", output(&scene.stderr, SHOWN_LINES));
         }
         text
     }
