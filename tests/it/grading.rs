@@ -200,7 +200,7 @@ fn hostile_programs_get_their_verdicts_and_an_interrupted_batch_ends_the_same() 
         rows(&workspace.read("whole/grades.csv")).into_iter().map(|(_, verdict, _)| verdict).collect();
     assert_eq!(verdicts, cast.map(|(_, verdict)| verdict), "{}", whole.shown());
     assert!(!whole.out().contains('\u{1b}') && !whole.err().contains('\u{1b}'), "no escape code gets through");
-    let log = workspace.read("whole/logs/fosssim-sample.escape-codes/ImpulsesTests_off-centre-on-turning-edge.log");
+    let log = workspace.read("whole/logs/fosssim-sample.escape-codes.log");
     assert!(!log.contains(&0x1b), "{}", String::from_utf8_lossy(&log));
 
     // Interrupted as soon as the first results are kept, twice, then to its end.

@@ -69,6 +69,6 @@ fn a_program_is_graded_by_the_file_that_it_leaves() {
     let mut found: Vec<(&str, &str)> = rows.iter().map(|row| (&row[0], &row[1])).collect();
     found.sort_unstable();
     assert_eq!(found, expected, "{}", run.shown());
-    let log = String::from_utf8(workspace.read("grades/logs/prints/scenes_s.log")).expect("text");
+    let log = String::from_utf8(workspace.read("grades/logs/prints.log")).expect("text");
     assert!(log.contains("[standard output was cut after 1 MiB]"), "{log}");
 }

@@ -352,28 +352,27 @@ fn newest(path: &Path, budget: &mut u32) -> Option<(SystemTime, u64)> {
     Some(below.fold(own, |(time, size), (newer, more)| (time.max(newer), size + more)))
 }
 
-/// A log per run: what the program wrote, made harmless, and the verdict.
+/// Writes a submission's log: how it was built, and of each run the verdict, the reasons and what the program printed,
+/// made harmless. A fault of the submission itself is written once.
 fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
-    let folder = Place::new(folder, format!("logs/{}", file_name(&grade.submission)));
+    let mut text = String::new();
     if let Some(build) = &grade.build {
-        let text = format!("{}\n\n{}\n", words::build(&build.end), printed(&build.output));
-        output::write_at(&folder.join("build.log"), text.as_bytes())?;
+        text += &format!("{}\n\n{}\n", words::build(&build.end), printed(&build.output));
     }
-    for scene in grade.scenes().filter(|scene| scene.verdict != Verdict::NotRun) {
-        let details: String = grade::difference(scene)
-            .into_iter()
-            .chain(words::details(scene))
-            .chain(explain::lines(&scene.settled))
-            .map(|line| format!("{}\n", plain(&line)))
-            .collect();
-        let text = format!(
-            "{}: {}\n{details}\n--- standard output ---\n{}\n--- standard error ---\n{}\n",
-            scene.verdict,
-            plain(&words::summary(scene)),
-            printed(&scene.stdout),
-            printed(&scene.stderr),
-        );
-        output::write_at(&folder.join(format!("{}.log", file_of_scene(&scene.scene))), text.as_bytes())?;
+    if let Some(unfit) = words::unfit(grade) {
+        text += &format!("{}\n", plain(&unfit));
     }
-    Ok(())
+    let never_ran = |verdict| matches!(verdict, Verdict::NotRun | Verdict::Unusable | Verdict::CompileError);
+    for scene in grade.scenes().filter(|scene| !never_ran(scene.verdict)) {
+        text += &format!("\n=== {} ===\n{}: {}\n", plain(&scene.scene), scene.verdict, plain(&words::summary(scene)));
+        let details = grade::difference(scene).into_iter().chain(words::details(scene));
+        text.extend(details.chain(explain::lines(&scene.settled)).map(|line| format!("{}\n", plain(&line))));
+        for (stream, printed_there) in [("output", &scene.stdout), ("error", &scene.stderr)] {
+            if !printed_there.trim().is_empty() {
+                text += &format!("--- standard {stream} ---\n{}\n", printed(printed_there));
+            }
+        }
+    }
+    let file = Place::new(folder, format!("logs/{}.log", file_name(&grade.submission)));
+    output::write_at(&file, text.trim_start().as_bytes())
 }
