@@ -8,7 +8,7 @@ use super::{
     number::exact,
     style::{Look, Style},
     table::{Align, Cell, Table},
-    view::{Number, document, numbers},
+    view::{Number, document, numbers, view},
 };
 use fosssim_evidence::Logged;
 use fosssim_findings::Role;
@@ -341,26 +341,31 @@ pub(crate) struct DetectView<'a> {
     overlap: Option<overlap::OverlapView>,
 }
 
-/// A place in a scene's run.
-#[derive(Serialize, schemars::JsonSchema)]
-#[schemars(deny_unknown_fields)]
-struct PlaceView<'a> {
-    /// The scene as typed.
-    scene: &'a str,
-    /// The trace as typed; null for the reference's own run.
-    trace: Option<&'a str>,
-    /// From 1.
-    step: u32,
-    /// The pair.
-    pair: Pair,
-    /// The detection pass; null where the scene has no continuous-time detection.
-    pass: Option<Pass>,
-    /// The number of passes that the reference makes in this step.
-    passes: usize,
-    /// The lists that the trace logged for this call, in the order of `polynomials`: empty where it logged nothing for
-    /// it, with an empty list for one that is missing. Null for the reference's run, and where it logged another number
-    /// of polynomials in which this call's can't be told.
-    logged: Option<Vec<Vec<Number>>>,
+view! {
+    /// A place in a scene's run.
+    #[schemars(deny_unknown_fields)]
+    struct PlaceView<'a> from place: Place<'a> {
+        /// The scene as typed.
+        scene: &'a str = place.scene,
+        /// The trace as typed; null for the reference's own run.
+        trace: Option<&'a str> = place.trace,
+        /// From 1.
+        step: u32 = place.step,
+        /// The pair.
+        pair: Pair = place.pair,
+        /// The detection pass; null where the scene has no continuous-time detection.
+        pass: Option<Pass> = place.pass,
+        /// The number of passes that the reference makes in this step.
+        passes: usize = place.passes,
+        /// The lists that the trace logged for this call, in the order of `polynomials`: empty where it logged nothing
+        /// for it, with an empty list for one that is missing. Null for the reference's run, and where it logged
+        /// another number of polynomials in which this call's can't be told.
+        logged: Option<Vec<Vec<Number>>> = match place.logged {
+            Logged::These(logged) => Some(logged.iter().map(|list| numbers(list)).collect()),
+            Logged::Nothing if place.trace.is_some() && place.pass.is_some() => Some(Vec::new()),
+            Logged::Nothing | Logged::Unknown => None,
+        },
+    }
 }
 
 /// The motion of a pair.
@@ -396,34 +401,40 @@ struct HalfPlaneView {
     normal: [Number; 2],
 }
 
-/// A polynomial, its zeros, and where it is positive.
-#[derive(Serialize, schemars::JsonSchema)]
-#[schemars(deny_unknown_fields)]
-struct CurveView {
-    /// Its meaning when it is positive.
-    role: Role,
-    /// As logged and searched, highest power first: leading ones below 1e-12 are dropped.
-    coefficients: Polynomial,
-    /// Nothing dropped.
-    untrimmed: Polynomial,
-    /// Real and imaginary parts, in the order in which the reference's root finder gives them.
-    zeros: Vec<[Number; 2]>,
-    /// Intervals of time over the whole line, sorted and apart; an interval may be a single time.
-    positive: Vec<[Number; 2]>,
+view! {
+    /// A polynomial, its zeros, and where it is positive.
+    #[schemars(deny_unknown_fields)]
+    struct CurveView from curve: Curve {
+        /// Its meaning when it is positive.
+        role: Role = curve.role,
+        /// As logged and searched, highest power first: leading ones below 1e-12 are dropped.
+        coefficients: Polynomial = curve.logged,
+        /// Nothing dropped.
+        untrimmed: Polynomial = curve.untrimmed,
+        /// Real and imaginary parts, in the order in which the reference's root finder gives them.
+        zeros: Vec<[Number; 2]> =
+            curve.zeros.iter().map(|&(real, imaginary)| [Number(real), Number(imaginary)]).collect(),
+        /// Intervals of time over the whole line, sorted and apart; an interval may be a single time.
+        positive: Vec<[Number; 2]> = sets(&curve.positive),
+    }
 }
 
-/// The decision that follows from the polynomials of a pair.
-#[derive(Serialize, schemars::JsonSchema)]
-#[schemars(deny_unknown_fields)]
-struct AnswerView {
-    /// Where all polynomials are positive: intervals of time, sorted and apart.
-    positive: Vec<[Number; 2]>,
-    /// Whether the pair collides within the step.
-    collides: bool,
-    /// The first time from which all are positive; inf if there is none.
-    time: Number,
-    /// From the first object to the second, not normalised; null without a collision.
-    normal: Option<[Number; 2]>,
+view! {
+    /// The decision that follows from the polynomials of a pair.
+    #[schemars(deny_unknown_fields)]
+    struct AnswerView from answer: Answer {
+        /// Where all polynomials are positive: intervals of time, sorted and apart.
+        positive: Vec<[Number; 2]> = sets(&answer.positive),
+        /// Whether the pair collides within the step.
+        collides: bool = answer.decision.collides(),
+        /// The first time from which all are positive; inf if there is none.
+        time: Number = Number(answer.decision.time()),
+        /// From the first object to the second, not normalised; null without a collision.
+        normal: Option<[Number; 2]> = match answer.decision {
+            Decision::Hit { normal, .. } => Some(normal.write()),
+            Decision::Miss { .. } => None,
+        },
+    }
 }
 
 /// The right approach polynomial and its answer.
@@ -440,18 +451,6 @@ fn sets(list: &[Interval]) -> Vec<[Number; 2]> {
     list.iter().map(|interval| [interval.lo, interval.hi].write()).collect()
 }
 
-impl<'a> From<&Place<'a>> for PlaceView<'a> {
-    fn from(place: &Place<'a>) -> Self {
-        let Place { scene, trace, step, pair, pass, passes, logged } = *place;
-        let logged = match logged {
-            Logged::These(logged) => Some(logged.iter().map(|list| numbers(list)).collect()),
-            Logged::Nothing if trace.is_some() && pass.is_some() => Some(Vec::new()),
-            Logged::Nothing | Logged::Unknown => None,
-        };
-        Self { scene, trace, step, pair, pass, passes, logged }
-    }
-}
-
 impl From<&PairMotion> for MotionView {
     fn from(motion: &PairMotion) -> Self {
         let (moving, radii, half_plane) = match *motion {
@@ -464,29 +463,6 @@ impl From<&PairMotion> for MotionView {
         };
         let point = |point: PointMotion| PointView { start: point.start.write(), displacement: point.shift.write() };
         Self { points: moving.into_iter().map(point).collect(), radii: numbers(&radii), half_plane }
-    }
-}
-
-impl From<&Curve> for CurveView {
-    fn from(curve: &Curve) -> Self {
-        Self {
-            role: curve.role,
-            coefficients: curve.logged,
-            untrimmed: curve.untrimmed,
-            zeros: curve.zeros.iter().map(|&(real, imaginary)| [Number(real), Number(imaginary)]).collect(),
-            positive: sets(&curve.positive),
-        }
-    }
-}
-
-impl From<&Answer> for AnswerView {
-    fn from(answer: &Answer) -> Self {
-        let normal = match answer.decision {
-            Decision::Hit { normal, .. } => Some(normal.write()),
-            Decision::Miss { .. } => None,
-        };
-        let (positive, collides) = (sets(&answer.positive), answer.decision.collides());
-        Self { positive, collides, time: Number(answer.decision.time()), normal }
     }
 }
 

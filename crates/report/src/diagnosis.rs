@@ -3,13 +3,12 @@ use super::{
     explain::{ExplanationView, lines},
     number::counted,
     style::{Look, Style},
-    view::{FindingView, document},
+    view::{FindingView, document, view},
     words::{first_divergence, located},
 };
 use crate::foreign::one_line;
 use fosssim_findings::{Book, disclosure::DisclosedFinding, located::Located};
 use fosssim_mistakes::diagnose::{Explanation, is_named_in};
-use serde::Serialize;
 use std::fmt::Write;
 
 /// The version of the JSON report's schema (`schemas/explain.schema.json`).
@@ -103,25 +102,7 @@ impl Diagnosis {
     /// For programs.
     #[must_use]
     pub fn json(&self) -> String {
-        let cases = self.cases.iter().map(|case| CaseView {
-            scene: &case.scene,
-            trace: &case.trace,
-            accepted: case.accepted,
-            note: case.note.as_deref(),
-            first_divergence: match &case.first {
-                Some(DisclosedFinding::Full(finding)) => Some(FindingView::by(Book::Fair, finding)),
-                Some(DisclosedFinding::Place { .. }) | None => None,
-            },
-            explanations: case.explanations.iter().map(ExplanationView::from).collect(),
-        });
-        document(&DiagnosisView {
-            schema: SCHEMA,
-            accepted: self.accepted(),
-            located: self.located.as_ref().map(located),
-            common: self.common.first().map(ExplanationView::from),
-            likely: self.common.iter().map(ExplanationView::from).collect(),
-            traces: cases.collect(),
-        })
+        document(&DiagnosisView::from(self))
     }
 }
 
@@ -166,40 +147,45 @@ fn indented(explanations: &[Explanation]) -> String {
     lines(explanations).iter().map(|line| format!("  {line}\n")).collect()
 }
 
-/// The likely mistakes of the program that left one or several traces.
-#[derive(Serialize, schemars::JsonSchema)]
-#[schemars(deny_unknown_fields)]
-pub(crate) struct DiagnosisView<'a> {
-    /// The version of this shape.
-    #[schemars(extend("const" = SCHEMA))]
-    schema: u32,
-    /// Whether the fair rules accept every trace.
-    accepted: bool,
-    /// The contents that the scenes have in common in which the program crashes or runs into a limit, in words; null
-    /// where nothing is known.
-    located: Option<String>,
-    /// With several traces, the mistake that explains most of the wrong ones.
-    common: Option<ExplanationView>,
-    /// With several traces, up to three mistakes that explain the wrong ones together; the first is `common`.
-    likely: Vec<ExplanationView>,
-    /// The traces, in the order in which they were asked about.
-    traces: Vec<CaseView<'a>>,
+view! {
+    /// The likely mistakes of the program that left one or several traces.
+    #[schemars(deny_unknown_fields)]
+    pub(crate) struct DiagnosisView<'a> from diagnosis: Diagnosis {
+        /// The version of this shape.
+        #[schemars(extend("const" = SCHEMA))]
+        schema: u32 = SCHEMA,
+        /// Whether the fair rules accept every trace.
+        accepted: bool = diagnosis.accepted(),
+        /// The contents that the scenes have in common in which the program crashes or runs into a limit, in words;
+        /// null where nothing is known.
+        located: Option<String> = diagnosis.located.as_ref().map(located),
+        /// With several traces, the mistake that explains most of the wrong ones.
+        common: Option<ExplanationView> = diagnosis.common.first().map(ExplanationView::from),
+        /// With several traces, up to three mistakes that explain the wrong ones together; the first is `common`.
+        likely: Vec<ExplanationView> = diagnosis.common.iter().map(ExplanationView::from).collect(),
+        /// The traces, in the order in which they were asked about.
+        traces: Vec<CaseView<'a>> = diagnosis.cases.iter().map(CaseView::from).collect(),
+    }
 }
 
-/// A trace.
-#[derive(Serialize, schemars::JsonSchema)]
-#[schemars(deny_unknown_fields)]
-struct CaseView<'a> {
-    /// Its scene.
-    scene: &'a str,
-    /// The trace, or the program that left it.
-    trace: &'a str,
-    /// Whether the fair rules accept it.
-    accepted: bool,
-    /// How the program ended, where it did not end well.
-    note: Option<&'a str>,
-    /// The first thing that is wrong; null where nothing is, and where it may not be told.
-    first_divergence: Option<FindingView>,
-    /// Likely mistakes, the likeliest first.
-    explanations: Vec<ExplanationView>,
+view! {
+    /// A trace.
+    #[schemars(deny_unknown_fields)]
+    struct CaseView<'a> from case: Case {
+        /// Its scene.
+        scene: &'a str = &case.scene,
+        /// The trace, or the program that left it.
+        trace: &'a str = &case.trace,
+        /// Whether the fair rules accept it.
+        accepted: bool = case.accepted,
+        /// How the program ended, where it did not end well.
+        note: Option<&'a str> = case.note.as_deref(),
+        /// The first thing that is wrong; null where nothing is, and where it may not be told.
+        first_divergence: Option<FindingView> = match &case.first {
+            Some(DisclosedFinding::Full(finding)) => Some(FindingView::by(Book::Fair, finding)),
+            Some(DisclosedFinding::Place { .. }) | None => None,
+        },
+        /// Likely mistakes, the likeliest first.
+        explanations: Vec<ExplanationView> = case.explanations.iter().map(ExplanationView::from).collect(),
+    }
 }

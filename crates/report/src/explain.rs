@@ -4,11 +4,10 @@
 //! as numbers only.
 use super::{
     number::{counted, exact},
-    view::key,
+    view::{key, view},
     words::explanation::{details, known, place, what},
 };
 use fosssim_mistakes::diagnose::{About, Example, ExampleValue, Explanation};
-use serde::Serialize;
 
 /// The greatest number of other mistakes listed that can't be told apart.
 const LISTED: usize = 3;
@@ -125,62 +124,45 @@ fn list(values: &[f64]) -> String {
     values.iter().map(|value| exact(*value)).collect::<Vec<_>>().join(", ")
 }
 
-/// An explanation in JSON: its key and its evidence, with sentences.
-#[derive(Debug, Clone, PartialEq, Serialize, schemars::JsonSchema)]
-pub struct ExplanationView {
-    /// A stable key.
-    pub key: String,
-    /// The sentence.
-    pub text: String,
-    /// The exact form, one line each.
-    pub details: Vec<String>,
-    /// Of `samples`, how many it reproduces.
-    pub reproduced: u64,
-    /// Polynomials or steps that were looked at.
-    pub samples: u64,
-    /// Keys of mistakes that can't be told apart from it.
-    pub same_as: Vec<String>,
-    /// A small instance.
-    pub example: Option<ExampleView>,
-}
-
-/// An example in JSON.
-#[derive(Debug, Clone, PartialEq, Serialize, schemars::JsonSchema)]
-pub struct ExampleView {
-    /// The step, from 1.
-    pub step: u32,
-    /// Where, in words.
-    pub place: String,
-    /// The inputs.
-    pub given: Vec<ExampleValue>,
-    /// The expected result.
-    #[serde(with = "fosssim_num::written")]
-    #[schemars(with = "Vec<crate::view::Number>")]
-    pub expected: Vec<f64>,
-    /// The actual result.
-    #[serde(with = "fosssim_num::written")]
-    #[schemars(with = "Vec<crate::view::Number>")]
-    pub actual: Vec<f64>,
-}
-
-impl From<&Example> for ExampleView {
-    fn from(example: &Example) -> Self {
-        let Example { step, place: at, given, expected, actual } = example.clone();
-        Self { step, place: place(&at), given, expected, actual }
+view! {
+    /// An explanation in JSON: its key and its evidence, with sentences.
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct ExplanationView from explanation: Explanation {
+        /// A stable key.
+        pub key: String = explanation.key.clone(),
+        /// The sentence.
+        pub text: String = what(explanation),
+        /// The exact form, one line each.
+        pub details: Vec<String> = details(explanation),
+        /// Of `samples`, how many it reproduces.
+        pub reproduced: u64 = explanation.reproduced,
+        /// Polynomials or steps that were looked at.
+        pub samples: u64 = explanation.samples,
+        /// Keys of mistakes that can't be told apart from it.
+        pub same_as: Vec<String> = explanation.same_as.clone(),
+        /// A small instance.
+        pub example: Option<ExampleView> = explanation.example.as_ref().map(ExampleView::from),
     }
 }
 
-impl From<&Explanation> for ExplanationView {
-    fn from(explanation: &Explanation) -> Self {
-        Self {
-            key: explanation.key.clone(),
-            text: what(explanation),
-            details: details(explanation),
-            reproduced: explanation.reproduced,
-            samples: explanation.samples,
-            same_as: explanation.same_as.clone(),
-            example: explanation.example.as_ref().map(ExampleView::from),
-        }
+view! {
+    /// An example in JSON.
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct ExampleView from example: Example {
+        /// The step, from 1.
+        pub step: u32 = example.step,
+        /// Where, in words.
+        pub place: String = place(&example.place),
+        /// The inputs.
+        pub given: Vec<ExampleValue> = example.given.clone(),
+        /// The expected result.
+        #[serde(with = "fosssim_num::written")]
+        #[schemars(with = "Vec<crate::view::Number>")]
+        pub expected: Vec<f64> = example.expected.clone(),
+        /// The actual result.
+        #[serde(with = "fosssim_num::written")]
+        #[schemars(with = "Vec<crate::view::Number>")]
+        pub actual: Vec<f64> = example.actual.clone(),
     }
 }
 

@@ -11,6 +11,26 @@ use fosssim_num::polynomial::Polynomial;
 pub use fosssim_num::written::Number;
 use serde::Serialize;
 
+/// A value of a report, made of another: each field with its meaning, its type, and its value.
+macro_rules! view {
+    ($(#[$about:meta])* $vis:vis struct $name:ident$(<$life:lifetime>)? from $from:ident: $of:ty {
+        $($(#[$field:meta])* $access:vis $part:ident: $type:ty = $value:expr,)*
+    }) => {
+        #[derive(serde::Serialize, schemars::JsonSchema)]
+        $(#[$about])*
+        $vis struct $name$(<$life>)? {
+            $($(#[$field])* $access $part: $type,)*
+        }
+
+        impl$(<$life>)? From<&$($life)? $of> for $name$(<$life>)? {
+            fn from($from: &$($life)? $of) -> Self {
+                Self { $($part: $value,)* }
+            }
+        }
+    };
+}
+pub(crate) use view;
+
 /// The version of all shapes in this module, but for those below.
 pub const SCHEMA: u32 = 1;
 

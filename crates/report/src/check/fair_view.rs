@@ -1,35 +1,40 @@
 //! The fair rules' part of the check report, for programs.
-use super::super::view::FindingView;
+use super::super::view::{FindingView, view};
 use fosssim_findings::{
     Book, Cause, Finding, FindingKind,
     fair::{Borderline, FairRefusal, FairVerdict, Form, Judgement, Shares},
 };
 use serde::Serialize;
 
-/// The fair rules' judgement.
-#[derive(Debug, Serialize, schemars::JsonSchema)]
-#[schemars(deny_unknown_fields)]
-pub(super) struct FairView<'a> {
-    /// The verdict; none where judging was cut short, and nothing was wrong so far.
-    verdict: FairVerdict,
-    /// The reason why the trace is refused as a whole.
-    refusal: Option<FairRefusal>,
-    /// Steps with at least one finding; the first record is not a step.
-    wrong_steps: u64,
-    /// The first finding; null when there is none.
-    first_divergence: Option<FindingView>,
-    /// As at the top. Tolerances depend on the values, so they are null.
-    findings: Vec<CountedView>,
-    /// Least and greatest factor of the polynomials; null where it is 1.
-    #[serde(with = "fosssim_num::written")]
-    #[schemars(with = "Option<[crate::view::Number; 2]>")]
-    factor: Option<[f64; 2]>,
-    /// Which accepted form the approach polynomial of a particle and an edge has.
-    approach_form: Form,
-    /// Decisions that round-off may flip and that the trace has the other way; they are not charged.
-    borderline: BorderlineView<'a>,
-    /// The largest share of its tolerances that something right uses, 0 to 1.
-    used_tolerance: &'a Shares,
+view! {
+    /// The fair rules' judgement.
+    #[derive(Debug)]
+    #[schemars(deny_unknown_fields)]
+    pub(super) struct FairView<'a> from fair: Judgement {
+        /// The verdict; none where judging was cut short, and nothing was wrong so far.
+        verdict: FairVerdict = fair.verdict,
+        /// The reason why the trace is refused as a whole.
+        refusal: Option<FairRefusal> = fair.refusal,
+        /// Steps with at least one finding; the first record is not a step.
+        wrong_steps: u64 = fair.findings.wrong_steps,
+        /// The first finding; null when there is none.
+        first_divergence: Option<FindingView> =
+            fair.findings.first_divergence.as_ref().map(|first| FindingView::by(Book::Fair, first)),
+        /// As at the top. Tolerances depend on the values, so they are null.
+        findings: Vec<CountedView> =
+            CountedView::all(Book::Fair, &fair.findings.examples, |kind| fair.findings.counts.get(kind)),
+        /// Least and greatest factor of the polynomials; null where it is 1.
+        #[serde(with = "fosssim_num::written")]
+        #[schemars(with = "Option<[crate::view::Number; 2]>")]
+        factor: Option<[f64; 2]> = fair.factor,
+        /// Which accepted form the approach polynomial of a particle and an edge has.
+        approach_form: Form = fair.form,
+        /// Decisions that round-off may flip and that the trace has the other way; they are not charged.
+        borderline: BorderlineView<'a> =
+            BorderlineView { count: fair.borderline, examples: &fair.borderline_examples },
+        /// The largest share of its tolerances that something right uses, 0 to 1.
+        used_tolerance: &'a Shares = &fair.shares,
+    }
 }
 
 /// All findings of one kind: how many, and the first.
@@ -60,34 +65,14 @@ struct BorderlineView<'a> {
     examples: &'a [Borderline],
 }
 
-/// The reason why the two rule books differ.
-#[derive(Debug, Serialize, schemars::JsonSchema)]
-#[schemars(deny_unknown_fields)]
-pub(crate) struct CauseView {
-    /// The rule of the original that is the cause.
-    key: Cause,
-    /// In words.
-    text: String,
-}
-
-impl From<Cause> for CauseView {
-    fn from(cause: Cause) -> Self {
-        Self { key: cause, text: cause.to_string() }
-    }
-}
-
-impl<'a> From<&'a Judgement> for FairView<'a> {
-    fn from(fair: &'a Judgement) -> Self {
-        Self {
-            verdict: fair.verdict,
-            refusal: fair.refusal,
-            wrong_steps: fair.findings.wrong_steps,
-            first_divergence: fair.findings.first_divergence.as_ref().map(|first| FindingView::by(Book::Fair, first)),
-            findings: CountedView::all(Book::Fair, &fair.findings.examples, |kind| fair.findings.counts.get(kind)),
-            factor: fair.factor,
-            approach_form: fair.form,
-            borderline: BorderlineView { count: fair.borderline, examples: &fair.borderline_examples },
-            used_tolerance: &fair.shares,
-        }
+view! {
+    /// The reason why the two rule books differ.
+    #[derive(Debug)]
+    #[schemars(deny_unknown_fields)]
+    pub(crate) struct CauseView from cause: Cause {
+        /// The rule of the original that is the cause.
+        key: Cause = *cause,
+        /// In words.
+        text: String = cause.to_string(),
     }
 }

@@ -26,11 +26,11 @@ use super::{
     annotation::annotation,
     explain::{self, ExplanationView},
     style::Style,
-    view::{CHECK_SCHEMA, FindingView, document},
+    view::{CHECK_SCHEMA, FindingView, document, view},
 };
 pub(crate) use fair_view::CauseView;
 use fair_view::{CountedView, FairView};
-use fosssim_findings::{Book, Damage, FindingKind, Outcome, Overall, Residuals, Rules, Ruling, Stop};
+use fosssim_findings::{Book, BookFindings, Damage, FindingKind, Outcome, Overall, Residuals, Rules, Ruling, Stop};
 use fosssim_judge::{Unreadable, WithoutResult, fair::cause};
 use fosssim_mistakes::diagnose::Explanation;
 use fosssim_model::sim::SearchCounts;
@@ -90,6 +90,11 @@ impl Check<'_> {
         self.rules.official()
     }
 
+    /// The findings of the official book.
+    fn account(&self) -> &BookFindings {
+        self.outcome.findings_by(self.book())
+    }
+
     /// The report for people.
     #[must_use]
     pub fn text(&self, style: Style) -> String {
@@ -118,40 +123,7 @@ impl Check<'_> {
     /// The report for programs: one JSON object, indented, with a line feed at its end.
     #[must_use]
     pub fn json(&self) -> String {
-        let outcome = self.outcome;
-        let (book, account) = (self.book(), outcome.findings_by(self.book()));
-        document(&CheckView {
-            schema: CHECK_SCHEMA,
-            scene: self.scene,
-            trace: self.trace,
-            rules: self.rules,
-            official: book,
-            verdict: self.verdict(),
-            summary: text::headline(self),
-            parity: Parity {
-                overall: outcome.parity.overall,
-                residuals: outcome.parity.residuals,
-                collisions_passed: outcome.parity.collisions_passed,
-                messages: messages(outcome),
-            },
-            fair: outcome.fair.as_deref().map(FairView::from),
-            difference: cause(outcome).map(CauseView::from),
-            first_divergence: account.first_divergence.as_ref().map(|first| FindingView::by(book, first)),
-            findings: CountedView::all(book, &account.examples, |kind| account.counts.get(kind)),
-            advice: advice::lines(self),
-            commands: closer::commands(self),
-            notes: text::notes(self),
-            explanations: self.explanations.iter().map(ExplanationView::from).collect(),
-            steps: outcome.steps,
-            steps_judged: outcome.steps_judged,
-            wrong_steps: account.wrong_steps,
-            wrong_step_numbers: steps::numbers(self),
-            shown_steps: steps::views(self),
-            problem: outcome.stop_of(book).as_ref().map(StopView::from),
-            damage: outcome.damage.as_ref().map(DamageView::from),
-            trailing_bytes: outcome.trailing_bytes,
-            root_searches: self.audit.then_some(outcome.searches),
-        })
+        document(&CheckView::from(self))
     }
 }
 
@@ -177,81 +149,85 @@ fn messages(outcome: &Outcome) -> BTreeMap<&'static str, u64> {
     messages
 }
 
-/// The report on one trace. Fields may be added within a version of the shape; their meanings do not change. Numbers
-/// that are not finite are the texts nan, -nan, inf and -inf.
-#[derive(Serialize, schemars::JsonSchema)]
-#[schemars(deny_unknown_fields)]
-pub(crate) struct CheckView<'a> {
-    /// The version of this shape.
-    #[schemars(extend("const" = CHECK_SCHEMA))]
-    schema: u32,
-    /// The scene as typed.
-    scene: &'a str,
-    /// The trace as typed.
-    trace: &'a str,
-    /// The rule books that were asked.
-    rules: Rules,
-    /// The book that gives the verdict, the first difference, findings and wrong steps.
-    official: Book,
-    /// By the official book. Undecided: nothing is wrong so far, but judging was given up. Bad trace: it could not be
-    /// read to the scene's last step; by the fair rules also: it is damaged, or goes on after its last record.
-    #[schemars(extend("enum" = Ruling::ALL.map(Ruling::words)))]
-    verdict: &'static str,
-    /// The reason for the verdict, in one line.
-    summary: String,
-    /// The original's judgement.
-    parity: Parity,
-    /// The fair rules' judgement; null when they were not asked.
-    fair: Option<FairView<'a>>,
-    /// The reason why the two rule books differ; null where they do not.
-    difference: Option<CauseView>,
-    /// The official book's first finding; null when there is none.
-    first_divergence: Option<FindingView>,
-    /// Per kind of finding of the official book the first one, and how many there are.
-    findings: Vec<CountedView>,
-    /// Advice by the kind of the first finding.
-    advice: Vec<&'static str>,
-    /// Commands that look closer at the first finding.
-    commands: Vec<String>,
-    /// Other facts worth knowing: damage, bytes behind the end.
-    notes: Vec<String>,
-    /// Likely mistakes, the likeliest first; empty where nothing is wrong, and with --no-explain.
-    explanations: Vec<ExplanationView>,
-    /// Steps of the scene.
-    steps: u32,
-    /// Steps that were judged.
-    steps_judged: u32,
-    /// Steps with at least one finding of the official book.
-    wrong_steps: u64,
-    /// The numbers of these steps, from 1; the first 1000.
-    #[schemars(length(max = LISTED), inner(range(min = 1)))]
-    wrong_step_numbers: Vec<u32>,
-    /// With --all the wrong steps, the first 1000, with --step those asked for; null without both. By the official
-    /// book, or by the fair rules where the official book has found nothing.
-    shown_steps: Option<Vec<WrongStepView>>,
-    /// The reason why judging stopped before the scene's last step; null when it did not.
-    problem: Option<StopView>,
-    /// The first damage that the original reads over in silence.
-    damage: Option<DamageView>,
-    /// Whether bytes follow the last record.
-    trailing_bytes: bool,
-    /// Counts of root searches, with --audit only.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    root_searches: Option<SearchCounts>,
+view! {
+    /// The report on one trace. Fields may be added within a version of the shape; their meanings do not change.
+    /// Numbers that are not finite are the texts nan, -nan, inf and -inf.
+    #[schemars(deny_unknown_fields)]
+    pub(crate) struct CheckView<'a> from check: Check<'a> {
+        /// The version of this shape.
+        #[schemars(extend("const" = CHECK_SCHEMA))]
+        schema: u32 = CHECK_SCHEMA,
+        /// The scene as typed.
+        scene: &'a str = check.scene,
+        /// The trace as typed.
+        trace: &'a str = check.trace,
+        /// The rule books that were asked.
+        rules: Rules = check.rules,
+        /// The book that gives the verdict, the first difference, findings and wrong steps.
+        official: Book = check.book(),
+        /// By the official book. Undecided: nothing is wrong so far, but judging was given up. Bad trace: it could not
+        /// be read to the scene's last step; by the fair rules also: it is damaged, or goes on after its last record.
+        #[schemars(extend("enum" = Ruling::ALL.map(Ruling::words)))]
+        verdict: &'static str = check.verdict(),
+        /// The reason for the verdict, in one line.
+        summary: String = text::headline(check),
+        /// The original's judgement.
+        parity: Parity = Parity::from(check.outcome),
+        /// The fair rules' judgement; null when they were not asked.
+        fair: Option<FairView<'a>> = check.outcome.fair.as_deref().map(FairView::from),
+        /// The reason why the two rule books differ; null where they do not.
+        difference: Option<CauseView> = cause(check.outcome).as_ref().map(CauseView::from),
+        /// The official book's first finding; null when there is none.
+        first_divergence: Option<FindingView> =
+            check.account().first_divergence.as_ref().map(|first| FindingView::by(check.book(), first)),
+        /// Per kind of finding of the official book the first one, and how many there are.
+        findings: Vec<CountedView> =
+            CountedView::all(check.book(), &check.account().examples, |kind| check.account().counts.get(kind)),
+        /// Advice by the kind of the first finding.
+        advice: Vec<&'static str> = advice::lines(check),
+        /// Commands that look closer at the first finding.
+        commands: Vec<String> = closer::commands(check),
+        /// Other facts worth knowing: damage, bytes behind the end.
+        notes: Vec<String> = text::notes(check),
+        /// Likely mistakes, the likeliest first; empty where nothing is wrong, and with --no-explain.
+        explanations: Vec<ExplanationView> = check.explanations.iter().map(ExplanationView::from).collect(),
+        /// Steps of the scene.
+        steps: u32 = check.outcome.steps,
+        /// Steps that were judged.
+        steps_judged: u32 = check.outcome.steps_judged,
+        /// Steps with at least one finding of the official book.
+        wrong_steps: u64 = check.account().wrong_steps,
+        /// The numbers of these steps, from 1; the first 1000.
+        #[schemars(length(max = LISTED), inner(range(min = 1)))]
+        wrong_step_numbers: Vec<u32> = steps::numbers(check),
+        /// With --all the wrong steps, the first 1000, with --step those asked for; null without both. By the official
+        /// book, or by the fair rules where the official book has found nothing.
+        shown_steps: Option<Vec<WrongStepView>> = steps::views(check),
+        /// The reason why judging stopped before the scene's last step; null when it did not.
+        problem: Option<StopView> = check.outcome.stop_of(check.book()).as_ref().map(StopView::from),
+        /// The first damage that the original reads over in silence.
+        damage: Option<DamageView> = check.outcome.damage.as_ref().map(DamageView::from),
+        /// Whether bytes follow the last record.
+        trailing_bytes: bool = check.outcome.trailing_bytes,
+        /// Counts of root searches, with --audit only.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        root_searches: Option<SearchCounts> = check.audit.then_some(check.outcome.searches),
+    }
 }
 
-/// The original's judgement.
-#[derive(Serialize, schemars::JsonSchema)]
-#[schemars(deny_unknown_fields)]
-struct Parity {
-    /// Its verdict; none where grading did not come to its end.
-    overall: Overall,
-    #[serde(flatten)]
-    residuals: Residuals,
-    /// Whether collisions and polynomials are right; null without a verdict.
-    collisions_passed: Option<bool>,
-    /// How often the original prints each of its messages; one that it does not print is left out.
-    messages: BTreeMap<&'static str, u64>,
+view! {
+    /// The original's judgement.
+    #[schemars(deny_unknown_fields)]
+    struct Parity from outcome: Outcome {
+        /// Its verdict; none where grading did not come to its end.
+        overall: Overall = outcome.parity.overall,
+        #[serde(flatten)]
+        residuals: Residuals = outcome.parity.residuals,
+        /// Whether collisions and polynomials are right; null without a verdict.
+        collisions_passed: Option<bool> = outcome.parity.collisions_passed,
+        /// How often the original prints each of its messages; one that it does not print is left out.
+        messages: BTreeMap<&'static str, u64> = messages(outcome),
+    }
 }
 
 /// Why judging stopped early.
@@ -282,23 +258,17 @@ enum StopKind {
     StepWithoutResult,
 }
 
-/// A place in a trace where it can't be read as it should.
-#[derive(Serialize, schemars::JsonSchema)]
-struct DamageView {
-    /// From 1; 0 is the initial record.
-    step: u32,
-    /// The record, from 0.
-    frame: Option<u64>,
-    /// Byte offset.
-    offset: Option<u64>,
-    /// In words.
-    message: String,
-}
-
-impl From<&Damage> for DamageView {
-    fn from(damage: &Damage) -> Self {
-        let Damage { frame, step, offset, ref what } = *damage;
-        Self { step, frame: Some(frame), offset: Some(offset), message: what.to_string() }
+view! {
+    /// A place in a trace where it can't be read as it should.
+    struct DamageView from damage: Damage {
+        /// From 1; 0 is the initial record.
+        step: u32 = damage.step,
+        /// The record, from 0.
+        frame: Option<u64> = Some(damage.frame),
+        /// Byte offset.
+        offset: Option<u64> = Some(damage.offset),
+        /// In words.
+        message: String = damage.what.to_string(),
     }
 }
 
