@@ -1,12 +1,15 @@
 //! Tells of which milestone a program is, by the scenes that it takes: a starter library ends with an exit code at an
 //! integrator or a collision type that it does not know, whatever its student wrote.
-use super::{execute::Runner, task::SceneTask};
+use super::{config::RunLimits, execute::Runner, task::SceneTask};
 use fosssim_model::{
     assignments::{Assignment, Integrator},
     scene,
 };
 use fosssim_sandbox::Ended;
-use std::path::Path;
+use std::{path::Path, time::Duration};
+
+/// The time on the processor and on the clock for two steps of two bodies, of which a program needs some milliseconds.
+const LIMITS: [Duration; 2] = [Duration::from_millis(500), Duration::from_secs(2)];
 
 /// Returns the milestone whose library takes the scenes that this program takes, and no others; nothing where there is
 /// none, or where the program writes no trace at all. The program is run six times, on two bodies that do not meet.
@@ -14,6 +17,9 @@ use std::path::Path;
 /// # Errors
 /// Faults of ours or of the machine, in words.
 pub fn looks_like(runner: &Runner<'_>, program: &Path) -> Result<Option<Assignment>, String> {
+    let [cpu, wall] = LIMITS;
+    let limits = RunLimits { cpu: runner.limits.cpu.min(cpu), wall: runner.limits.wall.min(wall), ..*runner.limits };
+    let runner = Runner { limits: &limits, ..*runner };
     let mut is_traced = false;
     let mut takes = |integrator: Integrator, collision: &str| -> Result<bool, String> {
         let (trace, outcome) = runner.collect(program, &task(integrator, collision)?, 1)?;

@@ -39,13 +39,11 @@ use std::{
     time::Duration,
 };
 
-/// The number of runs of a program that may end at a limit with the time that the suite gives. Further runs have
-/// [`LEAST`]; what they have recorded until then is read all the same.
-const PATIENCE: usize = 1;
+/// The time on the processor and on the clock for a program on scenes of which a right one needs some milliseconds.
+const PATIENT: [Duration; 2] = [Duration::from_secs(4), Duration::from_secs(10)];
 
-/// The time on the processor for a program that runs into limits, on scenes of which a right one needs some
-/// milliseconds, and on the clock.
-const LEAST: [Duration; 2] = [Duration::from_millis(500), Duration::from_secs(2)];
+/// The time after a run that has ended at a limit. What the program has recorded until then is read all the same.
+const IMPATIENT: [Duration; 2] = [Duration::from_millis(500), Duration::from_secs(2)];
 
 /// The number of runs that may end at a limit at all: the other scenes would say the same.
 const MOST_STOPPED: usize = 4;
@@ -170,7 +168,11 @@ fn program_on_probes(
     let assignment = arguments.suite.map_or_else(|| own_milestone(&runner, &program), Ok)?;
     let plan = plan::find(assignment.key())?;
     let mut tasks = tasks(assignment, &plan, scenes)?;
-    let short = RunLimits { cpu: plan.limits.cpu.min(LEAST[0]), wall: plan.limits.wall.min(LEAST[1]), ..plan.limits };
+    let [long, short] = [PATIENT, IMPATIENT].map(|[cpu, wall]| RunLimits {
+        cpu: plan.limits.cpu.min(cpu),
+        wall: plan.limits.wall.min(wall),
+        ..plan.limits
+    });
     let runner = |limits| Runner { run: &plan.run, limits, ..runner };
     let (mut cases, mut cards, mut ends) = (Vec::new(), Vec::new(), Vec::new());
     let (mut stopped, mut traceless) = (0, 0);
@@ -180,7 +182,7 @@ fn program_on_probes(
             break;
         }
         bar.next_run(&task.name);
-        let limits = if stopped < PATIENCE { &plan.limits } else { &short };
+        let limits = if stopped == 0 { &long } else { &short };
         let (trace, outcome) = runner(limits).collect(&program, task, LONGEST).map_err(anyhow::Error::msg)?;
         if cancellation.is_cancelled() {
             return Ok(None);
