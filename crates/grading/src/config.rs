@@ -7,7 +7,7 @@ pub use fosssim_findings::{Hints, Visibility, speed::SpeedMarking};
 use fosssim_judge::Rules;
 use fosssim_model::assignments::Assignment;
 use serde::{Deserialize, Serialize};
-use std::time::Duration;
+use std::{collections::BTreeSet, time::Duration};
 use toml::Spanned;
 
 pub use super::{assignments::template, shape::MOST_POINTS};
@@ -159,12 +159,29 @@ pub struct Position {
     pub column: usize,
 }
 
-impl Position {
-    fn of(text: &str, offset: usize) -> Self {
-        let before = text.get(..offset).unwrap_or(text);
-        let line = before.matches('\n').count() + 1;
-        let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
-        Self { line, column }
+/// Counts lines and columns from where it was asked last, so that many places of a long line take no longer than one.
+struct PositionCounter<'a> {
+    text: &'a str,
+    offset: usize,
+    at: Position,
+}
+
+impl<'a> PositionCounter<'a> {
+    fn new(text: &'a str) -> Self {
+        Self { text, offset: 0, at: Position { line: 1, column: 1 } }
+    }
+
+    fn position(&mut self, offset: usize) -> Position {
+        if offset < self.offset {
+            *self = Self::new(self.text);
+        }
+        for c in self.text.get(self.offset..offset).unwrap_or_default().chars() {
+            let Position { line, column } = self.at;
+            self.at =
+                if c == '\n' { Position { line: line + 1, column: 1 } } else { Position { line, column: column + 1 } };
+        }
+        self.offset = offset;
+        self.at
     }
 }
 
@@ -273,11 +290,15 @@ pub(super) fn read_all(text: &str) -> (Suite, Vec<(Position, String)>) {
     }
     let groups = raw.group.unwrap_or_default().into_iter();
     let hints = raw.hints.unwrap_or(Hints::What);
-    let groups: Vec<Group> = groups.map(|group| read_group(text, &mut problems, group.into_inner(), hints)).collect();
-    let place = |(span, words): Problem| (Position::of(text, span.start), words);
+    let mut places = PositionCounter::new(text);
+    let read = |group: Spanned<RawGroup>| read_group(&mut places, &mut problems, group.into_inner(), hints);
+    let groups: Vec<Group> = groups.map(read).collect();
+    problems.sort_by_key(|(span, _)| span.start);
+    let place = |(span, words): Problem| (places.position(span.start), words);
     let mut problems: Vec<(Position, String)> = problems.into_iter().map(place).collect();
-    for (number, group) in groups.iter().enumerate() {
-        if !group.name.is_empty() && groups[..number].iter().any(|other| other.name == group.name) {
+    let mut names = BTreeSet::new();
+    for group in &groups {
+        if !group.name.is_empty() && !names.insert(&group.name) {
             problems.push((
                 group.scenes.first().map(|pattern| pattern.at).unwrap_or_default(),
                 format!("two groups have the name \"{}\"", group.name),
@@ -371,7 +392,7 @@ fn read_build(problems: &mut Vec<Problem>, build: Spanned<RawBuild>) -> BuildSte
 }
 
 /// A group; `hints` are those of a group that says nothing of them.
-fn read_group(text: &str, problems: &mut Vec<Problem>, raw: RawGroup, hints: Hints) -> Group {
+fn read_group(places: &mut PositionCounter<'_>, problems: &mut Vec<Problem>, raw: RawGroup, hints: Hints) -> Group {
     let name = raw.name.as_ref().map(|name| name.get_ref().clone()).unwrap_or_default();
     if let Some(empty) = raw.name.filter(|name| name.get_ref().trim().is_empty()) {
         problems.push((empty.span(), "the group's name is empty".to_owned()));
@@ -382,7 +403,7 @@ fn read_group(text: &str, problems: &mut Vec<Problem>, raw: RawGroup, hints: Hin
     let points = raw.points.unwrap_or(1.0);
     let scenes = raw.scenes.map(Spanned::into_inner).unwrap_or_default().into_iter();
     let pattern = |pattern: Spanned<String>| {
-        let at = Position::of(text, pattern.span().start);
+        let at = places.position(pattern.span().start);
         Pattern { text: pattern.into_inner(), at }
     };
     let (credit, visibility) = (raw.credit.unwrap_or(Credit::Scenes), raw.visibility.unwrap_or(Visibility::Visible));
@@ -428,6 +449,14 @@ mod tests {
         let without = template.replacen("rules = \"fair\"\n", "", 1);
         assert_eq!(read(&without).expect("sound").rules, Rules::Fair, "the default");
         assert!(!suite.groups.is_empty());
+    }
+
+    #[test]
+    fn many_problems_of_a_long_line_are_told_at_once() {
+        let text = format!("name = \"{}\"\nrun = [{}]\nlast = 1\n", "ü".repeat(9), "[], ".repeat(100_000));
+        let problems = read(&text).expect_err("wrong").problems;
+        let at = |index: usize| problems[index].0.to_string();
+        assert_eq!((at(2), at(100_001), at(100_002)), ("2:8".into(), "2:400004".into(), "3:1".into()));
     }
 
     #[test]
