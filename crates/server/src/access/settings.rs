@@ -8,7 +8,7 @@ use crate::{
     store::Digest,
     task::{Form, Input, Suite, Task},
 };
-use chrono_tz::Tz;
+use chrono_tz::{TZ_VARIANTS, Tz};
 use serde::{Deserialize, Deserializer, Serialize, de::Error};
 use serde_json::{Map, Value};
 use std::{collections::BTreeSet, ops::RangeInclusive};
@@ -68,7 +68,7 @@ pub struct Settings {
     pub late_percent: u32,
     /// The time zone by whose calendar late days end, such as `Europe/Berlin`; without it each has 24 hours.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schema(value_type = Option<String>, pattern = "^[A-Za-z][A-Za-z0-9/_+-]*$", max_length = 60)]
+    #[schema(schema_with = zone_schema)]
     pub time_zone: Option<Tz>,
 }
 
@@ -98,11 +98,19 @@ pub(crate) fn moment_schema() -> Schema {
         ObjectBuilder::new().schema_type(Type::Integer).minimum(Some(*range.start())).maximum(Some(*range.end()))
     };
     let date = SchemaFormat::KnownFormat(KnownFormat::DateTime);
-    let date = ObjectBuilder::new().schema_type(Type::String).format(Some(date));
+    let date =
+        ObjectBuilder::new().schema_type(Type::String).format(Some(date)).pattern(Some("^(199|2[0-9]{2})[0-9]-"));
     let words = "No uploads of students after this moment: milliseconds since 1970, or a date with its time zone.";
     let [early, late] = calendar::PLAUSIBLE;
     let null = ObjectBuilder::new().schema_type(Type::Null);
     OneOfBuilder::new().item(number(early)).item(number(late)).item(date).item(null).description(Some(words)).into()
+}
+
+fn zone_schema() -> Schema {
+    let names = ObjectBuilder::new().schema_type(Type::String).enum_values(Some(TZ_VARIANTS.map(Tz::name)));
+    let null = ObjectBuilder::new().schema_type(Type::Null);
+    let words = "The time zone by whose calendar late days end; without it each has 24 hours.";
+    OneOfBuilder::new().item(names).item(null).description(Some(words)).into()
 }
 
 impl Default for Settings {

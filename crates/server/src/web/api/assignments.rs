@@ -34,7 +34,7 @@ pub(super) struct AssignmentWish {
     /// Whether students see it; not at first.
     visible: Option<bool>,
     #[serde(default, deserialize_with = "whole_numbers")]
-    #[schema(value_type = Option<Settings>)]
+    #[schema(value_type = Settings, required = false)]
     settings: Map<String, Value>,
     /// The revision that the change is of: with it the change is refused when somebody made another one.
     #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
@@ -66,7 +66,7 @@ pub(super) struct GradesFormat {
 pub(super) struct Extension {
     /// Milliseconds since 1970, or a date with its time zone.
     #[serde(deserialize_with = "moment")]
-    #[schema(schema_with = moment_schema)]
+    #[schema(schema_with = moment_schema, required = true)]
     due_at: Option<i64>,
 }
 

@@ -19,7 +19,7 @@ pub(super) struct RegradeWish {
     reason: String,
     /// Settings about grading that are to be others than the assignment's.
     #[serde(default, deserialize_with = "whole_numbers")]
-    #[schema(value_type = Option<Settings>)]
+    #[schema(value_type = Settings, required = false)]
     settings: Map<String, Value>,
 }
 

@@ -98,7 +98,7 @@ pub(super) struct MarkWish {
     points: Option<f64>,
     /// Why, as the student reads it.
     #[serde(default)]
-    #[schema(max_length = 2000)]
+    #[schema(max_length = 2000, pattern = r"^[^\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]*$")]
     comment: String,
     /// When the last mark was given that the sender has seen: with it a mark is refused when there is a later one.
     #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
@@ -110,7 +110,7 @@ pub(super) struct MarkWish {
 #[serde(deny_unknown_fields)]
 pub(in crate::web) struct RequestWish {
     /// The fault of the grade.
-    #[schema(min_length = 1, max_length = 2000)]
+    #[schema(min_length = 1, max_length = 2000, pattern = r"^[^\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]*$")]
     pub(in crate::web) text: String,
 }
 
