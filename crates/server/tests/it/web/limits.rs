@@ -11,7 +11,12 @@ use std::{
     time::{Duration, Instant},
 };
 
-on_both_engines!(files_are_sent_in_pieces, quotas_count_what_is_kept, refused_at_the_same_time_leaves_nothing);
+on_both_engines!(
+    files_are_sent_in_pieces,
+    quotas_count_what_is_kept,
+    equal_uploads_are_kept_once,
+    refused_at_the_same_time_leaves_nothing
+);
 
 const SUBMISSIONS: &str = "/api/v1/courses/physics/assignments/m1/submissions";
 
@@ -75,27 +80,30 @@ async fn files_are_sent_in_pieces(fresh: Fresh) {
     assert!(ada.get(&path).body.len() < bytes.len());
 }
 
+/// The bytes that are counted as kept, which are those that are there.
+async fn kept_bytes(fresh: &Fresh) -> i64 {
+    let mut transaction = fresh.database.read().await.expect("a transaction");
+    let counted = "SELECT CAST(coalesce(sum(bytes), 0) AS {int}) AS n FROM kept_bytes";
+    let there = "SELECT CAST((SELECT coalesce(sum(size), 0) FROM
+            (SELECT DISTINCT account, digest, size FROM submission WHERE removed_at IS NULL) AS kept)
+        + (SELECT coalesce(sum(result_file.size), 0) FROM result_file
+            JOIN result ON result.id = result_file.result
+            JOIN submission ON submission.id = result.submission WHERE removed_at IS NULL) AS {int}) AS n";
+    let counted = transaction.one(counted, values![]).await.expect("a row").int("n").expect("a number");
+    let there = transaction.one(there, values![]).await.expect("a row").int("n").expect("a number");
+    assert_eq!(counted, there, "what is counted is what is there");
+    counted
+}
+
 async fn quotas_count_what_is_kept(fresh: Fresh) {
     let mut server = Server::start(&fresh, &["--workers", "1", "--keep-of-person", "5", "--keep-of-course", "8"]);
     let admin = server.admin();
     server.course(&admin, "physics");
     let ada = server.member(&admin, "physics", "ada", "student");
     let eve = server.member(&admin, "physics", "eve", "student");
-    let kept = async || {
-        let mut transaction = fresh.database.read().await.expect("a transaction");
-        let counted = "SELECT CAST(coalesce(sum(bytes), 0) AS {int}) AS n FROM kept_bytes";
-        let there = "SELECT CAST((SELECT coalesce(sum(size), 0) FROM submission WHERE removed_at IS NULL)
-            + (SELECT coalesce(sum(result_file.size), 0) FROM result_file
-                JOIN result ON result.id = result_file.result
-                JOIN submission ON submission.id = result.submission WHERE removed_at IS NULL) AS {int}) AS n";
-        let counted = transaction.one(counted, values![]).await.expect("a row").int("n").expect("a number");
-        let there = transaction.one(there, values![]).await.expect("a row").int("n").expect("a number");
-        assert_eq!(counted, there, "what is counted is what is there");
-        counted
-    };
     let first = ada.submit("physics", &large(2, 1));
     ada.wait_for_grade("physics", first);
-    assert!(kept().await > 2 << 20, "reports count, too");
+    assert!(kept_bytes(&fresh).await > 2 << 20, "reports count, too");
     let second = ada.submit("physics", &large(2, 2));
     ada.wait_for_grade("physics", second);
     let before = stored(&server);
@@ -127,7 +135,7 @@ async fn quotas_count_what_is_kept(fresh: Fresh) {
     let given_up = "UPDATE submission SET removed_at = {now} WHERE id IN (?, ?)";
     transaction.execute(given_up, values![first, of_eve]).await.expect("a statement");
     transaction.commit().await.expect("commit");
-    assert!(kept().await < 3 << 20);
+    assert!(kept_bytes(&fresh).await < 3 << 20);
     let third = ada.submit("physics", &large(2, 3));
     ada.wait_for_grade("physics", third);
     // One that is deleted, too.
@@ -144,9 +152,28 @@ async fn quotas_count_what_is_kept(fresh: Fresh) {
         transaction.execute(deleted, values![second]).await.expect("a statement");
     }
     transaction.commit().await.expect("commit");
-    assert!(kept().await < 3 << 20);
+    assert!(kept_bytes(&fresh).await < 3 << 20);
     eve.submit("physics", &large(2, 5));
-    kept().await;
+    kept_bytes(&fresh).await;
+}
+
+async fn equal_uploads_are_kept_once(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "0"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let eve = server.member(&admin, "physics", "eve", "student");
+    let first = eve.submit("physics", &large(2, 5));
+    let before = kept_bytes(&fresh).await;
+    let again = eve.submit("physics", &large(2, 5));
+    assert!(again != first && kept_bytes(&fresh).await == before);
+    for one in [first, again] {
+        let mut transaction = fresh.database.begin().await.expect("a transaction");
+        let given_up = "UPDATE submission SET removed_at = {now} WHERE id = ?";
+        transaction.execute(given_up, values![one]).await.expect("a statement");
+        transaction.commit().await.expect("commit");
+        let left = if one == again { 0 } else { before };
+        assert_eq!(kept_bytes(&fresh).await, left, "it is kept as long as one of them is");
+    }
 }
 
 async fn refused_at_the_same_time_leaves_nothing(fresh: Fresh) {

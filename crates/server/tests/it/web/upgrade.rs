@@ -33,6 +33,7 @@ const BACK_TO_THE_FIRST: &[&str] = &[
     "ALTER TABLE worker DROP COLUMN aside_since",
     "CREATE INDEX result_campaign ON result (campaign)",
     "CREATE INDEX job_campaign ON job (campaign)",
+    "DROP VIEW kept_upload",
     "DROP TRIGGER submission_comes",
     "DROP TRIGGER submission_is_given_up",
     "DROP TRIGGER submission_goes",
