@@ -44,7 +44,7 @@ pub use author::Student;
 pub use detection::polynomials_of;
 pub use objects::{Contact, Object, Pair, State};
 pub use record::{Record, trace, trace_within};
-pub use refused::{KNOWN_ACCUSED, KNOWN_REFUSED};
+pub use refused::KNOWN_ACCUSED;
 pub use step::step;
 pub use step_failure::StepFailure;
 pub use world::{Guard, StepLog, World};

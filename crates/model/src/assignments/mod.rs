@@ -134,12 +134,6 @@ impl Definition {
     pub fn handling(&self, collision: CollisionType) -> Option<&Handling> {
         self.handlings.iter().find(|handling| handling.collision == collision)
     }
-
-    /// Whether its student writes this part: only then a mistake there is the student's.
-    #[must_use]
-    pub fn student_writes(&self, part: Part) -> bool {
-        self.student.contains(&part)
-    }
 }
 
 /// The words of a scene that a starter library reads. Originals know more: those of Theme 1 are one program.

@@ -173,11 +173,11 @@ mod tests {
                     Part::Force(kind) | Part::Jacobians(kind) => definition.library.forces.contains(kind),
                     _ => true,
                 };
-                assert!(is_called && definition.student_writes(*part), "{assignment:?}: {part:?}");
+                assert!(is_called && definition.student.contains(part), "{assignment:?}: {part:?}");
             }
         }
         assert!(
-            !Assignment::T2M3.definition().student_writes(Part::Penalty(crate::assignments::PairKind::ParticleEdge))
+            !Assignment::T2M3.definition().student.contains(&Part::Penalty(crate::assignments::PairKind::ParticleEdge))
         );
     }
 }
