@@ -192,11 +192,7 @@ fn program_on_probes(
         }
         let failing = Failing::of(&outcome.ended);
         stopped += usize::from(matches!(failing, Some(Failing::Time | Failing::Memory | Failing::Output)));
-        let note = match (&outcome.ended, trace.is_empty()) {
-            (Ended::Exited(0), false) => None,
-            (ended, false) => Some(format!("the program {ended}")),
-            (ended, true) => Some(format!("the program {ended} and wrote no trace{}", said(&outcome.stderr.bytes))),
-        };
+        let note = note(&outcome.ended, trace.is_empty(), &outcome.stderr.bytes);
         traceless += usize::from(trace.is_empty());
         let shown = program.display().to_string();
         let (case, card, steps) = case((task.name.clone(), shown), false, &task.scene, &trace[..], note, arguments);
@@ -223,6 +219,15 @@ fn program_on_probes(
         case.explanations = diagnose::settled(&case.explanations, &common, &refuted).explanations;
     }
     Ok(Some((Diagnosis { cases, common, located }, cards)))
+}
+
+/// Returns the remark on how a program ended, unless it ended well.
+fn note(ended: &Ended, is_traceless: bool, stderr: &[u8]) -> Option<String> {
+    match (ended, is_traceless) {
+        (Ended::Exited(0), false) => None,
+        (ended, false) => Some(format!("the program {ended}")),
+        (ended, true) => Some(format!("the program {ended} and wrote no trace{}", said(stderr))),
+    }
 }
 
 /// Finds out of which milestone a program is, and says so where that is not the default.
