@@ -12,5 +12,6 @@ mod layers;
 mod manifests;
 mod prose;
 mod ratchets;
+mod size;
 mod tree;
 mod vectors;

@@ -1,0 +1,106 @@
+//! Lines of code by crate only fall. A change that raises one says beside its number what it removed instead.
+use crate::tree::{crate_of, is_of_tests, name, sources, text};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path,
+};
+
+/// The most lines of code of each crate, and of the program (`src`), in hundreds: without tests, comments and blank
+/// lines. A crate that is not here may have none.
+const HUNDREDS: [(&str, usize); 20] = [
+    ("browser", 10),
+    ("build.rs", 1),
+    ("ended", 2),
+    ("evidence", 9),
+    ("examples", 2),
+    ("files", 6),
+    ("findings", 28),
+    ("grading", 46),
+    ("intake", 5),
+    ("judge", 45),
+    ("lab", 15),
+    ("mistakes", 120),
+    ("model", 90),
+    ("num", 37),
+    ("original", 9),
+    ("render", 17),
+    ("report", 75),
+    ("sandbox", 57),
+    ("server", 143),
+    ("src", 59),
+];
+
+/// Whether a line is an attribute of an item for tests.
+fn is_for_tests(line: &str) -> bool {
+    line.starts_with("#[cfg(test)]") || line.starts_with("#[cfg(all(test,")
+}
+
+/// The modules that a file declares for tests only.
+fn test_modules(text: &str) -> impl Iterator<Item = &str> {
+    let lines = text.lines().zip(text.lines().skip(1));
+    let declared = lines.filter(|(attribute, _)| is_for_tests(attribute)).map(|(_, line)| line);
+    declared.filter_map(|line| line.strip_suffix(';')?.rsplit_once("mod ").map(|(_, module)| module))
+}
+
+/// Lines of code of a file, without its items for tests. rustfmt indents the end of an item as its beginning.
+fn code(text: &str) -> usize {
+    let mut count = 0;
+    let mut lines = text.lines();
+    while let Some(line) = lines.next() {
+        let body = line.trim_start();
+        if is_for_tests(body) {
+            let indent = &line[..line.len() - body.len()];
+            let mut is_begun = false;
+            let mut ends = |line: &str| {
+                let Some(rest) = line.strip_prefix(indent).filter(|rest| !rest.starts_with([' ', '#', '/'])) else {
+                    return false;
+                };
+                let is_end = rest.ends_with([';', '}']) || (is_begun && rest.ends_with(','));
+                is_begun = true;
+                is_end
+            };
+            lines.by_ref().find(|line| ends(line));
+        } else if !body.is_empty() && !body.starts_with("//") {
+            count += 1;
+        }
+    }
+    count
+}
+
+/// Lines of code by crate.
+fn sizes() -> BTreeMap<String, usize> {
+    let sources = sources();
+    let mut of_tests = BTreeSet::new();
+    for source in &sources {
+        let folder = match source.file_name().and_then(|name| name.to_str()) {
+            Some("mod.rs" | "lib.rs" | "main.rs") => source.parent().expect("a folder").to_owned(),
+            _ => source.with_extension(""),
+        };
+        of_tests.extend(test_modules(&text(source)).map(|module| folder.join(module)));
+    }
+    let is_of_test_module = |path: &Path| path.ancestors().any(|part| of_tests.contains(&part.with_extension("")));
+    let mut sizes = BTreeMap::new();
+    for source in sources.iter().filter(|source| !is_of_tests(name(source)) && !is_of_test_module(source)) {
+        *sizes.entry(crate_of(name(source)).to_owned()).or_insert(0) += code(&text(source));
+    }
+    sizes
+}
+
+#[test]
+fn lines_for_tests_are_no_code() {
+    let text = "//! A.\nuse b;\n\n#[cfg(test)]\nuse c::{\n    d,\n};\n\nfn e() {\n    f() // g\n}\n\n#[cfg(test)]\nmod tests {\n    \
+                use super::*;\n}\n#[cfg(test)]\nmod samples;\nconst H: u8 = 0;\n";
+    assert_eq!((code(text), test_modules(text).collect::<Vec<_>>()), (5, vec!["samples"]));
+}
+
+#[test]
+fn no_crate_grows() {
+    let sizes = sizes();
+    let most: BTreeMap<&str, usize> = HUNDREDS.into_iter().collect();
+    let grown: Vec<_> = sizes
+        .iter()
+        .filter(|(name, lines)| **lines > 100 * most.get(name.as_str()).unwrap_or(&0))
+        .map(|(name, lines)| format!("{name}: {lines} lines"))
+        .collect();
+    assert!(grown.is_empty(), "remove something, or raise the number and say what was removed instead: {grown:#?}");
+}
