@@ -34,7 +34,12 @@ texts! {
     /// A name that stands in addresses.
     Slug, r"^[a-z0-9][a-z0-9._-]*$", 60, "physics";
     /// A name that people gave to something, without invisible characters and spaces at its ends.
-    Title, r"^[^\s\x00-\x1f\x7f-\x9f\xad\u115f\u1160\u180e\u200b-\u200f\u202a-\u202e\u2060-\u206f\u3164\ufeff\uffa0]([^\x00-\x1f\x7f-\x9f\xad\u115f\u1160\u180e\u200b-\u200f\u202a-\u202e\u2060-\u206f\u3164\ufeff\uffa0]*[^\s\x00-\x1f\x7f-\x9f\xad\u115f\u1160\u180e\u200b-\u200f\u202a-\u202e\u2060-\u206f\u3164\ufeff\uffa0])?$", 200, "Milestone one";
+    Title, "^[^\\s\\x00-\\x1f\\x7f-\\x9f\\xad\\u115f\\u1160\\u180e\
+    \\u200b-\\u200f\\u202a-\\u202e\\u2060-\\u206f\\u3164\\ufeff\\uffa0]\
+    ([^\\x00-\\x1f\\x7f-\\x9f\\xad\\u115f\\u1160\\u180e\
+    \\u200b-\\u200f\\u202a-\\u202e\\u2060-\\u206f\\u3164\\ufeff\\uffa0]*\
+    [^\\s\\x00-\\x1f\\x7f-\\x9f\\xad\\u115f\\u1160\\u180e\
+    \\u200b-\\u200f\\u202a-\\u202e\\u2060-\\u206f\\u3164\\ufeff\\uffa0])?$", 200, "Milestone one";
     /// The SHA-256 of some bytes.
     Digest, r"^[0-9a-f]{64}$", 64, "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855";
     /// The name of a file, without a path.
