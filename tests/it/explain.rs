@@ -56,10 +56,11 @@ fn explained(scenes: &[(String, Scene)], row: &Row) -> Vec<Vec<Explanation>> {
     found
 }
 
+/// Every third one: `scripts/explanation-matrix` asks about all.
 #[test]
 fn nine_of_ten_mistakes_are_named_first() {
     let scenes = suite();
-    let rows = rows(RowKind::Wrong);
+    let rows: Vec<_> = rows(RowKind::Wrong).into_iter().step_by(3).collect();
     let named: Vec<Option<String>> = rows
         .par_iter()
         .map(|row| {
