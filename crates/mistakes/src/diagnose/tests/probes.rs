@@ -127,7 +127,8 @@ fn every_mistake_of_the_simulation_is_found_in_a_probe_scene() {
     assert!(missed.is_empty(), "{missed:?}");
 }
 
-/// Nothing in the probe scenes depends on round-off, nor on which correct formula is used, save where a small factor makes the course's library drop what a decision hangs on.
+/// Nothing in the probe scenes depends on round-off, nor on which correct formula is used, save where a small factor
+/// makes the course's library drop what a decision depends on.
 #[test]
 fn correct_programs_are_accepted_in_every_probe_scene() {
     let rows = CATALOGUE.iter().filter(|row| row.kind == RowKind::Variant).map(Some);
