@@ -138,7 +138,7 @@ fn parts() {
     );
 }
 
-/// The same trace with every coefficient divided by three.
+/// Returns the trace with every coefficient divided by three.
 fn rescaled(scene: &Scene, trace: &[u8]) -> Vec<u8> {
     let layout = Layout::of(scene);
     let (mut reader, mut writer) = (Reader::of_slice(trace, layout), Writer::new(Vec::new(), layout));

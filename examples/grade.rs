@@ -11,7 +11,7 @@ use fosssim_oracle::{
 };
 use std::{env, error::Error, fs, path::Path, process::ExitCode};
 
-/// A line per program: its verdict and its points.
+/// Returns a line per program: its verdict and its points.
 pub fn run(folder: &Path, suite: &str, supervisor: Supervisor) -> Result<String, Box<dyn Error>> {
     let mut submissions = Vec::new();
     for entry in fs::read_dir(folder)? {

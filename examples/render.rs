@@ -7,7 +7,7 @@ use fosssim_oracle::{
 };
 use std::{env, error::Error, fs};
 
-/// The reference's last step as a picture.
+/// Returns the reference's last step as a picture.
 pub fn run(scene: &[u8]) -> Result<String, Box<dyn Error>> {
     let scene = scene::read("scene", scene)?.scene;
     let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);

@@ -6,7 +6,7 @@ use fosssim_oracle::{
 };
 use std::{env, error::Error, fs};
 
-/// A line per record that holds an impulse: how many there are, and where the first particle is.
+/// Returns a line per record that holds an impulse: how many there are, and where the first particle is.
 pub fn run(scene: &[u8], trace: &[u8]) -> Result<String, Box<dyn Error>> {
     let layout = Layout::of(&scene::read("scene", scene)?.scene);
     let mut reader = Reader::of_slice(trace, layout);

@@ -15,7 +15,7 @@ const LENGTH: usize = MARK_BACKWARDS.len() + ROOM;
 /// The place in the sample.
 pub type Place = [u8; LENGTH];
 
-/// A place without a mistake.
+/// Returns a place without a mistake.
 #[must_use]
 pub const fn empty() -> Place {
     let mut place = [0; LENGTH];
@@ -27,7 +27,7 @@ pub const fn empty() -> Place {
     place
 }
 
-/// The mistake in a place, if there is one.
+/// Reads the mistake in a place, if there is one.
 #[must_use]
 pub fn read(place: &Place) -> Option<&str> {
     // The compiler must not know what stands there: somebody writes over it later.

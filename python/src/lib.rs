@@ -93,8 +93,8 @@ mod _native {
         Ok((bytes(py, &positions)?, bytes(py, &velocities)?, fault))
     }
 
-    /// The contents of a scene: duration, time step, steps; positions, velocities, masses and radii of particles as
-    /// doubles; whether each is fixed, a byte each; the ends of edges as pairs.
+    /// Returns the contents of a scene: duration, time step, steps; positions, velocities, masses and radii of
+    /// particles as doubles; whether each is fixed, a byte each; the ends of edges as pairs.
     #[pyfunction]
     #[expect(clippy::type_complexity, reason = "a tuple that Python names")]
     fn scene<'py>(

@@ -94,7 +94,7 @@ pub(super) enum Command {
     Man(Man),
 }
 
-/// The number of a step.
+/// Returns the number of a step.
 fn step(word: &str) -> Result<u32, &'static str> {
     word.trim().parse().map_err(|_| "steps are counted from 1; 0 is the first record, before any step")
 }
@@ -123,7 +123,7 @@ pub(super) enum ExplainFormat {
     Html,
 }
 
-/// Of commands whose exit code, or whose file, is the answer.
+/// The option of commands whose exit code, or whose file, is the answer.
 #[derive(Debug, Clone, Copy, Args)]
 pub(super) struct Quiet {
     /// Show no report, no warnings and no progress: errors only, and the exit code. Files are written all the same.

@@ -33,7 +33,7 @@ pub(super) fn choose_colour(colour: ColourChoice) {
 /// Whether `--quiet` was given.
 static QUIET: AtomicBool = AtomicBool::new(false);
 
-/// From now on there are no reports on standard output, no bars and no warnings; errors are printed all the same.
+/// Turns off reports on standard output, bars and warnings; errors are still printed.
 pub(super) fn be_quiet(quiet: bool) {
     QUIET.store(quiet, Ordering::Relaxed);
 }
@@ -42,8 +42,9 @@ fn is_quiet() -> bool {
     QUIET.load(Ordering::Relaxed)
 }
 
-/// The style of reports on standard output. Unless `--color` says so, colours only where nobody objects (`NO_COLOR`),
-/// and only where somebody wants them (`CLICOLOR_FORCE`) or a terminal shows them (not `TERM=dumb`, not `CLICOLOR=0`).
+/// Returns the style of reports on standard output. Unless `--color` says so, colours only where nobody objects
+/// (`NO_COLOR`), and only where somebody wants them (`CLICOLOR_FORCE`) or a terminal shows them (not `TERM=dumb`, not
+/// `CLICOLOR=0`).
 pub(super) fn style() -> Style {
     let is = |name: &str, value: &str| std::env::var_os(name).is_some_and(|found| found == value);
     let is_set = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
@@ -60,7 +61,7 @@ pub(super) fn style() -> Style {
 /// Narrower than this no line is wrapped: a terminal that says so has not been told its size.
 const NARROWEST: u16 = 20;
 
-/// The columns of the terminal that standard output is, if it is one.
+/// Returns the columns of the terminal that standard output is, if it is one.
 pub(super) fn width() -> Option<usize> {
     match terminal_size_of(io::stdout()) {
         Some((Width(width), _)) if width >= NARROWEST => Some(width.into()),
@@ -115,7 +116,7 @@ pub(super) fn remark(text: impl AsRef<[u8]>) {
     }
 }
 
-/// A closed pipe is no error.
+/// Turns the error of a closed pipe into success.
 pub(super) fn unless_closed(result: io::Result<()>) -> io::Result<()> {
     match result {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
@@ -123,13 +124,13 @@ pub(super) fn unless_closed(result: io::Result<()>) -> io::Result<()> {
     }
 }
 
-/// Whether bars are of use: on a terminal, unless nobody wants to see them.
+/// Returns whether bars are of use: on a terminal, unless nobody wants to see them.
 pub(super) fn wants_bars() -> bool {
     io::stderr().is_terminal() && !is_quiet()
 }
 
-/// A place for bars on standard error. Until [`clear_bars`] everything else is written above them, and an interrupt
-/// takes them away.
+/// Returns a place for bars on standard error. Until [`clear_bars`] everything else is written above them, and an
+/// interrupt takes them away.
 pub(super) fn show_bars() -> MultiProgress {
     interrupt::clean_up_when_interrupted();
     on_screen().get_or_insert_with(MultiProgress::new).clone()
@@ -158,13 +159,13 @@ pub(super) struct Bar {
 }
 
 impl Bar {
-    /// A bar over this number of steps.
+    /// Creates a bar over this number of steps.
     pub(super) fn new(steps: u32) -> Self {
         Self { steps: u64::from(steps), begun: wants_bars().then(Instant::now), shown: None }
     }
 
-    /// A bar over this number of runs of a program, each of which may take long: shown at once, with the time that has
-    /// passed.
+    /// Returns a bar over this number of runs of a program, each of which may take long: shown at once, with the time
+    /// that has passed.
     pub(super) fn of_runs(runs: u64) -> Self {
         let bar = |runs| {
             let bar = add_bar(&show_bars(), runs, "{spinner} {elapsed}: run {pos} of {len}, {wide_msg}");
@@ -174,7 +175,7 @@ impl Bar {
         Self { steps: runs, begun: None, shown: wants_bars().then(|| bar(runs)) }
     }
 
-    /// A run begins.
+    /// Shows that a run begins.
     pub(super) fn next_run(&self, name: &str) {
         if let Some(bar) = &self.shown {
             bar.inc(1);
@@ -182,7 +183,7 @@ impl Bar {
         }
     }
 
-    /// The number of steps that are done.
+    /// Shows the number of steps that are done.
     pub(super) fn at(&mut self, step: u32) {
         if self.shown.is_none() && self.begun.is_some_and(|begun| begun.elapsed() >= PATIENCE) {
             self.shown = Some(add_bar(&show_bars(), self.steps, "{wide_bar} step {pos} of {len}, {eta} left"));

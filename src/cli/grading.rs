@@ -9,12 +9,12 @@ use crate::{
 use clap::{Args, Subcommand};
 use std::{num::NonZeroUsize, path::PathBuf, str::FromStr};
 
-/// The help of `--format`, where these formats are taken.
+/// Returns the help of `--format`, where these formats are taken.
 fn help_of_formats(takes: impl Fn(Format) -> bool) -> String {
     format!("A report: {}; with =FILE into a file", Format::names(takes))
 }
 
-/// The suites that come with the program, by name.
+/// Returns the suites that come with the program, by name.
 fn built_in() -> String {
     plan::built_in_names().collect::<Vec<_>>().join(", ")
 }

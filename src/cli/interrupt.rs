@@ -19,14 +19,14 @@ use std::{
 /// The longest time without any progress after the first signal.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// Temporary files that an interrupt has to remove.
+/// Returns temporary files that an interrupt has to remove.
 pub(super) fn pending() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
     static PENDING: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
     PENDING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// From now on SIGINT and SIGTERM remove the temporary files and the bars, and end the program. A command that handles
-/// them itself has said so before, and then this does nothing.
+/// Lets SIGINT and SIGTERM remove the temporary files and the bars, and end the program. Does nothing if a command
+/// handles these signals itself.
 pub(super) fn clean_up_when_interrupted() {
     static ONCE: OnceLock<()> = OnceLock::new();
     ONCE.get_or_init(|| {
@@ -59,8 +59,8 @@ pub(super) fn still_at_work() {
     MOVES.fetch_add(1, Ordering::Relaxed);
 }
 
-/// A cancellation that SIGINT and SIGTERM set off. A second signal ends the program at once, and so does this program
-/// itself where it does not come to its end.
+/// Returns a cancellation that SIGINT and SIGTERM set off. A second signal ends the program at once, and so does this
+/// program itself where it does not come to its end.
 pub(super) fn cancelled_by_signals() -> Arc<Cancellation> {
     static SHARED: OnceLock<Arc<Cancellation>> = OnceLock::new();
     SHARED

@@ -26,7 +26,7 @@ pub fn main() -> ExitCode {
     crate::original::run_if_meant(&original::Program).unwrap_or_else(run)
 }
 
-/// Every other command.
+/// Returns every other command.
 fn run(words: Vec<OsString>) -> ExitCode {
     // Before anything else and before any thread: this process may be a sandbox's supervisor.
     if let Some(code) = crate::sandbox::supervisor_main(words.iter().cloned()) {

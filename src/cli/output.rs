@@ -87,12 +87,12 @@ impl Output {
         Ok(Self::File(begun(begin).with_context(|| format!("no file can be made in {}", folder.display()))?))
     }
 
-    /// Whether this is standard output, so that nothing else may be printed there.
+    /// Returns whether this is standard output, so that nothing else may be printed there.
     pub(super) const fn is_stdout(&self) -> bool {
         matches!(self, Self::Stdout)
     }
 
-    /// Where the bytes of a file lie before it appears under its name, for a program that writes them.
+    /// Returns where the bytes of a file lie before it appears under its name, for a program that writes them.
     pub(super) fn temporary_path(&self) -> Option<PathBuf> {
         match self {
             Self::File(file) => Some(file.unfinished()),
@@ -110,7 +110,7 @@ impl Output {
         self.finish()
     }
 
-    /// As [`Output::finish_with`]; a message tells the user the file's name.
+    /// Finishes as [`Output::finish_with`] does; a message tells the user the file's name.
     ///
     /// # Errors
     /// When it can't be written.
@@ -204,7 +204,7 @@ pub(super) fn write_at(place: &Place, bytes: &[u8]) -> Result<()> {
         .with_context(|| format!("cannot write {}", place.path().display()))
 }
 
-/// As [`write_at`], for what a reader yields.
+/// Writes what a reader yields, as [`write_at`] does.
 ///
 /// # Errors
 /// As for [`write_at`], and when it can't be read.
@@ -248,7 +248,7 @@ fn finished(file: Replacement) -> io::Result<()> {
 pub(super) struct Folder(files::Folder);
 
 impl Folder {
-    /// An existing folder, or a new one.
+    /// Returns an existing folder, or a new one.
     ///
     /// # Errors
     /// When it is none, or can't be made.
@@ -265,17 +265,17 @@ impl Folder {
         Ok(Self(opened))
     }
 
-    /// An existing folder.
+    /// Returns an existing folder.
     pub(super) fn existing(name: &Path) -> Option<Self> {
         files::Folder::to_write(name).ok().map(Self)
     }
 
-    /// Its name as typed, fit for printing.
+    /// Returns the output's name as typed, fit for printing.
     pub(super) fn name(&self) -> String {
         self.0.shown().display().to_string()
     }
 
-    /// Whether there is a file of this name.
+    /// Returns whether there is a file of this name.
     pub(super) fn holds(&self, name: &str) -> bool {
         self.0.holds(OsStr::new(name))
     }
@@ -290,7 +290,7 @@ impl Folder {
     }
 }
 
-/// Whether a name has this extension, whatever its case.
+/// Returns whether a name has this extension, whatever its case.
 pub(super) fn has_extension(name: &Path, extension: &str) -> bool {
     name.extension().and_then(OsStr::to_str).is_some_and(|found| found.eq_ignore_ascii_case(extension))
 }

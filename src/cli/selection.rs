@@ -10,7 +10,7 @@ pub(super) struct Selection {
 }
 
 impl Selection {
-    /// A selection among these names.
+    /// Creates a selection among these names.
     ///
     /// # Errors
     /// A pattern that can't be understood, or that takes none of the names.
@@ -28,13 +28,14 @@ impl Selection {
         Ok(Self { patterns })
     }
 
-    /// Whether a scene is selected.
+    /// Returns whether a scene is selected.
     pub(super) fn takes(&self, name: &str) -> bool {
         self.patterns.is_empty() || self.patterns.iter().any(|pattern| takes(pattern, name))
     }
 }
 
-/// A pattern is compared with the whole name (as [`library::takes`] does), or with the name behind its group.
+/// Returns whether a pattern takes a name. It is compared with the whole name (as [`library::takes`] does), or with the
+/// name after its group.
 fn takes(pattern: &Pattern, name: &str) -> bool {
     library::takes(pattern, name) || name.rsplit('/').next().is_some_and(|last| pattern.matches(last))
 }
@@ -42,7 +43,7 @@ fn takes(pattern: &Pattern, name: &str) -> bool {
 /// The number of names that are given as examples.
 const EXAMPLES: usize = 3;
 
-/// The names that are nearest to what was typed.
+/// Returns the names that are nearest to what was typed.
 fn near(typed: &str, names: &[&str]) -> String {
     let shown = near::nearest(typed, names.iter().copied(), EXAMPLES).join(", ");
     if names.len() > EXAMPLES { format!("{shown} and {} more", names.len() - EXAMPLES) } else { shown }

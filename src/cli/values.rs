@@ -6,7 +6,7 @@ use clap::{
 };
 use std::str::FromStr;
 
-/// A count that can't be zero.
+/// Returns a count that can't be zero.
 pub(super) fn at_least_one<N: FromStr>(word: &str) -> Result<N, &'static str> {
     word.trim().parse().map_err(|_| "it is a whole number, 1 or more")
 }
@@ -30,7 +30,7 @@ fn one_of<T: Copy + Send + Sync + 'static>(words: &'static [Word<T>]) -> impl Ty
     )
 }
 
-/// The choice of rule books.
+/// Returns the choice of rule books.
 pub(super) fn rules() -> impl TypedValueParser<Value = Rules> {
     one_of(&[
         ("parity", Rules::Parity, "The original's rules alone"),
@@ -47,7 +47,7 @@ pub(super) fn rules() -> impl TypedValueParser<Value = Rules> {
     ])
 }
 
-/// How much reports tell.
+/// Returns how much reports tell.
 pub(super) fn hints() -> impl TypedValueParser<Value = Hints> {
     one_of(&[
         ("none", Hints::None, "The verdict only"),
@@ -57,7 +57,7 @@ pub(super) fn hints() -> impl TypedValueParser<Value = Hints> {
     ])
 }
 
-/// How much an explanation tells: at least the likely mistake.
+/// Returns how much an explanation tells: at least the likely mistake.
 pub(super) fn explaining() -> impl TypedValueParser<Value = Hints> {
     one_of(&[
         ("what", Hints::What, "The likely mistake, in one sentence"),
@@ -65,13 +65,13 @@ pub(super) fn explaining() -> impl TypedValueParser<Value = Hints> {
     ])
 }
 
-/// A milestone of the course.
+/// Returns a milestone of the course.
 pub(super) fn assignment() -> impl TypedValueParser<Value = Assignment> {
     PossibleValuesParser::new(Assignment::ALL.map(Assignment::key))
         .try_map(|key| Assignment::named(&key.to_ascii_lowercase()).ok_or("no such milestone"))
 }
 
-/// The reader of a page.
+/// Returns the reader of a page.
 pub(super) fn reader() -> impl TypedValueParser<Value = Audience> {
     one_of(&[
         ("staff", Audience::Staff, "Staff, or a student at their own machine: everything, of every group"),

@@ -80,7 +80,7 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
     Ok((value, parts))
 }
 
-/// A scene that was dropped, or one of those inside.
+/// Reads a scene that was dropped, or one of those inside.
 pub(crate) fn read_scene(name: &str, xml: Option<&[u8]>) -> Result<Scene, String> {
     let xml = match (xml, name.strip_prefix("asset:")) {
         (Some(xml), _) => xml,

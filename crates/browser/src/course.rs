@@ -14,7 +14,7 @@ use std::fmt::Write;
 pub struct CourseSuite(Value);
 
 impl CourseSuite {
-    /// The groups of a plan that readers of the page may see; of the others nothing is in it.
+    /// Returns the groups of a plan that readers of the page may see; of the others nothing is in it.
     ///
     /// # Errors
     /// When there is no such group, or when a name can't be written into a suite.
@@ -45,23 +45,23 @@ impl CourseSuite {
         Ok(Self(json!({ "name": plan.name, "suite": text, "scenes": scenes, "isForStudents": is_for_students })))
     }
 
-    /// As it stands in a data block: nothing in it ends the element.
+    /// Returns the course as it is in a data block: nothing in it ends the element.
     pub(crate) fn data(&self) -> String {
         self.0.to_string().replace('<', "\\u003c")
     }
 }
 
-/// Whether every page has this scene inside.
+/// Returns whether every page has this scene inside.
 fn is_inside(task: &SceneTask) -> bool {
     library::scene(&task.name).is_some_and(|xml| xml == task.xml)
 }
 
-/// The file of a scene, beside the suite.
+/// Returns the file of a scene, beside the suite.
 fn file(task: &SceneTask) -> String {
     format!("{}.xml", task.name)
 }
 
-/// The suite without what grading alone needs.
+/// Renders the suite without what grading alone needs.
 fn text(plan: &Plan, groups: &[&PlannedGroup]) -> String {
     // A string of JSON is one of TOML.
     let string = |text: &str| Value::from(text).to_string();

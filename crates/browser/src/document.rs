@@ -23,7 +23,7 @@ const WORKER: [&str; 2] = [include_str!("../page/engine.js"), include_str!("../p
 const BODY: &str = include_str!("../page/body.html");
 const STYLE: &str = include_str!("../page/page.css");
 
-/// The page around the module (WebAssembly, not packed), with the suite of a course if it is one's.
+/// Renders the page around the module (WebAssembly, not packed), with the suite of a course if it is one's.
 #[must_use]
 pub fn page(module: &[u8], course: Option<&CourseSuite>) -> String {
     let script = format!("\"use strict\";\n(() => {{\n{}}})();\n", lines(&SCRIPT));
@@ -51,8 +51,8 @@ pub fn page(module: &[u8], course: Option<&CourseSuite>) -> String {
     )
 }
 
-/// A script without what only its authors need: indentation and lines that are comments. But for scenes, no text in it
-/// goes over several lines.
+/// Returns a script without what only its authors need: indentation and lines that are comments. But for scenes, no
+/// text in it goes over several lines.
 fn lines(parts: &[&str]) -> String {
     let lines = parts.iter().flat_map(|part| part.lines());
     lines

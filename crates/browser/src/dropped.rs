@@ -22,7 +22,7 @@ pub trait PageHost: Sync {
     /// when it can't be read.
     fn read(&self, file: u32, offset: u64, into: &mut [u8]) -> Option<usize>;
 
-    /// Is told how far a request is: how many steps of all are done.
+    /// Reports how far a request is: how many steps of all are done.
     fn progress(&self, done: u32, all: u32);
 }
 
@@ -38,7 +38,7 @@ impl Progress for ToldProgress<'_> {
     }
 }
 
-/// A dropped trace from its beginning, unpacked where it is a zstd file.
+/// Returns a dropped trace from its beginning, unpacked where it is a zstd file.
 pub(crate) fn opened<'a>(host: &'a dyn PageHost, file: u32, fault: &'a ReadFault) -> Box<dyn Read + Send + 'a> {
     let mut bytes = BufReader::with_capacity(PIECE, Dropped { host, file, offset: 0, fault });
     // A file that can't be read is noticed when it is read.

@@ -102,7 +102,7 @@ fn view(problem: &Problem) -> Value {
 }
 
 impl Film {
-    /// The motion, and why it ends before the scene does.
+    /// Returns the motion, and why it ends before the scene does.
     fn of(scene: Scene, host: &dyn PageHost) -> (Self, Option<String>) {
         let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
         let mut positions = simulation.state().positions.clone();
@@ -137,7 +137,7 @@ impl Film {
         Painter::new(&self.scene, &self.extent, PictureOptions { size, label: true })
     }
 
-    /// One picture, as the only part behind the first.
+    /// Returns one picture, as the only part behind the first.
     pub(crate) fn picture(&mut self, asked: &PictureRequest) -> PageAnswer {
         let size = Size::new(asked.width, asked.height).map_err(|error| error.to_string())?;
         let step = asked.step.min(self.steps);
@@ -169,7 +169,7 @@ impl Film {
         Ok((json!({ "step": step }), vec![bytes]))
     }
 
-    /// All pictures as a film, as `render` makes it.
+    /// Returns all pictures as a film, as `render` makes it.
     pub(crate) fn film(&self, kind: &FilmKind, host: &dyn PageHost) -> PageAnswer {
         let size = Size::new(kind.width, kind.height).map_err(|error| error.to_string())?;
         let rate = Rate::new(RATE).ok_or("no such rate")?;
@@ -194,7 +194,7 @@ impl Film {
         Ok((json!({ "pictures": pictures }), vec![bytes]))
     }
 
-    /// The reference's trace, byte for byte that of `simulate`.
+    /// Returns the reference's trace, byte for byte that of `simulate`.
     pub(crate) fn trace(&self, host: &dyn PageHost) -> Result<Vec<u8>, String> {
         let mut simulation = Simulation::new(&self.scene, RootSearch::WhereNeeded);
         let kept = TraceRoom(Vec::new());

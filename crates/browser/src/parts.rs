@@ -4,7 +4,7 @@ use serde_json::Value;
 /// An answer: a value, and the byte strings that belong to it.
 pub(crate) type PageAnswer = Result<(Value, Vec<Vec<u8>>), String>;
 
-/// A list as one byte string.
+/// Returns a list as one byte string.
 ///
 /// # Panics
 /// When a part has 4 GiB or more, which memory here can't hold.
@@ -19,7 +19,7 @@ pub fn joined(parts: &[&[u8]]) -> Vec<u8> {
     bytes
 }
 
-/// The list that was joined; `None` when the bytes are cut.
+/// Returns the list that was joined; `None` when the bytes are cut.
 #[must_use]
 pub fn split(mut bytes: &[u8]) -> Option<Vec<&[u8]>> {
     let mut parts = Vec::new();

@@ -17,7 +17,7 @@ use std::{collections::BTreeMap, io::Read};
 /// No first record is longer, but of scenes that nobody drops.
 const LONGEST_RECORD: u64 = 1 << 16;
 
-/// Their names by assignment and group, in alphabetical order.
+/// Lists the scenes' names by assignment and group, in alphabetical order.
 pub(crate) fn list() -> Value {
     let of = |assignment: Assignment| {
         let mut groups = BTreeMap::<&str, Vec<&str>>::new();
@@ -31,13 +31,13 @@ pub(crate) fn list() -> Value {
     Assignment::ALL.into_iter().map(of).collect()
 }
 
-/// The XML of a scene, `Group/name`.
+/// Returns the XML of a scene, `Group/name`.
 pub(crate) fn xml(name: &str) -> Result<&'static [u8], String> {
     library::scene(name).ok_or_else(|| format!("there is no scene asset:{name}"))
 }
 
-/// The names of the scenes with whose first record a dropped trace begins, and the kind of file that it seems to be
-/// where it can't be a trace.
+/// Returns the names of the scenes with whose first record a dropped trace begins, and the kind of file that it seems
+/// to be where it can't be a trace.
 pub(crate) fn beginning(file: u32, host: &dyn PageHost) -> PageAnswer {
     let (fault, mut start) = (ReadFault::new(), Vec::new());
     // An error has its words in `fault`.
@@ -51,7 +51,7 @@ pub(crate) fn beginning(file: u32, host: &dyn PageHost) -> PageAnswer {
     Ok((json!({ "scenes": scenes, "looks_like": kind }), Vec::new()))
 }
 
-/// Whether a trace with this beginning may be one of the scene.
+/// Returns whether a trace with this beginning may be one of the scene.
 fn is_beginning(xml: &[u8], start: &[u8]) -> bool {
     let Ok(loaded) = scene::read("", xml) else { return false };
     let simulation = Simulation::new(&loaded.scene, RootSearch::WhereNeeded);

@@ -34,7 +34,7 @@ enum PageRequest {
     Trace,
     /// A picture of its motion.
     Picture(film::PictureRequest),
-    /// Its motion as a film.
+    /// The scene's motion as a film.
     Film(film::FilmKind),
     /// Looks at one pair.
     Detect(detect::PairRequest),

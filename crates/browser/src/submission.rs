@@ -35,7 +35,7 @@ pub(crate) struct SuiteRequest {
 /// One scene to be judged.
 #[derive(Debug, Deserialize)]
 pub(crate) struct SceneRequest {
-    /// Its place among the suite's scenes.
+    /// The scene's place among the suite's scenes.
     number: usize,
     /// Whether there is a trace, which is the dropped file 0.
     has_trace: bool,
@@ -102,7 +102,7 @@ impl DroppedSubmission {
         Ok((value, Vec::new()))
     }
 
-    /// The grade of all scenes: the second part of the answer is `grade --traces --format json`.
+    /// Returns the grade of all scenes: the second part of the answer is `grade --traces --format json`.
     pub(crate) fn end(&self, name: &str) -> PageAnswer {
         let results: Option<Vec<SceneResult>> = self.results.iter().cloned().collect();
         let results = results.ok_or("not all scenes have been judged")?;
@@ -123,7 +123,7 @@ impl DroppedSubmission {
     }
 }
 
-/// The dropped scenes that a pattern takes, by their paths beside the suite.
+/// Returns the dropped scenes that a pattern takes, by their paths beside the suite.
 fn matching(pattern: &str, names: &[String], files: &[&[u8]]) -> Result<Found, String> {
     let glob = glob::Pattern::new(pattern).map_err(|error| format!("pattern {pattern}: {error}"))?;
     let found: Found = names

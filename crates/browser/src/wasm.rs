@@ -59,7 +59,7 @@ extern "C" fn answer() -> *const u8 {
     })
 }
 
-/// The length of the answer.
+/// Returns the length of the answer.
 #[unsafe(no_mangle)]
 extern "C" fn length() -> usize {
     MESSAGE.with_borrow(Vec::len)

@@ -15,35 +15,35 @@ use std::{borrow::Cow, fmt};
 /// How a run ended. Every variant but [`Ended::Exited`] and [`Ended::Signalled`] is a decision of the sandbox.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Ended {
-    /// It ended by itself with this exit code.
+    /// The program ended by itself with this exit code.
     Exited(i32),
-    /// It was ended by this signal, of its own making (a crash, an abort).
+    /// The program was ended by this signal, of its own making (a crash, an abort).
     Signalled(i32),
-    /// It used up its processor time.
+    /// The program used up its processor time.
     CpuLimit,
-    /// It used up its time on the clock.
+    /// The program used up its time on the clock.
     WallLimit,
-    /// It held more memory than allowed, or gave up because it was refused memory that it asked for.
+    /// The program held more memory than allowed, or gave up because it was refused memory that it asked for.
     MemoryLimit,
-    /// Its trace is longer than allowed.
+    /// The program's trace is longer than allowed.
     TraceLimit,
-    /// It had more threads and processes than allowed.
+    /// The program had more threads and processes than allowed.
     ProcessLimit,
-    /// It put more bytes or files into its working folder than allowed.
+    /// The program put more bytes or files into its working folder than allowed.
     FolderLimit,
-    /// It used a system call that no submission needs.
+    /// The program used a system call that no submission needs.
     Violation {
         /// The call, by its usual name (`ptrace`), or words when the name is not known.
         call: String,
     },
-    /// It never ran.
+    /// The program never ran.
     CouldNotStart(StartProblem),
     /// The grader stopped it.
     Cancelled,
 }
 
 impl Ended {
-    /// The variant's name for machines and for the attack suite: `exited`, `cpu`, `violation` and so on.
+    /// Returns the variant's name for machines and for the attack suite: `exited`, `cpu`, `violation` and so on.
     #[must_use]
     pub fn kind(&self) -> &'static str {
         match self {
@@ -80,7 +80,7 @@ impl fmt::Display for Ended {
     }
 }
 
-/// The usual name and meaning of a signal that ends programs, by its number in Linux.
+/// Returns the usual name and meaning of a signal that ends programs, by its number in Linux.
 #[must_use]
 pub fn signal_name(signal: i32) -> &'static str {
     match signal {
@@ -188,7 +188,7 @@ pub enum StartProblem {
     /// Somebody has the file open for writing.
     #[error("the file is still being written (text file busy); wait for the build or the copy to end")]
     Busy,
-    /// It wanted a window.
+    /// The program wanted a window.
     #[error("the program needs a display; run it without one: pass -d 0")]
     NeedsDisplay,
     /// Another answer of the kernel.

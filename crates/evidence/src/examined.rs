@@ -17,10 +17,10 @@ use std::io::{self, Read};
 pub enum Keep {
     /// Nothing: the trace is neither explained nor shown.
     Nothing,
-    /// Its beginning; where judging stops, nothing more is read. The writer of a trace that comes once may write no
-    /// more.
+    /// The trace's beginning; where judging stops, nothing more is read. The writer of a trace that comes once may
+    /// write no more.
     Read,
-    /// The same, with what follows the place where judging stops.
+    /// The trace's beginning, with what follows the place where judging stops.
     All,
 }
 
@@ -58,14 +58,14 @@ pub fn examine<'a, R: Read + Send>(
 }
 
 impl Examined<'_> {
-    /// Likely mistakes of the program that left the trace ([`explain_kept`]).
+    /// Returns likely mistakes of the program that left the trace ([`explain_kept`]).
     #[must_use]
     pub fn explain(&self) -> Vec<Explanation> {
         explain_kept(self.scene, &self.trace)
     }
 
-    /// The evidence, with at most `budget` numbers of each motion: of the whole trace, where it can be read again, else
-    /// of what was kept.
+    /// Returns the evidence, with at most `budget` numbers of each motion: of the whole trace, where it can be read
+    /// again, else of what was kept.
     #[must_use]
     pub fn evidence(&self, again: Option<&mut dyn Read>, budget: usize) -> Evidence {
         let (fair, focus) = (self.outcome.fair.is_some(), Focus::of(&self.outcome));

@@ -33,7 +33,7 @@ pub enum StepClass {
 }
 
 impl StepClass {
-    /// The letter in a strip.
+    /// Returns the letter in a strip.
     #[must_use]
     pub const fn letter(self) -> char {
         match self {
@@ -48,12 +48,12 @@ impl StepClass {
 /// One step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step {
-    /// Its class.
+    /// The step's class.
     pub class: StepClass,
     /// Largest distance of a position coordinate from where the reference ends from the trace's own state; NaN where
     /// one of them is no number.
     pub position: f64,
-    /// The same of velocities.
+    /// The difference of velocities.
     pub velocity: f64,
     /// Detection passes of the reference.
     pub expected_passes: u32,
@@ -73,7 +73,7 @@ pub struct Focus {
 }
 
 impl Focus {
-    /// The findings of both books, the official one's first.
+    /// Returns the findings of both books, the official one's first.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Vec<Self> {
         let books = outcome.fair.iter().map(|fair| &fair.findings).chain([&outcome.parity.findings]);
@@ -155,7 +155,7 @@ pub fn gather(
     gathering.evidence
 }
 
-/// The calls of a step to look at closely.
+/// Returns the calls of a step to look at closely.
 fn wanted_calls(focus: &[Focus], step: u32) -> Vec<(WantedCalls, Pair)> {
     let of_step = focus.iter().filter(|focus| focus.step == step);
     of_step.filter_map(|focus| Some((focus.pass.map_or(WantedCalls::Hits, WantedCalls::In), focus.pair?))).collect()
@@ -193,7 +193,7 @@ impl<'a> Gathering<'a> {
         }
     }
 
-    /// Whether a record of the step is kept.
+    /// Returns whether a record of the step is kept.
     fn holds(&self, step: u32, is_mid: bool) -> bool {
         (self.evidence.layout.polynomials || !is_mid) && self.evidence.window.holds(step, is_mid)
     }
@@ -248,7 +248,7 @@ impl<'a> Gathering<'a> {
         done.then_some(count)
     }
 
-    /// Whether the reference's own run is elsewhere.
+    /// Returns whether the reference's own run is elsewhere.
     fn is_apart(&self, end: &State) -> bool {
         self.free_goes_on && largest(&self.free.state().positions, &end.positions) > APART
     }
@@ -265,8 +265,8 @@ impl<'a> Gathering<'a> {
     }
 }
 
-/// The steps to look at: those of findings, and those around the first wrong one, the most important ones if they are
-/// many.
+/// Returns the steps to look at: those of findings, and those around the first wrong one, the most important ones if
+/// they are many.
 fn close_steps(focus: &[Focus], first_wrong: Option<u32>, layout: Layout) -> Vec<u32> {
     let (steps, most) = (layout.steps, (NUMBERS / (8 * layout.particles).max(1)).clamp(3, CLOSE_UPS));
     let near = first_wrong.into_iter().flat_map(|step| [step, step.saturating_sub(1), step + 1]);
@@ -279,17 +279,17 @@ fn close_steps(focus: &[Focus], first_wrong: Option<u32>, layout: Layout) -> Vec
     chosen
 }
 
-/// How far two states are apart: in positions and in velocities.
+/// Returns how far two states are apart: in positions and in velocities.
 fn apart(one: &State, other: &State) -> [f64; 2] {
     [largest(&one.positions, &other.positions), largest(&one.velocities, &other.velocities)]
 }
 
-/// The largest distance of two lists' numbers; NaN where one of them is no number.
+/// Returns the largest distance of two lists' numbers; NaN where one of them is no number.
 fn largest(one: &[f64], other: &[f64]) -> f64 {
     one.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, worse)
 }
 
-/// The larger number; NaN is worse than any.
+/// Returns the larger number; NaN is worse than any.
 fn worse(one: f64, other: f64) -> f64 {
     if one.is_nan() || other <= one { one } else { other }
 }
@@ -317,7 +317,7 @@ struct PassCount<'a> {
 }
 
 impl PassCount<'_> {
-    /// As many passes as a number of polynomials makes: every pass of a step logs as many.
+    /// Returns as many passes as a number of polynomials makes: every pass of a step logs as many.
     fn passes_of(&self, logged: usize) -> Option<u32> {
         let passes = self.passes as usize;
         if self.polynomials == 0 || passes == 0 {

@@ -54,7 +54,7 @@ pub enum Logged {
     These(Vec<Vec<f64>>),
     /// Nothing.
     Nothing,
-    /// It can't be told.
+    /// The call's polynomials are unknown.
     Unknown,
 }
 
@@ -143,7 +143,8 @@ pub(crate) struct Inspector<'a> {
 }
 
 impl<'a> Inspector<'a> {
-    /// Nothing seen yet. `log` holds the first of the `logged` polynomials that the trace has in this step.
+    /// Creates the step when nothing is seen yet. `log` holds the first of the `logged` polynomials that the trace has
+    /// in this step.
     pub(crate) fn new(
         scene: &'a Scene,
         step: u32,
@@ -162,7 +163,7 @@ impl<'a> Inspector<'a> {
         (POSITIONS / (2 * self.scene.particles.len()).max(1)).clamp(1, PASSES)
     }
 
-    /// The inspected step, with the trace's log of each call.
+    /// Returns the inspected step, with the trace's log of each call.
     pub(crate) fn finish(mut self) -> InspectedStep {
         let (expected, actual) = (self.step.expected_polynomials, self.step.actual_polynomials);
         if expected == actual {
@@ -280,7 +281,7 @@ impl<'a> Inspector<'a> {
     }
 }
 
-/// The log of a call by its place in the list; unknown where the list has another length than the reference's.
+/// Returns the log of a call by its place in the list; unknown where the list has another length than the reference's.
 fn by_order(log: Option<&PolynomialLog>, expected: usize, first: usize, count: usize) -> Logged {
     match log {
         Some(log) if log.len() == expected => {

@@ -17,8 +17,8 @@ const WRONG: u32 = 3;
 /// is no verdict; raised, faint differences get none.
 const MARKED: f64 = 1e-9;
 
-/// For each expected polynomial the place of the one in the trace's list that stands for it, right or wrong; `None`
-/// where the lists are too long to be compared.
+/// Returns for each expected polynomial the place of the one in the trace's list that stands for it, right or wrong;
+/// `None` where the lists are too long to be compared.
 pub(crate) fn matching(expected: &PolynomialLog, actual: &PolynomialLog) -> Option<Vec<Option<usize>>> {
     let same = |one: usize, other: usize| !differ(actual.get(other), expected.get(one));
     let (rows, columns) = (expected.len(), actual.len());
@@ -68,7 +68,7 @@ fn count(places: usize) -> u32 {
     u32::try_from(places).unwrap_or(u32::MAX / GAP)
 }
 
-/// Whether one polynomial is visibly no positive multiple of the other.
+/// Returns whether one polynomial is visibly no positive multiple of the other.
 pub(crate) fn differ(own: &[f64], right: &[f64]) -> bool {
     let largest = |list: &[f64]| list.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
     let (most, scale) = (largest(own), largest(right));

@@ -22,7 +22,7 @@ pub struct StepRulings {
 }
 
 impl StepRulings {
-    /// The rulings in the order of the steps, once the trace has been judged.
+    /// Returns the rulings in the order of the steps, once the trace has been judged.
     #[must_use]
     pub fn into_steps(mut self, outcome: &Outcome) -> Vec<StepRuling> {
         // Damage lasts to the end.

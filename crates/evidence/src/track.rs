@@ -19,7 +19,7 @@ pub struct Window {
 }
 
 impl Window {
-    /// All steps, if a motion of that length fits in the budget; else those around `focus`, a third before it.
+    /// Returns all steps, if a motion of that length fits in the budget; else those around `focus`, a third before it.
     #[must_use]
     pub fn around(focus: u32, layout: Layout, budget: usize) -> Self {
         let per_step = 4 * layout.particles.max(1) * layout.records_per_step() as usize;
@@ -31,13 +31,13 @@ impl Window {
         Self { first, last: first + room }
     }
 
-    /// Whether the scene's motion is kept as a whole.
+    /// Returns whether the scene's motion is kept as a whole.
     #[must_use]
     pub const fn is_whole(&self, steps: u32) -> bool {
         self.first == 0 && self.last >= steps
     }
 
-    /// Whether a record of this step is kept.
+    /// Returns whether a record of this step is kept.
     #[must_use]
     pub const fn holds(&self, step: u32, is_mid: bool) -> bool {
         (self.first < step || self.first == step && !is_mid) && step <= self.last
@@ -54,7 +54,7 @@ pub struct Track {
 }
 
 impl Track {
-    /// The records of a trace in a window, as far as it can be read.
+    /// Reads the records of a trace in a window, as far as it can be read.
     #[must_use]
     pub fn read(trace: &mut dyn Read, layout: Layout, window: Window) -> Self {
         let mut reader = Lenient::new(trace, layout);

@@ -36,7 +36,7 @@ pub enum FileError {
     TooLong {
         /// The file's name, escaped.
         name: String,
-        /// Its length in bytes.
+        /// The file's length in bytes.
         length: u64,
         /// The limit in bytes.
         limit: u64,
@@ -52,7 +52,7 @@ pub enum FileError {
 }
 
 impl FileError {
-    /// Why a file could not be opened.
+    /// Returns why a file could not be opened.
     pub(crate) fn not_opened(name: String, error: io::Error) -> Self {
         match error.raw_os_error() {
             Some(libc::ENOENT | libc::ENOTDIR) => Self::Missing { name },
@@ -65,12 +65,12 @@ impl FileError {
     }
 }
 
-/// A name as messages show it.
+/// Returns a name as messages show it.
 pub(crate) fn escaped(name: &OsStr) -> String {
     name.to_string_lossy().escape_debug().to_string()
 }
 
-/// The facts of an open file, which must be a regular one.
+/// Returns the facts of an open file, which must be a regular one.
 pub(crate) fn regular(file: &File, shown: impl Fn() -> String) -> Result<Metadata, FileError> {
     let metadata = file.metadata().map_err(|source| FileError::System { name: shown(), source })?;
     let kind = metadata.file_type();

@@ -70,7 +70,7 @@ impl Folder {
         Ok(Self { fd: Arc::new(openat(CWD, path, flags, Mode::empty())?), shown: path.to_owned() })
     }
 
-    /// As [`Folder::to_write`], made with all folders above it where there is none.
+    /// Opens a folder as [`Folder::to_write`] does, and makes it with all folders above it where there is none.
     ///
     /// # Errors
     /// When it can't be made or opened.
@@ -79,13 +79,13 @@ impl Folder {
         Self::to_write(path)
     }
 
-    /// The name under which it was opened.
+    /// Returns the name under which it was opened.
     #[must_use]
     pub fn shown(&self) -> &Path {
         &self.shown
     }
 
-    /// The names of its entries.
+    /// Returns the names of its entries.
     ///
     /// # Errors
     /// When it can't be read.
@@ -102,7 +102,7 @@ impl Folder {
         Ok(names)
     }
 
-    /// The entry under this name, opened once.
+    /// Returns the entry under this name, opened once.
     ///
     /// # Errors
     /// When it can't be opened; [`io::ErrorKind::NotFound`] when it has gone.
@@ -120,7 +120,7 @@ impl Folder {
         })
     }
 
-    /// The folder of this name in it, to write into.
+    /// Returns the folder of this name in it, to write into.
     ///
     /// # Errors
     /// When there is none, or it is a link.
@@ -132,7 +132,7 @@ impl Folder {
         Ok(self.inner(inner?, name))
     }
 
-    /// As [`Folder::folder`], made where there is none.
+    /// Opens a folder as [`Folder::folder`] does, and makes it where there is none.
     ///
     /// # Errors
     /// When it can't be made, or something else has its name.
@@ -143,7 +143,8 @@ impl Folder {
         }
     }
 
-    /// The regular file `name` (which may contain `/`, but leads out of nowhere), open, with its length in bytes.
+    /// Returns the regular file `name` (which may contain `/`, but leads out of nowhere), open, with its length in
+    /// bytes.
     ///
     /// # Errors
     /// When it is missing, not a regular file, reached through a link, or longer than `max_bytes`.
@@ -157,7 +158,7 @@ impl Folder {
         Ok((file, length))
     }
 
-    /// As [`Folder::file`], for a file that must have no other name.
+    /// Opens a file as [`Folder::file`] does, for a file that must have no other name.
     ///
     /// # Errors
     /// As for [`Folder::file`], and when it has a second name.
@@ -170,7 +171,7 @@ impl Folder {
         Ok((file, length))
     }
 
-    /// The contents of a regular file.
+    /// Reads the contents of a regular file.
     ///
     /// # Errors
     /// As for [`Folder::file`]; also when it grows beyond `max_bytes` while it is read.
@@ -210,13 +211,13 @@ impl Folder {
         }
     }
 
-    /// Whether anything has this name.
+    /// Returns whether anything has this name.
     #[must_use]
     pub fn holds(&self, name: &OsStr) -> bool {
         statat(&*self.fd, name, AtFlags::SYMLINK_NOFOLLOW).is_ok()
     }
 
-    /// The file behind a name, without opening it; `None` for a link, and for anything but a regular file.
+    /// Returns the file behind a name, without opening it; `None` for a link, and for anything but a regular file.
     #[must_use]
     pub fn identity(&self, name: &OsStr) -> Option<(Identity, u32)> {
         let (folder, last) = self.above(Path::new(name)).ok()?;
@@ -225,13 +226,13 @@ impl Folder {
         Some((Identity::new(stat.st_dev, stat.st_ino), stat.st_uid))
     }
 
-    /// A path that leads to this very folder as long as it is open, wherever it lies by now.
+    /// Returns a path that leads to this very folder as long as it is open, wherever it lies by now.
     #[must_use]
     pub fn path(&self) -> PathBuf {
         PathBuf::from(format!("/proc/self/fd/{}", self.fd.as_raw_fd()))
     }
 
-    /// The folder under a path of names, to look into or to write into.
+    /// Returns the folder under a path of names, to look into or to write into.
     pub(crate) fn beneath(&self, path: &Path) -> Result<Self, FileError> {
         let open = || -> io::Result<Self> {
             let (above, Some(last)) = self.names_of(path)? else { return Ok(self.clone()) };
@@ -250,13 +251,13 @@ impl Folder {
         Ok(openat(&*above, last, OFlags::RDONLY | CLOSED, Mode::empty())?.into())
     }
 
-    /// The folder that the last name of a path lies in, and that name.
+    /// Returns the folder that the last name of a path lies in, and that name.
     fn above<'a>(&self, path: &'a Path) -> io::Result<(Arc<OwnedFd>, &'a OsStr)> {
         let (folder, last) = self.names_of(path)?;
         Ok((folder, last.ok_or_else(|| io::Error::from_raw_os_error(libc::EISDIR))?))
     }
 
-    /// As [`Folder::above`], without a last name where the path has none.
+    /// Returns the parts as [`Folder::above`] does, without a last name where the path has none.
     fn names_of<'a>(&self, path: &'a Path) -> io::Result<(Arc<OwnedFd>, Option<&'a OsStr>)> {
         let mut names = Vec::new();
         for component in path.components() {
@@ -281,7 +282,7 @@ impl AsFd for Folder {
     }
 }
 
-/// The folder of this name in another.
+/// Returns the subfolder of this name.
 fn step(above: BorrowedFd<'_>, name: &OsStr) -> io::Result<OwnedFd> {
     openat(above, name, OFlags::PATH | OFlags::DIRECTORY | CLOSED, Mode::empty()).map_err(|error| {
         let is_link = statat(above, name, AtFlags::SYMLINK_NOFOLLOW)
@@ -290,7 +291,7 @@ fn step(above: BorrowedFd<'_>, name: &OsStr) -> io::Result<OwnedFd> {
     })
 }
 
-/// A name that stays in its folder.
+/// Returns a name that stays in its folder.
 pub(super) fn single(name: &OsStr) -> io::Result<&OsStr> {
     let mut components = Path::new(name).components();
     match (components.next(), components.next()) {

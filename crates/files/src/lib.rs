@@ -47,7 +47,7 @@ impl Identity {
         Self(device, inode)
     }
 
-    /// The identity of an open or existing file.
+    /// Returns the identity of an open or existing file.
     #[must_use]
     pub fn of(metadata: &Metadata) -> Self {
         Self(metadata.dev(), metadata.ino())
@@ -95,7 +95,7 @@ pub fn read(name: &Path, limit: u64) -> io::Result<Vec<u8>> {
     read_limited(file, &metadata, limit)
 }
 
-/// As [`read`], for text.
+/// Reads text as [`read`] reads bytes.
 ///
 /// # Errors
 /// As for [`read`]; also where the bytes are no UTF-8.
@@ -122,7 +122,7 @@ pub fn read_limited(file: File, metadata: &Metadata, limit: u64) -> io::Result<V
 /// How long a pipe may stay without a writer.
 const PIPE_PATIENCE: Duration = Duration::from_secs(5);
 
-/// A reader that waits for the bytes of a pipe's writer, but not for a writer that never comes.
+/// Returns a reader that waits for the bytes of a pipe's writer, but not for a writer that never comes.
 ///
 /// # Errors
 /// When nobody writes within five seconds, or the pipe can't be read.

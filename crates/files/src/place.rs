@@ -16,24 +16,25 @@ pub struct Place {
 }
 
 impl Place {
-    /// The place of these names, with `/` between them, below the folder; below the working folder where that is empty.
+    /// Creates the place of these names, with `/` between them, below the folder; below the working folder where that
+    /// is empty.
     pub fn new(folder: impl Into<PathBuf>, below: impl Into<PathBuf>) -> Self {
         Self { folder: folder.into(), below: below.into() }
     }
 
-    /// A place in this one.
+    /// Returns a place in this one.
     #[must_use]
     pub fn join(&self, name: impl AsRef<Path>) -> Self {
         Self { folder: self.folder.clone(), below: self.below.join(name) }
     }
 
-    /// The whole path, for messages and for others to find it.
+    /// Returns the whole path, for messages and for others to find it.
     #[must_use]
     pub fn path(&self) -> PathBuf {
         if self.below.as_os_str().is_empty() { self.folder.clone() } else { self.folder.join(&self.below) }
     }
 
-    /// The regular file that lies here, open, with its length.
+    /// Returns the regular file that lies here, open, with its length.
     ///
     /// # Errors
     /// As for [`Folder::file`].
@@ -41,7 +42,7 @@ impl Place {
         self.base().and_then(|folder| folder.file(self.below.as_os_str(), most))
     }
 
-    /// The contents of the regular file that lies here.
+    /// Reads the contents of the regular file that lies here.
     ///
     /// # Errors
     /// As for [`Folder::read`].
@@ -49,13 +50,13 @@ impl Place {
         self.base().and_then(|folder| folder.read(self.below.as_os_str(), most))
     }
 
-    /// Whether a regular file lies here.
+    /// Returns whether a regular file lies here.
     #[must_use]
     pub fn is_file(&self) -> bool {
         self.base().is_ok_and(|folder| folder.identity(self.below.as_os_str()).is_some())
     }
 
-    /// This place as a folder, made with all folders above it where there is none.
+    /// Opens this place as a folder, made with all folders above it where there is none.
     ///
     /// # Errors
     /// When it can't be made, or something else lies in the way: a link, for example.
@@ -66,7 +67,7 @@ impl Place {
         })
     }
 
-    /// A file that will lie here when it is finished. Folders above it are made.
+    /// Returns a file that will lie here when it is finished. Folders above it are made.
     ///
     /// # Errors
     /// As for [`Place::make_folder`], and when no file can be made there.
@@ -98,7 +99,7 @@ impl Place {
         }
     }
 
-    /// The names of the entries; none where there is no folder.
+    /// Returns the names of the entries; none where there is no folder.
     ///
     /// # Errors
     /// When it can't be read, or is reached by a link.
@@ -110,7 +111,7 @@ impl Place {
         }
     }
 
-    /// The folder that lies here.
+    /// Returns the folder that lies here.
     ///
     /// # Errors
     /// When there is none, or it is reached by a link.

@@ -59,13 +59,13 @@ impl Replacement {
         Err(problem.into())
     }
 
-    /// Where the bytes lie before the file is finished, as its folder was called when it was opened.
+    /// Returns where the bytes lie before the file is finished, as its folder was called when it was opened.
     #[must_use]
     pub fn unfinished(&self) -> PathBuf {
         self.folder.shown().join(&self.unfinished)
     }
 
-    /// Where the file will be.
+    /// Returns where the file will be.
     #[must_use]
     pub fn target(&self) -> PathBuf {
         self.folder.shown().join(&self.name)
@@ -83,7 +83,7 @@ impl Replacement {
         Ok(())
     }
 
-    /// As [`Replacement::finish`], and goes on with the open file.
+    /// Finishes as [`Replacement::finish`] does, and returns the open file.
     ///
     /// # Errors
     /// As for [`Replacement::finish`].
@@ -95,7 +95,7 @@ impl Replacement {
 }
 
 impl Folder {
-    /// A file that will take this name when it is finished, whatever has the name by then.
+    /// Returns a file that will take this name when it is finished, whatever has the name by then.
     ///
     /// # Errors
     /// When no file can be made here.

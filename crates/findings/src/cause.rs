@@ -46,7 +46,7 @@ pub enum Cause {
 }
 
 impl Cause {
-    /// Whether the original fails what the fair rules accept; else it passes what they reject.
+    /// Returns whether the original fails what the fair rules accept; else it passes what they reject.
     #[must_use]
     pub const fn original_fails(self) -> bool {
         (self as u8) <= (Self::BorderlineDecision as u8)

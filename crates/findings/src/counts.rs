@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 pub struct FindingCounts([u64; FindingKind::ALL.len()]);
 
 impl FindingCounts {
-    /// The count of one kind.
+    /// Returns the count of one kind.
     #[must_use]
     pub fn get(&self, kind: FindingKind) -> u64 {
         self.0[kind as usize]
@@ -20,13 +20,13 @@ impl FindingCounts {
         self.0[kind as usize] += count;
     }
 
-    /// Findings that fail the original's collision verdict: collisions and polynomials.
+    /// Returns findings that fail the original's collision verdict: collisions and polynomials.
     #[must_use]
     pub fn collisions(&self) -> u64 {
         self.total() - self.get(FindingKind::Position) - self.get(FindingKind::Velocity)
     }
 
-    /// The sum over all kinds.
+    /// Returns the sum over all kinds.
     #[must_use]
     pub fn total(&self) -> u64 {
         self.0.iter().sum()

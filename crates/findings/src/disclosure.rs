@@ -24,7 +24,7 @@ pub struct Disclosure {
 }
 
 impl Disclosure {
-    /// All that judging found.
+    /// Returns all that judging found.
     #[must_use]
     pub fn of(judged: &Outcome, rules: Rules) -> Self {
         let book = |book: Book| {
@@ -47,7 +47,7 @@ impl Disclosure {
         }
     }
 
-    /// The findings of the book whose verdict counts; the original's, if the fair one was not asked.
+    /// Returns the findings of the book whose verdict counts; the original's, if the fair one was not asked.
     #[must_use]
     pub fn official(&self) -> &DisclosedBook {
         match (self.official, &self.fair) {
@@ -60,7 +60,7 @@ impl Disclosure {
 /// The findings of one rule book.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DisclosedBook {
-    /// Its verdict.
+    /// The book's verdict.
     pub ruling: Ruling,
     /// Steps with at least one finding.
     pub wrong_steps: u64,
@@ -79,7 +79,7 @@ pub enum DisclosedFinding {
     Place {
         /// The step, from 1; 0 for the first record.
         step: u32,
-        /// Its kind.
+        /// The finding's kind.
         kind: FindingKind,
         /// Where in the step.
         place: FindingPlace,
@@ -89,7 +89,7 @@ pub enum DisclosedFinding {
 }
 
 impl DisclosedFinding {
-    /// Its kind.
+    /// Returns the finding's kind.
     #[must_use]
     pub const fn kind(&self) -> FindingKind {
         match self {

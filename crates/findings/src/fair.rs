@@ -20,9 +20,9 @@ pub enum FairVerdict {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FairRefusal {
-    /// It can't be read to its end.
+    /// The trace can't be read to its end.
     Stopped,
-    /// It can be read only as the original reads damaged files.
+    /// The trace can be read only as the original reads damaged files.
     Damaged,
     /// Bytes follow the last record.
     TrailingBytes,
@@ -78,7 +78,7 @@ pub struct Shares {
 }
 
 impl Shares {
-    /// The larger one of each.
+    /// Takes the larger one of each.
     pub fn widen(&mut self, other: &Self) {
         self.coefficient = self.coefficient.max(other.coefficient);
         self.normal = self.normal.max(other.normal);
@@ -94,7 +94,7 @@ pub struct Judgement {
     pub verdict: FairVerdict,
     /// Why the trace is refused as a whole, whatever its steps hold.
     pub refusal: Option<FairRefusal>,
-    /// Its findings.
+    /// The findings by the fair rules.
     pub findings: BookFindings,
     /// The first step that was not judged any more, because that would have taken too much work, or because the scene
     /// itself has no result there.

@@ -71,8 +71,8 @@ impl FindingKind {
         Self::NoResult,
     ];
 
-    /// The original's message for it; positions and velocities have none, they only raise residuals, and what it does
-    /// not look at has none either.
+    /// Returns the original's message for it; positions and velocities have none, they only raise residuals, and what
+    /// it does not look at has none either.
     #[must_use]
     pub const fn original_message(self) -> Option<&'static str> {
         match self {
@@ -100,7 +100,7 @@ pub struct Finding {
 }
 
 impl Finding {
-    /// Its kind.
+    /// Returns the finding's kind.
     #[must_use]
     pub const fn kind(&self) -> FindingKind {
         match self.detail {
@@ -199,7 +199,7 @@ pub enum FindingDetail {
         /// The trace's coefficient.
         #[serde(with = "fosssim_num::written")]
         actual: f64,
-        /// Their distance.
+        /// The distance between both.
         #[serde(with = "fosssim_num::written")]
         residual: f64,
         /// The values that the original compares; `None` from the fair rules.
@@ -288,10 +288,10 @@ pub enum FindingDetail {
     BeyondReach {
         /// The particle.
         particle: usize,
-        /// Its position (x, y).
+        /// The particle's position (x, y).
         #[serde(with = "fosssim_num::written")]
         position: [f64; 2],
-        /// Its velocity (x, y).
+        /// The particle's velocity (x, y).
         #[serde(with = "fosssim_num::written")]
         velocity: [f64; 2],
     },
@@ -315,7 +315,7 @@ pub enum FindingDetail {
 }
 
 impl FindingDetail {
-    /// Its place in the step.
+    /// Returns the finding's place in the step.
     #[must_use]
     pub const fn place(&self) -> FindingPlace {
         match self {
@@ -346,7 +346,7 @@ impl FindingDetail {
         }
     }
 
-    /// The pair that it is about; none where it is about none, or the trace names no such pair.
+    /// Returns the pair that it is about; none where it is about none, or the trace names no such pair.
     #[must_use]
     pub fn pair(&self) -> Option<Pair> {
         match (self, self.place()) {
@@ -357,7 +357,7 @@ impl FindingDetail {
         }
     }
 
-    /// The detection pass that it is about.
+    /// Returns the detection pass that it is about.
     #[must_use]
     pub const fn pass(&self) -> Option<Pass> {
         match self.place() {
@@ -397,7 +397,7 @@ pub struct Rescaled {
     #[serde(with = "fosssim_num::written")]
     #[schemars(with = "fosssim_num::written::Number")]
     pub actual: f64,
-    /// Their distance.
+    /// The distance between both.
     #[serde(with = "fosssim_num::written")]
     #[schemars(with = "fosssim_num::written::Number")]
     pub residual: f64,
@@ -432,7 +432,7 @@ pub struct PolynomialPlace {
     pub pair: Pair,
     /// The role of the polynomial.
     pub role: Role,
-    /// Its number in the frame's list, from 0.
+    /// The polynomial's number in the frame's list, from 0.
     pub index: usize,
 }
 
@@ -451,7 +451,7 @@ pub enum Role {
 }
 
 impl Role {
-    /// The role of polynomial `number` (from 0) of a detection call.
+    /// Returns the role of polynomial `number` (from 0) of a detection call.
     #[must_use]
     pub const fn of(kind: PairKind, number: usize) -> Self {
         match (kind, number) {

@@ -86,13 +86,13 @@ impl Grade {
         extra().next().and(reached).map(|reached| (reached, extra().map(|group| group.max_points).sum()))
     }
 
-    /// Whether all groups are for students' eyes.
+    /// Returns whether all groups are for students' eyes.
     #[must_use]
     pub fn is_visible(&self) -> bool {
         self.groups.iter().all(|group| group.visibility == Visibility::Visible)
     }
 
-    /// The same when its hidden groups are published.
+    /// Returns the grade with its hidden groups published.
     #[must_use]
     pub fn published(&self) -> Self {
         let mut published = self.clone();
@@ -100,25 +100,25 @@ impl Grade {
         published
     }
 
-    /// All scenes in order.
+    /// Returns all scenes in order.
     pub fn scenes(&self) -> impl Iterator<Item = &SceneGrade> {
         self.groups.iter().flat_map(|group| &group.scenes)
     }
 
-    /// Whether the grader failed somewhere, so that the grade must not reach a student.
+    /// Returns whether the grader failed somewhere, so that the grade must not reach a student.
     #[must_use]
     pub fn is_our_fault(&self) -> bool {
         self.verdict == Verdict::JudgeError
     }
 
-    /// Whether scenes were not run, so that there are no points yet.
+    /// Returns whether scenes were not run, so that there are no points yet.
     #[must_use]
     pub fn is_incomplete(&self) -> bool {
         self.count(Verdict::NotRun) > 0
     }
 
-    /// The fault of the submission itself, and the reason of each of its scenes: no program that can be run is in
-    /// it, its sources do not build, it is of another milestone, or nothing is written yet.
+    /// Returns the fault of the submission itself, and the reason of each of its scenes: no program that can be run is
+    /// in it, its sources do not build, it is of another milestone, or nothing is written yet.
     #[must_use]
     pub fn unfit(&self) -> Option<Unfit<'_>> {
         if let Some(other) = self.looks_like {
@@ -132,13 +132,13 @@ impl Grade {
             .then(|| self.failed_build().map_or(Unfit::Scene(&first.result), |build| Unfit::Build(&build.end)))
     }
 
-    /// The build, where it made no program.
+    /// Returns the build, where it made no program.
     #[must_use]
     pub fn failed_build(&self) -> Option<&Build> {
         self.build.as_ref().filter(|build| !build.end.is_success())
     }
 
-    /// Whether two grades are of one suite: of the same scenes, in the same groups, for the same points.
+    /// Returns whether two grades are of one suite: of the same scenes, in the same groups, for the same points.
     #[must_use]
     pub fn is_of_the_suite_of(&self, other: &Self) -> bool {
         let alike = |(own, other): (&GroupGrade, &GroupGrade)| {
@@ -151,19 +151,19 @@ impl Grade {
             && self.groups.iter().zip(&other.groups).all(alike)
     }
 
-    /// How many of the results were taken from an earlier run.
+    /// Returns how many of the results were taken from an earlier run.
     #[must_use]
     pub fn taken_over(&self) -> usize {
         self.scenes().filter(|scene| scene.cached).count()
     }
 
-    /// How many scenes the two rule books judge differently.
+    /// Returns how many scenes the two rule books judge differently.
     #[must_use]
     pub fn differing(&self) -> usize {
         self.scenes().filter(|scene| scene.differs.is_some()).count()
     }
 
-    /// How many scenes have this verdict.
+    /// Returns how many scenes have this verdict.
     #[must_use]
     pub fn count(&self, verdict: Verdict) -> usize {
         self.scenes().filter(|scene| scene.verdict == verdict).count()
@@ -174,7 +174,7 @@ impl Grade {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct PassedOver {
-    /// Its name, as that of a submission.
+    /// The entry's name, as that of a submission.
     pub name: String,
     /// Why, in words.
     pub why: String,
@@ -192,9 +192,9 @@ pub struct Build {
 /// A fault of a submission itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Unfit<'a> {
-    /// Its build.
+    /// The submission's build failed.
     Build(&'a BuildEnd),
-    /// It is a program of this milestone, and the suite is of another.
+    /// The program is of this milestone, and the suite of another.
     Milestone(Assignment),
     /// The words of its first scene, and of all others with it.
     Scene(&'a SceneResult),
@@ -203,7 +203,7 @@ pub enum Unfit<'a> {
 /// One group of scenes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GroupGrade {
-    /// Its name.
+    /// The group's name.
     pub name: String,
     /// The readers who see it.
     pub visibility: Visibility,
@@ -220,7 +220,7 @@ pub struct GroupGrade {
     pub speed: Option<SpeedGrade>,
     /// The worst verdict of its scenes.
     pub verdict: Verdict,
-    /// Its scenes.
+    /// The group's scenes.
     pub scenes: Vec<SceneGrade>,
 }
 
@@ -243,7 +243,7 @@ pub struct SceneGrade {
 }
 
 impl GroupGrade {
-    /// Points that can be reached in its scenes.
+    /// Returns points that can be reached in its scenes.
     #[must_use]
     pub fn max_points_of_scenes(&self) -> f64 {
         self.max_points - self.speed.as_ref().map_or(0.0, |speed| speed.marking.points)

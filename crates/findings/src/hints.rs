@@ -20,7 +20,7 @@ pub enum Hints {
 }
 
 impl Hints {
-    /// Its name in suites, and what it means in a few words.
+    /// Returns the level's name in suites, and what it means in a few words.
     #[must_use]
     pub const fn words(self) -> (&'static str, &'static str) {
         match self {
@@ -31,7 +31,7 @@ impl Hints {
         }
     }
 
-    /// Whether likely mistakes are told at this level.
+    /// Returns whether likely mistakes are told at this level.
     #[must_use]
     pub const fn explains(self) -> bool {
         matches!(self, Self::What | Self::Full)
@@ -65,7 +65,7 @@ impl Hints {
         }
     }
 
-    /// The part of a finding that may be told: nothing at [`Hints::None`], no values below [`Hints::Full`].
+    /// Returns the part of a finding that may be told: nothing at [`Hints::None`], no values below [`Hints::Full`].
     #[must_use]
     pub const fn finding(self, finding: &Finding) -> Option<DisclosedFinding> {
         match self {

@@ -49,7 +49,7 @@ pub struct Located {
 }
 
 impl Failing {
-    /// How a program failed that ended so; nothing where it ended well, or where that says nothing of it.
+    /// Returns how a program failed that ended so; nothing where it ended well, or where that says nothing of it.
     #[must_use]
     pub const fn of(ended: &Ended) -> Option<Self> {
         match ended {

@@ -56,7 +56,7 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Nothing judged yet.
+    /// Creates the account when nothing is judged yet.
     #[must_use]
     pub fn empty(steps: u32) -> Self {
         Self {

@@ -39,8 +39,8 @@ pub struct Residuals {
 }
 
 impl Residuals {
-    /// The residuals with their bounds, in the original's order: accumulated position and velocity, maximum position
-    /// and velocity. A residual passes when it is strictly below its bound; NaN fails.
+    /// Returns the residuals with their bounds, in the original's order: accumulated position and velocity, maximum
+    /// position and velocity. A residual passes when it is strictly below its bound; NaN fails.
     #[must_use]
     pub const fn with_bounds(&self) -> [(f64, f64); 4] {
         [

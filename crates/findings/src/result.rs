@@ -53,7 +53,7 @@ pub struct SceneResult {
 }
 
 impl SceneResult {
-    /// A scene without a run, with the reason.
+    /// Returns a scene without a run, with the reason.
     #[must_use]
     pub fn without_run(scene: &str, steps: u32, verdict: Verdict, reason: Reason) -> Self {
         Self {
@@ -128,7 +128,7 @@ pub enum Reason {
     Stopped,
     /// The sources do not build.
     DoesNotBuild,
-    /// It is kept from students ([`SceneResult::withhold`]).
+    /// The reason is withheld from students ([`SceneResult::withhold`]).
     Withheld,
     /// The submission itself can't be run.
     Unusable(Unusable),
@@ -147,7 +147,7 @@ pub enum Wrong {
     FirstRecord(FindingKind),
     /// In steps.
     Steps {
-        /// Their number.
+        /// The number of wrong steps.
         wrong: u64,
         /// The first one.
         first: u32,
@@ -182,7 +182,7 @@ pub enum BadTrace {
         /// The damage, as the reader tells it.
         damage: Malformation,
     },
-    /// It holds the states of all steps, and nothing of collisions.
+    /// The trace holds the states of all steps, and nothing of collisions.
     StatesOnly,
     /// By the fair rules: it is damaged.
     Damaged,
@@ -202,9 +202,9 @@ pub struct Reached {
 /// A limit of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Limit {
-    /// Of time: on the processor or on the clock, as the program's end says.
+    /// The time: on the processor or on the clock, as the program's end says.
     Time(Duration),
-    /// Of memory, in bytes.
+    /// The memory, in bytes.
     Memory(u64),
 }
 
@@ -227,7 +227,7 @@ pub enum NotRunReason {
 /// Why a submission can't be run: its own fault.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Unusable {
-    /// Its program can't be started.
+    /// The program can't be started.
     CouldNotStart(StartProblem),
     /// There is no program of the name that is looked for.
     NoProgram {
@@ -236,18 +236,18 @@ pub enum Unusable {
         /// The contents that are there instead.
         found: FolderContents,
     },
-    /// Its program can't be read or copied, for this reason of the operating system or of the copy.
+    /// The program can't be read or copied, for this reason of the operating system or of the copy.
     Unreadable(String),
 }
 
 /// The contents of a submission's folder where a program is missing.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FolderContents {
-    /// It can't be read, for this reason of the operating system.
+    /// The folder can't be read, for this reason of the operating system.
     Unreadable(String),
-    /// It is empty.
+    /// The folder is empty.
     Nothing,
-    /// It holds other files and folders.
+    /// The folder holds other files and folders.
     Others {
         /// The first ones by name; folders end in a slash.
         names: Vec<String>,
@@ -288,9 +288,9 @@ pub enum Activity {
 /// The place of a trace on which the grader failed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum SavedTrace {
-    /// It is in this file.
+    /// The trace is in this file.
     In(PathBuf),
-    /// It could not be kept.
+    /// The trace could not be kept.
     Lost {
         /// The folder for it.
         folder: PathBuf,
@@ -302,13 +302,13 @@ pub enum SavedTrace {
 /// How a build ended.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum BuildEnd {
-    /// It made the program.
+    /// The build made the program.
     Made,
-    /// It ended in another way than with exit code 0.
+    /// The build ended in another way than with exit code 0.
     Ended(Ended),
-    /// It ended well and made no program of this name.
+    /// The build ended well and made no program of this name.
     MadeNo(String),
-    /// Its product can't be used, for this reason.
+    /// The build's product can't be used, for this reason.
     Unusable(String),
     /// The sources can't be copied, for this reason.
     Sources(String),
@@ -317,7 +317,7 @@ pub enum BuildEnd {
 }
 
 impl BuildEnd {
-    /// Whether there is a program.
+    /// Returns whether there is a program.
     #[must_use]
     pub const fn is_success(&self) -> bool {
         matches!(self, Self::Made)

@@ -34,7 +34,7 @@ pub enum Rules {
 }
 
 impl Rules {
-    /// The name under which command line and suites know it.
+    /// Returns the name under which command line and suites know it.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -44,7 +44,7 @@ impl Rules {
         }
     }
 
-    /// The book whose verdict decides exit codes and points.
+    /// Returns the book whose verdict decides exit codes and points.
     #[must_use]
     pub const fn official(self) -> Book {
         match self {
@@ -53,7 +53,7 @@ impl Rules {
         }
     }
 
-    /// Whether the fair rules are asked at all.
+    /// Returns whether the fair rules are asked at all.
     #[must_use]
     pub const fn ask_fair(self) -> bool {
         !matches!(self, Self::Parity)
@@ -77,7 +77,7 @@ impl Ruling {
     /// All verdicts.
     pub const ALL: [Self; 4] = [Self::Accepted, Self::Undecided, Self::WrongAnswer, Self::BadTrace];
 
-    /// The words, such as `wrong answer`.
+    /// Returns the words, such as `wrong answer`.
     #[must_use]
     pub const fn words(self) -> &'static str {
         match self {
@@ -90,7 +90,7 @@ impl Ruling {
 }
 
 impl Outcome {
-    /// The verdict by a book; by the fair one the original's, if the fair one was not asked.
+    /// Returns the verdict by a book; by the fair one the original's, if the fair one was not asked.
     #[must_use]
     pub fn ruling(&self, book: Book) -> Ruling {
         match (book, &self.fair) {
@@ -112,9 +112,9 @@ impl Outcome {
         }
     }
 
-    /// How many steps are right by a book: all of them only where the trace is accepted. What is wrong in no step, such
-    /// as the first record or small errors that add up, counts as one; and what the original reads over in silence is
-    /// right for it only where it accepts the whole.
+    /// Returns how many steps are right by a book: all of them only where the trace is accepted. What is wrong in no
+    /// step, such as the first record or small errors that add up, counts as one; and what the original reads over in
+    /// silence is right for it only where it accepts the whole.
     #[must_use]
     pub fn right_steps(&self, book: Book) -> u32 {
         let wrong = u32::try_from(self.findings_by(book).wrong_steps).unwrap_or(u32::MAX);
@@ -125,14 +125,14 @@ impl Outcome {
         right.saturating_sub(self.damaged_steps).min(self.steps.saturating_sub(1))
     }
 
-    /// Why judging by a book stopped early, if it did.
+    /// Returns why judging by a book stopped early, if it did.
     #[must_use]
     pub fn stop_of(&self, book: Book) -> Option<Stop> {
         let is_parity = book == Book::Parity || self.fair.is_none();
         self.stop.clone().or(self.parity.endless.filter(|_| is_parity).map(Stop::Step))
     }
 
-    /// How many steps a book has judged.
+    /// Returns how many steps a book has judged.
     #[must_use]
     pub fn judged_by(&self, book: Book) -> u32 {
         let end = match (book, &self.fair) {
@@ -142,7 +142,7 @@ impl Outcome {
         end.map_or(self.steps_judged, |step| step - 1)
     }
 
-    /// The findings of a book; by the fair one the original's, if the fair one was not asked.
+    /// Returns the findings of a book; by the fair one the original's, if the fair one was not asked.
     #[must_use]
     pub fn findings_by(&self, book: Book) -> &BookFindings {
         match (book, &self.fair) {

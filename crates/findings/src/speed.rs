@@ -22,7 +22,7 @@ pub struct SpeedMarking {
 }
 
 impl SpeedMarking {
-    /// The points for a ratio.
+    /// Returns the points for a ratio.
     #[must_use]
     pub fn points_at(&self, ratio: f64) -> f64 {
         self.points * ((self.none_at - ratio) / (self.none_at - self.full_at)).clamp(0.0, 1.0)
@@ -63,7 +63,7 @@ pub enum SpeedSource {
 /// The submission's processor time, divided by the reference program's.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SpeedRatio {
-    /// Of the least times of all runs, which other programs disturb least.
+    /// The ratio of the least times of all runs, which other programs disturb least.
     pub ratio: f64,
     /// The least ratio of a round of runs.
     pub least: f64,
@@ -74,7 +74,7 @@ pub struct SpeedRatio {
 }
 
 impl SpeedGrade {
-    /// The points that the scenes of a group get for speed.
+    /// Returns the points that the scenes of a group get for speed.
     #[must_use]
     pub fn of<'a>(marking: SpeedMarking, scenes: impl IntoIterator<Item = &'a SceneResult>) -> Self {
         let source = source(&scenes.into_iter().collect::<Vec<_>>());
@@ -107,7 +107,7 @@ fn source(scenes: &[&SceneResult]) -> SpeedSource {
     SpeedSource::Measured(ratio(&timed))
 }
 
-/// The ratio of the sums over scenes: of the least times, and round by round.
+/// Returns the ratio of the sums over scenes: of the least times, and round by round.
 fn ratio(scenes: &[&[TimedRun]]) -> SpeedRatio {
     // A clock that ticks once a microsecond may see nothing at all.
     let seconds = |time: Duration| time.as_secs_f64().max(1e-6);

@@ -53,7 +53,7 @@ impl Verdict {
         Self::JudgeError,
     ];
 
-    /// The short code and the words.
+    /// Returns the short code and the words.
     const fn texts(self) -> (&'static str, &'static str) {
         match self {
             Self::Accepted => ("AC", "accepted"),
@@ -73,25 +73,25 @@ impl Verdict {
         }
     }
 
-    /// The short code, for tables and spreadsheets.
+    /// Returns the short code, for tables and spreadsheets.
     #[must_use]
     pub const fn code(self) -> &'static str {
         self.texts().0
     }
 
-    /// The words, as reports and JSON write them.
+    /// Returns the words, as reports and JSON write them.
     #[must_use]
     pub const fn words(self) -> &'static str {
         self.texts().1
     }
 
-    /// Whether it says of the trace, and not of how the program ended, that it is wrong.
+    /// Returns whether it says of the trace, and not of how the program ended, that it is wrong.
     #[must_use]
     pub const fn is_wrong_trace(self) -> bool {
         matches!(self, Self::Unwritten | Self::WrongAnswer | Self::BadTrace)
     }
 
-    /// Whether the scene's points are due in full.
+    /// Returns whether the scene's points are due in full.
     #[must_use]
     pub const fn is_accepted(self) -> bool {
         matches!(self, Self::Accepted)

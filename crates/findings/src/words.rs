@@ -24,8 +24,8 @@ impl Display for Finding {
 struct WithoutStep<'a>(&'a Finding);
 
 impl Finding {
-    /// The finding in words, without its step: what stands in the first record starts, what stands in others ends
-    /// there.
+    /// Returns the finding in words, without its step: what stands in the first record starts, what stands in others
+    /// ends there.
     #[must_use]
     pub fn what(&self) -> impl Display + '_ {
         WithoutStep(self)
@@ -123,13 +123,13 @@ impl Display for WithoutStep<'_> {
     }
 }
 
-/// The sentence about a time of impact, the expected one first, that follows from lost coefficients.
+/// Writes the sentence about a time of impact, the expected one first, that follows from lost coefficients.
 fn write_trimmed_time(f: &mut Formatter<'_>, place: PolynomialPlace, times: [f64; 2]) -> fmt::Result {
     let (pair, pass, [expected, actual]) = (PairWords(place.pair), PassWords(place.pass), times.map(Exact));
     write!(f, "{pair} ({pass}) collide at time {expected}; {LACKING}, and have time {actual} ({DROPPING})")
 }
 
-/// The sentence about a part in which a step's two records differ.
+/// Returns the sentence about a part in which a step's two records differ.
 const fn difference_of_records(part: RecordPart, is_first: bool) -> &'static str {
     match part {
         RecordPart::Impulses if is_first => "the first record holds impulses, before anything has moved",
@@ -140,7 +140,7 @@ const fn difference_of_records(part: RecordPart, is_first: bool) -> &'static str
     }
 }
 
-/// How many whole detection passes a log has too many (`true`) or too few, where it is that.
+/// Writes how many whole detection passes a log has too many (`true`) or too few, where it is that.
 fn write_passes(f: &mut Formatter<'_>, passes: Option<(usize, bool)>) -> fmt::Result {
     let Some((passes, more)) = passes else { return Ok(()) };
     let plural = if passes == 1 { "pass" } else { "passes" };
@@ -172,7 +172,7 @@ impl Display for Apart {
     }
 }
 
-/// A value cut to a number of places behind the point; before it, where the number is negative.
+/// Returns a value cut to a number of places behind the point; before it, where the number is negative.
 fn rounded(value: f64, places: i32, power: Option<i32>) -> f64 {
     // More than seventeen digits say nothing new.
     let digits = power.map_or(0, |power| (power + places).clamp(0, 16));
@@ -202,8 +202,8 @@ impl Display for VectorWords {
     }
 }
 
-/// By how many whole detection passes two counts differ, and whether the trace has more; `None` when it is no whole
-/// number of passes.
+/// Returns by how many whole detection passes two counts differ, and whether the trace has more; `None` when it is no
+/// whole number of passes.
 #[must_use]
 pub fn passes(expected: usize, actual: usize, per_pass: usize) -> Option<(usize, bool)> {
     let difference = actual.abs_diff(expected);

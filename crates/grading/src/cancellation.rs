@@ -22,7 +22,7 @@ impl Cancellation {
         }
     }
 
-    /// Whether grading has been stopped.
+    /// Returns whether grading has been stopped.
     #[must_use]
     pub fn is_cancelled(&self) -> bool {
         self.cancelled.load(Ordering::SeqCst)

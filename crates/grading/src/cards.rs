@@ -82,7 +82,7 @@ impl Cards<'_> {
         Ok(Some(name))
     }
 
-    /// Whether a card of an earlier result is missing; `students` is how much they are told of the scene.
+    /// Returns whether a card of an earlier result is missing; `students` is how much they are told of the scene.
     pub(super) fn lack(&self, result: &SceneResult, students: Hints) -> bool {
         let is_missing = |name: &String| !file(self.folder, name).is_file();
         let shows_students = self.for_students && students > Hints::None;
@@ -115,7 +115,7 @@ mod tests {
     use fosssim_mistakes::together::told::cut_result;
     use fosssim_model::scene::original;
 
-    /// A scene, the outcome of judging a trace of it, and the result.
+    /// Returns a scene, the outcome of judging a trace of it, and the result.
     fn wrong() -> (Scene, Outcome, SceneResult) {
         let xml = b"<scene><duration time=\"0\"/><integrator type=\"explicit-euler\" dt=\"1\"/></scene>";
         let scene = original::read(xml).expect("a scene").scene;

@@ -30,13 +30,13 @@ pub(super) fn small_plan() -> Plan {
     plan::load(SUITE, Path::new("nowhere")).expect("a sound suite")
 }
 
-/// The scene in a job's working folder.
+/// Returns the scene in a job's working folder.
 fn scene(job: &Job) -> Scene {
     let xml = std::fs::read(job.folder.join("scene.xml")).expect("the scene");
     fosssim_model::scene::read("scene.xml", &xml).expect("a sound scene").scene
 }
 
-/// The first steps of a scene's right trace.
+/// Returns the first steps of a scene's right trace.
 fn trace(scene: &Scene, steps: u32) -> Vec<u8> {
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     let mut recorder = Recorder::start(Vec::new(), Layout::of(scene), simulation.state());
@@ -46,7 +46,7 @@ fn trace(scene: &Scene, steps: u32) -> Vec<u8> {
     recorder.finish().expect("memory").0
 }
 
-/// The right trace of the scene in a job's working folder.
+/// Returns the right trace of the scene in a job's working folder.
 pub(super) fn right_trace(job: &Job) -> Vec<u8> {
     let scene = scene(job);
     trace(&scene, scene.steps())

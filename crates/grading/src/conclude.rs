@@ -38,7 +38,7 @@ pub struct Ran {
 }
 
 impl Ran {
-    /// A program that did not run, as if it had ended well after it wrote its trace.
+    /// Returns a program that did not run, as if it had ended well after it wrote its trace.
     #[must_use]
     pub fn well() -> Self {
         let measured = Measurements { memory: Some(0), ..Measurements::default() };
@@ -111,7 +111,7 @@ pub enum Look {
 }
 
 impl Look {
-    /// The explanations of a trace.
+    /// Returns the explanations of a trace.
     #[must_use]
     pub fn explain(self, scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
         match self {
@@ -121,9 +121,9 @@ impl Look {
     }
 }
 
-/// The result of one scene, with all that any reader may be told. `explain` says what is likely wrong; it is not asked
-/// where nothing of it may be told, where the fair rules find no fault, or where what the program did besides is its
-/// worse fault.
+/// Returns the result of one scene, with all that any reader may be told. `explain` says what is likely wrong; it is
+/// not asked where nothing of it may be told, where the fair rules find no fault, or where what the program did besides
+/// is its worse fault.
 #[must_use]
 pub fn conclude(run: &Run<'_>, explain: impl FnOnce(Look) -> Vec<Explanation>) -> SceneResult {
     let Run { program, judged, rules, hints, .. } = *run;
@@ -161,8 +161,8 @@ pub fn conclude(run: &Run<'_>, explain: impl FnOnce(Look) -> Vec<Explanation>) -
     result
 }
 
-/// The bytes of a complete trace of this scene in which every list is empty; nothing where the reference's are empty,
-/// too.
+/// Returns the bytes of a complete trace of this scene in which every list is empty; nothing where the reference's are
+/// empty, too.
 fn bytes_of_nothing(scene: &Scene) -> Option<u64> {
     let layout = Layout::of(scene);
     let has_pairs = scene.particles.len() > 1 || !(scene.particles.is_empty() || scene.half_planes.is_empty());
@@ -171,8 +171,8 @@ fn bytes_of_nothing(scene: &Scene) -> Option<u64> {
     (layout.polynomials && layout.steps > 0 && has_pairs).then(|| layout.records() * record)
 }
 
-/// The verdict by the program's end alone. Bytes behind the last record mean the same however many they are: a program
-/// that is stopped because of them ended when the judge had all records.
+/// Returns the verdict by the program's end alone. Bytes behind the last record mean the same however many they are: a
+/// program that is stopped because of them ended when the judge had all records.
 fn verdict_of_program(ended: &Ended, judged: &Outcome) -> Verdict {
     let had_all = judged.stop.is_none() && judged.trailing_bytes;
     match ended {
@@ -188,7 +188,7 @@ fn verdict_of_program(ended: &Ended, judged: &Outcome) -> Verdict {
     }
 }
 
-/// How far a program's trace had come, and the limit that it was stopped at.
+/// Returns how far a program's trace had come, and the limit that it was stopped at.
 fn reached(ended: &Ended, judged: &Outcome, limits: &RunLimits) -> Reached {
     let limit = match ended {
         Ended::CpuLimit => Some(Limit::Time(limits.cpu)),
@@ -199,7 +199,7 @@ fn reached(ended: &Ended, judged: &Outcome, limits: &RunLimits) -> Reached {
     Reached { limit, steps: judged.steps_judged }
 }
 
-/// The verdict by the trace alone.
+/// Returns the verdict by the trace alone.
 fn verdict_of_trace(run: &Run<'_>) -> (Verdict, Reason) {
     let Run { judged, rules, trace_bytes, .. } = *run;
     // States that nothing keeps apart may have no next one: the trace is complete all the same.
@@ -239,7 +239,7 @@ fn wrong(judged: &Outcome, rules: Rules) -> Wrong {
     }
 }
 
-/// Why the fair rules refuse a trace that the original reads to its end.
+/// Returns why the fair rules refuse a trace that the original reads to its end.
 fn refusal(judged: &Outcome) -> BadTrace {
     match judged.fair.as_ref().and_then(|fair| fair.refusal) {
         Some(FairRefusal::TrailingBytes) => BadTrace::TrailingBytes,

@@ -15,7 +15,7 @@ pub use super::{assignments::template, shape::MOST_POINTS};
 /// A validated suite: its scenes are patterns until they are looked up (see [`Plan`](super::plan::Plan)).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Suite<Scene = Pattern> {
-    /// Its name, shown in reports.
+    /// The suite's name, shown in reports.
     pub name: String,
     /// The milestone whose programs it grades, where it says so.
     pub milestone: Option<Assignment>,
@@ -40,18 +40,18 @@ pub struct Suite<Scene = Pattern> {
 /// A group of scenes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Group<Scene = Pattern> {
-    /// Its name.
+    /// The group's name.
     pub name: String,
-    /// Its points, credit and visibility.
+    /// The group's points, credit and visibility.
     pub marking: Marking,
-    /// Its scenes, in the order of the patterns, each pattern's in alphabetical order.
+    /// The group's scenes, in the order of the patterns, each pattern's in alphabetical order.
     pub scenes: Vec<Scene>,
 }
 
 /// A pattern of scenes: `asset:Group/*` for embedded ones, else files relative to the suite's own folder.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pattern {
-    /// Its text.
+    /// The pattern's text.
     pub text: String,
     /// Where it stands, for messages about patterns that match nothing.
     pub at: Position,
@@ -266,7 +266,7 @@ pub fn read(text: &str) -> Result<Suite, SuiteError> {
     if problems.is_empty() { Ok(suite) } else { Err(SuiteError { problems }) }
 }
 
-/// A suite and everything that is wrong with it, in order: what is wrong is left out or has its default.
+/// Reads a suite and everything that is wrong with it, in order: what is wrong is left out or has its default.
 pub(super) fn read_all(text: &str) -> (Suite, Vec<(Position, String)>) {
     let (table, mut problems, is_readable) = shape::checked(text);
     let raw = RawSuite::deserialize(toml::Deserializer::from(table)).unwrap_or_else(|error| {
@@ -321,7 +321,7 @@ pub(super) fn read_all(text: &str) -> (Suite, Vec<(Position, String)>) {
     (suite, problems)
 }
 
-/// The course's protocol.
+/// Returns the course's protocol.
 pub(super) fn default_run() -> Vec<String> {
     ["{program}", "-s", "{scene}", "-d", "0", "-o", "{trace}"].map(str::to_owned).into()
 }
@@ -391,7 +391,7 @@ fn read_build(problems: &mut Vec<Problem>, build: Spanned<RawBuild>) -> BuildSte
     }
 }
 
-/// A group; `hints` are those of a group that says nothing of them.
+/// Reads a group; `hints` are those of a group that says nothing of them.
 fn read_group(places: &mut PositionCounter<'_>, problems: &mut Vec<Problem>, raw: RawGroup, hints: Hints) -> Group {
     let name = raw.name.as_ref().map(|name| name.get_ref().clone()).unwrap_or_default();
     if let Some(empty) = raw.name.filter(|name| name.get_ref().trim().is_empty()) {

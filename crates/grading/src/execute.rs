@@ -262,7 +262,7 @@ impl Runner<'_> {
     }
 }
 
-/// The result of a judged run with its explanations, or what panicked.
+/// Returns the result of a judged run with its explanations, or what panicked.
 fn explained(run: &Run<'_>, kept: &KeptTrace, program: &Path) -> Result<SceneResult, (Activity, Fault)> {
     let mut explaining = guarded(|| fault::injected(Activity::Explaining, program)).err();
     let explain = |look: Look| {

@@ -11,7 +11,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The result of a scene on which the grader failed, with the beginning of its trace.
+/// Returns the result of a scene on which the grader failed, with the beginning of its trace.
 pub(super) fn result(task: &SceneTask, folder: &Place, stage: Activity, fault: &Fault, trace: &[u8]) -> SceneResult {
     let kept = match keep(folder, task, trace) {
         Ok(path) => SavedTrace::In(path),

@@ -20,7 +20,8 @@ pub struct Entry {
     pub result: SceneResult,
 }
 
-/// The line that keeps a result, with its end and the key under which it is found; the submission is for people.
+/// Returns the line that keeps a result, with its end and the key under which it is found; the submission is for
+/// people.
 #[must_use]
 pub fn line(key: &Key, submission: &str, result: &SceneResult) -> Vec<u8> {
     let (key, submission, result) = (key.clone(), submission.to_owned(), result.clone());
@@ -29,7 +30,7 @@ pub fn line(key: &Key, submission: &str, result: &SceneResult) -> Vec<u8> {
     line
 }
 
-/// The entry that a line keeps; `None` where the line is damaged, or of another version.
+/// Reads the entry that a line keeps; `None` where the line is damaged, or of another version.
 #[must_use]
 pub fn read_line(line: &[u8]) -> Option<Entry> {
     serde_json::from_slice(line).ok().filter(|entry: &Entry| entry.form == VERSION)

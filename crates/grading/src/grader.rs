@@ -36,7 +36,7 @@ use std::{
 /// A submission to grade.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Submission {
-    /// Its name in reports.
+    /// The submission's name in reports.
     pub name: String,
     /// The program or archive, or the folder of sources when the plan builds.
     pub path: PathBuf,
@@ -47,7 +47,7 @@ pub struct Submission {
 }
 
 impl Submission {
-    /// The name of its program's file.
+    /// Returns the name of its program's file.
     fn called(&self) -> String {
         called(&self.program.as_ref().map_or_else(|| self.path.clone(), |program| self.path.join(program)))
     }
@@ -92,12 +92,12 @@ pub struct Grader<'a> {
 }
 
 impl Grader<'_> {
-    /// Against recordings there is nothing but the original's rules: the fair ones follow the submission.
+    /// Returns the rules that count. Against recordings these are the original's: the fair ones follow the submission.
     pub(super) const fn effective_rules(&self) -> Rules {
         if self.options.recorded { Rules::Parity } else { self.plan.rules }
     }
 
-    /// Everything besides program and scene that a result depends on.
+    /// Returns everything besides program and scene that a result depends on.
     fn words(&self) -> Vec<String> {
         let walls = self.backend.layers().iter().filter(|report| report.active);
         vec![
@@ -134,12 +134,12 @@ impl<'a> SharedGrading<'a> {
         Self { cancellation, results, folders, words: grader.words(), kept, full, contents, reference: OnceLock::new() }
     }
 
-    /// The contents of the reference's run of each scene. A scene without an end has none.
+    /// Returns the contents of the reference's run of each scene. A scene without an end has none.
     pub(super) fn contents(&self, plan: &Plan) -> &[Contents] {
         self.contents.get_or_init(|| plan.scenes().map(|task| ContentIndex::of(&task.scene)).collect())
     }
 
-    /// The copy of the reference program.
+    /// Returns the copy of the reference program.
     pub(super) fn reference(&self, program: &Path) -> Arc<Result<Staged, String>> {
         self.reference.get_or_init(|| Arc::new(staging::reference(program))).clone()
     }
@@ -151,7 +151,7 @@ impl<'a> SharedGrading<'a> {
         Key::of(digest, &scene.xml, &words)
     }
 
-    /// An earlier result. Where traces or cards are wanted, one without them does not count.
+    /// Finds an earlier result. Where traces or cards are wanted, one without them does not count.
     fn find(&self, key: &Key, trace: Option<&Place>, cards: Option<Cards<'_>>, students: Hints) -> Option<Done> {
         let results = self.results?;
         if lock(&self.kept).contains(key) {
@@ -196,11 +196,11 @@ impl Done {
 
 /// The news of a scene.
 pub(super) enum SceneNews {
-    /// It begins.
+    /// The scene begins.
     Begins,
     /// Steps have been judged up to this one; not every step is told.
     Step(u32),
-    /// It has its result, and whether that was taken from an earlier run.
+    /// The scene has its result, and whether that was taken from an earlier run.
     Done(Box<SceneResult>, bool),
 }
 
@@ -225,7 +225,7 @@ struct Known {
 }
 
 impl<'a> SubmissionGrading<'a> {
-    /// A submission of which nothing is known yet.
+    /// Creates a submission of which nothing is known yet.
     pub(super) fn new(grader: &'a Grader<'a>, shared: &'a SharedGrading<'a>, submission: &'a Submission) -> Self {
         let done = vec![None; grader.plan.scenes().count()];
         Self {
@@ -322,7 +322,7 @@ impl<'a> SubmissionGrading<'a> {
         }
     }
 
-    /// Why this scene is not to be run.
+    /// Returns why this scene is not to be run.
     fn left_out(&self, scene: usize) -> Option<NotRunReason> {
         lock(&self.known).end.filter(|&(end, _)| scene >= end).map(|(_, why)| why)
     }
@@ -337,7 +337,7 @@ impl<'a> SubmissionGrading<'a> {
         }
     }
 
-    /// The digest of a program that needs no build and no copy to be known.
+    /// Returns the digest of a program that needs no build and no copy to be known.
     fn digest(&self) -> Option<blake3::Hash> {
         *self.digest.get_or_init(|| match &self.submission.program {
             _ if self.builds() => None,
@@ -346,13 +346,13 @@ impl<'a> SubmissionGrading<'a> {
         })
     }
 
-    /// Whether it is a folder of sources.
+    /// Returns whether it is a folder of sources.
     fn builds(&self) -> bool {
         let Submission { path, program, .. } = self.submission;
         self.grader.plan.build.is_some() && program.is_none() && path.is_dir()
     }
 
-    /// The staged submission; the first job stages it, the others wait.
+    /// Returns the staged submission; the first job stages it, the others wait.
     pub(super) fn staged(&self) -> Arc<Result<Staged, String>> {
         lock(&self.staged).get_or_insert_with(|| Arc::new(self.stage())).clone()
     }
@@ -374,7 +374,7 @@ pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The name of a program's file.
+/// Returns the name of a program's file.
 pub(super) fn called(program: &Path) -> String {
     program.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }

@@ -48,7 +48,7 @@ fn listen() {
     });
 }
 
-/// The words of a panic, on one line.
+/// Returns the words of a panic, on one line.
 fn message(payload: &(dyn Any + Send)) -> String {
     let words = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
     let words = words.or_else(|| payload.downcast_ref::<String>().cloned());

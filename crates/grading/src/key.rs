@@ -11,14 +11,14 @@ use std::{
 pub struct Key(String);
 
 impl Key {
-    /// The key of a run: digests of program and scene, and words for everything else that matters (rules, limits, the
-    /// command, the way of judging). What judges is always part of it.
+    /// Returns the key of a run: digests of program and scene, and words for everything else that matters (rules,
+    /// limits, the command, the way of judging). What judges is always part of it.
     #[must_use]
     pub fn of(program: &blake3::Hash, scene: &[u8], words: &[&str]) -> Self {
         Self::by(this_build(), program, scene, words)
     }
 
-    /// The key of a run that this build judges.
+    /// Returns the key of a run that this build judges.
     fn by(judge: &str, program: &blake3::Hash, scene: &[u8], words: &[&str]) -> Self {
         let mut hasher = blake3::Hasher::new();
         hasher.update(program.as_bytes());
@@ -31,8 +31,8 @@ impl Key {
     }
 }
 
-/// The digest of this very program: two builds of one version may judge differently. Its version where that can't be
-/// read.
+/// Returns the digest of this very program: two builds of one version may judge differently. Its version where that
+/// can't be read.
 ///
 /// The linker's own digest of all that it wrote (the GNU build ID) stands for the bytes where there is one: to read a
 /// program of this size takes as long as to judge ten small scenes.
@@ -54,7 +54,8 @@ pub fn this_build() -> &'static str {
     })
 }
 
-/// The build ID of a 64-bit ELF file, if it has one of a digest's length among its first bytes, where linkers put it.
+/// Returns the build ID of a 64-bit ELF file, if it has one of a digest's length among its first bytes, where linkers
+/// put it.
 fn build_id(file: &mut File) -> Option<Vec<u8>> {
     const NOTES: u32 = 4;
     const BUILD_ID: u32 = 3;

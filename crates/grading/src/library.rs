@@ -17,57 +17,57 @@ static REFERENCES: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/../../refere
 /// The assignment of scenes that are made.
 const MADE_OF: Assignment = Assignment::T2M3;
 
-/// The names of all embedded scenes, in alphabetical order.
+/// Returns the names of all embedded scenes, in alphabetical order.
 pub fn names() -> impl Iterator<Item = &'static str> {
     stems(&ASSETS, ".xml")
 }
 
-/// The names of all scenes that come with the program: those that are embedded, and those that are made when they are
-/// asked for, which have no recordings.
+/// Returns the names of all scenes that come with the program: those that are embedded, and those that are made when
+/// they are asked for, which have no recordings.
 pub fn all_names() -> impl Iterator<Item = &'static str> {
     names().chain(TIMING.iter().map(|made| made.name))
 }
 
-/// The XML of a scene.
+/// Returns the XML of a scene.
 #[must_use]
 pub fn scene(name: &str) -> Option<&'static [u8]> {
     contents(&ASSETS, &format!("{name}.xml")).or_else(|| made(name).map(MadeScene::xml))
 }
 
-/// The scene of this name, or name in full, that is made.
+/// Returns the scene of this name, or name in full, that is made.
 fn made(name: &str) -> Option<&'static MadeScene> {
     let short = name.strip_prefix(MADE_OF.key()).and_then(|rest| rest.strip_prefix('/')).unwrap_or(name);
     TIMING.iter().find(|made| made.name == short)
 }
 
-/// The recording of a scene, compressed with zstd.
+/// Returns the recording of a scene, compressed with zstd.
 #[must_use]
 #[cfg(target_os = "linux")]
 pub fn recording(name: &str) -> Option<&'static [u8]> {
     contents(&REFERENCES, &format!("{name}.bin.zst"))
 }
 
-/// There are none where no programs are run.
+/// Returns no recording: there are none where no programs are run.
 #[must_use]
 #[cfg(not(target_os = "linux"))]
 pub const fn recording(_: &str) -> Option<&'static [u8]> {
     None
 }
 
-/// The names of all embedded recordings, in alphabetical order.
+/// Returns the names of all embedded recordings, in alphabetical order.
 #[cfg(target_os = "linux")]
 pub fn recordings() -> impl Iterator<Item = &'static str> {
     stems(&REFERENCES, ".bin.zst")
 }
 
-/// A file of the folder of recordings: `manifest.txt`, `Group/name.steps` or `Group/name.bin.zst`.
+/// Returns a file of the folder of recordings: `manifest.txt`, `Group/name.steps` or `Group/name.bin.zst`.
 #[cfg(target_os = "linux")]
 #[must_use]
 pub fn reference(path: &str) -> Option<&'static [u8]> {
     contents(&REFERENCES, path)
 }
 
-/// The assignment in whose folder a scene lies.
+/// Returns the assignment in whose folder a scene lies.
 #[must_use]
 pub fn assignment(name: &str) -> Option<Assignment> {
     if made(name).is_some() {
@@ -77,8 +77,8 @@ pub fn assignment(name: &str) -> Option<Assignment> {
     Assignment::named(path.components().next()?.as_os_str().to_str()?)
 }
 
-/// Whether a pattern takes a scene of this name. A pattern that begins with an assignment's folder, such as `t2m2/*`,
-/// takes scenes that lie there; with a version, such as `t2m2@1/*`, those of that version.
+/// Returns whether a pattern takes a scene of this name. A pattern that begins with an assignment's folder, such as
+/// `t2m2/*`, takes scenes that lie there; with a version, such as `t2m2@1/*`, those of that version.
 #[must_use]
 pub fn takes(pattern: &Pattern, name: &str) -> bool {
     let Some((folder, rest)) = pattern.as_str().split_once('/') else { return pattern.matches(name) };
@@ -105,13 +105,14 @@ fn contents(root: &'static Dir<'static>, path: &str) -> Option<&'static [u8]> {
     file(root, path).map(File::contents)
 }
 
-/// A file of an assignment by its path within the assignment's folder, or by its whole path.
+/// Returns a file of an assignment by its path within the assignment's folder, or by its whole path.
 fn file(root: &'static Dir<'static>, path: &str) -> Option<&'static File<'static>> {
     let of = |assignment: Assignment| below(inner(root, assignment.key())?, path);
     Assignment::ALL.into_iter().find_map(of).or_else(|| below(root, path))
 }
 
-/// The file of this path below a folder. [`Dir::get_file`] compares the path with that of every entry, part by part.
+/// Returns the file of this path below a folder. [`Dir::get_file`] compares the path with that of every entry, part by
+/// part.
 fn below(folder: &'static Dir<'static>, path: &str) -> Option<&'static File<'static>> {
     match path.split_once('/') {
         Some((first, rest)) => below(inner(folder, first)?, rest),
@@ -119,12 +120,12 @@ fn below(folder: &'static Dir<'static>, path: &str) -> Option<&'static File<'sta
     }
 }
 
-/// The folder of this name in a folder.
+/// Returns the subfolder `name`.
 fn inner(folder: &'static Dir<'static>, name: &str) -> Option<&'static Dir<'static>> {
     folder.dirs().find(|inner| is_called(inner.path(), name))
 }
 
-/// Whether the last part of the path is this name.
+/// Returns whether the last part of the path is this name.
 fn is_called(path: &Path, name: &str) -> bool {
     let before = path.as_os_str().as_encoded_bytes().strip_suffix(name.as_bytes());
     before.is_some_and(|before| before.is_empty() || before.ends_with(b"/"))

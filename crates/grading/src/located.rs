@@ -38,7 +38,7 @@ pub struct Tried<'a> {
 const SIGNIFICANT: f64 = 0.01;
 
 impl ContentIndex {
-    /// All that a scene contains; nothing where it can't be simulated to its end.
+    /// Returns all that a scene contains; nothing where it can't be simulated to its end.
     #[must_use]
     pub fn of(scene: &Scene) -> Contents {
         let coverage = Coverage::of(scene).unwrap_or_default();
@@ -47,7 +47,7 @@ impl ContentIndex {
         values.chain(kinds).collect()
     }
 
-    /// With its names.
+    /// Returns the content with its names.
     fn named(self) -> Content {
         let family = &FAMILIES[self.family];
         let value = |(axis, value): (usize, usize)| {
@@ -57,8 +57,8 @@ impl ContentIndex {
         Content { family: family.name.into(), value: self.value.map(value) }
     }
 
-    /// The rank of a content: a later place in a step is narrower (zones, then contacts, then the step as a whole), and
-    /// absent events come last.
+    /// Returns the rank of a content: a later place in a step is narrower (zones, then contacts, then the step as a
+    /// whole), and absent events come last.
     const fn rank(self) -> (bool, usize) {
         let place = match self.family {
             4 => 0,
@@ -70,7 +70,7 @@ impl ContentIndex {
     }
 }
 
-/// The contents that the failing scenes have in common; nothing where the evidence is weak.
+/// Returns the contents that the failing scenes have in common; nothing where the evidence is weak.
 #[must_use]
 pub fn locate(tried: &[Tried<'_>]) -> Option<Located> {
     let failed: Vec<&Tried<'_>> = tried.iter().filter(|one| one.failing.is_some()).collect();
@@ -117,7 +117,7 @@ pub fn locate(tried: &[Tried<'_>]) -> Option<Located> {
     })
 }
 
-/// The probability that this number of scenes, drawn at random from `all`, all lie among these `with`.
+/// Returns the probability that this number of scenes, drawn at random from `all`, all lie among these `with`.
 fn chance(failed: usize, with: usize, all: usize) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
     let share = |one: usize| (with - one) as f64 / (all - one) as f64;

@@ -7,16 +7,18 @@ use unicode_properties::{GeneralCategory, UnicodeGeneralCategory};
 /// The greatest number of marks on one letter; further ones only cover the text around.
 const MARKS: usize = 4;
 
-/// A file's name as text, in the usual form of letters with marks (NFC). What nobody could see, or what would be taken
-/// for something else, stands there as an escape: bytes that are no text (`\xff`), control and format characters
-/// (`\r`, `\u{200b}`), blanks other than single ones between letters, and the backslash itself. So names that are told
-/// apart by their bytes are told apart by eye, but for letters with marks that are written in two ways ([`exact`]).
+/// Returns a file's name as text, in the usual form of letters with marks (NFC). What nobody could see, or what would
+/// be taken for something else, stands there as an escape: bytes that are no text (`\xff`), control and format
+/// characters (`\r`, `\u{200b}`), blanks other than single ones between letters, and the backslash itself. So names
+/// that are told apart by their bytes are told apart by eye, but for letters with marks that are written in two ways
+/// ([`exact`]).
 #[must_use]
 pub fn shown(name: &OsStr) -> String {
     each_chunk(name, |valid| escaped(&valid.nfc().collect::<String>(), |_| false))
 }
 
-/// As [`shown`], with marks that belong to the letter before them as escapes: another text for every name.
+/// Returns the name as [`shown`] does, with marks that belong to the letter before them as escapes: another text for
+/// every name.
 #[must_use]
 pub fn exact(name: &OsStr) -> String {
     // A letter that is not in its usual form has one that is shorter or longer, or is another.
@@ -57,12 +59,12 @@ fn is_mark(c: char) -> bool {
     matches!(c.general_category(), GeneralCategory::NonspacingMark | GeneralCategory::EnclosingMark)
 }
 
-/// Whether a letter of Hangul joins the one before it.
+/// Returns whether a letter of Hangul joins the one before it.
 const fn is_part_of_a_syllable(c: char) -> bool {
     matches!(c, '\u{1161}'..='\u{11ff}')
 }
 
-/// Whether a character shows nothing, or something else on every machine.
+/// Returns whether a character shows nothing, or something else on every machine.
 fn is_hidden(c: char) -> bool {
     use GeneralCategory::{
         Control, Format, LineSeparator, ParagraphSeparator, PrivateUse, SpaceSeparator, Surrogate, Unassigned,

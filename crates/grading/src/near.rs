@@ -3,7 +3,7 @@
 /// The number of letters of a word that are compared.
 const LONGEST: usize = 60;
 
-/// The word that was probably meant: few slips away, or the same but for case and punctuation.
+/// Returns the word that was probably meant: few slips away, or the same but for case and punctuation.
 #[must_use]
 pub fn closest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> Option<&'c str> {
     let typed = plain(word);
@@ -17,8 +17,8 @@ pub fn closest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> Opt
     near.min_by_key(|(slips, _)| *slips).map(|(_, candidate)| candidate)
 }
 
-/// The names nearest to a typed word, at most `most` of them, the nearest first. A name is compared as a whole and
-/// by its last part, since its group may be what was mistyped or left out.
+/// Returns the names nearest to a typed word, at most `most` of them, the nearest first. A name is compared as a whole
+/// and by its last part, since its group may be what was mistyped or left out.
 #[must_use]
 pub fn nearest<'c>(word: &str, names: impl Iterator<Item = &'c str>, most: usize) -> Vec<&'c str> {
     let last = |name: &str| plain(name.rsplit('/').next().unwrap_or_default());
@@ -36,7 +36,7 @@ pub fn nearest<'c>(word: &str, names: impl Iterator<Item = &'c str>, most: usize
     near.into_iter().take(most).map(|(_, name)| name).collect()
 }
 
-/// The letters and digits of a word in lower case.
+/// Returns the letters and digits of a word in lower case.
 fn plain(text: &str) -> Vec<char> {
     text.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).take(LONGEST).collect()
 }
@@ -52,7 +52,7 @@ fn distance(one: &[char], other: &[char]) -> usize {
     distances(one, other)[other.len()]
 }
 
-/// The same, or one more than to a beginning of the other: nobody types long names to their end.
+/// Returns the distance, or one more than that to a beginning of the other: nobody types long names to their end.
 fn or_beginning(one: &[char], other: &[char]) -> usize {
     let distances = distances(one, other);
     let of_beginnings = distances.iter().min().map_or(0, |least| least + 1);

@@ -21,7 +21,7 @@ pub(super) const SHARED: &str =
 /// The message for a program that is another submission's.
 pub(super) const ANOTHERS: &str = "it is another submission's file under a second name (a hard link)";
 
-/// Whether an open file is another submission's, by the notes from the search for submissions.
+/// Returns whether an open file is another submission's, by the notes from the search for submissions.
 pub(super) fn is_anothers(file: &File, noted: Option<&OneFile>) -> io::Result<bool> {
     let metadata = file.metadata()?;
     match noted {

@@ -10,8 +10,8 @@ use super::{
 };
 use std::time::Duration;
 
-/// The result of a scene that is left out. All but the last reason are the submission's own doing, so that such a scene
-/// counts as those that were the end.
+/// Returns the result of a scene that is left out. All but the last reason are the submission's own doing, so that such
+/// a scene counts as those that were the end.
 pub(super) fn left_out(task: &SceneTask, why: NotRunReason) -> SceneResult {
     let verdict = match why {
         NotRunReason::Limits { verdict, .. } => verdict,
@@ -21,7 +21,8 @@ pub(super) fn left_out(task: &SceneTask, why: NotRunReason) -> SceneResult {
     SceneResult::without_run(&task.name, task.scene.steps(), verdict, Reason::LeftOut(why))
 }
 
-/// The first scene that is not run, and why. `known` has the verdict of every scene that is done, and how long it took.
+/// Returns the first scene that is not run, and why. `known` has the verdict of every scene that is done, and how long
+/// it took.
 pub(super) fn end(
     patience: &Patience,
     fail_fast: bool,
@@ -52,8 +53,8 @@ pub(super) fn end(
     None
 }
 
-/// Whether a program with this verdict was stopped at a limit. An endless loop runs into whichever comes first: of
-/// time, of memory, of what it may write.
+/// Returns whether a program with this verdict was stopped at a limit. An endless loop runs into whichever comes first:
+/// of time, of memory, of what it may write.
 const fn is_limit(verdict: Verdict) -> bool {
     matches!(verdict, Verdict::TimeLimit | Verdict::MemoryLimit | Verdict::OutputLimit)
 }

@@ -21,13 +21,13 @@ pub type Plan = Suite<SceneTask>;
 pub type PlannedGroup = Group<SceneTask>;
 
 impl Plan {
-    /// All scenes in order.
+    /// Returns all scenes in order.
     pub fn scenes(&self) -> impl Iterator<Item = &SceneTask> {
         self.groups.iter().flat_map(|group| &group.scenes)
     }
 
-    /// The part of the plan with the scenes that `takes` takes by name. Each keeps its points; groups without any are
-    /// left out, and the name says that this is a part.
+    /// Returns the part of the plan with the scenes that `takes` takes by name. Each keeps its points; groups without
+    /// any are left out, and the name says that this is a part.
     #[must_use]
     pub fn part(mut self, takes: impl Fn(&str) -> bool) -> Self {
         let all = self.scenes().count();
@@ -49,7 +49,7 @@ impl Plan {
         self
     }
 
-    /// How much students are told of a scene.
+    /// Returns how much students are told of a scene.
     #[must_use]
     pub fn student_hints(&self, scene: &str) -> Hints {
         let group = self.groups.iter().find(|group| group.scenes.iter().any(|task| task.name == scene));
@@ -79,7 +79,7 @@ impl Plan {
         self.milestone.or_else(by_scenes).unwrap_or(Assignment::DEFAULT)
     }
 
-    /// Points that can be reached, without extra ones.
+    /// Returns points that can be reached, without extra ones.
     #[must_use]
     pub fn max_points(&self) -> f64 {
         let of_speed = |marking: &Marking| marking.speed.map_or(0.0, |speed| speed.points);
@@ -88,7 +88,7 @@ impl Plan {
     }
 }
 
-/// The text of a built-in suite: of `t2m2@1`, for example, or of the newest version of `t2m2`.
+/// Returns the text of a built-in suite: of `t2m2@1`, for example, or of the newest version of `t2m2`.
 #[must_use]
 pub fn built_in(name: &str) -> Option<&'static str> {
     assignments::version(name).map(|(_, version)| version.suite)

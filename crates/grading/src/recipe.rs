@@ -55,9 +55,9 @@ impl Recipe<'_> {
         Ok(Staged::refused(path, why))
     }
 
-    /// As [`Recipe::file`], for a file at `name` in a folder that somebody else filled: a link that leads elsewhere, to
-    /// another's submission perhaps, is refused, and so is a file that is `noted` to be another's. Without such a file,
-    /// an archive in the folder is the submission.
+    /// Stages as [`Recipe::file`] does, for a file at `name` in a folder that somebody else filled: a link that leads
+    /// elsewhere, to another's submission perhaps, is refused, and so is a file that is `noted` to be another's.
+    /// Without such a file, an archive in the folder is the submission.
     ///
     /// # Errors
     /// As for [`Recipe::file`].
@@ -124,7 +124,7 @@ impl Recipe<'_> {
     }
 }
 
-/// The kind of an open file by its first bytes, which are read again later.
+/// Returns the kind of an open file by its first bytes, which are read again later.
 fn kind_of(file: &mut File) -> io::Result<FileKind> {
     let mut start = Vec::new();
     file.take(fosssim_intake::START as u64).read_to_end(&mut start)?;

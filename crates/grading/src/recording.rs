@@ -60,7 +60,7 @@ impl Recording {
         })
     }
 
-    /// The contents of its `.bin.zst` file.
+    /// Returns the contents of its `.bin.zst` file.
     ///
     /// # Errors
     /// When zstd fails.
@@ -68,12 +68,12 @@ impl Recording {
         zstd::encode_all(&self.trace[..], COMPRESSION)
     }
 
-    /// Its line of the manifest.
+    /// Returns the recording's line of the manifest.
     fn line(&self) -> String {
         format!("{} {} steps {} bytes sha256 {}\n", self.name, self.steps, self.trace.len(), self.sha256)
     }
 
-    /// The difference from the recorded files, as a text for people; `None` when everything is the same.
+    /// Returns the difference from the recorded files, as a text for people; `None` when everything is the same.
     #[must_use]
     pub fn difference(&self, packed: Option<&[u8]>, steps: Option<&[u8]>) -> Option<String> {
         let Some(packed) = packed else { return Some(format!("{}: there is no recording\n", self.name)) };
@@ -92,14 +92,14 @@ impl Recording {
     }
 }
 
-/// The manifest of recordings in their order.
+/// Returns the manifest of recordings in their order.
 #[must_use]
 pub fn manifest<'a>(recordings: impl IntoIterator<Item = &'a Recording>) -> String {
     recordings.into_iter().map(Recording::line).collect()
 }
 
-/// A unified diff from what was recorded to what is simulated now; empty when they are the same. Git may have given the
-/// recorded lines the ends of another system.
+/// Returns a unified diff from what was recorded to what is simulated now; empty when they are the same. Git may have
+/// given the recorded lines the ends of another system.
 #[must_use]
 pub fn diff(name: &str, recorded: &str, now: &str) -> String {
     let (old, new) = (format!("recorded/{name}"), format!("simulated/{name}"));
@@ -107,7 +107,7 @@ pub fn diff(name: &str, recorded: &str, now: &str) -> String {
     TextDiff::from_lines(recorded.as_str(), now).unified_diff().context_radius(1).header(&old, &new).to_string()
 }
 
-/// The trace of a scene.
+/// Returns the trace of a scene.
 pub(super) fn trace(scene: &Scene) -> Result<Vec<u8>, CannotRecord> {
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     let mut recorder = Recorder::start(Vec::new(), Layout::of(scene), simulation.state());
@@ -117,7 +117,7 @@ pub(super) fn trace(scene: &Scene) -> Result<Vec<u8>, CannotRecord> {
     Ok(recorder.finish()?.0)
 }
 
-/// The trace of a recording; more than the expected bytes are cut to one more, which is enough to differ.
+/// Returns the trace of a recording; more than the expected bytes are cut to one more, which is enough to differ.
 fn unpack(packed: &[u8], expected: usize) -> io::Result<Vec<u8>> {
     let mut trace = Vec::with_capacity(expected);
     zstd::stream::read::Decoder::new(packed)?.take(expected as u64 + 1).read_to_end(&mut trace)?;

@@ -10,14 +10,14 @@ use std::{
 pub struct SceneFile {
     /// The scene's name, `Group/name`.
     pub name: String,
-    /// Its path in the folder, without the extension: also that of its recording in the folder of recordings.
+    /// The scene's path in the folder, without the extension: also that of its recording in the folder of recordings.
     pub stem: String,
     /// The file.
     pub path: PathBuf,
 }
 
-/// The files with this extension (`.xml`, say) in the groups of a folder, sorted by the scenes' names. Files that lie
-/// elsewhere, or whose names are not UTF-8, are left out.
+/// Returns the files with this extension (`.xml`, say) in the groups of a folder, sorted by the scenes' names. Files
+/// that lie elsewhere, or whose names are not UTF-8, are left out.
 ///
 /// # Errors
 /// When a folder can't be read.

@@ -45,8 +45,8 @@ pub fn group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) ->
     }
 }
 
-/// The grade of the results of all scenes, in the plan's order, as if nothing had been run: no build, no sandbox, no
-/// time. `is_timed` says whether speed counts.
+/// Returns the grade of the results of all scenes, in the plan's order, as if nothing had been run: no build, no
+/// sandbox, no time. `is_timed` says whether speed counts.
 pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Vec<(SceneResult, bool)>) -> Grade {
     let mut results = as_written(results).into_iter();
     let of_group = |planned: &PlannedGroup| {
@@ -75,8 +75,8 @@ pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Ve
     }
 }
 
-/// The results as those of one submission: where a trace of it shows anything, one that shows nothing is wrong as
-/// others are, and does not say that nothing is written.
+/// Returns the results as those of one submission: where a trace of it shows anything, one that shows nothing is wrong
+/// as others are, and does not say that nothing is written.
 fn as_written(mut results: Vec<(SceneResult, bool)>) -> Vec<(SceneResult, bool)> {
     let shows = |(result, _): &(SceneResult, bool)| matches!(result.verdict, Verdict::Accepted | Verdict::WrongAnswer);
     if results.iter().any(shows) {
@@ -87,18 +87,18 @@ fn as_written(mut results: Vec<(SceneResult, bool)>) -> Vec<(SceneResult, bool)>
     results
 }
 
-/// The points of the scenes and of their speed.
+/// Returns the points of the scenes and of their speed.
 fn with_speed(scenes: Option<f64>, speed: Option<&SpeedGrade>) -> Option<f64> {
     speed.map_or(scenes, |speed| Some(scenes? + speed.points?))
 }
 
-/// The worth of one scene in a group of this number of scenes.
+/// Returns the worth of one scene in a group of this number of scenes.
 #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
 fn worth(points: f64, scenes: usize) -> f64 {
     if scenes == 0 { 0.0 } else { points / scenes as f64 }
 }
 
-/// The points of a group. The full score is exact: sums of rounded shares would make 99.99999 of 100.
+/// Returns the points of a group. The full score is exact: sums of rounded shares would make 99.99999 of 100.
 fn sum(points: f64, all_accepted: bool, scenes: &[SceneGrade]) -> Option<f64> {
     match all_accepted && !scenes.is_empty() {
         true => Some(points),
@@ -106,7 +106,7 @@ fn sum(points: f64, all_accepted: bool, scenes: &[SceneGrade]) -> Option<f64> {
     }
 }
 
-/// The share of its points that a scene gets.
+/// Returns the share of its points that a scene gets.
 fn share(credit: Credit, result: &SceneResult, all_accepted: bool) -> Option<f64> {
     Some(match (credit, result.verdict) {
         (_, Verdict::NotRun | Verdict::JudgeError) => return None,
@@ -121,8 +121,8 @@ fn share(credit: Credit, result: &SceneResult, all_accepted: bool) -> Option<f64
     })
 }
 
-/// A contradiction in a grade: points, or a verdict, that do not follow from the verdicts of its scenes. A grade from
-/// elsewhere is checked before its points are believed.
+/// Returns a contradiction in a grade: points, or a verdict, that do not follow from the verdicts of its scenes. A
+/// grade from elsewhere is checked before its points are believed.
 #[must_use]
 pub fn contradiction(grade: &Grade) -> Option<&'static str> {
     let (verdict, points, max_points) = Grade::totals(&grade.groups);
@@ -137,7 +137,7 @@ pub fn contradiction(grade: &Grade) -> Option<&'static str> {
     }
 }
 
-/// Whether a group's points and verdict are what some credit makes of its scenes' verdicts.
+/// Returns whether a group's points and verdict are what some credit makes of its scenes' verdicts.
 fn follows(group: &GroupGrade) -> bool {
     let all_accepted = group.scenes.iter().all(|scene| scene.verdict.is_accepted());
     let max_points = group.max_points_of_scenes();
@@ -158,7 +158,7 @@ fn follows(group: &GroupGrade) -> bool {
 /// The number of accepted scenes that are checked for evidence against a likely mistake.
 const WITNESSES: usize = 12;
 
-/// Likely mistakes that accepted scenes speak against; the smallest of these are asked.
+/// Returns likely mistakes that accepted scenes speak against; the smallest of these are asked.
 fn refuted(plan: &Plan, groups: &[GroupGrade]) -> Vec<String> {
     let graded = || groups.iter().flat_map(|group| &group.scenes).zip(plan.scenes());
     let wrong: Vec<(&Scene, &[Explanation])> = graded()

@@ -107,7 +107,7 @@ const PLACES: [(&str, &[Key]); 5] = [
     ("the top of the file", SUITE),
 ];
 
-/// The table without what is wrong with it, all that is, and whether every line could be read.
+/// Returns the table without what is wrong with it, all that is, and whether every line could be read.
 pub(super) fn checked(text: &str) -> (Spanned<DeTable<'_>>, Vec<Problem>, bool) {
     let (mut table, errors) = DeTable::parse_recoverable(text);
     let mut problems: Vec<Problem> =
@@ -146,7 +146,7 @@ fn clean(table: &mut DeTable<'_>, keys: &[Key], place: &str, at: Range<usize>, p
     *table = entries.collect();
 }
 
-/// Whether a value is of its kind.
+/// Returns whether a value is of its kind.
 fn fits(name: &str, kind: &ValueKind, value: &mut Spanned<DeValue<'_>>, problems: &mut Vec<Problem>) -> bool {
     let at = value.span();
     let is = value.get_ref().type_str();
@@ -204,7 +204,7 @@ fn fits(name: &str, kind: &ValueKind, value: &mut Spanned<DeValue<'_>>, problems
     }
 }
 
-/// A number's value, rounded where it is long; none of a hexadecimal one that no reader takes.
+/// Returns a number's value, rounded where it is long; none of a hexadecimal one that no reader takes.
 fn number(value: &DeValue<'_>) -> Option<f64> {
     match value {
         DeValue::Float(number) => number.as_str().parse().ok(),
@@ -215,18 +215,18 @@ fn number(value: &DeValue<'_>) -> Option<f64> {
     }
 }
 
-/// `an integer`, `a string`.
+/// Returns `an integer`, `a string`.
 fn article(kind: &str) -> String {
     format!("{} {kind}", if kind.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" })
 }
 
-/// The message for a word that is none of these.
+/// Returns the message for a word that is none of these.
 fn not_among(name: &str, word: &str, words: &[&str]) -> String {
     let hint = closest(word, words.iter().copied()).map(|word| format!("; did you mean \"{word}\"?"));
     format!("{name} \"{word}\" is not known: there are {}{}", listed(words, "and"), hint.unwrap_or_default())
 }
 
-/// `"a", "b" and "c"`.
+/// Returns `"a", "b" and "c"`.
 fn listed(words: &[&str], last: &str) -> String {
     let quoted: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
     match &quoted[..] {
@@ -235,7 +235,7 @@ fn listed(words: &[&str], last: &str) -> String {
     }
 }
 
-/// The message for a key that does not belong here.
+/// Returns the message for a key that does not belong here.
 fn unknown(key: &str, keys: &[Key], place: &str) -> String {
     let names = |keys: &'static [Key]| keys.iter().map(|Key(name, ..)| *name);
     let here = keys.iter().map(|Key(name, ..)| *name);

@@ -57,8 +57,8 @@ impl SubmissionGrading<'_> {
         }
     }
 
-    /// The timed runs of a scene, of which the first alone begins after `end`; nothing if the grader failed or was
-    /// stopped.
+    /// Returns the timed runs of a scene, of which the first alone begins after `end`; nothing if the grader failed or
+    /// was stopped.
     fn timed(&self, scene: &SceneTask, marking: SpeedMarking, end: Instant) -> Option<Timing> {
         let (staged, reference) = (self.staged(), self.shared.reference(self.grader.reference?));
         let (Ok(staged), Ok(reference)) = (&*staged, &*reference) else { return None };
@@ -103,12 +103,12 @@ impl SubmissionGrading<'_> {
     }
 }
 
-/// Whether these times were measured here, often enough.
+/// Returns whether these times were measured here, often enough.
 fn is_of_here(timing: &Timing, marking: SpeedMarking) -> bool {
     timing.machine == machine() && (timing.failed.is_some() || timing.runs.len() >= marking.runs as usize)
 }
 
-/// This machine: its name and its processor.
+/// Returns this machine's name and its processor.
 fn machine() -> String {
     let name = fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
     let processor = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();

@@ -62,7 +62,7 @@ pub(super) fn at(path: &Path) -> impl FnOnce(io::Error) -> String {
 /// Why a submission's files are not copied.
 #[derive(Debug)]
 pub(super) enum CopyError {
-    /// Its own doing, in words.
+    /// The submission's own fault, in words.
     Submission(String),
     /// Ours or the machine's, in words.
     Ours(String),
@@ -74,7 +74,8 @@ impl From<String> for CopyError {
     }
 }
 
-/// The meaning of a failure to open or read part of a submission: closed or vanished files are the submission's doing.
+/// Returns the meaning of a failure to open or read part of a submission: closed or vanished files are the submission's
+/// doing.
 pub(super) fn unreadable(name: &Path, error: io::Error) -> CopyError {
     // A path may be as long as the submission likes, and a disk that fails is the machine's.
     let closed = matches!(error.kind(), io::ErrorKind::PermissionDenied | io::ErrorKind::NotFound);
@@ -102,14 +103,15 @@ pub(super) fn open_in(folder: &Path, name: &str) -> Result<File, CollectError> {
     opened.file(OsStr::new(name), LARGEST_FOLDER).map(|(file, _)| file)
 }
 
-/// The digest of a file as it lies there, without a copy; `None` for what [`Recipe::file`] refuses, and for links.
+/// Returns the digest of a file as it lies there, without a copy; `None` for what [`Recipe::file`] refuses, and for
+/// links.
 #[must_use]
 pub fn digest(path: &Path) -> Option<blake3::Hash> {
     let (file, length) = collect::open_file(path, false).ok()?;
     if length <= LARGEST_FOLDER { digest_of(file) } else { None }
 }
 
-/// As [`digest`], for what [`Recipe::file_in`] takes.
+/// Returns the digest as [`digest`] does, for what [`Recipe::file_in`] takes.
 #[must_use]
 pub fn digest_in(folder: &Path, name: &str, noted: Option<&OneFile>) -> Option<blake3::Hash> {
     let file = open_in(folder, name).ok()?;
@@ -122,7 +124,7 @@ fn digest_of(file: File) -> Option<blake3::Hash> {
 }
 
 impl Staged {
-    /// Nothing that could be run.
+    /// Returns nothing that could be run.
     fn nothing(path: &Path) -> Self {
         let digest = blake3::hash(path.as_os_str().as_encoded_bytes());
         Self { program: path.to_owned(), digest, build: None, refused: None, identity: None, _folder: None }
@@ -325,7 +327,7 @@ fn copy_folder(
     Ok(())
 }
 
-/// A command by its path, relative to the sources, or by its name in the system's folders.
+/// Finds a command by its path, relative to the sources, or by its name in the system's folders.
 fn find_tool(command: &str, sources: &Path) -> Option<PathBuf> {
     let candidates: Vec<PathBuf> = if command.contains('/') {
         vec![sources.join(command)]

@@ -8,24 +8,24 @@ use fosssim_model::scene::Scene;
 /// A scene to run.
 #[derive(Debug, Clone)]
 pub struct SceneTask {
-    /// Its name, `Group/name`.
+    /// The scene's name, `Group/name`.
     pub name: String,
-    /// Its XML, as the program gets it.
+    /// The scene's XML, as the program gets it.
     pub xml: Vec<u8>,
     /// The scene itself.
     pub scene: Scene,
-    /// Its recorded trace, compressed with zstd, when there is one.
+    /// The scene's recorded trace, compressed with zstd, when there is one.
     pub recording: Option<&'static [u8]>,
 }
 
 impl SceneTask {
-    /// Its result where no run was judged.
+    /// Returns the task's result where no run was judged.
     #[must_use]
     pub fn without_run(&self, verdict: Verdict, why: Reason) -> SceneResult {
         SceneResult::without_run(&self.name, self.scene.steps(), verdict, why)
     }
 
-    /// Its result where the grader or the machine failed.
+    /// Returns the task's result where the grader or the machine failed.
     #[must_use]
     pub fn failed(&self, failure: Failure) -> SceneResult {
         self.without_run(Verdict::JudgeError, Reason::Failed(failure))

@@ -56,7 +56,7 @@ impl Drop for Temporary {
 pub struct Folders(Mutex<Vec<Temporary>>);
 
 impl Folders {
-    /// A folder with nothing in it but what the grader left in one that was [kept](Self::keep).
+    /// Returns a folder with nothing in it but what the grader left in one that was [kept](Self::keep).
     pub(super) fn take(&self) -> io::Result<Temporary> {
         let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner).pop();
         kept.map_or_else(|| Temporary::make("run"), Ok)
@@ -76,7 +76,7 @@ struct Grader {
 }
 
 impl Grader {
-    /// The one that is there, or a new one.
+    /// Returns the one that is there, or a new one.
     fn this() -> io::Result<Arc<Self>> {
         static THIS: Mutex<Weak<Grader>> = Mutex::new(Weak::new());
         let mut this = THIS.lock().unwrap_or_else(PoisonError::into_inner);
@@ -126,7 +126,7 @@ impl Drop for Grader {
     }
 }
 
-/// A new folder for its owner only.
+/// Returns a new folder for its owner only.
 fn closed(prefix: &str, place: &Path) -> io::Result<tempfile::TempDir> {
     tempfile::Builder::new().prefix(prefix).permissions(Permissions::from_mode(0o700)).tempdir_in(place)
 }

@@ -16,7 +16,8 @@ use std::{
     sync::atomic::{AtomicU64, Ordering},
 };
 
-/// The result of one scene by a trace, as if a program had ended well after it wrote it, and what judging has seen.
+/// Returns the result of one scene by a trace, as if a program had ended well after it wrote it, and what judging has
+/// seen.
 pub fn judged<'a, R: Read + Send>(
     plan: &Plan,
     task: &'a SceneTask,
@@ -41,7 +42,7 @@ pub fn judged<'a, R: Read + Send>(
     (SceneResult { ended: None, measured: Measurements::default(), ..explained }, examined)
 }
 
-/// The grade of the results of all scenes, in the plan's order.
+/// Returns the grade of the results of all scenes, in the plan's order.
 #[must_use]
 pub fn grade(plan: &Plan, submission: String, results: Vec<SceneResult>, warnings: Vec<String>) -> Grade {
     let results = results.into_iter().map(|result| (result, false)).collect();

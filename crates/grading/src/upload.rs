@@ -12,7 +12,7 @@ const NAMED: usize = 6;
 const LOOKED_AT: u32 = 2000;
 const DEEPEST: u32 = 3;
 
-/// Why there is nothing to run: what was looked for, and what is there instead.
+/// Returns why there is nothing to run: what was looked for, and what is there instead.
 pub(super) fn without(program: &str, folder: &Path) -> Unusable {
     let found = match OpenFolder::open(folder) {
         Ok(opened) => found(program, &opened),
@@ -42,7 +42,7 @@ fn entry(folder: &OpenFolder, name: &OsStr) -> String {
     names::shown(name) + slash
 }
 
-/// The path of a file of this name beneath a folder, the shallowest of each folder first.
+/// Returns the path of a file of this name beneath a folder, the shallowest of each folder first.
 fn deeper(folder: &OpenFolder, wanted: &OsStr, at: &Path, depth: u32, budget: &mut u32) -> Option<std::path::PathBuf> {
     let mut names = folder.names().ok()?;
     names.sort();

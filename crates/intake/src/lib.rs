@@ -54,7 +54,7 @@ impl ArchiveLimits {
     /// Enough for a suite with all its scenes, and for a student's sources with a library in them.
     pub const USUAL: Self = Self { bytes: 1 << 30, entries: 20_000 };
 
-    /// The same for an archive of this size: what unpacks to 200 times as much is a bomb, unless it is small.
+    /// Sets the limits for an archive of this size: what unpacks to 200 times as much is a bomb, unless it is small.
     fn of_size(self, packed: u64) -> Self {
         Self { bytes: self.bytes.min(packed.saturating_mul(200).max(50 << 20)), ..self }
     }
@@ -66,7 +66,7 @@ pub enum ArchiveError {
     /// No archive of a kind that is read.
     #[error("looked for an archive ({KNOWN}), and found {0}")]
     Unknown(String),
-    /// It can't be read to its end.
+    /// The archive can't be read to its end.
     #[error("the archive is damaged: {0}")]
     Damaged(String),
     /// A name leads out of the folder, or is none.
@@ -84,10 +84,10 @@ pub enum ArchiveError {
     /// Too many bytes.
     #[error("the archive holds more than {0} bytes when it is unpacked")]
     Bytes(u64),
-    /// Its folders are nested too deep.
+    /// The archive's folders are nested too deep.
     #[error("the archive has folders that are nested more than {DEEPEST} deep: {0}")]
     Depth(String),
-    /// It can't be read, which is not its fault.
+    /// The archive can't be read, which is not its fault.
     #[error("cannot read the archive: {0}")]
     Read(io::Error),
     /// The folder can't be written.
@@ -123,9 +123,9 @@ pub fn top_folder(folder: &Path, files: &[PathBuf]) -> PathBuf {
     }
 }
 
-/// Whether a file manager or a build tool puts a file or folder of this name there by itself, and not the person who
-/// hands it in: Finder's attributes and notes on windows, Explorer's on pictures, what CMake remembers of a build on
-/// another machine (it refuses to build here because of it).
+/// Returns whether a file manager or a build tool puts a file or folder of this name there by itself, and not the
+/// person who hands it in: Finder's attributes and notes on windows, Explorer's on pictures, what CMake remembers of a
+/// build on another machine (it refuses to build here because of it).
 #[must_use]
 pub fn is_litter(name: &OsStr) -> bool {
     let name = name.as_encoded_bytes();
@@ -165,8 +165,8 @@ fn damaged(error: impl std::fmt::Display) -> ArchiveError {
     ArchiveError::Damaged(error.to_string())
 }
 
-/// How many entries a zip archive says that it has, by its end record (APPNOTE 4.3.16), or the one of large archives
-/// (4.3.14) where that says so.
+/// Returns how many entries a zip archive says that it has, by its end record (APPNOTE 4.3.16), or the one of large
+/// archives (4.3.14) where that says so.
 fn announced(file: &mut File) -> io::Result<Option<u64>> {
     /// Both records, the pointer between them, and the longest comment behind them.
     const LONGEST: u64 = 56 + 20 + 22 + 0xffff;
@@ -199,7 +199,7 @@ fn header(entry: &mut impl Read) -> Result<Vec<u8>, ArchiveError> {
     if header.len() as u64 > LONGEST_HEADER { Err(damaged("a header is too long")) } else { Ok(header) }
 }
 
-/// A name for a message.
+/// Returns a name for a message.
 fn shown(name: &[u8]) -> String {
     String::from_utf8_lossy(name).chars().take(200).flat_map(char::escape_default).collect()
 }
@@ -290,7 +290,7 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// The path of an entry, if it stays within the folder.
+    /// Returns the path of an entry, if it stays within the folder.
     fn path(&mut self, name: &[u8]) -> Result<PathBuf, ArchiveError> {
         self.entries += 1;
         if self.entries > self.limits.entries {
@@ -442,7 +442,7 @@ mod tests {
         assert!(matches!(look_through(deep, ArchiveLimits::USUAL), Err(ArchiveError::Depth(_))));
     }
 
-    /// An archive with an entry of this kind and size, and then a file.
+    /// Returns an archive with an entry of this kind and size, and then a file.
     fn tar(kind: tar::EntryType, size: usize, path: &str) -> File {
         let mut builder = tar::Builder::new(Vec::new());
         let mut header = tar::Header::new_gnu();

@@ -126,12 +126,12 @@ fn judge(scene: &Scene, trace: &[u8], fair: bool) {
     black_box(replay::judge(scene, trace, &options, &mut ()));
 }
 
-/// The same trace with other coefficients.
+/// The trace with other coefficients.
 fn scaled(scene: &Scene, trace: &[u8], factor: f64) -> Vec<u8> {
     with(scene, trace, |coefficient, _| factor * coefficient)
 }
 
-/// The same trace with a rounding more in every third coefficient.
+/// The trace with a rounding more in every third coefficient.
 fn rounded(scene: &Scene, trace: &[u8]) -> Vec<u8> {
     with(
         scene,
@@ -142,7 +142,7 @@ fn rounded(scene: &Scene, trace: &[u8]) -> Vec<u8> {
     )
 }
 
-/// The same trace with coefficients that follow from its own and their numbers in a record.
+/// The trace with coefficients that follow from its own and their numbers in a record.
 fn with(scene: &Scene, trace: &[u8], coefficient: impl Fn(f64, usize) -> f64) -> Vec<u8> {
     let layout = Layout::of(scene);
     let (mut reader, mut writer) = (Reader::of_slice(trace, layout), Writer::new(Vec::new(), layout));

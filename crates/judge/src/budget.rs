@@ -30,8 +30,8 @@ pub struct Budget<'a> {
 }
 
 impl<'a> Budget<'a> {
-    /// For judging a trace of this scene by the original's rules, or by the fair ones: each book has its own. Who
-    /// simulates steps besides, to explain or to show them, takes as much as the original's rules may.
+    /// Creates the budget for judging a trace of this scene by the original's rules, or by the fair ones: each book has
+    /// its own. Explaining and showing may take as much as the original's rules.
     #[must_use]
     pub fn new(scene: &'a Scene, fair: bool) -> Self {
         let factor = if fair { FAIR } else { PARITY };
@@ -39,12 +39,13 @@ impl<'a> Budget<'a> {
         Self { scene, factor, rest: FLOOR.saturating_add(at_least), at_least, is_wide: false }
     }
 
-    /// The same, where every trace may ask for so much, and nothing is allowed before the scene's own run is known.
+    /// Creates a budget with another floor: every trace may ask for so much, and nothing is allowed before the scene's
+    /// own run is known.
     pub(crate) fn with_floor(self, floor: u64) -> Self {
         Self { rest: floor, at_least: 0, ..self }
     }
 
-    /// The work that is left.
+    /// Returns the work that is left.
     #[must_use]
     pub fn rest(&self) -> u64 {
         self.rest
@@ -86,8 +87,8 @@ impl<'a> Budget<'a> {
     }
 }
 
-/// The least work of the scene's own run: a detection pass for each step, if there are any. Nearly all traces stay
-/// below the allowed multiple of this, and the scene need not be run.
+/// Returns the least work of the scene's own run: a detection pass for each step, if there are any. Nearly all traces
+/// stay below the allowed multiple of this, and the scene need not be run.
 fn least(scene: &Scene) -> u64 {
     match scene.collision {
         Collision::ContinuousTime { .. } | Collision::Hybrid { .. } => {
@@ -97,7 +98,7 @@ fn least(scene: &Scene) -> u64 {
     }
 }
 
-/// The work of the scene's own run.
+/// Returns the work of the scene's own run.
 fn of_scene(scene: &Scene) -> u64 {
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     for _ in 0..scene.steps() {
@@ -120,8 +121,8 @@ mod tests {
         samples::{changed, run, scene, written},
     };
 
-    /// A ball that moves between two posts; where they overlap it, each round of impulses throws it from one to the
-    /// other.
+    /// Returns a ball that moves between two posts; where they overlap it, each round of impulses throws it from one to
+    /// the other.
     fn posts(start: f64, rounds: u32) -> Scene {
         let post = |x| format!(r#"<particle m="1" px="{x}" py="0" vx="0" vy="0" fixed="1" radius="0.2"/>"#);
         scene(&format!(
@@ -133,7 +134,7 @@ mod tests {
         ))
     }
 
-    /// A trace of that scene whose every step but the first begins between the posts.
+    /// Returns a trace of that scene whose every step but the first begins between the posts.
     fn squeezed(scene: &Scene) -> Vec<u8> {
         changed(scene, |frames| {
             for frame in &mut frames[1..] {
@@ -148,7 +149,7 @@ mod tests {
         judge_within(usize::MAX, Some(floor), scene, &mut trace, &options, &mut ())
     }
 
-    /// The step at which judging was given up.
+    /// Returns the step at which judging was given up.
     fn given_up(outcome: &Outcome) -> Option<u32> {
         match outcome.stop {
             Some(Stop::Step(StepError::Work { step })) => Some(step),

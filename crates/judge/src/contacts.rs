@@ -5,12 +5,12 @@ use fosssim_model::{sim::Pair, trace::LoggedImpulse};
 /// Kind and numbers of a pair as they are logged.
 pub(crate) type PairKey = (i32, i32, i32);
 
-/// The key of a pair; `None` where the format has no numbers for it, so that no trace logs it.
+/// Returns the key of a pair; `None` where the format has no numbers for it, so that no trace logs it.
 pub(crate) fn key(pair: Pair) -> Option<PairKey> {
     Some((pair.kind.code(), i32::try_from(pair.first).ok()?, i32::try_from(pair.second).ok()?))
 }
 
-/// The pair that a logged impulse names.
+/// Returns the pair that a logged impulse names.
 pub(crate) const fn logged_key(logged: &LoggedImpulse) -> PairKey {
     (logged.kind, logged.first, logged.second)
 }
@@ -27,7 +27,7 @@ impl Contacts {
         Self(keys)
     }
 
-    /// The numbers of the impulses about a pair, in their order.
+    /// Returns the numbers of the impulses about a pair, in their order.
     pub fn about(&self, key: PairKey) -> impl Iterator<Item = usize> {
         let begin = self.0.partition_point(|(other, _)| *other < key);
         self.0[begin..].iter().take_while(move |(other, _)| *other == key).map(|(_, index)| *index)

@@ -10,8 +10,8 @@ const ALIKE: f64 = 1e-9;
 /// The share of the sum of moduli to which a value is known if its terms cancel.
 const FLOOR: f64 = 1e-13;
 
-/// The positive factor of the trace's polynomial on which most coefficients agree; 1 where none is better than that.
-/// Both lists have the highest power first and are aligned at the constant term.
+/// Returns the positive factor of the trace's polynomial on which most coefficients agree; 1 where none is better than
+/// that. Both lists have the highest power first and are aligned at the constant term.
 #[must_use]
 pub fn factor(expected: &[f64], actual: &[f64]) -> f64 {
     let agreeing = |factor: f64| {
@@ -32,7 +32,7 @@ pub fn factor(expected: &[f64], actual: &[f64]) -> f64 {
     best.1
 }
 
-/// The powers of t whose coefficients differ with this factor, the highest first.
+/// Returns the powers of t whose coefficients differ with this factor, the highest first.
 #[must_use]
 pub fn differing(expected: &[f64], actual: &[f64], factor: f64) -> Vec<usize> {
     let powers = (0..expected.len().max(actual.len())).rev();
@@ -45,7 +45,7 @@ fn agrees(expected: &[f64], actual: &[f64], power: usize, factor: f64) -> bool {
     (of(actual, power) - right).abs() <= ALIKE * right.abs() + FLOOR * factor * sum
 }
 
-/// The coefficient of a power; 0 where the list does not reach it.
+/// Returns the coefficient of a power; 0 where the list does not reach it.
 fn of(coefficients: &[f64], power: usize) -> f64 {
     coefficients.len().checked_sub(power + 1).map_or(0.0, |index| coefficients[index])
 }

@@ -26,7 +26,7 @@ impl KeptTrace {
         KeepingReader { kept: self, inner: trace }
     }
 
-    /// The bytes that were kept.
+    /// Returns the bytes that were kept.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes

@@ -51,13 +51,13 @@ impl OverlapStudy {
         Ok(Some(study))
     }
 
-    /// The distance of the objects.
+    /// Returns the distance of the objects.
     #[must_use]
     pub fn distance(&self) -> f64 {
         length(self.normal)
     }
 
-    /// How fast they approach, times the distance: above zero if they do.
+    /// Returns how fast they approach, times the distance: above zero if they do.
     #[must_use]
     pub fn approach(&self) -> f64 {
         (self.velocities[0] - self.velocities[1]).dot(&self.normal)
@@ -109,7 +109,7 @@ mod tests {
     use crate::samples::scene;
     use fosssim_model::sim::PairKind;
 
-    /// A ball above an edge that falls by `way` within a step.
+    /// Returns a ball above an edge that falls by `way` within a step.
     fn study(way: f64) -> OverlapStudy {
         let scene = scene(&format!(
             r#"<scene><duration time="1"/><integrator type="explicit-euler" dt="1"/><collision type="simple" COR="1"/>

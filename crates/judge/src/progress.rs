@@ -7,13 +7,13 @@ use fosssim_model::{sim::Impulse, trace::LoggedImpulse};
 
 /// Hears how judging goes, in the order of the steps whatever the number of threads. Methods do nothing by default.
 pub trait Progress {
-    /// The initial record has been read; judging begins.
+    /// Reports that the initial record has been read and judging begins.
     fn begins(&mut self) {}
-    /// A step is about to be judged (from 1).
+    /// Reports that a step is about to be judged (from 1).
     fn step_begins(&mut self, _step: u32) {}
-    /// A step has been judged.
+    /// Reports that a step has been judged.
     fn step_judged(&mut self, _step: u32, _remarks: &[Remark]) {}
-    /// The same step holds something wrong; not called for what is left of damaged records.
+    /// Reports that the step holds something wrong; not called for what is left of damaged records.
     fn step_wrong(&mut self, _wrong: &WrongStep<'_>) {}
 }
 

@@ -42,7 +42,7 @@ pub fn judge<T: Read, R: Read>(
     compare(scene, &mut trace, &mut recording, progress)
 }
 
-/// The body of [`judge`], compiled once.
+/// Returns the body of [`judge`], compiled once.
 fn compare(
     scene: &Scene,
     trace: &mut dyn Read,
@@ -104,7 +104,7 @@ fn compare(
     Ok(outcome)
 }
 
-/// An impulse of a sound recording.
+/// Returns an impulse of a sound recording.
 fn impulse(logged: &LoggedImpulse) -> Option<Impulse> {
     Some(Impulse { pair: logged.pair()?, normal: logged.normal, time: logged.time })
 }
@@ -120,8 +120,8 @@ impl RecordPlaces {
         Self { pairs: pairs(scene), continuous: matches!(scene.collision, Collision::ContinuousTime { .. }) }
     }
 
-    /// The place of polynomial `index` of a frame. In `hybrid` the recording does not tell where the impulse rounds
-    /// end, so passes are counted as rounds.
+    /// Returns the place of polynomial `index` of a frame. In `hybrid` the recording does not tell where the impulse
+    /// rounds end, so passes are counted as rounds.
     fn at(&self, index: usize) -> PolynomialPlace {
         // A scene without pairs has no recording with polynomials; of one that has, the place is nobody's.
         let nobody = (0, Pair { kind: PairKind::ParticleParticle, first: 0, second: 0 }, 0);

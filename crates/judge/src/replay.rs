@@ -39,7 +39,7 @@ const BATCH_STEPS: usize = 256;
 /// One step as read, and what judging it yields.
 #[derive(Debug, Default)]
 struct StepSlot {
-    /// Its number, from 1.
+    /// The step's number, from 1.
     step: u32,
     /// The offset of its end record.
     last: u64,
@@ -86,7 +86,8 @@ pub fn judge<R: Read + Send>(scene: &Scene, mut trace: R, options: &Options, pro
     judge_within(record_memory(scene), None, scene, &mut trace, options, progress)
 }
 
-/// As [`judge`], with so much memory for the lists of a record, in bytes, and another floor of work, if one is given.
+/// Judges as [`judge`] does, with so much memory for the lists of a record, in bytes, and another floor of work, if one
+/// is given.
 ///
 /// It is compiled once and here, whatever the trace comes from: what is generic is compiled where it is used, at that
 /// crate's level.
@@ -231,7 +232,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         }
     }
 
-    /// The work that is left to each book.
+    /// Returns the work that is left to each book.
     fn rest(&self) -> [u64; 2] {
         [self.budgets[0].rest(), self.budgets[1].rest()]
     }
@@ -413,7 +414,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
     }
 }
 
-/// The stop at an end record that is as long as the reference's, and longer than what was kept.
+/// Returns the stop at an end record that is as long as the reference's, and longer than what was kept.
 fn beyond_limit(slot: &StepSlot, layout: Layout) -> Stop {
     let (logged, kept) = (slot.end.logged, slot.end.polynomials.len());
     Stop::Trace {
@@ -426,19 +427,19 @@ fn beyond_limit(slot: &StepSlot, layout: Layout) -> Stop {
 }
 
 impl Batch {
-    /// Whether a step of it is still to be judged.
+    /// Returns whether a step of it is still to be judged.
     fn is_waiting(&mut self) -> bool {
         self.slots[..self.filled].iter_mut().map(lock).any(|slot| !slot.is_done || !slot.is_done_fairly)
     }
 
-    /// The work of judging it so far, by each book.
+    /// Returns the work of judging it so far, by each book.
     fn work(&mut self) -> [u64; 2] {
         let slots = self.slots[..self.filled].iter_mut().map(lock);
         slots.fold([0, 0], |[parity, fair], slot| [parity + slot.work, fair + slot.fair_work])
     }
 }
 
-/// The memory of a record's lists, in bytes.
+/// Returns the memory of a record's lists, in bytes.
 fn memory(frame: &LenientFrame) -> usize {
     let LenientFrame { impulses, polynomials, .. } = frame;
     8 * polynomials.coefficients.len() + 8 * polynomials.ends.len() + size_of::<LoggedImpulse>() * impulses.len()

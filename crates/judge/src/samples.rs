@@ -23,12 +23,12 @@ pub(crate) const ZONES: &str = r#"<scene>
   <edge i="0" j="1" radius="0.1"/><halfplane px="0" py="-0.15" nx="0" ny="1"/>
 </scene>"#;
 
-/// A scene that is written as the original reads it.
+/// Returns a scene that is written as the original reads it.
 pub(crate) fn scene(text: &str) -> Scene {
     original::read(text.as_bytes()).expect("a scene").scene
 }
 
-/// The frames of a run that `steer` may change as it goes.
+/// Returns the frames of a run that `steer` may change as it goes.
 pub(crate) fn run(scene: &Scene, mut steer: impl Observer) -> Vec<Frame> {
     let layout = Layout::of(scene);
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
@@ -45,21 +45,21 @@ pub(crate) fn run(scene: &Scene, mut steer: impl Observer) -> Vec<Frame> {
     frames
 }
 
-/// The bytes of these frames.
+/// Returns the bytes of these frames.
 pub(crate) fn written(scene: &Scene, frames: &[Frame]) -> Vec<u8> {
     let mut writer = Writer::new(Vec::new(), Layout::of(scene));
     frames.iter().for_each(|frame| writer.frame(frame));
     writer.finish().expect("written").0
 }
 
-/// The reference trace with changed frames.
+/// Returns the reference trace with changed frames.
 pub(crate) fn changed(scene: &Scene, change: impl FnOnce(&mut Vec<Frame>)) -> Vec<u8> {
     let mut frames = run(scene, ());
     change(&mut frames);
     written(scene, &frames)
 }
 
-/// The outcome by both books.
+/// Returns the outcome by both books.
 pub(crate) fn judged(scene: &Scene, trace: &[u8]) -> Outcome {
     let options = Options { fair: true, threads: 1, ..Options::default() };
     replay::judge(scene, trace, &options, &mut ())

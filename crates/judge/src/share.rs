@@ -1,6 +1,6 @@
 //! How many steps are right or wrong, in words that every report shares.
 
-/// `all 15 steps are right`, `the only step is right`. `count` writes numbers.
+/// Returns words such as `all 15 steps are right`, `the only step is right`. `count` writes numbers.
 #[must_use]
 pub fn right(steps: u32, count: fn(u64) -> String) -> String {
     match steps {
@@ -10,7 +10,8 @@ pub fn right(steps: u32, count: fn(u64) -> String) -> String {
     }
 }
 
-/// `3 of 15 steps are wrong`, `1 of 15 steps is wrong`, `the only step is wrong`. `count` writes numbers.
+/// Returns words such as `3 of 15 steps are wrong`, `1 of 15 steps is wrong`, `the only step is wrong`. `count` writes
+/// numbers.
 #[must_use]
 pub fn wrong(wrong: u64, steps: u32, count: fn(u64) -> String) -> String {
     match (wrong, steps) {

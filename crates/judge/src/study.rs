@@ -23,9 +23,9 @@ fosssim_model::drops_leading!();
 /// One polynomial of a detection call, and where it is positive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
-    /// Its meaning when it is positive.
+    /// The polynomial's meaning when it is positive.
     pub role: Role,
-    /// Its coefficients, highest power first, nothing dropped.
+    /// The polynomial's coefficients, highest power first, nothing dropped.
     pub untrimmed: Polynomial,
     /// As logged and searched: without small leading coefficients.
     pub logged: Polynomial,
@@ -47,7 +47,7 @@ impl Curve {
         Ok(Self { role, untrimmed, logged, zeros, positive })
     }
 
-    /// The zeros that count as real, ascending.
+    /// Returns the zeros that count as real, ascending.
     #[must_use]
     pub fn real_zeros(&self) -> Vec<f64> {
         let real = self.zeros.iter().filter(|(_, imaginary)| imaginary.abs() < IMAGINARY_PART);
@@ -64,7 +64,7 @@ impl Curve {
 pub struct NoAnswer {
     /// Which polynomial.
     pub role: Role,
-    /// Its coefficients, nothing dropped.
+    /// The polynomial's coefficients, nothing dropped.
     pub coefficients: Polynomial,
 }
 
@@ -116,7 +116,7 @@ pub struct RightApproach {
 pub struct Study {
     /// The pair and how it moves.
     pub motion: PairMotion,
-    /// Its polynomials in the order of the trace.
+    /// The pair's polynomials in the order of the trace.
     pub curves: Vec<Curve>,
     /// The reference's decision.
     pub answer: Answer,
@@ -155,8 +155,8 @@ impl Study {
         Ok(Self { motion: *motion, curves, answer, certain, right_approach })
     }
 
-    /// Whether a logged polynomial is right by the fair rules: but for a positive factor, round-off, and small leading
-    /// coefficients.
+    /// Returns whether a logged polynomial is right by the fair rules: but for a positive factor, round-off, and small
+    /// leading coefficients.
     #[must_use]
     pub fn is_right(&self, number: usize, logged: &[f64]) -> bool {
         let expected = formulas::BoundedPairMotion::from(&self.motion).polynomials();
@@ -165,7 +165,7 @@ impl Study {
     }
 }
 
-/// The course's approach polynomial with the right t^3 coefficient, if that is another one.
+/// Returns the course's approach polynomial with the right t^3 coefficient, if that is another one.
 fn right_approach(polynomials: &[Polynomial], expected: &formulas::Expected) -> Option<Polynomial> {
     let (course, right) = (expected.polynomial(3), expected.other_form(3)?);
     // The power t^3 of a quintic.
@@ -179,8 +179,8 @@ fn right_approach(polynomials: &[Polynomial], expected: &formulas::Expected) -> 
     Some(Polynomial::untrimmed(&coefficients))
 }
 
-/// The same motion with bounds. The displacement's value is kept, its bound is that of a difference of positions, of
-/// which the one at the end may be off by a rounding.
+/// The motion with bounds. The displacement's value is kept, its bound is that of a difference of positions, of which
+/// the one at the end may be off by a rounding.
 impl From<PointMotion> for formulas::BoundedPointMotion {
     fn from(point: PointMotion) -> Self {
         let start = Bounded2::exact(point.start);
@@ -190,7 +190,7 @@ impl From<PointMotion> for formulas::BoundedPointMotion {
     }
 }
 
-/// The same motion with bounds: end positions may be off by a rounding.
+/// The motion with bounds: end positions may be off by a rounding.
 impl From<&PairMotion> for formulas::BoundedPairMotion {
     fn from(motion: &PairMotion) -> Self {
         let way = formulas::BoundedPointMotion::from;
@@ -214,7 +214,7 @@ mod tests {
         PointMotion { start: Vec2::new(x, y), shift: Vec2::new(dx, dy) }
     }
 
-    /// The assignment's first worked example.
+    /// Returns the assignment's first worked example.
     fn first_example() -> PairMotion {
         PairMotion::Edge {
             centre: point(3.0, 1.0, 4.0, 1.0),

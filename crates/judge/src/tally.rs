@@ -48,7 +48,7 @@ pub(super) struct StepResult {
 }
 
 impl StepResult {
-    /// Of a step of which nothing is said.
+    /// Clears the result, as of a step without findings.
     pub(super) fn clear(&mut self) {
         self.remarks.clear();
         self.firsts.clear();
@@ -57,7 +57,7 @@ impl StepResult {
         self.identical = false;
     }
 
-    /// How many findings of each kind there are besides the first.
+    /// Returns how many findings of each kind there are besides the first.
     pub(super) fn more(&self) -> FindingCounts {
         let mut more = FindingCounts::default();
         for kind in self.firsts.iter().map(Finding::kind) {
@@ -87,7 +87,7 @@ pub(super) struct Buffers {
 }
 
 impl Buffers {
-    /// Empty, for steps of this scene.
+    /// Creates an empty tally for steps of this scene.
     pub(super) fn new(scene: &Scene) -> Self {
         Self { order: pairs(scene), ..Self::default() }
     }
@@ -113,7 +113,7 @@ pub(super) struct Tally<'a> {
 }
 
 impl<'a> Tally<'a> {
-    /// A tally of `step`, whose end record is `frame`. `result` is emptied first.
+    /// Creates a tally of `step`, whose end record is `frame`. `result` is emptied first.
     pub(super) fn new(
         (step, frame_number): (u32, u64),
         frame: &'a LenientFrame,
@@ -140,7 +140,7 @@ impl<'a> Tally<'a> {
         }
     }
 
-    /// How the trace's next polynomial compares with the one of these bytes.
+    /// Returns how the trace's next polynomial compares with the one of these bytes.
     #[inline]
     fn likeness(&self, own: &[u8]) -> Likeness {
         let (index, log) = (self.polynomials, &self.frame.polynomials);
@@ -160,7 +160,7 @@ impl<'a> Tally<'a> {
         }
     }
 
-    /// Whether the lists have the same length, and the trace's was not kept to its end.
+    /// Returns whether the lists have the same length, and the trace's was not kept to its end.
     pub(super) fn needs_more(&self) -> bool {
         self.frame.is_cut() && self.frame.logged == self.polynomials
     }
@@ -183,7 +183,7 @@ impl<'a> Tally<'a> {
         Finding { step: self.step, frame: self.frame_number, detail }
     }
 
-    /// Oracle-behaviour.md 6.1: missed, superfluous, wrong normals; printed in this order.
+    /// Compares the impulses: missed, superfluous, wrong normals, printed in this order (oracle-behaviour.md 6.1).
     fn compare_impulses(&mut self) {
         let own = std::mem::take(&mut self.buffers.impulses);
         let theirs = &self.frame.impulses;
@@ -214,7 +214,7 @@ impl<'a> Tally<'a> {
         self.buffers.impulses = own;
     }
 
-    /// Oracle-behaviour.md 6.2: another number of polynomials is the only finding about them.
+    /// Settles the findings about polynomials: a wrong number of them is the only finding (oracle-behaviour.md 6.2).
     fn settle_polynomials(&mut self) {
         let actual = self.frame.logged;
         if actual != self.polynomials {
@@ -227,7 +227,7 @@ impl<'a> Tally<'a> {
         self.buffers.pending.settle(self.result);
     }
 
-    /// Oracle-behaviour.md 6.3: Euclidean residuals per particle.
+    /// Compares the states by Euclidean residuals per particle (oracle-behaviour.md 6.3).
     fn compare_states(&mut self, reference: &State) {
         let (mut positions, mut velocities) = (0, 0);
         for particle in 0..reference.positions.len() / 2 {
@@ -353,13 +353,13 @@ pub(super) fn accumulate(total: &mut Residuals, step: &[(f64, f64)]) {
     }
 }
 
-/// Whether two states are equal bit for bit.
+/// Returns whether two states are equal bit for bit.
 fn same_state(own: &State, other: &State) -> bool {
     same_bits(&own.positions, &other.positions) && same_bits(&own.velocities, &other.velocities)
 }
 
-/// Whether the original finds nothing about a polynomial (oracle-behaviour.md 6.2): it is right up to a factor, or
-/// zero, or holds what is no number.
+/// Returns whether the original finds nothing about a polynomial (oracle-behaviour.md 6.2): it is right up to a factor,
+/// or zero, or holds what is no number.
 fn passes(own: &[f64], actual: &[f64]) -> bool {
     let (sum_actual, sum_own) = (sum_of_moduli(actual), sum_of_moduli(own));
     if own.len() != actual.len() {
@@ -375,16 +375,16 @@ fn passes(own: &[f64], actual: &[f64]) -> bool {
 /// The facts about a polynomial of the trace that are known at once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Likeness {
-    /// It is the reference's bit for bit.
+    /// The polynomial is the reference's bit for bit.
     Same,
-    /// It is not, and [`passes`] says yes.
+    /// The polynomial is not, and [`passes`] says yes.
     Factor,
     /// Nothing.
     Open,
 }
 
-/// How both compare, as far as one division for all coefficients tells: what it rounds otherwise than the original is
-/// less than a hundredth of the bound.
+/// Returns how both compare, as far as one division for all coefficients tells: what it rounds otherwise than the
+/// original is less than a hundredth of the bound.
 #[inline]
 fn likeness<const LENGTH: usize>(own: &[u8], actual: &[f64]) -> Likeness {
     let (Some(actual), Some(own)) = (actual.first_chunk::<LENGTH>(), own.as_chunks::<8>().0.first_chunk::<LENGTH>())
@@ -410,12 +410,13 @@ fn likeness<const LENGTH: usize>(own: &[u8], actual: &[f64]) -> Likeness {
     if all { Likeness::Factor } else { Likeness::Open }
 }
 
-/// The sum of moduli, left to right from zero.
+/// Returns the sum of moduli, left to right from zero.
 fn sum_of_moduli(coefficients: &[f64]) -> f64 {
     coefficients.iter().fold(0.0, |sum, c| sum + c.abs())
 }
 
-/// Whether two lists are equal bit for bit and small enough that the original's comparison accepts them for certain.
+/// Returns whether two lists are equal bit for bit and small enough that the original's comparison accepts them for
+/// certain.
 #[inline]
 fn equal_and_safe(own: &[f64], actual: &[f64]) -> bool {
     if own.len() != actual.len() {

@@ -9,7 +9,7 @@ use std::path::Path;
 pub struct CorpusRow {
     /// The submission's name.
     pub submission: String,
-    /// Its kind; `a` are correct ones.
+    /// The trace's kind; `a` are correct ones.
     pub kind: String,
     /// The scene's name.
     pub scene: String,
@@ -20,7 +20,7 @@ pub struct CorpusRow {
     pub trace_equals_reference: Option<bool>,
 }
 
-/// All rows of a corpus.
+/// Returns all rows of a corpus.
 ///
 /// # Errors
 /// When the folder is no corpus.
@@ -30,7 +30,7 @@ pub fn rows(corpus: &Path) -> anyhow::Result<Vec<CorpusRow>> {
 }
 
 impl CorpusRow {
-    /// The scene and the trace, where there is one.
+    /// Reads the scene and the trace, where there is one.
     ///
     /// # Errors
     /// When one can't be read.

@@ -13,19 +13,19 @@ use fosssim_oracle::{
 use rayon::prelude::*;
 use std::path::Path;
 
-/// The trace that a program writes; where it does not come to an end, what it has written by then.
+/// Returns the trace that a program writes; where it does not come to an end, what it has written by then.
 #[must_use]
 pub fn trace(scene: &Scene, student: Student) -> Vec<u8> {
     student::trace(scene, student).unwrap_or_else(|(bytes, _)| bytes)
 }
 
-/// The outcome by both rule books, on one thread, since the tools try many things at one time.
+/// Returns the outcome by both rule books, on one thread, since the tools try many things at one time.
 #[must_use]
 pub fn judged(scene: &Scene, trace: &[u8]) -> Outcome {
     replay::judge(scene, trace, &Options { threads: 1, fair: true, ..Options::default() }, &mut ())
 }
 
-/// Whether the fair rules accept.
+/// Returns whether the fair rules accept.
 #[must_use]
 pub fn is_accepted(outcome: &Outcome) -> bool {
     outcome.fair.as_ref().is_some_and(|fair| fair.verdict == FairVerdict::Accepted)
@@ -34,7 +34,7 @@ pub fn is_accepted(outcome: &Outcome) -> bool {
 /// A scene with the trace of a right program.
 #[derive(Debug)]
 pub struct Watched {
-    /// Its name.
+    /// The scene's name.
     pub name: String,
     /// The scene.
     pub scene: Scene,
@@ -43,7 +43,7 @@ pub struct Watched {
 }
 
 impl Watched {
-    /// The scenes in the groups of a folder.
+    /// Returns the scenes in the groups of a folder.
     ///
     /// # Errors
     /// When one can't be read, or there is none.

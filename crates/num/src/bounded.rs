@@ -28,14 +28,14 @@ pub struct Bounded<N = f64> {
 pub type Bounded2<N = f64> = Plane<Bounded<N>>;
 
 impl Bounded {
-    /// A number without error, such as a factor of a formula.
+    /// Returns a number without error, such as a factor of a formula.
     #[inline]
     #[must_use]
     pub const fn exact(value: f64) -> Self {
         Self { value, bound: 0.0 }
     }
 
-    /// An input that may be off by one rounding.
+    /// Returns an input that may be off by one rounding.
     #[inline]
     #[must_use]
     pub const fn rounded(value: f64) -> Self {
@@ -44,14 +44,14 @@ impl Bounded {
 }
 
 impl Bounded2 {
-    /// A vector without error.
+    /// Returns a vector without error.
     #[inline]
     #[must_use]
     pub fn exact(v: Vec2) -> Self {
         Self { x: Bounded::exact(v.x), y: Bounded::exact(v.y) }
     }
 
-    /// A vector whose components may each be off by one rounding.
+    /// Returns a vector whose components may each be off by one rounding.
     #[inline]
     #[must_use]
     pub fn rounded(v: Vec2) -> Self {

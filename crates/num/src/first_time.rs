@@ -10,8 +10,8 @@ use super::{
     tolerances::IMAGINARY_PART,
 };
 
-/// The earliest `t >= 0` from which all polynomials are positive, `+inf` if none (root-finder.md 16.3). Polynomials
-/// must have been made by [`Polynomial::trimmed`] (or `untrimmed`, for the non-dropping build).
+/// Returns the earliest `t >= 0` from which all polynomials are positive, `+inf` if none (root-finder.md 16.3).
+/// Polynomials must have been made by [`Polynomial::trimmed`] (or `untrimmed`, for the non-dropping build).
 ///
 /// All polynomials are solved, even when an earlier one is nowhere positive: this decides whether the search ends.
 /// The result is `+0`, positive or `+inf`, never `-0` and never NaN for finite coefficients. An empty list gives
@@ -27,7 +27,7 @@ pub fn first_time(polynomials: &[Polynomial]) -> Result<f64, DoesNotTerminate> {
     first_time_counted(polynomials, &mut 0)
 }
 
-/// [`first_time`], which adds the steps of the root searches to `steps` ([`Zeros::steps`]).
+/// Returns the time of [`first_time`], and adds the steps of the root searches to `steps` ([`Zeros::steps`]).
 ///
 /// # Errors
 /// [`DoesNotTerminate`] when the search for one polynomial's zeros would never end.
@@ -45,7 +45,8 @@ pub fn first_time_counted(polynomials: &[Polynomial], steps: &mut u64) -> Result
     }
 }
 
-/// [`first_time`] of coefficient lists, highest power first, taken as they are; degrees up to [`MAX_DEGREE`].
+/// Returns the time of [`first_time`] by coefficient lists, highest power first, taken as they are; degrees up to
+/// [`MAX_DEGREE`].
 ///
 /// # Errors
 /// [`DoesNotTerminate`] when the search for one polynomial's zeros would never end.
@@ -56,7 +57,7 @@ pub fn first_time_of<'a>(lists: impl IntoIterator<Item = &'a [f64]>) -> Result<f
     intersected::<32>(lists.into_iter(), &mut 0)
 }
 
-/// The intersection of the positive sets and its first time, with room for `CAPACITY` intervals.
+/// Returns the intersection of the positive sets and its first time, with room for `CAPACITY` intervals.
 #[inline]
 fn intersected<'a, const CAPACITY: usize>(
     mut lists: impl Iterator<Item = &'a [f64]>,
@@ -76,7 +77,7 @@ fn intersected<'a, const CAPACITY: usize>(
 /// The positive set of one polynomial: before merging, at most one interval per gap between six zeros.
 pub type PositiveSet = Intervals<{ MAX_DEGREE + 1 }>;
 
-/// Where one polynomial is positive, judged by one sample per gap between its real zeros (root-finder.md 15.3).
+/// Returns where one polynomial is positive, judged by one sample per gap between its real zeros (root-finder.md 15.3).
 ///
 /// # Errors
 /// [`DoesNotTerminate`] when the search for its zeros would never end.
@@ -119,7 +120,7 @@ fn counted(coefficients: &[f64], steps: &mut u64) -> Result<PositiveSet, DoesNot
     Ok(set)
 }
 
-/// The real parts of the zeros that count as real, ascending.
+/// Returns the real parts of the zeros that count as real, ascending.
 ///
 /// It is the original's insertion sort, step by step: with a NaN among the values the result depends on the method.
 fn sorted_real_parts<'a>(zeros: &Zeros, storage: &'a mut [f64; MAX_DEGREE]) -> &'a [f64] {

@@ -16,7 +16,7 @@ impl Interval {
     /// All times.
     pub const EVERYTHING: Self = Self { lo: f64::NEG_INFINITY, hi: f64::INFINITY };
 
-    /// Whether the two share at least a point (closed comparison; false with a NaN bound).
+    /// Returns whether the two share at least a point (closed comparison; false with a NaN bound).
     #[inline]
     #[must_use]
     pub fn touches(self, other: Self) -> bool {
@@ -38,7 +38,7 @@ impl<const CAPACITY: usize> Intervals<CAPACITY> {
     /// The empty set.
     pub const EMPTY: Self = Self { length: 0, list: [Interval { lo: 0.0, hi: 0.0 }; CAPACITY] };
 
-    /// The intervals, in order.
+    /// Returns the intervals, in order.
     #[inline]
     #[must_use]
     pub fn as_slice(&self) -> &[Interval] {
@@ -83,7 +83,7 @@ impl<const CAPACITY: usize> Intervals<CAPACITY> {
         self.length = last + 1;
     }
 
-    /// The times in both lists (root-finder.md 16.1). Intervals that only touch give a single point.
+    /// Returns the times in both lists (root-finder.md 16.1). Intervals that only touch give a single point.
     ///
     /// # Panics
     /// When the result would hold more than `CAPACITY`.
@@ -102,8 +102,8 @@ impl<const CAPACITY: usize> Intervals<CAPACITY> {
         both
     }
 
-    /// The first time of the set from `now` on, `+inf` if none (root-finder.md 16.2). An interval that ends exactly
-    /// at `now` does not count.
+    /// Returns the first time of the set from `now` on, `+inf` if none (root-finder.md 16.2). An interval that ends
+    /// exactly at `now` does not count.
     #[inline]
     #[must_use]
     pub fn next_time(&self, now: f64) -> f64 {

@@ -17,7 +17,7 @@ impl<N> Number for N where N: Copy + Add<Output = N> + Sub<Output = N> + Mul<Out
 
 /// A number with a modulus.
 pub trait Modulus {
-    /// The modulus.
+    /// Returns the modulus.
     #[must_use]
     fn modulus(self) -> Self;
 }
@@ -39,7 +39,7 @@ pub struct Plane<N> {
 }
 
 impl<N: Number> Plane<N> {
-    /// The inner product `x*x' + y*y'`.
+    /// Returns the inner product `x*x' + y*y'`.
     #[inline(always)]
     pub fn dot(self, other: Self) -> N {
         self.x * other.x + self.y * other.y
@@ -86,23 +86,24 @@ impl Default for Instructions {
 /// take 0.1 ms to say what its processor can do.
 const FEW_PAIRS: u64 = 1000;
 
-/// The same of the unknowns of a system of linear equations.
+/// The number of unknowns of a system of linear equations.
 const FEW_UNKNOWNS: usize = 8;
 
 impl Instructions {
-    /// The widest instructions for this many pairs in all steps of a scene, if looking for them is worth the time.
+    /// Returns the widest instructions for this many pairs in all steps of a scene, if looking for them is worth the
+    /// time.
     #[must_use]
     pub fn for_pairs(pairs: u64) -> Self {
         if pairs < FEW_PAIRS { Self::plain() } else { Self::default() }
     }
 
-    /// The same for systems of linear equations with this many unknowns.
+    /// Chooses the width for systems of linear equations with this many unknowns.
     #[must_use]
     pub fn for_unknowns(unknowns: usize) -> Self {
         if unknowns < FEW_UNKNOWNS { Self::plain() } else { Self::default() }
     }
 
-    /// One lane, on every machine.
+    /// Returns one lane, on every machine.
     #[must_use]
     pub const fn plain() -> Self {
         Self(Arch::Scalar)
@@ -145,19 +146,19 @@ impl<S: Simd> Lanes<S> {
     /// How many there are.
     pub const COUNT: usize = S::F64_LANES;
 
-    /// The same number in all lanes.
+    /// Returns one number in all lanes.
     #[inline(always)]
     pub fn all(simd: S, value: f64) -> Self {
         Self { simd, values: simd.splat_f64s(value) }
     }
 
-    /// The same number in as many lanes as these.
+    /// Returns one number in as many lanes as these.
     #[inline(always)]
     pub fn like(self, value: f64) -> Self {
         Self::all(self.simd, value)
     }
 
-    /// The first numbers of a slice.
+    /// Reads the first numbers of a slice.
     ///
     /// # Panics
     /// When it has too few.
@@ -202,49 +203,49 @@ impl<S: Simd> Lanes<S> {
         }
     }
 
-    /// The moduli.
+    /// Returns the moduli.
     #[inline(always)]
     pub fn abs(self) -> Self {
         Self { values: self.simd.abs_f64s(self.values), ..self }
     }
 
-    /// The larger number of each lane, of numbers.
+    /// Returns the larger number of each lane, of numbers.
     #[inline(always)]
     pub fn max(self, other: Self) -> Self {
         Self { values: self.simd.max_f64s(self.values, other.values), ..self }
     }
 
-    /// The largest of all lanes, of numbers.
+    /// Returns the largest of all lanes, of numbers.
     #[inline(always)]
     pub fn largest(self) -> f64 {
         self.simd.reduce_max_f64s(self.values)
     }
 
-    /// Where a lane is less than the other one.
+    /// Returns where a lane is less than the other one.
     #[inline(always)]
     pub fn lt(self, other: Self) -> Mask<S> {
         Mask { simd: self.simd, lanes: self.simd.less_than_f64s(self.values, other.values) }
     }
 
-    /// Where a lane is less than the other one or equal.
+    /// Returns where a lane is less than the other one or equal.
     #[inline(always)]
     pub fn le(self, other: Self) -> Mask<S> {
         Mask { simd: self.simd, lanes: self.simd.less_than_or_equal_f64s(self.values, other.values) }
     }
 
-    /// Where a lane is less than a number.
+    /// Returns where a lane is less than a number.
     #[inline(always)]
     pub fn below(self, bound: f64) -> Mask<S> {
         self.lt(self.like(bound))
     }
 
-    /// Where a lane is at least as large as a number.
+    /// Returns where a lane is at least as large as a number.
     #[inline(always)]
     pub fn at_least(self, bound: f64) -> Mask<S> {
         self.like(bound).le(self)
     }
 
-    /// Where a lane is zero.
+    /// Returns where a lane is zero.
     #[inline(always)]
     pub fn is_zero(self) -> Mask<S> {
         Mask { simd: self.simd, lanes: self.simd.equal_f64s(self.values, self.like(0.0).values) }
@@ -307,7 +308,7 @@ pub struct Mask<S: Simd> {
 }
 
 impl<S: Simd> Mask<S> {
-    /// A number where it says yes, 0 elsewhere.
+    /// Returns a number where it says yes, 0 elsewhere.
     #[inline(always)]
     pub fn or_zero(self, number: f64) -> Lanes<S> {
         let simd = self.simd;
@@ -322,13 +323,13 @@ impl<S: Simd> Mask<S> {
         Lanes { simd, values: simd.transmute_f64s_u64s(bits) }
     }
 
-    /// Whether any lane says yes.
+    /// Returns whether any lane says yes.
     #[inline(always)]
     pub fn any(self) -> bool {
         self.simd.first_true_m64s(self.lanes) < S::F64_LANES
     }
 
-    /// Whether all lanes say yes.
+    /// Returns whether all lanes say yes.
     #[inline(always)]
     pub fn all(self) -> bool {
         !(!self).any()

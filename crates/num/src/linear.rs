@@ -57,7 +57,7 @@ struct Decomposition<'a> {
     n: usize,
     row_swaps: &'a mut Vec<usize>,
     column_order: &'a mut Vec<usize>,
-    /// Of each column the largest modulus in the rows that have no pivot yet, NaN ignored.
+    /// The largest modulus in the rows that have no pivot yet, NaN ignored.
     moduli: &'a mut Vec<f64>,
 }
 
@@ -96,8 +96,8 @@ impl Work for Decomposition<'_> {
 }
 
 impl Decomposition<'_> {
-    /// The entry of largest modulus in rows and columns from k on: of equal ones the first, column by column. NaN never
-    /// wins, but a NaN at the start stays.
+    /// Returns the entry of largest modulus in rows and columns from k on: of equal ones the first, column by column.
+    /// NaN never wins, but a NaN at the start stays.
     #[inline(always)]
     fn pivot(&self, k: usize) -> Pivot {
         let n = self.n;
@@ -174,7 +174,7 @@ struct Pivot {
     modulus: f64,
 }
 
-/// The larger of a modulus and that of an entry, unless this is NaN.
+/// Returns the larger of a modulus and that of an entry, unless this is NaN.
 #[inline(always)]
 fn larger(modulus: f64, entry: f64) -> f64 {
     if entry.abs() > modulus { entry.abs() } else { modulus }
@@ -251,7 +251,7 @@ mod tests {
         }
     }
 
-    /// The specification word by word, with a matrix of rows: slow and plain.
+    /// Returns the specification word by word, with a matrix of rows: slow and plain.
     fn literal(a: &mut [Vec<f64>], rhs: &[f64]) -> Vec<f64> {
         let n = rhs.len();
         let mut c = rhs.to_vec();

@@ -70,14 +70,14 @@ impl Polynomial {
         Self { length: coefficients.len() as u8, storage }
     }
 
-    /// The coefficients, highest power first; empty when all were too small.
+    /// Returns the coefficients, highest power first; empty when all were too small.
     #[inline]
     #[must_use]
     pub fn coefficients(&self) -> &[f64] {
         &self.storage[MAX_COEFFICIENTS - usize::from(self.length)..]
     }
 
-    /// The value at `t`, see [`evaluate`].
+    /// Returns the value at `t`, see [`evaluate`].
     #[inline]
     #[must_use]
     pub fn evaluate(&self, t: f64) -> f64 {
@@ -85,7 +85,7 @@ impl Polynomial {
     }
 }
 
-/// The list without its small leading coefficients (root-finder.md 15.1, the dropping build; a NaN stops the
+/// Returns the list without its small leading coefficients (root-finder.md 15.1, the dropping build; a NaN stops the
 /// dropping). The result may be empty.
 #[inline]
 #[must_use]
@@ -104,7 +104,8 @@ fn is_small(leading: f64) -> bool {
     leading.abs() < super::tolerances::LEADING_COEFFICIENT
 }
 
-/// The value at `t` by Horner's rule started from `+0` (root-finder.md 15.2: `0 * inf` is NaN, hence not positive).
+/// Returns the value at `t` by Horner's rule started from `+0` (root-finder.md 15.2: `0 * inf` is NaN, hence not
+/// positive).
 #[inline]
 #[must_use]
 pub fn evaluate(coefficients: &[f64], t: f64) -> f64 {

@@ -4,8 +4,8 @@
 /// The number of significant digits of C++ streams.
 const DIGITS: i32 = 6;
 
-/// `%g` with six significant digits as glibc prints it: `0`, `-0`, `1e-05`, `0.00282843`, `1e+06`, `inf`, `-inf`, `nan`
-/// or, with the sign bit set, `-nan`. Rounds to nearest, exact ties to even, as the library does.
+/// Returns `%g` with six significant digits as glibc prints it: `0`, `-0`, `1e-05`, `0.00282843`, `1e+06`, `inf`,
+/// `-inf`, `nan` or, with the sign bit set, `-nan`. Rounds to nearest, exact ties to even, as the library does.
 #[must_use]
 pub fn general(value: f64) -> String {
     let sign = if value.is_sign_negative() { "-" } else { "" };
@@ -34,8 +34,8 @@ pub fn general(value: f64) -> String {
     }
 }
 
-/// The shortest text that reads back as the same bits, with an exponent where it would be long otherwise: `-0.1875`,
-/// `1e-12`, `nan`, `-nan`, `inf`.
+/// Returns the shortest text that reads back as the same bits, with an exponent where it would be long otherwise:
+/// `-0.1875`, `1e-12`, `nan`, `-nan`, `inf`.
 #[must_use]
 pub fn exact(value: f64) -> String {
     let magnitude = value.abs();
@@ -48,7 +48,7 @@ pub fn exact(value: f64) -> String {
     }
 }
 
-/// The digits `d.ddd` times ten to the `exponent` without an exponent.
+/// Returns the digits `d.ddd` times ten to the `exponent` without an exponent.
 fn positional(digits: &str, exponent: i32) -> String {
     if exponent < 0 {
         let zeros = "0".repeat(exponent.unsigned_abs() as usize - 1);

@@ -9,7 +9,7 @@ use nalgebra::{MatrixView2xX, Vector2};
 /// A point or a direction in the plane, in the scene's length unit; x to the right, y up.
 pub type Vec2 = Vector2<f64>;
 
-/// `v / s` as the original evaluates it: `r = 1/s`, then `(r*v.x, r*v.y)`. `s = 0` gives infinities or NaN.
+/// Returns `v / s` as the original evaluates it: `r = 1/s`, then `(r*v.x, r*v.y)`. `s = 0` gives infinities or NaN.
 #[inline]
 #[must_use]
 pub fn over(v: Vec2, s: f64) -> Vec2 {
@@ -17,14 +17,14 @@ pub fn over(v: Vec2, s: f64) -> Vec2 {
     Vec2::new(reciprocal * v.x, reciprocal * v.y)
 }
 
-/// The length `sqrt(x*x + y*y)`, without rescaling: it over- and underflows where the squares do.
+/// Returns the length `sqrt(x*x + y*y)`, without rescaling: it over- and underflows where the squares do.
 #[inline]
 #[must_use]
 pub fn length(v: Vec2) -> f64 {
     (v.x * v.x + v.y * v.y).sqrt()
 }
 
-/// `v` divided by its length, by way of the reciprocal. The zero vector gives NaN components (`0 * inf`).
+/// Returns `v` divided by its length, by way of the reciprocal. The zero vector gives NaN components (`0 * inf`).
 #[inline]
 #[must_use]
 pub fn unit(v: Vec2) -> Vec2 {
@@ -32,14 +32,14 @@ pub fn unit(v: Vec2) -> Vec2 {
     Vec2::new(v.x * reciprocal, v.y * reciprocal)
 }
 
-/// The positions or velocities of a state, `x` and `y` of each particle in turn, as a matrix with a column per
+/// Returns the positions or velocities of a state, `x` and `y` of each particle in turn, as a matrix with a column per
 /// particle. Nothing is copied.
 #[must_use]
 pub fn columns(values: &[f64]) -> MatrixView2xX<'_, f64> {
     MatrixView2xX::from_slice(values, values.len() / 2)
 }
 
-/// Whether two lists are equal bit for bit.
+/// Returns whether two lists are equal bit for bit.
 #[inline]
 #[must_use]
 pub fn same_bits(one: &[f64], other: &[f64]) -> bool {

@@ -49,11 +49,11 @@ impl schemars::JsonSchema for Number {
 
 /// A type that is made of numbers and written as such.
 pub trait Written: Sized {
-    /// Its serialised form.
+    /// The value's serialised form.
     type Form: Serialize + DeserializeOwned;
-    /// In its form.
+    /// Writes the value in its form.
     fn write(&self) -> Self::Form;
-    /// Out of its form.
+    /// Returns out of its form.
     fn read(form: Self::Form) -> Self;
 }
 
@@ -107,7 +107,7 @@ impl<T: Written> Written for Option<T> {
     }
 }
 
-/// For serde's `with`.
+/// Serializes for serde's `with`.
 ///
 /// # Errors
 /// Those of the serialiser.
@@ -115,7 +115,7 @@ pub fn serialize<T: Written, S: Serializer>(value: &T, serializer: S) -> Result<
     value.write().serialize(serializer)
 }
 
-/// For serde's `with`.
+/// Deserializes for serde's `with`.
 ///
 /// # Errors
 /// Those of the deserialiser, and where a text is no number.

@@ -87,7 +87,7 @@ fn is(flag: &Flag, word: &[u8]) -> bool {
     }
 }
 
-/// A boolean by stream extraction: one integer that is 0 or 1. An empty value is no value: the default stays.
+/// Returns a boolean by stream extraction: one integer that is 0 or 1. An empty value is no value: the default stays.
 fn boolean(value: &[u8]) -> Result<Option<bool>, Vec<u8>> {
     let is_space = |byte: &u8| byte.is_ascii_whitespace() || *byte == 0x0b;
     let mut rest = value;

@@ -6,7 +6,7 @@ use fosssim_num::{printed::general, vector::Vec2};
 /// The line above the collisions of a step.
 pub(crate) const HEADER: &str = "Collision Detection Error: \n";
 
-/// The line about one collision; `None` when the remark is about polynomials.
+/// Returns the line about one collision; `None` when the remark is about polynomials.
 pub(crate) fn line(remark: &Remark) -> Option<String> {
     match remark {
         Remark::Missed(expected) => Some(format!("  Missed collision: {}\n", words(&LoggedImpulse::from(*expected)))),
@@ -19,7 +19,7 @@ pub(crate) fn line(remark: &Remark) -> Option<String> {
     }
 }
 
-/// `Particle A - Edge B with normal = X Y`; nothing for an unknown kind of pair.
+/// Returns `Particle A - Edge B with normal = X Y`; nothing for an unknown kind of pair.
 fn words(impulse: &LoggedImpulse) -> String {
     let Some(kind) = impulse.kind() else { return String::new() };
     let second = kind.second_of_original();
@@ -27,7 +27,7 @@ fn words(impulse: &LoggedImpulse) -> String {
     format!("Particle {} - {second} {} with normal = {normal}", impulse.first, impulse.second)
 }
 
-/// Both components; the first is padded to the length of the second, never the other way round.
+/// Returns both components; the first is padded to the length of the second, never the other way round.
 fn direction(normal: Vec2) -> String {
     let (x, y) = (general(normal.x), general(normal.y));
     format!("{x:>width$} {y}", width = y.len())

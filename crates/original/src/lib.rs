@@ -60,7 +60,7 @@ use std::{
 /// Names of the program that make it behave as the original, whatever follows in the name.
 const NAME: &[u8] = b"FOSSSimOracle";
 
-/// The name that messages show, and the words for the drop-in, if it is meant: by the program's name
+/// Returns the name that messages show, and the words for the drop-in, if it is meant: by the program's name
 /// `FOSSSimOracle...`, or by the first word, `original`.
 fn meant(words: &[OsString]) -> Option<(Vec<u8>, &[OsString])> {
     let (program, rest) = words.split_first()?;
@@ -90,10 +90,10 @@ pub fn run_if_meant(outside: &dyn Outside) -> Result<ExitCode, Vec<OsString>> {
 
 /// The services that the drop-in needs from the program around it.
 pub trait Outside {
-    /// Is asked before anything else is done.
+    /// Prepares the run, before anything else is done.
     fn prepare(&self);
 
-    /// A drawer of pictures: of `-g 1` as PNG, of `-m DIR` as SVG in that folder.
+    /// Returns a drawer of pictures: of `-g 1` as PNG, of `-m DIR` as SVG in that folder.
     ///
     /// # Errors
     /// The text to print, when a folder is missing.

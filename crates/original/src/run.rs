@@ -133,7 +133,7 @@ fn refuse_scene(arguments: &Arguments, refusal: &Refusal) -> u8 {
     refusal.exit_code
 }
 
-/// The reason why this run is not supported: a window, a picture, or very much memory.
+/// Returns the reason why this run is not supported: a window, a picture, or very much memory.
 fn unsupported(arguments: &Arguments, scene: &Scene) -> Option<String> {
     if arguments.display {
         return Some("there is no window to simulate in (the default); add -d 0 to run without one\n".to_owned());

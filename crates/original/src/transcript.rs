@@ -75,19 +75,19 @@ const BANNER: [&str; 7] = [
 ];
 
 impl<'a, W: Write> Transcript<'a, W> {
-    /// A transcript that has said nothing yet.
+    /// Creates a transcript that has said nothing yet.
     pub(crate) fn new(stream: W, heading: Heading<'a>) -> Self {
         Self { stream, heading, steps: heading.scene.steps(), threshold: DOT, clock: None, error: None }
     }
 
-    /// All steps are done.
+    /// Notes that all steps are done.
     pub(crate) fn completes(&mut self) {
         self.dot(self.steps);
         let time = f64::from(self.steps) * self.heading.scene.time_step;
         self.message(&format!("Simulation complete at time {}. Exiting.", general(time)));
     }
 
-    /// The exit handler of a run without a verdict: the file is closed.
+    /// Prints the exit handler's line of a run without a verdict: the file is closed.
     pub(crate) fn closes(&mut self) {
         match self.heading.task {
             Task::Run => {}
@@ -99,7 +99,7 @@ impl<'a, W: Write> Transcript<'a, W> {
         }
     }
 
-    /// Grading is over: the completion message or the reason for stopping, then the exit handler's lines.
+    /// Ends grading: prints the completion message or the reason for stopping, then the exit handler's lines.
     pub(crate) fn graded(&mut self, outcome: &Outcome) {
         match &outcome.stop_of(Book::Parity) {
             None => self.completes(),
@@ -125,7 +125,7 @@ impl<'a, W: Write> Transcript<'a, W> {
         self.write(verdict::lines(outcome, collisions).as_bytes());
     }
 
-    /// The exit handler's lines when the trace could not even be opened; no banner comes before them.
+    /// Prints the exit handler's lines when the trace could not even be opened; no banner comes before them.
     pub(crate) fn not_opened(&mut self) {
         self.write(verdict::incomplete(&Residuals::default()).as_bytes());
     }
@@ -165,7 +165,7 @@ impl<'a, W: Write> Transcript<'a, W> {
         self.write(format!("{PINK}Progress: {PLAIN}{}\n{}", "-".repeat(50), " ".repeat(10)).as_bytes());
     }
 
-    /// A step is done: the time that it took, where the original tells it.
+    /// Ends a step: prints the time that it took, where the original does.
     pub(crate) fn step_ends(&mut self, step: u32) {
         let Some(clock) = &mut self.clock else { return };
         let now = Instant::now();
@@ -175,7 +175,7 @@ impl<'a, W: Write> Transcript<'a, W> {
         self.write(format!("T: {time}\nFrame run time: {frame}s. Total run time: {total}s. \n").as_bytes());
     }
 
-    /// A dot when the next threshold is reached; never more than one. Without steps the quotient is NaN: no dot.
+    /// Prints a dot when the next threshold is reached; never more than one. Without steps the quotient is NaN: no dot.
     fn dot(&mut self, steps_done: u32) {
         if f64::from(steps_done) / f64::from(self.steps) >= self.threshold {
             self.threshold += DOT;
@@ -241,7 +241,7 @@ impl<W: Write> Progress for Transcript<'_, W> {
     }
 }
 
-/// The integrator's printed name (simulation.md 4).
+/// Returns the integrator's printed name (simulation.md 4).
 const fn integrator_name(integrator: Integrator) -> &'static str {
     match integrator {
         Integrator::ExplicitEuler => "Explicit Euler",
@@ -295,7 +295,7 @@ mod tests {
         }
     }
 
-    /// The transcript of `scene`, from `Progress` on.
+    /// Returns the transcript of `scene`, from `Progress` on.
     fn after_heading(scene: &Scene, task: Task<'_>, act: impl FnOnce(&mut Transcript<'_, Vec<u8>>)) -> String {
         let heading = Heading { scene_name: b"s.xml", scene, description: b"none", task };
         let mut transcript = Transcript::new(Vec::new(), heading);

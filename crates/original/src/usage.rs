@@ -4,12 +4,12 @@ use crate::flags::{Flag, listed};
 const WIDTH: usize = 75;
 const TITLE: &str = "Forty One Sixty Seven Sim";
 
-/// The output of `--version`.
+/// Returns the output of `--version`.
 pub(crate) fn version(program: &[u8]) -> Vec<u8> {
     [b"\n", program, b"  version: none\n\n"].concat()
 }
 
-/// The output of `--help`.
+/// Returns the output of `--help`.
 pub(crate) fn help(program: &[u8]) -> Vec<u8> {
     let mut text = b"\nUSAGE: \n\n".to_vec();
     text.extend(brief(program));
@@ -33,7 +33,7 @@ pub(crate) fn help(program: &[u8]) -> Vec<u8> {
     text
 }
 
-/// The output of a parse error; `argument` is a space when the error belongs to no argument.
+/// Returns the output of a parse error; `argument` is a space when the error belongs to no argument.
 pub(crate) fn failure(program: &[u8], argument: &[u8], message: &[u8]) -> Vec<u8> {
     let mut text = [b"PARSE ERROR: ", argument, b"\n             ", message, b"\n\nBrief USAGE: \n"].concat();
     text.extend(brief(program));
@@ -41,7 +41,7 @@ pub(crate) fn failure(program: &[u8], argument: &[u8], message: &[u8]) -> Vec<u8
     text
 }
 
-/// The flags in one wrapped paragraph.
+/// Returns the flags in one wrapped paragraph.
 fn brief(program: &[u8]) -> Vec<u8> {
     let mut line = [program, b" "].concat();
     for flag in listed(program) {

@@ -12,7 +12,7 @@ const NAMES: [&str; 4] = [
     "Maximum Velocity Residual",
 ];
 
-/// The lines after the file has been closed: with verdict, or without one when grading did not come to its end.
+/// Returns the lines after the file has been closed: with verdict, or without one when grading did not come to its end.
 /// `collisions` is the assignment's name for the verdict on collisions.
 pub(crate) fn lines(outcome: &Outcome, collisions: &str) -> String {
     if outcome.parity.overall == Overall::None {
@@ -29,7 +29,7 @@ pub(crate) fn lines(outcome: &Outcome, collisions: &str) -> String {
     text
 }
 
-/// The lines of a run that ended early.
+/// Returns the lines of a run that ended early.
 pub(crate) fn incomplete(residuals: &Residuals) -> String {
     let mut text = String::new();
     for (name, (value, _)) in NAMES.into_iter().zip(residuals.with_bounds()) {
@@ -41,7 +41,7 @@ pub(crate) fn incomplete(residuals: &Residuals) -> String {
     text
 }
 
-/// The text of `residual.txt`: per residual `1` or `0`, three spaces, the value; in the contest a line about
+/// Returns the text of `residual.txt`: per residual `1` or `0`, three spaces, the value; in the contest a line about
 /// collisions, too. `None` when grading did not come to its end; the file is not written then.
 #[must_use]
 pub(crate) fn residual_file(outcome: &Outcome, assignment: &Definition) -> Option<String> {

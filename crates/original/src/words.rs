@@ -7,7 +7,8 @@ pub(crate) const GREEN: &str = "\x1b[32;1m";
 pub(crate) const BLUE: &str = "\x1b[34;1m";
 pub(crate) const PINK: &str = "\x1b[35;1m";
 
-/// The line on standard error when a file, the `input` or the `output`, can't be opened (oracle-behaviour.md 2).
+/// Returns the line on standard error when a file, the `input` or the `output`, can't be opened (oracle-behaviour.md
+/// 2).
 pub(crate) fn not_opened(which: &str, name: &[u8]) -> Vec<u8> {
     let start = format!("{RED}ERROR IN INITIALIZATION: {PLAIN}Failed to open binary {which} file:  `");
     [start.as_bytes(), name, b"`   Exiting.\n"].concat()

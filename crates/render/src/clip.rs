@@ -10,7 +10,7 @@ pub struct ClipRectangle {
 }
 
 impl ClipRectangle {
-    /// The part of a line inside (Liang and Barsky, ACM TOG 3, 1984); `None` if there is none.
+    /// Returns the part of a line inside (Liang and Barsky, ACM TOG 3, 1984); `None` if there is none.
     pub fn line(&self, from: Point, to: Point) -> Option<[Point; 2]> {
         if !from.iter().chain(&to).all(|value| value.is_finite()) {
             return None;
@@ -43,8 +43,8 @@ impl ClipRectangle {
         ends.iter().all(|&end| near(end)).then_some(ends)
     }
 
-    /// The corners of the part of the frame where `inside` is not negative, for a function that is linear in the place
-    /// (Sutherland and Hodgman, Comm. ACM 17, 1974).
+    /// Returns the corners of the part of the frame where `inside` is not negative, for a function that is linear in
+    /// the place (Sutherland and Hodgman, Comm. ACM 17, 1974).
     pub fn side(&self, inside: impl Fn(Point) -> f64) -> Vec<Point> {
         let ([left, top], [right, bottom]) = (self.low, self.high);
         let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];

@@ -15,7 +15,7 @@ impl Colour {
     /// The colour of edges that name none (scene-format.md 4).
     pub const EDGE: Self = Self([0, 99, 99]);
 
-    /// The colour between this one and another, `share` of 8 parts of it.
+    /// Returns the colour between this one and another, `share` of 8 parts of it.
     #[must_use]
     pub fn towards(self, other: Self, share: u8) -> Self {
         let part = |own: u8, other: u8| {
@@ -25,20 +25,20 @@ impl Colour {
         Self(std::array::from_fn(|k| part(self.0[k], other.0[k])))
     }
 
-    /// How bright it looks, 0 to 255 (Rec. 709 weights).
+    /// Returns how bright it looks, 0 to 255 (Rec. 709 weights).
     #[must_use]
     pub fn brightness(self) -> u32 {
         let [red, green, blue] = self.0.map(u32::from);
         (2126 * red + 7152 * green + 722 * blue) / 10_000
     }
 
-    /// Black or white, whichever can be read on this background.
+    /// Returns black or white, whichever can be read on this background.
     #[must_use]
     pub fn ink(self) -> Self {
         if self.brightness() > 127 { Self::BLACK } else { Self::WHITE }
     }
 
-    /// `#rrggbb`
+    /// Returns `#rrggbb`
     #[must_use]
     pub fn hex(self) -> String {
         let [red, green, blue] = self.0;

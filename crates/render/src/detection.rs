@@ -2,7 +2,7 @@
 use crate::plot::{Embedding, PlottedPolynomial, PolynomialPlot};
 use fosssim_judge::study::Study;
 
-/// The polynomials of a call on the step, where each is positive, where all are, and the time of impact. The
+/// Returns the polynomials of a call on the step, where each is positive, where all are, and the time of impact. The
 /// mathematically right approach polynomial, where it is another one, has no part in the decision and is not shown.
 #[must_use]
 pub fn picture(study: &Study, title: &str, embedding: Embedding) -> String {

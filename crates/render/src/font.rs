@@ -6,7 +6,8 @@ pub const ADVANCE: u32 = 6;
 /// Height of a letter in dots.
 pub const HEIGHT: u32 = 7;
 
-/// The rows of a letter, from the top; the highest of five bits is the leftmost dot. Nothing for an unknown letter.
+/// Returns the rows of a letter, from the top; the highest of five bits is the leftmost dot. Nothing for an unknown
+/// letter.
 #[rustfmt::skip]
 pub const fn rows(letter: char) -> Option<[u8; HEIGHT as usize]> {
     Some(match letter {

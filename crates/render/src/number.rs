@@ -1,6 +1,6 @@
 //! Numbers as labels: few digits, no noise.
 
-/// At most six significant digits, no zeros at the end: `0.14`, `-1.5`, `1e-9`, `2.5e12`, `nan`.
+/// Formats a number with at most six significant digits, no zeros at the end: `0.14`, `-1.5`, `1e-9`, `2.5e12`, `nan`.
 #[must_use]
 pub fn short(value: f64) -> String {
     if !value.is_finite() {
@@ -20,12 +20,12 @@ pub fn short(value: f64) -> String {
     format!("{}e{power}", trimmed(mantissa))
 }
 
-/// Without zeros behind the point.
+/// Removes zeros after the point.
 fn trimmed(text: &str) -> &str {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
 }
 
-/// A coordinate in pixels: two decimals at most, never `-0`.
+/// Returns a coordinate in pixels: two decimals at most, never `-0`.
 #[must_use]
 pub fn pixel(value: f64) -> String {
     let text = format!("{value:.2}");
@@ -33,7 +33,7 @@ pub fn pixel(value: f64) -> String {
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
-/// The decades from the one at or below `least` to the one at or above `most`, as powers of ten.
+/// Returns the decades from the one at or below `least` to the one at or above `most`, as powers of ten.
 #[must_use]
 pub fn decades(least: f64, most: f64) -> (i32, i32) {
     #[expect(clippy::cast_possible_truncation, reason = "a logarithm of a finite double is below 400")]

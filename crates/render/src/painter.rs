@@ -57,7 +57,7 @@ struct Trail {
 }
 
 impl Painter {
-    /// A painter whose pictures hold all of `extent`, or show the scene's own viewport.
+    /// Creates a painter whose pictures hold all of `extent`, or show the scene's own viewport.
     #[must_use]
     pub fn new(scene: &Scene, extent: &Extent, options: PictureOptions) -> Self {
         let display = &scene.display;
@@ -95,19 +95,19 @@ impl Painter {
         }
     }
 
-    /// The size of the pictures.
+    /// Returns the size of the pictures.
     #[must_use]
     pub const fn size(&self) -> Size {
         self.view.size()
     }
 
-    /// The colour behind everything.
+    /// Returns the colour behind everything.
     #[must_use]
     pub const fn background(&self) -> Colour {
         self.background
     }
 
-    /// All colours that pictures are made of, the background first.
+    /// Returns all colours that pictures are made of, the background first.
     #[must_use]
     pub fn colours(&self) -> Vec<Colour> {
         let mut colours = vec![self.background, self.background.ink(), self.overlay_colour()];
@@ -120,13 +120,13 @@ impl Painter {
         colours
     }
 
-    /// The colour of a second motion: it stands out against light and dark backgrounds.
+    /// Returns the colour of a second motion: it stands out against light and dark backgrounds.
     fn overlay_colour(&self) -> Colour {
         if self.background.brightness() > 127 { Colour([178, 0, 110]) } else { Colour([255, 140, 220]) }
     }
 
-    /// The picture after `step`, at these positions (2N, trace order), with a second motion's on top. Pictures have to
-    /// be asked for in the order of the steps, because particles leave paths.
+    /// Returns the picture after `step`, at these positions (2N, trace order), with a second motion's on top. Pictures
+    /// have to be asked for in the order of the steps, because particles leave paths.
     ///
     /// # Panics
     /// When there are fewer positions than the scene has particles.
@@ -164,7 +164,7 @@ impl Painter {
         }
     }
 
-    /// The picture's rectangle, widened by this number of pixels.
+    /// Returns the picture's rectangle, widened by this number of pixels.
     fn frame(&self, margin: f64) -> ClipRectangle {
         let size = self.size();
         ClipRectangle {
@@ -248,7 +248,7 @@ impl Painter {
 }
 
 impl Trail {
-    /// The particle has come here.
+    /// Continues the path to the particle's new place.
     fn goes_on(&mut self, time: f64, place: Vec2) {
         while self.points.front().is_some_and(|&(then, _)| !(time - then <= self.duration)) {
             self.points.pop_front();
@@ -263,7 +263,7 @@ impl Trail {
         self.points.push_back((time, place));
     }
 
-    /// The path in pieces that lie in the picture.
+    /// Draws the path in pieces that lie in the picture.
     fn draw(&self, view: &View, frame: &ClipRectangle, shapes: &mut Vec<Shape>) {
         let mut piece: Vec<Point> = Vec::new();
         let mut finish = |piece: &mut Vec<Point>| {

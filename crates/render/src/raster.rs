@@ -21,7 +21,7 @@ pub struct Raster {
 }
 
 impl Raster {
-    /// An empty picture, to be drawn on again and again.
+    /// Creates an empty picture, to be drawn on again and again.
     ///
     /// # Panics
     /// Never: every [`Size`] is one that a pixmap can have.
@@ -31,13 +31,13 @@ impl Raster {
         Self { size, pixels }
     }
 
-    /// The size.
+    /// Returns the size.
     #[must_use]
     pub const fn size(&self) -> Size {
         self.size
     }
 
-    /// Red, green, blue and 255 of each pixel, row by row from the top.
+    /// Returns red, green, blue and 255 of each pixel, row by row from the top.
     #[must_use]
     pub fn rgba(&self) -> &[u8] {
         self.pixels.data()
@@ -113,7 +113,7 @@ impl Raster {
     }
 }
 
-/// A coordinate as the drawing library takes it; shapes lie near the picture.
+/// Returns a coordinate as the drawing library takes it; shapes lie near the picture.
 #[expect(clippy::cast_possible_truncation, reason = "pixels need no more digits")]
 fn narrow(value: f64) -> f32 {
     value as f32

@@ -17,7 +17,7 @@ pub enum Paint {
 }
 
 impl Paint {
-    /// Its colour.
+    /// Returns the shape's colour.
     #[must_use]
     pub const fn colour(self) -> Colour {
         match self {
@@ -31,36 +31,36 @@ impl Paint {
 pub enum Shape {
     /// A disc; dashed ones are outlines.
     Disc {
-        /// Its centre.
+        /// The shape's centre.
         center: Point,
-        /// Its radius, positive.
+        /// The shape's radius, positive.
         radius: f64,
         /// How it is drawn.
         paint: Paint,
     },
     /// A line with round ends.
     Line {
-        /// Its points, at least two.
+        /// The shape's points, at least two.
         points: Vec<Point>,
-        /// Its width, positive.
+        /// The shape's width, positive.
         width: f64,
         /// How it is drawn.
         paint: Paint,
     },
     /// A filled polygon.
     Area {
-        /// Its corners.
+        /// The shape's corners.
         points: Vec<Point>,
         /// How it is drawn.
         paint: Paint,
     },
     /// A line of text.
     Text {
-        /// Its lower left corner.
+        /// The shape's lower left corner.
         place: Point,
-        /// Its text.
+        /// The shape's text.
         text: String,
-        /// Its colour.
+        /// The shape's colour.
         colour: Colour,
     },
 }

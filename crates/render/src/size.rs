@@ -26,7 +26,7 @@ pub enum BadSize {
 }
 
 impl Size {
-    /// A size.
+    /// Creates a size.
     ///
     /// # Errors
     /// When a side is below [`SMALLEST`] or above [`LARGEST`].
@@ -37,19 +37,19 @@ impl Size {
         Ok(Self { width, height })
     }
 
-    /// Width in pixels.
+    /// Returns width in pixels.
     #[must_use]
     pub const fn width(self) -> u32 {
         self.width
     }
 
-    /// Height in pixels.
+    /// Returns height in pixels.
     #[must_use]
     pub const fn height(self) -> u32 {
         self.height
     }
 
-    /// Number of pixels.
+    /// Returns number of pixels.
     #[must_use]
     pub const fn pixels(self) -> usize {
         self.width as usize * self.height as usize

@@ -7,7 +7,7 @@ use crate::{
 };
 use std::fmt::Write;
 
-/// A picture as an SVG document; `title` is for screen readers.
+/// Renders a picture as an SVG document; `title` is for screen readers.
 #[must_use]
 pub fn document(size: Size, background: Colour, title: &str, shapes: &[Shape]) -> String {
     let (width, height) = (size.width(), size.height());
@@ -24,7 +24,7 @@ pub fn document(size: Size, background: Colour, title: &str, shapes: &[Shape]) -
     svg
 }
 
-/// Text as the content of an element or attribute. Characters that XML does not know become a replacement.
+/// Returns text as the content of an element or attribute. Characters that XML does not know become a replacement.
 #[must_use]
 pub fn escaped(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());

@@ -26,7 +26,7 @@ impl Default for Extent {
 }
 
 impl Extent {
-    /// The box around a scene's particles at these positions, in trace order.
+    /// Returns the box around a scene's particles at these positions, in trace order.
     #[must_use]
     pub fn of(scene: &Scene, positions: &[f64]) -> Self {
         let mut extent = Self::default();
@@ -64,8 +64,8 @@ impl Extent {
         0.5 * (self.high - self.low)
     }
 
-    /// This box, but no farther from `start` than a few times its size: a body that flies away must not make the others
-    /// dots.
+    /// Returns this box, but no farther from `start` than a few times its size: a body that flies away must not make
+    /// the others dots.
     #[must_use]
     pub fn near(&self, start: &Self) -> Self {
         if start.is_empty() || self.is_empty() {
@@ -95,7 +95,7 @@ pub struct View {
 }
 
 impl View {
-    /// The view of a scene: its own viewport, or the box that holds its bodies, with a margin.
+    /// Returns the view of a scene: its own viewport, or the box that holds its bodies, with a margin.
     #[must_use]
     pub fn of(scene: &Scene, extent: &Extent, size: Size) -> Self {
         match scene.display.viewport {
@@ -109,7 +109,7 @@ impl View {
         }
     }
 
-    /// The view that shows at least `half` to every side of `center`.
+    /// Creates the view that shows at least `half` to every side of `center`.
     fn new(center: Vec2, [x, y]: [f64; 2], size: Size) -> Self {
         let scale = (0.5 * f64::from(size.width()) / x).min(0.5 * f64::from(size.height()) / y);
         // A single point, or nothing at all: one length unit to every side.
@@ -119,20 +119,20 @@ impl View {
         Self { size, center, scale }
     }
 
-    /// The size of the picture.
+    /// Returns the size of the picture.
     #[must_use]
     pub const fn size(&self) -> Size {
         self.size
     }
 
-    /// A point of the plane in pixels, from the upper left corner.
+    /// Returns a point of the plane in pixels, from the upper left corner.
     #[must_use]
     pub fn place(&self, point: Vec2) -> [f64; 2] {
         let relative = self.scale * (point - self.center);
         [0.5 * f64::from(self.size.width()) + relative.x, 0.5 * f64::from(self.size.height()) - relative.y]
     }
 
-    /// A length in pixels.
+    /// Returns a length in pixels.
     #[must_use]
     pub fn length(&self, length: f64) -> f64 {
         self.scale * length

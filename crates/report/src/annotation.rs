@@ -12,12 +12,12 @@ pub(crate) fn annotation_of<'a>(level: &str, title: &str, lines: impl IntoIterat
     format!("::{level} title={}::{}\n", property(title), lines.join("%0A"))
 }
 
-/// The text behind `::` in a workflow command.
+/// Returns the text behind `::` in a workflow command.
 fn data(text: &str) -> String {
     one_line(text).replace('%', "%25")
 }
 
-/// A property's value in a workflow command.
+/// Returns a property's value in a workflow command.
 fn property(text: &str) -> String {
     data(text).replace(':', "%3A").replace(',', "%2C")
 }

@@ -2,12 +2,12 @@
 use fosssim_judge::WithoutResult;
 use fosssim_model::sim::{Pair, StepError};
 
-/// A pair as `detect --pair` takes it.
+/// Returns a pair as `detect --pair` takes it.
 pub(crate) fn pair_key(pair: Pair) -> String {
     format!("{}:{},{}", pair.kind.short(), pair.first, pair.second)
 }
 
-/// A computation without result, in words.
+/// Returns a computation without result, in words.
 #[must_use]
 pub fn no_result(error: &StepError) -> String {
     format!("step {} has no result, because {}", error.step(), WithoutResult(*error))

@@ -52,7 +52,7 @@ pub struct Detect<'a> {
 }
 
 impl Detect<'_> {
-    /// In one line: what this is about.
+    /// Returns the subject of the report in one line.
     #[must_use]
     pub fn title(&self) -> String {
         let Some(place) = &self.place else {
@@ -65,7 +65,7 @@ impl Detect<'_> {
         title(place.pair, place.step, place.trace, place.scene)
     }
 
-    /// The decision in one sentence, whose numbers are written like this.
+    /// Returns the decision in one sentence, whose numbers are written like this.
     #[must_use]
     pub fn decision(&self, number: impl Fn(f64) -> String) -> String {
         let answer = &self.study.answer;
@@ -85,7 +85,7 @@ impl Detect<'_> {
         }
     }
 
-    /// For people.
+    /// Renders the report for people.
     #[must_use]
     pub fn text(&self, style: Style) -> String {
         let study = self.study;
@@ -148,7 +148,7 @@ impl Detect<'_> {
         text
     }
 
-    /// For programs: one JSON object, indented, with a line feed at its end.
+    /// Renders the report for programs: one JSON object, indented, with a line feed at its end.
     #[must_use]
     pub fn json(&self) -> String {
         let study = self.study;
@@ -177,7 +177,8 @@ fn title(pair: Pair, step: u32, trace: Option<&str>, scene: &str) -> String {
     format!("{}{rest} in step {step} of {run}, scene {scene}", first.to_uppercase())
 }
 
-/// A polynomial of the trace, and beside the right one, power by power, where they differ by more than a factor.
+/// Returns a polynomial of the trace, and beside the right one, power by power, where they differ by more than a
+/// factor.
 fn beside(role: &str, expected: &[f64], own: &[f64], style: Style) -> String {
     if own.is_empty() && !expected.is_empty() {
         return format!("  {role}: {}\n", style.paint(Look::Bad, "missing"));
@@ -211,7 +212,7 @@ fn beside(role: &str, expected: &[f64], own: &[f64], style: Style) -> String {
     text
 }
 
-/// The difference that the right approach polynomial makes.
+/// Returns the difference that the right approach polynomial makes.
 fn with_right(course: &Answer, right: &Answer) -> String {
     let says = match (course.decision, right.decision) {
         (Decision::Hit { time, .. }, Decision::Hit { time: other, .. }) if time == other => {
@@ -224,7 +225,7 @@ fn with_right(course: &Answer, right: &Answer) -> String {
     format!("  with the approach polynomial that has no slip: {says}\n")
 }
 
-/// The objects and how they move.
+/// Returns the objects and how they move.
 fn motion(motion: &PairMotion, style: Style) -> String {
     let vector = |x: f64, y: f64| format!("({}, {})", exact(x), exact(y));
     let mut table = Table::new([Align::Left, Align::Left, Align::Left, Align::Left]);
@@ -253,7 +254,7 @@ fn motion(motion: &PairMotion, style: Style) -> String {
     table.render(style)
 }
 
-/// A polynomial with its zeros and where it is positive.
+/// Returns a polynomial with its zeros and where it is positive.
 fn polynomial_lines(name: &str, curve: &Curve, style: Style) -> String {
     let mut text = format!("  {name}\n    {}\n", polynomial(curve.logged.coefficients()));
     let all = curve.untrimmed.coefficients();
@@ -277,7 +278,7 @@ fn polynomial_lines(name: &str, curve: &Curve, style: Style) -> String {
     text
 }
 
-/// `nowhere`, `(-inf, 0.25) and (0.5, 1.25)`, or `only at 0.5`.
+/// Returns `nowhere`, `(-inf, 0.25) and (0.5, 1.25)`, or `only at 0.5`.
 fn intervals(list: &[Interval]) -> String {
     if list.is_empty() {
         return "nowhere".to_owned();
@@ -290,7 +291,7 @@ fn intervals(list: &[Interval]) -> String {
     list.iter().map(words).collect::<Vec<_>>().join(" and ")
 }
 
-/// `-0.25 t^2 + 0.5 t - 0.1875`; an empty list of coefficients is the zero polynomial.
+/// Returns `-0.25 t^2 + 0.5 t - 0.1875`; an empty list of coefficients is the zero polynomial.
 pub(crate) fn polynomial(coefficients: &[f64]) -> String {
     if coefficients.is_empty() {
         return "0 (no coefficient)".to_owned();
@@ -376,7 +377,7 @@ struct MotionView {
     points: Vec<PointView>,
     /// The radii of the bodies that have one, in their order.
     radii: Vec<Number>,
-    /// Of a half-plane, where it is.
+    /// The half-plane's place, where it is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     half_plane: Option<HalfPlaneView>,
 }
@@ -397,7 +398,7 @@ struct PointView {
 struct HalfPlaneView {
     /// A point on its boundary.
     point: [Number; 2],
-    /// Its normal.
+    /// The half-plane's normal.
     normal: [Number; 2],
 }
 
@@ -405,7 +406,7 @@ view! {
     /// A polynomial, its zeros, and where it is positive.
     #[schemars(deny_unknown_fields)]
     struct CurveView from curve: Curve {
-        /// Its meaning when it is positive.
+        /// The polynomial's meaning when it is positive.
         role: Role = curve.role,
         /// As logged and searched, highest power first: leading ones below 1e-12 are dropped.
         coefficients: Polynomial = curve.logged,

@@ -43,13 +43,13 @@ pub struct Diagnosis {
 }
 
 impl Diagnosis {
-    /// Whether nothing is wrong.
+    /// Returns whether nothing is wrong.
     #[must_use]
     pub fn accepted(&self) -> bool {
         self.cases.iter().all(|case| case.accepted)
     }
 
-    /// For people.
+    /// Renders the report for people.
     #[must_use]
     pub fn text(&self, style: Style) -> String {
         if let [case] = &self.cases[..] {
@@ -99,7 +99,7 @@ impl Diagnosis {
         self.common.iter().filter(is_said).any(|common| is_named_in(common, std::slice::from_ref(explanation)))
     }
 
-    /// For programs.
+    /// Renders the report for programs.
     #[must_use]
     pub fn json(&self) -> String {
         document(&DiagnosisView::from(self))
@@ -172,7 +172,7 @@ view! {
     /// A trace.
     #[schemars(deny_unknown_fields)]
     struct CaseView<'a> from case: Case {
-        /// Its scene.
+        /// The trace's scene.
         scene: &'a str = &case.scene,
         /// The trace, or the program that left it.
         trace: &'a str = &case.trace,

@@ -12,14 +12,14 @@ use fosssim_mistakes::diagnose::{About, Example, ExampleValue, Explanation};
 /// The greatest number of other mistakes listed that can't be told apart.
 const LISTED: usize = 3;
 
-/// The lines about explanations, the likeliest first; nothing without any. Indented by two below each sentence.
+/// Returns the lines about explanations, the likeliest first; nothing without any. Indented by two below each sentence.
 #[must_use]
 pub fn lines(explanations: &[Explanation]) -> Vec<String> {
     explanations.iter().flat_map(of_one).collect()
 }
 
-/// The sentence about the likeliest mistake, or about those that explain everything together, for formats with room for
-/// one line.
+/// Returns the sentence about the likeliest mistake, or about those that explain everything together, for formats with
+/// room for one line.
 #[must_use]
 pub fn sentence(explanations: &[Explanation]) -> Option<String> {
     if let Some(first) = explanations.first().filter(|first| first.is_not_finite()) {
@@ -79,8 +79,8 @@ fn of_one(explanation: &Explanation) -> Vec<String> {
     lines
 }
 
-/// The explanations that can't be told apart from one. Known mistakes are named; one that is only found in polynomials
-/// has no sentence of its own, and is counted.
+/// Returns the explanations that can't be told apart from one. Known mistakes are named; one that is only found in
+/// polynomials has no sentence of its own, and is counted.
 fn others(keys: &[String]) -> Option<String> {
     let named: Vec<String> = keys.iter().filter_map(|key| known(key)).collect();
     let (shown, more) = named.split_at(named.len().min(LISTED));
@@ -93,7 +93,7 @@ fn others(keys: &[String]) -> Option<String> {
     }
 }
 
-/// Sentences in a row, of which each may hold a colon.
+/// Returns sentences in a row, of which each may hold a colon.
 fn listed(sentences: &[String]) -> String {
     sentences.iter().map(|one| one.trim_end_matches('.')).collect::<Vec<_>>().join("; ")
 }
@@ -134,7 +134,7 @@ view! {
         pub text: String = what(explanation),
         /// The exact form, one line each.
         pub details: Vec<String> = details(explanation),
-        /// Of `samples`, how many it reproduces.
+        /// The number of `samples` that it reproduces.
         pub reproduced: u64 = explanation.reproduced,
         /// Polynomials or steps that were looked at.
         pub samples: u64 = explanation.samples,
@@ -183,7 +183,7 @@ pub(crate) mod tests {
     };
     use fosssim_testing::scenes;
 
-    /// One with everything, one with the least.
+    /// Returns one with everything, one with the least.
     pub(crate) fn explanations() -> Vec<Explanation> {
         let input = |input, value: &[f64]| ExampleValue { input, value: value.to_vec() };
         let pair = Pair { kind: PairKind::ParticleEdge, first: 3, second: 1 };

@@ -2,8 +2,8 @@
 //! replaced, before any format escapes what its own syntax gives a meaning.
 use std::borrow::Cow;
 
-/// A terminal's codes for colours, cursors and titles are left out, as a log of FOSSSim's own holds them in every line:
-/// whole ones only, so that what is left of a broken one becomes visible.
+/// Removes a terminal's codes for colours, cursors and titles, which a log of FOSSSim's own holds in every line. Only
+/// whole codes are removed, so that what is left of a broken one becomes visible.
 #[must_use]
 pub(crate) fn without_codes(text: &str) -> Cow<'_, str> {
     const ESCAPE: char = '\u{1b}';
@@ -26,8 +26,8 @@ pub(crate) fn without_codes(text: &str) -> Cow<'_, str> {
     Cow::Owned(out + rest)
 }
 
-/// The bytes of the code that begins behind an escape character: `[32;1m`, or `]0;title` with its end. ECMA-48, 5.4 and
-/// 5.6.
+/// Returns the bytes of the code that begins behind an escape character: `[32;1m`, or `]0;title` with its end. ECMA-48,
+/// 5.4 and 5.6.
 fn length_of_code(code: &str) -> Option<usize> {
     let bytes = code.as_bytes();
     match bytes.first()? {
@@ -47,7 +47,7 @@ fn length_of_code(code: &str) -> Option<usize> {
     }
 }
 
-/// The output of a program, [`plain`] and without a terminal's codes. Names keep them, or two could look alike.
+/// Returns the output of a program, [`plain`] and without a terminal's codes. Names keep them, or two could look alike.
 #[must_use]
 pub fn printed(text: &str) -> String {
     plain(&without_codes(text))
@@ -60,7 +60,7 @@ pub(crate) const fn is_unseen(c: char) -> bool {
         | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}')
 }
 
-/// Somebody else's words without control characters: escape codes, bells and NULs become visible, line breaks and
+/// Returns foreign words without control characters: escape codes, bells and NULs become visible, line breaks and
 /// tabs stay, characters that XML 1.0 forbids and those that nobody sees are replaced.
 #[must_use]
 pub fn plain(text: &str) -> String {
@@ -78,7 +78,7 @@ pub fn plain(text: &str) -> String {
     plain
 }
 
-/// [`plain`] on one line.
+/// Returns the text of [`plain`] on one line.
 #[must_use]
 pub fn one_line(text: &str) -> String {
     plain(text).replace(['\n', '\t'], " ")

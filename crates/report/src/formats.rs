@@ -25,13 +25,13 @@ macro_rules! formats {
             /// All formats.
             pub const ALL: &'static [Self] = &[$(Self::$format),+];
 
-            /// The name under which the command line knows it.
+            /// Returns the name under which the command line knows it.
             #[must_use]
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$format => $name,)+ }
             }
 
-            /// Whether one document holds the grades of several submissions.
+            /// Returns whether one document holds the grades of several submissions.
             #[must_use]
             pub const fn takes_several(self) -> bool {
                 match self { $(Self::$format => $takes_several,)+ }
@@ -63,19 +63,19 @@ formats! {
 }
 
 impl Format {
-    /// The document. Formats for one submission ([`Format::takes_several`]) show the first.
+    /// Renders the document. Formats for one submission ([`Format::takes_several`]) show the first.
     #[must_use]
     pub fn render(self, grades: &[Grade]) -> String {
         self.render_class(grades, &[])
     }
 
-    /// The format with this name.
+    /// Returns the format with this name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|format| format.name() == name)
     }
 
-    /// The names of these formats, as a sentence lists them: `text, json or csv`.
+    /// Returns the names of these formats, as a sentence lists them: `text, json or csv`.
     #[must_use]
     pub fn names(wanted: impl Fn(Self) -> bool) -> String {
         let wanted = Self::ALL.iter().copied().filter(|format| wanted(*format));
@@ -86,7 +86,7 @@ impl Format {
         }
     }
 
-    /// As [`Format::render`], with the entries that are no submissions.
+    /// Renders the document as [`Format::render`] does, with the entries that are no submissions.
     #[must_use]
     pub fn render_class(self, grades: &[Grade], passed_over: &[PassedOver]) -> String {
         let first = |render: &dyn Fn(&Grade) -> String| grades.first().map(render).unwrap_or_default();
@@ -106,8 +106,8 @@ impl Format {
         }
     }
 
-    /// The part of a grade that goes into a document for this reader. Reports for students leave out the groups that
-    /// students do not see at once, unless the platform that asks for them hides these itself (`platform_hides`).
+    /// Returns the part of a grade that goes into a document for this reader. Reports for students leave out the groups
+    /// that students do not see at once, unless the platform that asks for them hides these itself (`platform_hides`).
     #[must_use]
     pub fn told(self, grade: &Grade, reader: Audience, platform_hides: bool) -> Cow<'_, Grade> {
         match (self, reader) {

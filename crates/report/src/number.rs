@@ -4,7 +4,7 @@
 
 pub use fosssim_num::printed::{exact, general};
 
-/// A count with thin separation of thousands: `1 234 567`; four digits stay together.
+/// Returns a count with thin separation of thousands: `1 234 567`; four digits stay together.
 #[must_use]
 pub fn count(value: u64) -> String {
     let digits = value.to_string();
@@ -21,16 +21,16 @@ pub fn count(value: u64) -> String {
     grouped
 }
 
-/// A count with its noun: `1 step`, `12 345 steps`.
+/// Returns a count with its noun: `1 step`, `12 345 steps`.
 #[must_use]
 pub fn counted(value: u64, noun: &str) -> String {
     let plural = if value == 1 { "" } else { "s" };
     format!("{} {noun}{plural}", count(value))
 }
 
-/// Two values to be compared, in one notation and no longer than it takes to see where they part: six digits, and at
-/// least two from the first that differs. With the place in both texts from which they are not the same; nothing where
-/// they are.
+/// Returns two values to be compared, in one notation and no longer than it takes to see where they part: six digits,
+/// and at least two from the first that differs. With the place in both texts from which they are not the same; nothing
+/// where they are.
 #[must_use]
 pub fn beside(expected: f64, actual: f64) -> (String, String, Option<usize>) {
     let texts = in_one_notation(expected, actual).unwrap_or_else(|| (general(expected), general(actual)));

@@ -8,7 +8,7 @@ const WIDEST: usize = 100;
 /// megabytes long.
 const REACH: usize = 4 * WIDEST + 8;
 
-/// Everything that is wrong with a refused scene: a head line, then each problem with its source line.
+/// Returns everything that is wrong with a refused scene: a head line, then each problem with its source line.
 ///
 /// `name` is how messages call the scene, `source` its bytes.
 #[must_use]
@@ -25,13 +25,13 @@ pub fn errors(name: &str, source: &[u8], refused: &Problems) -> String {
     text
 }
 
-/// The warnings about an accepted scene; nothing when there is none.
+/// Returns the warnings about an accepted scene; nothing when there is none.
 #[must_use]
 pub fn warnings(name: &str, source: &[u8], list: &[Problem]) -> String {
     list.iter().map(|problem| block(name, source, problem) + "\n").collect()
 }
 
-/// One problem:
+/// Renders one problem:
 ///
 /// ```text
 /// scene.xml:3:14: `m` of particle 0 is not a number
@@ -74,13 +74,13 @@ fn block(name: &str, source: &[u8], problem: &Problem) -> String {
     text
 }
 
-/// The end of the line behind `at`, or of what can be shown of it.
+/// Returns the end of the line behind `at`, or of what can be shown of it.
 fn line_end(source: &[u8], at: usize) -> usize {
     let to = source.len().min(at + REACH);
     source[at..to].iter().position(|&byte| byte == b'\n').map_or(to, |found| at + found)
 }
 
-/// A piece of the source as a terminal may show it: one column per character, no control characters.
+/// Returns a piece of the source as a terminal may show it: one column per character, no control characters.
 fn shown(bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(bytes);
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text).trim_end_matches('\r');

@@ -7,7 +7,7 @@ use super::{
 use crate::foreign::one_line;
 use fosssim_model::scene::Scene;
 
-/// One line per scene: its name under `asset:`, how large it is, and the first sentence of its description.
+/// Returns one line per scene: its name under `asset:`, how large it is, and the first sentence of its description.
 #[must_use]
 pub fn list(scenes: &[(&str, Scene)], style: Style) -> String {
     let width = scenes.iter().map(|(name, _)| wrap::columns(name)).max().unwrap_or(0);
@@ -20,8 +20,8 @@ pub fn list(scenes: &[(&str, Scene)], style: Style) -> String {
     scenes.iter().map(line).collect()
 }
 
-/// `3 particles, 1 edge, 20 steps, for T1M2, T1M3`: what a scene has none of is left out, and the milestones are those
-/// whose programs can run it.
+/// Returns `3 particles, 1 edge, 20 steps, for T1M2, T1M3`: what a scene has none of is left out, and the milestones
+/// are those whose programs can run it.
 fn size(scene: &Scene) -> String {
     let parts = [
         (scene.particles.len() as u64, "particle"),
@@ -35,7 +35,7 @@ fn size(scene: &Scene) -> String {
     told.chain(milestones).collect::<Vec<_>>().join(", ")
 }
 
-/// The first sentence of a text.
+/// Returns the first sentence of a text.
 fn sentence(text: &str) -> &str {
     let text = text.trim();
     text.match_indices(['.', ';', ':'])

@@ -3,7 +3,8 @@ use super::{check::CheckView, detect::DetectView, diagnosis::DiagnosisView, grad
 use schemars::{JsonSchema, Schema, generate::SchemaSettings, transform::RecursiveTransform};
 use serde_json::Value;
 
-/// The schemas with the commands that write such documents. Each is `<command>.schema.json` in the folder `schemas`.
+/// Returns the schemas with the commands that write such documents. Each is `<command>.schema.json` in the folder
+/// `schemas`.
 #[must_use]
 pub fn all() -> [(&'static str, Schema); 4] {
     [
@@ -22,7 +23,7 @@ fn of<Document: JsonSchema>(command: &str) -> Schema {
     schema
 }
 
-/// A comment's lines end where the source is full.
+/// Joins the lines of descriptions, which end where the source's lines are full.
 fn join_lines(schema: &mut Schema) {
     if let Some(Value::String(description)) = schema.get_mut("description") {
         *description = description.replace('\n', " ");

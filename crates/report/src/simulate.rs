@@ -29,7 +29,7 @@ pub struct SimulationSummary<'a> {
 }
 
 impl SimulationSummary<'_> {
-    /// For people.
+    /// Renders the report for people.
     #[must_use]
     pub fn text(&self, style: Style) -> String {
         let counts = &self.counts;
@@ -75,7 +75,7 @@ impl SimulationSummary<'_> {
         format!("{}\n{}", style.paint(Look::Strong, &heading), table.render(style))
     }
 
-    /// For programs: one JSON object, indented, with a line feed at its end.
+    /// Renders the report for programs: one JSON object, indented, with a line feed at its end.
     #[must_use]
     pub fn json(&self) -> String {
         let counts = &self.counts;

@@ -21,12 +21,12 @@ pub enum Look {
     Notice,
     /// A heading.
     Strong,
-    /// Of lesser importance.
+    /// Less important text.
     Faint,
 }
 
 impl Style {
-    /// The text, decorated. Padding has to be done before.
+    /// Returns the text, decorated. Padding has to be done before.
     #[must_use]
     pub fn paint(self, look: Look, text: &str) -> String {
         let code = match (self, look) {

@@ -12,7 +12,7 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// A cell that looks like this.
+    /// Returns a cell that looks like this.
     pub fn looking(look: Look, text: impl Into<String>) -> Self {
         Self { text: text.into(), look: Some(look) }
     }
@@ -41,7 +41,7 @@ pub struct Table<const COLUMNS: usize> {
 }
 
 impl<const COLUMNS: usize> Table<COLUMNS> {
-    /// A table without rows.
+    /// Creates a table without rows.
     #[must_use]
     pub const fn new(columns: [Align; COLUMNS]) -> Self {
         Self { columns, rows: Vec::new() }
@@ -57,7 +57,8 @@ impl<const COLUMNS: usize> Table<COLUMNS> {
         self.row(titles.map(|title| Cell::looking(Look::Faint, title)));
     }
 
-    /// The rows as lines, indented by two spaces, columns three spaces apart, without blanks at the ends of lines.
+    /// Renders the rows as lines, indented by two spaces, columns three spaces apart, without blanks at the ends of
+    /// lines.
     #[must_use]
     pub fn render(&self, style: Style) -> String {
         let width = |column: usize| self.rows.iter().map(|row| columns(&row[column].text)).max().unwrap_or_default();

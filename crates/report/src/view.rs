@@ -38,20 +38,20 @@ pub const SCHEMA: u32 = 1;
 /// lie in the first record.
 pub const CHECK_SCHEMA: u32 = 2;
 
-/// The name of a value in JSON, for other formats; nothing for a value that has fields.
+/// Returns the name of a value in JSON, for other formats; nothing for a value that has fields.
 #[must_use]
 pub fn key(value: &impl Serialize) -> String {
     let written = serde_json::to_value(value).unwrap_or_default();
     written.as_str().unwrap_or_default().to_owned()
 }
 
-/// A value as one JSON document, indented, with a line feed at its end.
+/// Renders a value as one JSON document, indented, with a line feed at its end.
 pub(crate) fn document(value: &impl Serialize) -> String {
     // A struct of plain values always serialises.
     serde_json::to_string_pretty(value).unwrap_or_default() + "\n"
 }
 
-/// Several numbers in JSON.
+/// Returns several numbers in JSON.
 #[must_use]
 pub fn numbers(values: &[f64]) -> Vec<Number> {
     values.iter().copied().map(Number).collect()
@@ -60,9 +60,9 @@ pub fn numbers(values: &[f64]) -> Vec<Number> {
 /// A polynomial of a step.
 #[derive(Debug, Clone, PartialEq, Serialize, schemars::JsonSchema)]
 pub struct PolynomialView {
-    /// Its number in the frame's list, from 0.
+    /// The polynomial's number in the frame's list, from 0.
     pub index: usize,
-    /// Its role.
+    /// The polynomial's role.
     pub role: Role,
     /// The detection pass that logged it.
     pub pass: Pass,
@@ -99,7 +99,7 @@ pub struct FindingView {
     pub step: u32,
     /// The frame of the trace, from 0.
     pub frame: u64,
-    /// Its kind.
+    /// The event's kind.
     pub kind: FindingKind,
     /// The pair; null for what belongs to no pair.
     pub pair: Option<ImpulsePair>,
@@ -112,9 +112,9 @@ pub struct FindingView {
     /// The reference's value: a collision, a count of polynomials or coefficients, the coefficients, one coefficient
     /// times the factor of the trace's polynomial, or a vector.
     pub expected: Option<Value>,
-    /// The same of the trace.
+    /// The trace's value.
     pub actual: Option<Value>,
-    /// Their distance, where there is one.
+    /// The distance between both, where there is one.
     pub residual: Option<Number>,
     /// The bound of the distance; for coefficients, of the distance after rescaling. Null where it depends on the
     /// values (fair rules).
@@ -122,11 +122,11 @@ pub struct FindingView {
     /// A coefficient as the original compares it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rescaled: Option<Rescaled>,
-    /// The same in words.
+    /// The finding in words.
     pub text: String,
 }
 
-/// The tolerance of a kind's distance.
+/// Returns the tolerance of a kind's distance.
 #[must_use]
 pub const fn tolerance(kind: FindingKind) -> Option<f64> {
     use fosssim_num::tolerances::{PARITY_COEFFICIENT, PARITY_MAXIMUM, PARITY_NORMAL};
@@ -139,7 +139,7 @@ pub const fn tolerance(kind: FindingKind) -> Option<f64> {
 }
 
 impl FindingView {
-    /// A finding by the rules of a book. The tolerances of the fair ones depend on the values.
+    /// Returns a finding by the rules of a book. The tolerances of the fair ones depend on the values.
     #[must_use]
     pub fn by(book: Book, finding: &Finding) -> Self {
         let (kind, detail) = (finding.kind(), &finding.detail);
@@ -174,7 +174,7 @@ impl FindingView {
     }
 }
 
-/// The polynomial that a finding is about, where it compares two.
+/// Returns the polynomial that a finding is about, where it compares two.
 fn polynomial(detail: &FindingDetail) -> Option<PolynomialView> {
     let (place, expected, actual) = match *detail {
         FindingDetail::PolynomialDegree { place, expected, actual, .. }
@@ -188,7 +188,7 @@ fn polynomial(detail: &FindingDetail) -> Option<PolynomialView> {
     Some(PolynomialView { index, role, pass, expected, actual })
 }
 
-/// The values that a finding compares, the reference's first, and their distance.
+/// Returns the values that a finding compares, the reference's first, and their distance.
 fn compared(detail: &FindingDetail) -> (Option<Value>, Option<Value>, Option<f64>) {
     let both = |expected, actual, residual| (Some(expected), Some(actual), residual);
     match *detail {

@@ -26,7 +26,7 @@ pub const STATES_ONLY: &str =
 /// The exit code of shells and loaders that did not find what they were to run.
 const NOT_FOUND: i32 = 127;
 
-/// One sentence that says what happened on a scene.
+/// Returns one sentence that says what happened on a scene.
 #[must_use]
 pub fn summary(result: &SceneResult) -> String {
     match &result.reason {
@@ -44,7 +44,7 @@ pub fn summary(result: &SceneResult) -> String {
     }
 }
 
-/// How the program ended, and at which limit, without how far it came: the same in many scenes.
+/// Returns how the program ended, and at which limit, without how far it came: the same in many scenes.
 pub(crate) fn ending(result: &SceneResult) -> String {
     let Reason::Program(reached) = result.reason else { return summary(result) };
     let ended = result.ended.as_ref().map(Ended::to_string).unwrap_or_default();
@@ -56,7 +56,7 @@ pub(crate) fn ending(result: &SceneResult) -> String {
     format!("the program {ended}{limit}")
 }
 
-/// Further lines about a scene: the first difference, counts, damage, where a trace is kept.
+/// Returns further lines about a scene: the first difference, counts, damage, where a trace is kept.
 #[must_use]
 pub fn details(result: &SceneResult) -> Vec<String> {
     let mut lines = Vec::new();
@@ -90,7 +90,7 @@ pub fn details(result: &SceneResult) -> Vec<String> {
     lines
 }
 
-/// The fault of the submission itself, and so of each of its scenes.
+/// Returns the fault of the submission itself, and so of each of its scenes.
 #[must_use]
 pub fn unfit(grade: &Grade) -> Option<String> {
     grade.unfit().map(|unfit| match unfit {
@@ -101,14 +101,14 @@ pub fn unfit(grade: &Grade) -> Option<String> {
     })
 }
 
-/// The text for a program of another milestone than the suite's.
+/// Returns the text for a program of another milestone than the suite's.
 fn milestone(other: Assignment) -> String {
     let Definition { title, key, .. } = other.definition();
     format!("it looks like a program of {title}: grade it with --suite {key}")
 }
 
-/// The text for a submission that logs nothing in any scene: the parts that are not written yet, as far as that may be
-/// told.
+/// Returns the text for a submission that logs nothing in any scene: the parts that are not written yet, as far as that
+/// may be told.
 fn unwritten(grade: &Grade) -> String {
     let scenes = counted(grade.scenes().count() as u64, "scene");
     let missing = match likely_mistakes(grade).first() {
@@ -118,7 +118,7 @@ fn unwritten(grade: &Grade) -> String {
     format!("{missing} No trace of its {scenes} holds a polynomial or a collision.")
 }
 
-/// In one sentence why not everything is accepted; nothing where it is.
+/// Returns in one sentence why not everything is accepted; nothing where it is.
 #[must_use]
 pub fn reason(grade: &Grade) -> Option<String> {
     if let Some(unfit) = unfit(grade) {
@@ -131,7 +131,7 @@ pub fn reason(grade: &Grade) -> Option<String> {
     Some(format!("{accepted} of {all} scenes accepted; first {}: {}", first.scene, summary(first)))
 }
 
-/// How a build ended.
+/// Returns how a build ended.
 #[must_use]
 pub fn build(end: &BuildEnd) -> String {
     match end {
@@ -183,8 +183,8 @@ fn of_bad_trace(bad: &BadTrace) -> String {
     }
 }
 
-/// How far a program's trace came. What a crash takes along of it nobody knows: records may have been waiting to be
-/// written.
+/// Returns how far a program's trace came. What a crash takes along of it nobody knows: records may have been waiting
+/// to be written.
 fn how_far(reached: Reached, steps: u32) -> String {
     match (reached.limit, reached.steps) {
         (_, done) if done == steps => " after its last step".to_owned(),
@@ -245,7 +245,7 @@ fn of_failure(failure: &Failure) -> String {
     }
 }
 
-/// Where a trace parts from the reference, as far as it may be told.
+/// Returns where a trace parts from the reference, as far as it may be told.
 pub(crate) fn first_divergence(first: &DisclosedFinding) -> String {
     match first {
         DisclosedFinding::Full(finding) => format!("first difference: {finding}"),
@@ -262,7 +262,7 @@ pub(crate) fn first_divergence(first: &DisclosedFinding) -> String {
     }
 }
 
-/// `counts: wrong coefficient (12), missed collision (3)`, when there is more than the first finding tells.
+/// Returns `counts: wrong coefficient (12), missed collision (3)`, when there is more than the first finding tells.
 fn counts(account: &DisclosedBook) -> Option<String> {
     let counts = &account.counts;
     // A kind that is found in damaged records alone has no example, and says nothing about the program.

@@ -9,7 +9,7 @@ use unicode_width::UnicodeWidthChar;
 /// The last column of a line keeps its indentation when at least this number of columns is left to it.
 const ROOM: usize = 30;
 
-/// The text with no line wider than `width`, as far as words allow.
+/// Returns the text with no line wider than `width`, as far as words allow.
 #[must_use]
 pub fn wrapped(text: &str, width: usize) -> String {
     let mut result = String::with_capacity(text.len());
@@ -21,7 +21,7 @@ pub fn wrapped(text: &str, width: usize) -> String {
     result
 }
 
-/// The columns that a text takes; colour codes take none.
+/// Returns the columns that a text takes; colour codes take none.
 #[must_use]
 pub fn columns(text: &str) -> usize {
     let mut inside_code = false;
@@ -66,7 +66,7 @@ fn broken(result: &mut String, line: &str, width: usize) {
     }
 }
 
-/// The start of each further line: a number of blanks, and the mark of a program's output.
+/// Returns the start of each further line: a number of blanks, and the mark of a program's output.
 fn continuation(line: &str, body: &str, width: usize) -> (usize, &'static str) {
     let lead = line.len() - body.len();
     if body.starts_with("| ") {

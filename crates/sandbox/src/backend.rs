@@ -36,24 +36,24 @@ pub struct Supervisor {
 }
 
 impl Supervisor {
-    /// This very program, even when its file has been replaced or removed since it was started.
+    /// Returns this very program, even when its file has been replaced or removed since it was started.
     #[must_use]
     pub fn this_program() -> Self {
         Self { program: "/proc/self/exe".into() }
     }
 
-    /// Another program, for tests.
+    /// Returns another program, for tests.
     #[must_use]
     pub fn at(program: impl Into<PathBuf>) -> Self {
         Self { program: program.into() }
     }
 
-    /// The grader's files that nobody may run: this process's and the supervisor's.
+    /// Returns the grader's files that nobody may run: this process's and the supervisor's.
     fn own_files(&self) -> [PathBuf; 2] {
         ["/proc/self/exe".into(), self.program.clone()]
     }
 
-    /// Its command, asked for this, without our environment.
+    /// Returns the program's command, asked for this, without our environment.
     fn command(&self, mode: &str) -> Command {
         let mut command = Command::new(&self.program);
         command.arg(SUPERVISOR_ARGUMENT).arg(mode).env_clear().current_dir("/");
@@ -134,7 +134,7 @@ struct SpawnedSupervisor {
 }
 
 impl SpawnedSupervisor {
-    /// Its first word.
+    /// Reads the supervisor's first word.
     fn first(&mut self) -> io::Result<Event> {
         wire::receive(&mut self.answers)
     }
@@ -175,7 +175,7 @@ impl std::fmt::Debug for Backend {
 }
 
 impl Backend {
-    /// The launcher with every wall that holds on this host. Probes once.
+    /// Returns the launcher with every wall that holds on this host. Probes once.
     ///
     /// # Errors
     ///
@@ -187,7 +187,7 @@ impl Backend {
         Ok(Self { kind: Kind::launcher(supervisor, walls), layers: reports.into() })
     }
 
-    /// The same with the walls of other reports, and with the file rules of a kernel with this version.
+    /// Returns the backend with the walls of other reports, and with the file rules of a kernel with this version.
     fn with(&self, reports: Vec<LayerReport>, landlock_version: u8) -> Result<Self, SandboxError> {
         let kind = match &self.kind {
             Kind::Launcher { supervisor, .. } => {
@@ -199,7 +199,7 @@ impl Backend {
         Ok(Self { kind, layers: reports.into() })
     }
 
-    /// The same without one of its walls, to prove what the others hold alone. Reports state it.
+    /// Returns the backend without one of its walls, to prove what the others hold alone. Reports state it.
     ///
     /// # Errors
     ///
@@ -208,7 +208,8 @@ impl Backend {
         self.with(layers::without(&self.layers, layer), 0)
     }
 
-    /// The same with the file rules of an older kernel (Landlock's version, from 1 on), to prove that they hold, too.
+    /// Returns the backend with the file rules of an older kernel (Landlock's version, from 1 on), to prove that they
+    /// hold, too.
     ///
     /// # Errors
     ///
@@ -217,7 +218,7 @@ impl Backend {
         self.with(layers::with_landlock(&self.layers, version), version)
     }
 
-    /// Every wall that holds on this host, however few: nothing is refused for a missing one. For
+    /// Returns every wall that holds on this host, however few: nothing is refused for a missing one. For
     /// `--unsafe-no-sandbox`. The layers say what is missing, see [`Backend::weaknesses`].
     ///
     /// # Errors
@@ -230,25 +231,25 @@ impl Backend {
         Ok(Self { kind: Kind::launcher(supervisor, walls), layers: reports.into() })
     }
 
-    /// Whether every wall holds that this host may not grade without.
+    /// Returns whether every wall holds that this host may not grade without.
     #[must_use]
     pub fn is_complete(&self) -> bool {
         self.layers.iter().all(|report| report.active || !report.required)
     }
 
-    /// One line per required wall that does not hold; none for a complete sandbox.
+    /// Returns one line per required wall that does not hold; none for a complete sandbox.
     #[must_use]
     pub fn weaknesses(&self) -> Vec<String> {
         layers::missing(&self.layers)
     }
 
-    /// A backend that runs nothing and answers as scripted, for tests of whatever uses the sandbox.
+    /// Returns a backend that runs nothing and answers as scripted, for tests of whatever uses the sandbox.
     #[must_use]
     pub fn fake(script: impl Fn(&Job) -> FakeRun + Send + Sync + 'static) -> Self {
         Self { kind: Kind::Fake(Arc::new(script)), layers: layers::none() }
     }
 
-    /// The walls, active or not.
+    /// Returns the walls, active or not.
     #[must_use]
     pub fn layers(&self) -> &[LayerReport] {
         &self.layers
@@ -323,12 +324,12 @@ impl Backend {
     }
 }
 
-/// The error for walls that this host lacks.
+/// Returns the error for walls that this host lacks.
 const fn lacking(missing: String) -> SandboxError {
     SandboxError::Missing { missing }
 }
 
-/// The working folder in memory.
+/// Returns the working folder in memory.
 fn handed_over(control: &UnixStream) -> io::Result<OwnedFd> {
     let mut byte = [0];
     let (_, descriptors) = sys::receive_descriptors(control, &mut byte)?;
@@ -338,7 +339,7 @@ fn handed_over(control: &UnixStream) -> io::Result<OwnedFd> {
     }
 }
 
-/// The order for a job, with absolute paths, to a supervisor that is this program.
+/// Returns the order for a job, with absolute paths, to a supervisor that is this program.
 fn order(job: &Job, walls: Walls, examined: program::Program, supervisor: &Path) -> Result<RunOrder, SandboxError> {
     let folder = job.folder.canonicalize().and_then(|folder| match folder.is_dir() {
         true => Ok(folder),

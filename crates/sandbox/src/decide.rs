@@ -12,7 +12,7 @@ use super::{
 /// The exit code of the dynamic loader when it finds no library.
 const LOADER_FAILED: i32 = 127;
 
-/// How the run of `order` ended, given the facts and what the program wrote to standard error.
+/// Returns how the run of `order` ended, given the facts and what the program wrote to standard error.
 pub(super) fn ended(order: &RunOrder, report: &Report, stderr: &[u8]) -> Ended {
     if report.exec_errno == Some(libc::ENOMEM) {
         return Ended::MemoryLimit;
@@ -66,7 +66,7 @@ pub(super) fn ended(order: &RunOrder, report: &Report, stderr: &[u8]) -> Ended {
     Ended::Exited(code)
 }
 
-/// The meaning of the kernel's refusal to execute a file that is there and may be executed.
+/// Returns the meaning of the kernel's refusal to execute a file that is there and may be executed.
 fn start_problem(errno: i32) -> StartProblem {
     match errno {
         libc::ENOENT | libc::EACCES | libc::EPERM => StartProblem::MissingLoader {},
@@ -76,7 +76,8 @@ fn start_problem(errno: i32) -> StartProblem {
     }
 }
 
-/// The library that the loader of glibc or musl says it did not find. The program itself could say so, of a name only.
+/// Returns the library that the loader of glibc or musl says it did not find. The program itself could say so, of a
+/// name only.
 fn missing_library(stderr: &str) -> Option<String> {
     const LONGEST: usize = 100;
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "._+-".contains(c);
@@ -87,7 +88,7 @@ fn missing_library(stderr: &str) -> Option<String> {
     (name.len() <= LONGEST && name.contains(".so") && name.chars().all(is_plain)).then(|| name.to_owned())
 }
 
-/// Whether a sanitiser's runtime says that it was refused its terabytes of address space.
+/// Returns whether a sanitiser's runtime says that it was refused its terabytes of address space.
 fn wants_shadow(stderr: &str) -> bool {
     const COMPLAINTS: [&str; 3] = [
         "ReserveShadowMemoryRange failed",
@@ -97,8 +98,8 @@ fn wants_shadow(stderr: &str) -> bool {
     COMPLAINTS.iter().any(|complaint| stderr.contains(complaint))
 }
 
-/// Whether its last words are those of a runtime whose request for memory was refused. A single request beyond the
-/// limit of address space fails without any memory in use, so that no counter shows it.
+/// Returns whether its last words are those of a runtime whose request for memory was refused. A single request beyond
+/// the limit of address space fails without any memory in use, so that no counter shows it.
 fn wants_memory(stderr: &str) -> bool {
     // C++, Rust, Python, Java, Node and the sanitisers.
     const COMPLAINTS: [&str; 6] = [

@@ -5,7 +5,7 @@ use super::{
     layers::{Layer, LayerReport, reports},
 };
 
-/// Which walls hold on this host, tried once by starting this very program as a supervisor.
+/// Returns which walls hold on this host, tried once by starting this very program as a supervisor.
 ///
 /// The program must call [`supervisor_main`](super::supervisor_main) first of all. When not even the supervisor
 /// starts, every wall is reported as missing with that reason.

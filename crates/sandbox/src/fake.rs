@@ -29,19 +29,19 @@ pub struct FakeRun {
 }
 
 impl FakeRun {
-    /// A run that ended like this and wrote nothing.
+    /// Returns a run that ended like this and wrote nothing.
     #[must_use]
     pub fn ended(ended: Ended) -> Self {
         Self { ended, trace: Vec::new(), stdout: Vec::new(), stderr: Vec::new(), cpu: Duration::ZERO, peak_memory: 0 }
     }
 
-    /// A run that exited with code 0 and wrote this trace.
+    /// Returns a run that exited with code 0 and wrote this trace.
     #[must_use]
     pub fn wrote(trace: impl Into<Vec<u8>>) -> Self {
         Self { trace: trace.into(), ..Self::ended(Ended::Exited(0)) }
     }
 
-    /// A program that never ran.
+    /// Returns a program that never ran.
     pub(super) fn could_not_start(problem: StartProblem) -> Self {
         Self::ended(Ended::CouldNotStart(problem))
     }

@@ -68,7 +68,7 @@ pub enum SandboxError {
     },
 }
 
-/// A failure that the supervisor told.
+/// Converts a failure that the supervisor reported.
 pub(super) fn set_up_failed(failure: wire::Failure) -> SandboxError {
     let source = match failure.errno {
         0 => io::Error::other("no further reason"),
@@ -77,8 +77,8 @@ pub(super) fn set_up_failed(failure: wire::Failure) -> SandboxError {
     SandboxError::SetUp { stage: failure.stage, source }
 }
 
-/// The error for a supervisor that ended without a word. Its channel is closed by now, which ends one that is merely
-/// confused.
+/// Returns the error for a supervisor that ended without a word. Its channel is closed by now, which ends one that is
+/// merely confused.
 pub(super) fn lost(mut child: Child) -> SandboxError {
     let status = child.wait().map_or_else(|error| error.to_string(), |status| status.to_string());
     let mut text = String::new();

@@ -67,7 +67,7 @@ impl Default for Limits {
 pub struct ProgramIdentity([i64; 5]);
 
 impl ProgramIdentity {
-    /// The identity of the regular file at the path, links followed; `None` where there is none.
+    /// Returns the identity of the regular file at the path, links followed; `None` where there is none.
     #[must_use]
     pub fn of(path: &Path) -> Option<Self> {
         let metadata = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file)?;
@@ -96,7 +96,7 @@ pub struct Job {
 }
 
 impl Job {
-    /// A job that runs `program` in the existing working folder `folder`, which the program may change at will.
+    /// Creates a job that runs `program` in the existing working folder `folder`, which the program may change at will.
     ///
     /// Standard input is empty. A relative `program` is looked up from the grader's current folder, never on `PATH`.
     #[must_use]
@@ -117,7 +117,7 @@ impl Job {
         }
     }
 
-    /// The program's arguments, without its own name.
+    /// Returns the program's arguments, without its own name.
     #[must_use]
     pub fn arguments<A: Into<OsString>>(mut self, arguments: impl IntoIterator<Item = A>) -> Self {
         self.arguments = arguments.into_iter().map(Into::into).collect();
@@ -133,7 +133,7 @@ impl Job {
         self
     }
 
-    /// The program writes its trace into the file `name` of the working folder, which has a limit of its own.
+    /// Sets that the program writes its trace into the file `name` of the working folder, which has a limit of its own.
     /// [`LeftFolder::regular_file`](crate::LeftFolder::regular_file) opens what it left there.
     #[must_use]
     pub fn trace(mut self, name: impl Into<String>) -> Self {
@@ -150,8 +150,8 @@ impl Job {
         self
     }
 
-    /// A file of this name and content lies in the working folder when the program starts. Where that folder lies in
-    /// memory, so does the file, and nowhere else.
+    /// Puts a file of this name and content into the working folder before the program starts. Where that folder lies
+    /// in memory, so does the file, and nowhere else.
     #[must_use]
     pub fn file(mut self, name: impl Into<String>, content: impl Into<Vec<u8>>) -> Self {
         self.files.push((name.into(), content.into()));
@@ -165,8 +165,8 @@ impl Job {
         self
     }
 
-    /// Environment variables, on top of the few that every program gets (`PATH`, `HOME`, `TMPDIR`, `LC_ALL`). The
-    /// grader's own environment never reaches the program.
+    /// Returns environment variables, on top of the few that every program gets (`PATH`, `HOME`, `TMPDIR`, `LC_ALL`).
+    /// The grader's own environment never reaches the program.
     #[must_use]
     pub fn environment<N: Into<OsString>, V: Into<OsString>>(
         mut self,
@@ -176,7 +176,7 @@ impl Job {
         self
     }
 
-    /// Whether a program that was built with an address, thread or memory sanitiser may run. Sanitisers reserve
+    /// Returns whether a program that was built with an address, thread or memory sanitiser may run. Sanitisers reserve
     /// terabytes of address space, so that for such a program memory is limited only by what is seen in use, a moment
     /// later.
     #[must_use]
@@ -193,7 +193,7 @@ impl Job {
         self
     }
 
-    /// The limits.
+    /// Returns the limits.
     #[must_use]
     pub fn limits(mut self, limits: Limits) -> Self {
         self.limits = limits;

@@ -33,13 +33,13 @@ pub(super) struct Kind {
 }
 
 impl Kind {
-    /// Whether there can be a keeper for this order. Otherwise its supervisor serves no other run: where there are no
-    /// namespaces, which end with the run, or processes that nobody counts.
+    /// Returns whether there can be a keeper for this order. Otherwise its supervisor serves no other run: where there
+    /// are no namespaces, which end with the run, or processes that nobody counts.
     pub(super) fn exists_for(order: &RunOrder) -> bool {
         order.volatile && !order.tools && order.walls.namespaces && order.walls.seccomp
     }
 
-    /// The kind of this order; `None` when there can be no keeper for it.
+    /// Returns the kind of this order; `None` when there can be no keeper for it.
     pub(super) fn of(order: &RunOrder) -> Option<Self> {
         if !Self::exists_for(order) {
             return None;
@@ -107,7 +107,7 @@ pub(super) struct KeeperPool {
 }
 
 impl KeeperPool {
-    /// A keeper for runs of this kind. Without one, one of another kind makes room for it.
+    /// Takes a keeper for runs of this kind. Without one, one of another kind makes room for it.
     pub(super) fn take(&self, kind: &Kind) -> Option<Keeper> {
         let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);
         let fits = idle.iter().rposition(|keeper| keeper.kind == *kind);
@@ -135,7 +135,7 @@ pub(super) enum Host {
 }
 
 impl Host {
-    /// The error for a supervisor that ended without a word. Its channel must be closed.
+    /// Returns the error for a supervisor that ended without a word. Its channel must be closed.
     pub(super) fn lost(self) -> SandboxError {
         match self {
             Self::Own(child) => lost(child),
@@ -156,8 +156,8 @@ impl Host {
         let _ = child.map(Child::kill);
     }
 
-    /// The run is over, and this is its report, if there is one. Only a keeper whose run has simply ended serves
-    /// others.
+    /// Puts the keeper to rest after its run, whose report this is, if there is one. Only a keeper whose run has simply
+    /// ended serves others.
     pub(super) fn rest(self, report: Option<&Report>) -> Option<RestingKeeper> {
         match self {
             Self::Own(mut child) => {
@@ -189,7 +189,7 @@ impl Drop for RestingKeeper {
     }
 }
 
-/// Whether the program ended by itself, within its limits and with an exit code.
+/// Returns whether the program ended by itself, within its limits and with an exit code.
 fn has_simply_ended(report: &Report) -> bool {
     let calm = report.cause.is_none() && report.exec_errno.is_none() && report.survivors == 0 && !report.folder_over;
     calm && libc::WIFEXITED(report.status)

@@ -15,7 +15,7 @@ pub(super) fn write_file(job: &Job, name: &str, content: &[u8]) -> Result<(), Sa
     std::fs::write(job.folder.join(plain_name(job, name)?), content).map_err(|source| folder_fault(job, source))
 }
 
-/// A name that leads to no other folder.
+/// Returns a name that leads to no other folder.
 pub(super) fn plain_name<'a>(job: &Job, name: &'a str) -> Result<&'a Path, SandboxError> {
     wire::plain_name(name.as_bytes()).ok_or_else(|| folder_fault(job, io::ErrorKind::InvalidInput.into()))
 }

@@ -49,7 +49,7 @@ impl Layer {
         Self::ControlGroup,
     ];
 
-    /// The name in reports.
+    /// Returns the name in reports.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -86,7 +86,7 @@ pub struct LayerReport {
     pub remedy: Option<&'static str>,
 }
 
-/// The reports of a probe.
+/// Returns the reports of a probe.
 pub(super) fn reports(probe: &Probe) -> Vec<LayerReport> {
     let mut reports = Vec::from(of_processes(probe));
     reports.extend(of_calls_and_files(probe));
@@ -94,7 +94,7 @@ pub(super) fn reports(probe: &Probe) -> Vec<LayerReport> {
     reports
 }
 
-/// The report on a wall: what holds where it has no problem, and what to do where it has one.
+/// Returns the report on a wall: what holds where it has no problem, and what to do where it has one.
 fn report(layer: Layer, problem: Option<String>, held: &str, required: bool, remedy: &'static str) -> LayerReport {
     LayerReport {
         layer,
@@ -105,12 +105,12 @@ fn report(layer: Layer, problem: Option<String>, held: &str, required: bool, rem
     }
 }
 
-/// Whether every running program has a user of its own.
+/// Returns whether every running program has a user of its own.
 fn has_own_user(probe: &Probe) -> bool {
     probe.root && probe.own_user.is_none()
 }
 
-/// The walls that a process puts up around itself, and what it needs to begin.
+/// Returns the walls that a process puts up around itself, and what it needs to begin.
 fn of_processes(probe: &Probe) -> [LayerReport; 4] {
     [
         report(
@@ -148,7 +148,7 @@ fn of_processes(probe: &Probe) -> [LayerReport; 4] {
     ]
 }
 
-/// The walls before system calls, files and signals.
+/// Returns the walls before system calls, files and signals.
 fn of_calls_and_files(probe: &Probe) -> [LayerReport; 4] {
     let (user, hidden) = (has_own_user(probe), probe.namespaces.is_none());
     let scopes = match (&probe.landlock, probe.landlock_abi) {
@@ -199,7 +199,7 @@ fn of_calls_and_files(probe: &Probe) -> [LayerReport; 4] {
     ]
 }
 
-/// The walls that only some hosts have: users, namespaces, groups.
+/// Returns the walls that only some hosts have: users, namespaces, groups.
 fn of_surroundings(probe: &Probe) -> [LayerReport; 3] {
     let own_user = match (probe.root, probe.roots_group) {
         (true, _) => probe.own_user.clone(),
@@ -243,7 +243,7 @@ fn of_surroundings(probe: &Probe) -> [LayerReport; 3] {
     ]
 }
 
-/// The same reports with one wall taken away, and with it the walls that depend on it.
+/// Returns the reports with one wall taken away, and with it the walls that depend on it.
 pub(super) fn without(reports: &[LayerReport], layer: Layer) -> Vec<LayerReport> {
     let mut reports = reports.to_vec();
     for report in &mut reports {
@@ -263,7 +263,7 @@ pub(super) fn without(reports: &[LayerReport], layer: Layer) -> Vec<LayerReport>
     reports
 }
 
-/// The same reports with the file rules of an older kernel.
+/// Returns the reports with the file rules of an older kernel.
 pub(super) fn with_landlock(reports: &[LayerReport], version: u8) -> Vec<LayerReport> {
     let mut reports = if version < SCOPES_SINCE { without(reports, Layer::Scopes) } else { reports.to_vec() };
     for report in reports.iter_mut().filter(|report| report.layer == Layer::FileRules && report.active) {
@@ -272,14 +272,15 @@ pub(super) fn with_landlock(reports: &[LayerReport], version: u8) -> Vec<LayerRe
     reports
 }
 
-/// The walls that the supervisor puts up, given the reports; `None` without the required set, with what is missing.
+/// Returns the walls that the supervisor puts up, given the reports; `None` without the required set, with what is
+/// missing.
 pub(super) fn walls(reports: &[LayerReport]) -> Result<Walls, String> {
     let missing = missing(reports);
     if missing.is_empty() { Ok(active(reports)) } else { Err(missing.join("\n")) }
 }
 
-/// The walls that hold, without regard to the required set. Only root must not run programs as itself: the error says
-/// why it would.
+/// Returns the walls that hold, without regard to the required set. Only root must not run programs as itself: the
+/// error says why it would.
 pub(super) fn whatever_holds(reports: &[LayerReport]) -> Result<Walls, String> {
     match reports.iter().find(|report| report.layer == Layer::OwnUser && report.required && !report.active) {
         Some(report) => Err(line(report)),
@@ -287,7 +288,7 @@ pub(super) fn whatever_holds(reports: &[LayerReport]) -> Result<Walls, String> {
     }
 }
 
-/// One line per required wall that does not hold.
+/// Returns one line per required wall that does not hold.
 pub(super) fn missing(reports: &[LayerReport]) -> Vec<String> {
     reports.iter().filter(|report| report.required && !report.active).map(line).collect()
 }
@@ -297,7 +298,7 @@ fn line(report: &LayerReport) -> String {
     format!("{}: {}{remedy}", report.layer.name(), report.detail)
 }
 
-/// Whether a wall holds.
+/// Returns whether a wall holds.
 pub(super) fn is_active(reports: &[LayerReport], layer: Layer) -> bool {
     reports.iter().any(|report| report.layer == layer && report.active)
 }
@@ -317,7 +318,7 @@ fn active(reports: &[LayerReport]) -> Walls {
     }
 }
 
-/// The layers in a report on a run that never happened.
+/// Returns the layers in a report on a run that never happened.
 pub(super) fn none() -> Arc<[LayerReport]> {
     let off = |layer| LayerReport {
         layer,

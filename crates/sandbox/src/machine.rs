@@ -2,7 +2,7 @@
 
 #![expect(unsafe_code, reason = "these calls have no safe wrapper among the dependencies")]
 
-/// The kernel's answer to `sysinfo`.
+/// Returns the kernel's answer to `sysinfo`.
 fn asked() -> libc::sysinfo {
     // SAFETY: an all-zero structure is valid and outlives the call, which fills it or leaves it.
     unsafe {
@@ -12,18 +12,19 @@ fn asked() -> libc::sysinfo {
     }
 }
 
-/// The bytes that a line of the kernel's tells after this word, in kB.
+/// Returns the bytes that a line of the kernel's tells after this word, in kB.
 pub(super) fn bytes_of(text: &str, word: &str) -> Option<u64> {
     let line = text.lines().find_map(|line| line.strip_prefix(word)?.strip_suffix(" kB"))?;
     line.trim().parse::<u64>().ok().map(|kib| kib << 10)
 }
 
-/// Whether memory may be moved to a disk, where it is resident for nobody.
+/// Returns whether memory may be moved to a disk, where it is resident for nobody.
 pub(super) fn has_swap() -> bool {
     asked().totalswap > 0
 }
 
-/// The answer to `sysinfo` as of a machine on which nothing is in use and nobody else runs, in the kernel's form.
+/// Returns the answer to `sysinfo` as of a machine on which nothing is in use and nobody else runs, in the kernel's
+/// form.
 pub(super) fn without_others() -> Vec<u8> {
     let about = asked();
     // SAFETY: an all-zero structure is valid. It is made of integers only; what may lie between them is zero as well,

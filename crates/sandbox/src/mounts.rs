@@ -69,7 +69,7 @@ pub(super) fn mount(kind: &CStr, target: &CStr, options: &CStr, executable: bool
     Ok(rustix::mount::mount(kind, target, kind, MountFlags::NOSUID | MountFlags::NODEV | limits, options)?)
 }
 
-/// A copy of the mounts at and beneath the path, which lies nowhere yet. A link at its end is not followed.
+/// Returns a copy of the mounts at and beneath the path, which lies nowhere yet. A link at its end is not followed.
 pub(super) fn copy_of(path: &CStr) -> io::Result<OwnedFd> {
     let kind = OpenTreeFlags::OPEN_TREE_CLONE | OpenTreeFlags::OPEN_TREE_CLOEXEC;
     Ok(open_tree(CWD, path, kind | OpenTreeFlags::AT_RECURSIVE | OpenTreeFlags::AT_SYMLINK_NOFOLLOW)?)
@@ -105,7 +105,7 @@ pub(super) fn change_root(root: &CStr, old: &CStr) -> io::Result<()> {
     std::env::set_current_dir("/")
 }
 
-/// Whether the open file lies where nothing may be executed (a mount with `noexec`).
+/// Returns whether the open file lies where nothing may be executed (a mount with `noexec`).
 pub(super) fn forbids_execution(fd: BorrowedFd<'_>) -> bool {
     rustix::fs::fstatvfs(fd).is_ok_and(|about| about.f_flag.contains(StatVfsMountFlags::NOEXEC))
 }

@@ -27,7 +27,7 @@ const PYTHONS: [&str; 4] = ["/usr/lib", "/usr/lib64", "/usr/local/lib", "/usr/lo
 /// Where modules are in the folder of a Python.
 const MODULES: [&str; 2] = ["dist-packages", "site-packages"];
 
-/// Whether the file's name is one of the grader's programs.
+/// Returns whether the file's name is one of the grader's programs.
 pub(super) fn is_name(path: &Path) -> bool {
     path.file_name().is_some_and(is_named)
 }
@@ -40,12 +40,12 @@ fn begins(name: &OsStr, own: &str) -> bool {
     name.as_bytes().get(..own.len()).is_some_and(|begin| begin.eq_ignore_ascii_case(own.as_bytes()))
 }
 
-/// The entries of a folder; none where it can't be read.
+/// Returns the entries of a folder; none where it can't be read.
 fn entries(folder: &Path) -> impl Iterator<Item = DirEntry> {
     std::fs::read_dir(folder).into_iter().flatten().flatten()
 }
 
-/// The files and folders of the module for Python, wherever `pip` puts them beneath these folders.
+/// Returns the files and folders of the module for Python, wherever `pip` puts them beneath these folders.
 fn modules(pythons: &[PathBuf]) -> Vec<PathBuf> {
     let is_python = |entry: &DirEntry| ["python", "pypy"].iter().any(|kind| begins(&entry.file_name(), kind));
     let pythons = pythons.iter().flat_map(|folder| entries(folder).filter(is_python));
@@ -55,15 +55,15 @@ fn modules(pythons: &[PathBuf]) -> Vec<PathBuf> {
     modules.map(|entry| entry.path()).collect()
 }
 
-/// The same as [`files`] for this program and the one that supervises its runs, looked up once for all runs: `/usr/bin`
-/// alone may hold thousands.
+/// Returns the files of [`files`] for this program and the one that supervises its runs, looked up once for all runs:
+/// `/usr/bin` alone may hold thousands.
 pub(super) fn known(supervisor: &Path) -> Arc<[PathBuf]> {
     static KNOWN: Mutex<BTreeMap<PathBuf, Arc<[PathBuf]>>> = Mutex::new(BTreeMap::new());
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
     known.entry(supervisor.to_path_buf()).or_insert_with(|| files(&[Path::new(THIS), supervisor]).into()).clone()
 }
 
-/// The resolved paths of these programs, of their siblings beside them, and of those that are installed.
+/// Returns the resolved paths of these programs, of their siblings beside them, and of those that are installed.
 fn files(programs: &[&Path]) -> Vec<PathBuf> {
     let programs: Vec<PathBuf> = programs.iter().filter_map(|program| program.canonicalize().ok()).collect();
     let beside = programs.iter().filter_map(|program| program.parent()).map(Path::to_path_buf);
@@ -80,8 +80,8 @@ fn files(programs: &[&Path]) -> Vec<PathBuf> {
     files
 }
 
-/// Whether a file of this length and digest is one of the grader's own programs. The sample may be graded where it lies
-/// (`itself`), to show that all works; a copy of it, or the grader in any form, is nobody's submission.
+/// Returns whether a file of this length and digest is one of the grader's own programs. The sample may be graded where
+/// it lies (`itself`), to show that all works; a copy of it, or the grader in any form, is nobody's submission.
 #[must_use]
 pub fn is_own(length: u64, digest: &blake3::Hash, itself: (u64, u64)) -> bool {
     files(&[Path::new(THIS)]).into_iter().any(|path| {
@@ -108,7 +108,7 @@ pub(super) enum Allowed {
     Listing(PathBuf),
 }
 
-/// The rules that allow everything at and beneath `path` except what is `own` (resolved paths).
+/// Returns the rules that allow everything at and beneath `path` except what is `own` (resolved paths).
 ///
 /// Links beneath a folder that is split are left out: their targets are allowed in their own places, or not at all.
 pub(super) fn around(path: &Path, own: &[PathBuf]) -> Vec<Allowed> {

@@ -27,7 +27,7 @@ const LIBRARIES: [&str; 4] = ["/lib", "/usr/lib", "/usr/lib64", "/usr/libexec"];
 pub(super) struct Program {
     /// Interpreters that the kernel executes on the way to it.
     pub(super) executable: Vec<PathBuf>,
-    /// The same under the names by which they are asked for, which may be links.
+    /// The files under the names by which they are requested, which may be links.
     pub(super) named: Vec<PathBuf>,
     /// How a script is run.
     pub(super) script: Option<Script>,
@@ -39,7 +39,7 @@ pub(super) struct Program {
 pub(super) struct Script {
     /// The interpreter's file.
     pub(super) interpreter: PathBuf,
-    /// Its name for itself, and its arguments before the script.
+    /// The interpreter's name for itself, and its arguments before the script.
     pub(super) words: Vec<String>,
     /// Variables that the first line sets.
     pub(super) environment: Vec<(String, String)>,
@@ -88,14 +88,14 @@ fn other_system(start: &[u8]) -> Option<&'static str> {
     }
 }
 
-/// The bytes that tell the kind of the file; `None` where it can't be read.
+/// Returns the bytes that tell the kind of the file; `None` where it can't be read.
 fn first_bytes(path: &Path) -> Option<Vec<u8>> {
     let mut start = Vec::new();
     File::open(path).ok()?.take(FIRST_BYTES).read_to_end(&mut start).ok()?;
     Some(start)
 }
 
-/// The way to a script's interpreter, given its first line without `#!`.
+/// Returns the way to a script's interpreter, given its first line without `#!`.
 ///
 /// Each program that is named here becomes executable for the submission. So it must be one of the system's own
 /// programs, after all links and `..` are resolved: a script that names the grader's program would be graded by its own
@@ -164,7 +164,7 @@ fn interpreted(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program, Star
     Ok(Program { script: Some(script), ..program })
 }
 
-/// The command that `env` would look up, with its arguments, given what follows `env` in a script's first line.
+/// Returns the command that `env` would look up, with its arguments, given what follows `env` in a script's first line.
 fn by_env(rest: &str, environment: &mut Vec<(String, String)>) -> Result<(String, Vec<String>), StartProblem> {
     // Without -S the kernel passes all that follows as one word.
     let Some(split) = rest.strip_prefix("-S").or_else(|| rest.strip_prefix("--split-string=")) else {
@@ -182,13 +182,14 @@ fn by_env(rest: &str, environment: &mut Vec<(String, String)>) -> Result<(String
     Ok((name.to_owned(), words.map(str::to_owned).collect()))
 }
 
-/// Whether the path names a place in one of the system's folders, by its words alone.
+/// Returns whether the path names a place in one of the system's folders, by its words alone.
 fn is_systems(path: &Path) -> bool {
     let plain = path.components().all(|part| matches!(part, Component::RootDir | Component::Normal(_)));
     plain && PROGRAMS.iter().chain(&LIBRARIES).any(|folder| path.starts_with(folder))
 }
 
-/// The resolved path of an interpreter, which must be the system's: beneath one of its folders, and not the grader's.
+/// Returns the resolved path of an interpreter, which must be the system's: beneath one of its folders, and not the
+/// grader's.
 fn systems(path: &Path, own: &[PathBuf]) -> Result<PathBuf, StartProblem> {
     let refused = || StartProblem::NotTheSystems { path: path.to_string_lossy().escape_default().to_string() };
     let resolved = path.canonicalize().map_err(|_| refused())?;
@@ -205,14 +206,14 @@ fn systems(path: &Path, own: &[PathBuf]) -> Result<PathBuf, StartProblem> {
     Ok(resolved)
 }
 
-/// Whether the path leads to one of these files, whatever its name.
+/// Returns whether the path leads to one of these files, whatever its name.
 fn is_one_of(path: &Path, own: &[PathBuf]) -> bool {
     let identity = |path: &Path| path.metadata().ok().map(|metadata| (metadata.dev(), metadata.ino()));
     let here = identity(path);
     here.is_some() && own.iter().any(|own| identity(own) == here)
 }
 
-/// Whether a file that begins so is an ELF program for this machine.
+/// Checks that a file that begins so is an ELF program for this machine.
 fn elf(start: &[u8]) -> Result<(), StartProblem> {
     if !start.starts_with(ELF_MAGIC) {
         return Err(StartProblem::NotAProgram);

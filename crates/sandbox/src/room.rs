@@ -8,16 +8,16 @@ use std::{
 
 use super::machine;
 
-/// Whether a folder of this number of bytes may lie in memory: as many as there can be runs at one time, and as much
-/// again for the programs, must leave the machine and our own control groups room.
+/// Returns whether a folder of this number of bytes may lie in memory: as many as there can be runs at one time, and as
+/// much again for the programs, must leave the machine and our own control groups room.
 pub(super) fn is_enough_for(bytes: u64) -> bool {
     static RUNS: OnceLock<u64> = OnceLock::new();
     let runs = RUNS.get_or_init(|| std::thread::available_parallelism().map_or(1, |count| count.get() as u64));
     left().is_some_and(|left| bytes <= left / (2 * runs.max(&2)))
 }
 
-/// The memory that the machine and our groups have left, as it was at most a moment ago: the kernel needs longer to add
-/// it up than to start a small program.
+/// Returns the memory that the machine and our groups have left, as it was at most a moment ago: the kernel needs
+/// longer to add it up than to start a small program.
 fn left() -> Option<u64> {
     const MOMENT: Duration = Duration::from_millis(500);
     static LAST: Mutex<Option<(Instant, Option<u64>)>> = Mutex::new(None);
@@ -32,7 +32,7 @@ fn left() -> Option<u64> {
     left
 }
 
-/// The memory that the kernel could give to programs.
+/// Returns the memory that the kernel could give to programs.
 fn available() -> Option<u64> {
     machine::bytes_of(&std::fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable:")
 }
@@ -45,14 +45,14 @@ struct LimitedGroup {
 }
 
 impl LimitedGroup {
-    /// `None` without a limit.
+    /// Returns `None` without a limit.
     fn left(&self) -> Option<u64> {
         let number = |path: &Path| std::fs::read_to_string(path).ok()?.trim().parse::<u64>().ok();
         Some(number(&self.limit)?.saturating_sub(number(&self.usage)?))
     }
 }
 
-/// The groups around this process, in either version's files.
+/// Returns the groups around this process, in either version's files.
 fn groups() -> &'static [LimitedGroup] {
     static GROUPS: OnceLock<Vec<LimitedGroup>> = OnceLock::new();
     GROUPS.get_or_init(|| {

@@ -52,27 +52,27 @@ pub(super) struct Supervised {
 }
 
 impl Running {
-    /// A run whose supervisor has said that it is ready.
+    /// Creates a run whose supervisor has said that it is ready.
     pub(super) fn new(supervised: Supervised, control: UnixStream, in_memory: Option<OpenFolder>) -> Self {
         let folder = LeftFolder { in_memory, path: wire::path(&supervised.order.folder), _keeper: None };
         let control = Arc::new(Mutex::new(Some(control)));
         Self { state: State::Supervised(Box::new(supervised)), folder, canceller: Canceller { control } }
     }
 
-    /// A run in this folder whose outcome is known already.
+    /// Returns a run in this folder whose outcome is known already.
     pub(super) fn known(outcome: RunOutcome, path: PathBuf) -> Self {
         let folder = LeftFolder { in_memory: None, path, _keeper: None };
         let canceller = Canceller { control: ControlSocket::default() };
         Self { state: State::Known(Box::new(outcome)), folder, canceller }
     }
 
-    /// Whether the program works in a copy of its working folder, and the folder itself stays as it is.
+    /// Returns whether the program works in a copy of its working folder, and the folder itself stays as it is.
     #[must_use]
     pub fn is_in_memory(&self) -> bool {
         self.folder.in_memory.is_some()
     }
 
-    /// A handle that stops the program, for other threads and for Ctrl-C.
+    /// Returns a handle that stops the program, for other threads and for Ctrl-C.
     #[must_use]
     pub fn canceller(&self) -> Canceller {
         self.canceller.clone()
@@ -87,7 +87,7 @@ impl Running {
         self.wait_with_folder().map(|(outcome, _)| outcome)
     }
 
-    /// As [`Running::wait`], with what the program left in its working folder.
+    /// Waits as [`Running::wait`] does, and returns also what the program left in its working folder.
     ///
     /// # Errors
     ///
@@ -152,8 +152,8 @@ pub struct LeftFolder {
 }
 
 impl LeftFolder {
-    /// The folder, if the program worked in a copy in memory ([`Job::folder_in_memory`](super::Job::folder_in_memory)).
-    /// Otherwise it is where the job says.
+    /// Returns the folder, if the program worked in a copy in memory
+    /// ([`Job::folder_in_memory`](super::Job::folder_in_memory)). Otherwise it is where the job says.
     #[must_use]
     pub fn in_memory(&self) -> Option<&OpenFolder> {
         self.in_memory.as_ref()
@@ -183,7 +183,7 @@ impl Drop for Running {
     }
 }
 
-/// The supervisor's last message and the captured bytes behind it.
+/// Returns the supervisor's last message and the captured bytes behind it.
 fn receive(answers: &mut File) -> io::Result<(Event, Vec<u8>, Vec<u8>)> {
     let event = wire::receive(&mut *answers)?;
     let mut bytes = |length| wire::receive_bytes(&mut *answers, length);

@@ -37,7 +37,7 @@ pub(super) fn check(answer: i64) -> io::Result<i64> {
     if answer < 0 { Err(io::Error::last_os_error()) } else { Ok(answer) }
 }
 
-/// The same where the answer says no more than that.
+/// Returns the error of a call whose answer says no more than that.
 pub(super) fn done(answer: i32) -> io::Result<()> {
     check(i64::from(answer)).map(drop)
 }
@@ -54,6 +54,8 @@ pub(super) enum Fork {
 /// memory that a child gets is consistent.
 pub(super) struct SingleThread(());
 
+/// Proves that this process has one thread.
+///
 /// # Errors
 ///
 /// When the process has more than one thread: its child could find locks held for ever.
@@ -84,12 +86,12 @@ pub(super) fn exit_now(code: i32) -> ! {
     unsafe { libc::_exit(code) }
 }
 
-/// The effective user.
+/// Returns the effective user.
 pub(super) fn user() -> u32 {
     rustix::process::geteuid().as_raw()
 }
 
-/// The effective group.
+/// Returns the effective group.
 pub(super) fn group() -> u32 {
     rustix::process::getegid().as_raw()
 }
@@ -150,7 +152,7 @@ pub(super) fn connect(input: &OwnedFd, output: &OwnedFd, error: &OwnedFd) -> io:
     Ok(rustix::stdio::dup2_stderr(error)?)
 }
 
-/// A copy of the descriptor under a number from `least` on, closed by the next `execve`.
+/// Returns a copy of the descriptor under a number from `least` on, closed by the next `execve`.
 pub(super) fn duplicate_from(fd: BorrowedFd<'_>, least: u32) -> io::Result<OwnedFd> {
     Ok(rustix::io::fcntl_dupfd_cloexec(fd, least.cast_signed())?)
 }
@@ -177,8 +179,8 @@ pub(super) fn close_on_execute() -> io::Result<()> {
     Ok(())
 }
 
-/// The signals that this process ignores. Only these stay as they are when a program is executed: what has a function
-/// gets the default reaction then.
+/// Returns the signals that this process ignores. Only these stay as they are when a program is executed: what has a
+/// function gets the default reaction then.
 pub(super) fn ignored_signals() -> Vec<i32> {
     let is_ignored = |signal: &i32| {
         // SAFETY: an all-zero action is valid and outlives the call, which only asks; numbers without a signal are
@@ -235,7 +237,7 @@ pub(super) fn kill_everybody_inside() -> bool {
 pub(super) struct Reaped {
     /// Which.
     pub(super) pid: i32,
-    /// Its raw wait status.
+    /// The process's raw wait status.
     pub(super) status: i32,
 }
 
@@ -257,7 +259,7 @@ pub(super) fn wait_for(pid: i32) -> io::Result<u8> {
     Ok(code.unwrap_or_default() as u8)
 }
 
-/// Processor time and the largest resident set (bytes) of all reaped children and theirs.
+/// Returns processor time and the largest resident set (bytes) of all reaped children and theirs.
 pub(super) fn children_usage() -> io::Result<(Duration, u64)> {
     // SAFETY: an all-zero `rusage` is a valid value; the kernel fills it.
     let usage = unsafe {
@@ -305,7 +307,7 @@ pub(super) fn ignore_file_size_signal() {
     unsafe { libc::signal(libc::SIGXFSZ, libc::SIG_IGN) };
 }
 
-/// A descriptor that becomes readable when the process ends; `None` on kernels before 5.3.
+/// Returns a descriptor that becomes readable when the process ends; `None` on kernels before 5.3.
 pub(super) fn process_descriptor(pid: i32) -> Option<OwnedFd> {
     rustix::process::pidfd_open(Pid::from_raw(pid)?, PidfdFlags::empty()).ok()
 }
@@ -338,17 +340,17 @@ pub(super) fn enter_folder(fd: BorrowedFd<'_>) -> io::Result<()> {
     Ok(rustix::process::fchdir(fd)?)
 }
 
-/// Whether the current user may do this with the path.
+/// Returns whether the current user may do this with the path.
 pub(super) fn accessible(path: &CStr, mode: Access) -> bool {
     rustix::fs::access(path, mode).is_ok()
 }
 
-/// A file in memory that nobody else can name.
+/// Returns a file in memory that nobody else can name.
 pub(super) fn memory_file() -> io::Result<OwnedFd> {
     Ok(rustix::fs::memfd_create(c"program", MemfdFlags::CLOEXEC)?)
 }
 
-/// Null-terminated pointers to the strings, which must outlive the list.
+/// Returns null-terminated pointers to the strings, which must outlive the list.
 fn pointers(strings: &[CString]) -> Vec<*const libc::c_char> {
     strings.iter().map(|text| text.as_ptr()).chain([std::ptr::null()]).collect()
 }
@@ -404,7 +406,7 @@ pub(super) struct Announced {
     pub(super) thread: u32,
     /// The call's number.
     pub(super) call: i64,
-    /// Its arguments.
+    /// The call's arguments.
     pub(super) arguments: [u64; 6],
 }
 
@@ -426,13 +428,13 @@ pub(super) fn next_announcement(listener: BorrowedFd<'_>) -> io::Result<Option<A
     }
 }
 
-/// Whether the announced call still waits for its answer.
+/// Returns whether the announced call still waits for its answer.
 pub(super) fn is_waiting(listener: BorrowedFd<'_>, id: u64) -> bool {
     // SAFETY: the number outlives the call, which only reads it.
     unsafe { libc::ioctl(listener.as_raw_fd(), libc::SECCOMP_IOCTL_NOTIF_ID_VALID, &raw const id) == 0 }
 }
 
-/// The time since the clock's beginning: the calendar's clock, or the one that always goes on.
+/// Returns the time since the clock's beginning: the calendar's clock, or the one that always goes on.
 pub(super) fn time_by(calendar: bool) -> Duration {
     let time = rustix::time::clock_gettime(if calendar { ClockId::Realtime } else { ClockId::Monotonic });
     Duration::new(time.tv_sec.unsigned_abs(), time.tv_nsec.unsigned_abs() as u32)
@@ -441,11 +443,11 @@ pub(super) fn time_by(calendar: bool) -> Duration {
 /// The answer to an announced call.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum CallAnswer {
-    /// It goes on as if it had not been announced.
+    /// The call goes on as if it had not been announced.
     GoOn,
-    /// It has succeeded already.
+    /// The call has succeeded already.
     Done,
-    /// It fails with this error number.
+    /// The call fails with this error number.
     Refused(i32),
 }
 
@@ -492,7 +494,7 @@ pub(super) fn page_size() -> u64 {
     rustix::param::page_size() as u64
 }
 
-/// Landlock's version in the running kernel; 0 when there is none.
+/// Returns landlock's version in the running kernel; 0 when there is none.
 pub(super) fn landlock_version() -> i32 {
     let version_flag = 1_u32;
     // SAFETY: with this flag the kernel reads no structure: the pointer is null and the size zero.

@@ -45,7 +45,7 @@ pub(super) fn path(raw: &Raw) -> PathBuf {
     PathBuf::from(std::ffi::OsString::from_vec(raw.clone()))
 }
 
-/// The name of an entry of a folder, if these bytes are one: it leads to no other folder.
+/// Returns the name of an entry of a folder, if these bytes are one: it leads to no other folder.
 pub(super) fn plain_name(raw: &[u8]) -> Option<&Path> {
     let leads_on = raw.is_empty() || raw == b"." || raw == b".." || raw.iter().any(|byte| matches!(byte, b'/' | 0));
     (!leads_on).then(|| Path::new(std::ffi::OsStr::from_bytes(raw)))
@@ -75,7 +75,7 @@ pub(super) struct RunOrder {
     pub(super) readable: Vec<Raw>,
     /// Interpreters that the kernel executes on the way to the program.
     pub(super) executable: Vec<Raw>,
-    /// Their names as the program and the kernel use them, which may be links.
+    /// The files' names as the program and the kernel use them, which may be links.
     pub(super) named: Vec<Raw>,
     /// The grader's own files, which no run may see. Looked up by the grader, once for all runs.
     pub(super) own: Vec<Raw>,
@@ -104,7 +104,7 @@ impl RunOrder {
         self.limits.folder_bytes.saturating_add(trace)
     }
 
-    /// The greatest size of a file. One byte beyond the limit of the trace shows that it is too long.
+    /// Returns the greatest size of a file. One byte beyond the limit of the trace shows that it is too long.
     pub(super) fn file_bytes(&self) -> u64 {
         let trace = if self.trace.is_some() { self.limits.trace_bytes.saturating_add(1) } else { 0 };
         self.limits.folder_bytes.max(trace)
@@ -134,7 +134,7 @@ pub(super) struct Failure {
 }
 
 impl Failure {
-    /// A failure of `stage` with the error's number (0 when it has none).
+    /// Creates a failure of `stage` with the error's number (0 when it has none).
     pub(super) fn new(stage: impl Into<String>, error: &io::Error) -> Self {
         Self { stage: stage.into(), errno: error.raw_os_error().unwrap_or(0) }
     }
@@ -201,7 +201,7 @@ pub(super) fn send<T: Serialize>(mut to: impl Write, message: &T) -> io::Result<
     to.flush()
 }
 
-/// One message as it is written.
+/// Returns one message as it is written.
 pub(super) fn packet<T: Serialize>(message: &T) -> io::Result<Vec<u8>> {
     let body = serde_json::to_vec(message)?;
     let mut packet = (body.len() as u64).to_le_bytes().to_vec();

@@ -2,17 +2,17 @@
 use chrono::DateTime;
 use std::ops::RangeInclusive;
 
-/// A moment by its milliseconds since 1970, in a form; nothing where no calendar reaches.
+/// Returns a moment by its milliseconds since 1970, in a form; nothing where no calendar reaches.
 fn written(milliseconds: i64, form: &str) -> String {
     DateTime::from_timestamp_millis(milliseconds).map(|moment| moment.format(form).to_string()).unwrap_or_default()
 }
 
-/// For people: `2026-11-22 08:45`.
+/// Formats a time for people: `2026-11-22 08:45`.
 pub fn minute(milliseconds: i64) -> String {
     written(milliseconds, "%Y-%m-%d %H:%M")
 }
 
-/// For other programs (ISO 8601): `2026-11-22T08:45:12.345+00:00`.
+/// Formats a time for other programs (ISO 8601): `2026-11-22T08:45:12.345+00:00`.
 pub fn exact(milliseconds: i64) -> String {
     written(milliseconds, "%Y-%m-%dT%H:%M:%S%.3f+00:00")
 }
@@ -20,13 +20,13 @@ pub fn exact(milliseconds: i64) -> String {
 /// Moments in milliseconds: between these, numbers are seconds that somebody took for milliseconds.
 pub const PLAUSIBLE: [RangeInclusive<i64>; 2] = [0..=99_999_999, 100_000_000_000..=253_402_300_799_999];
 
-/// Whether a number is a moment in milliseconds.
+/// Returns whether a number is a moment in milliseconds.
 pub fn is_plausible(milliseconds: i64) -> bool {
     PLAUSIBLE.iter().any(|range| range.contains(&milliseconds))
 }
 
-/// A moment that somebody wrote (ISO 8601): `2026-12-01T23:59:00+01:00`, also without seconds, and with `Z`. Without a
-/// time zone it is none.
+/// Reads a moment that somebody wrote (ISO 8601): `2026-12-01T23:59:00+01:00`, also without seconds, and with `Z`.
+/// Without a time zone it is none.
 pub fn read(text: &str) -> Option<i64> {
     let text = text.trim().replace(' ', "T");
     let text = match text.strip_suffix(['Z', 'z']) {
@@ -38,7 +38,7 @@ pub fn read(text: &str) -> Option<i64> {
     Some(moment.timestamp_millis())
 }
 
-/// A moment as a form's field says it, `2026-12-01T23:59`, this many minutes east of UTC.
+/// Reads a moment as a form's field says it, `2026-12-01T23:59`, this many minutes east of UTC.
 pub fn read_field(text: &str, east: i64) -> Option<i64> {
     let seconds = if text.len() == 16 { ":00Z" } else { "Z" };
     Some(read(&format!("{text}{seconds}"))? - east * 60_000)

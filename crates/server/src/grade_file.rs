@@ -52,7 +52,7 @@ pub(crate) struct SceneInFile {
 }
 
 impl GradeInFile {
-    /// All scenes.
+    /// Returns all scenes.
     pub(crate) fn scenes(&self) -> Vec<&SceneInFile> {
         self.groups.iter().flat_map(|group| &group.scenes).collect()
     }

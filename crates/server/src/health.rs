@@ -13,12 +13,12 @@ const STEPS_ASIDE: i64 = 3;
 /// For so long, at most; it doubles from a second on.
 const LONGEST_ASIDE: Duration = Duration::from_secs(60);
 
-/// How long after its last sign of life a worker counts as alive, in milliseconds.
+/// Returns how long after its last sign of life a worker counts as alive, in milliseconds.
 pub fn recent(policy: &QueuePolicy) -> i64 {
     millis(policy.lease * 2)
 }
 
-/// A worker is alive, and can or can't grade.
+/// Notes that a worker is alive, and can or can't grade.
 ///
 /// # Errors
 /// An error of the database.
@@ -47,8 +47,8 @@ pub async fn seen(
     Ok(())
 }
 
-/// Whether a worker may claim: it holds no more jobs than its token has slots, and it does not fail while others do
-/// not.
+/// Returns whether a worker may claim: it holds no more jobs than its token has slots, and it does not fail while
+/// others do not.
 ///
 /// # Errors
 /// An error of the database.
@@ -85,7 +85,7 @@ pub async fn may_claim(
     Ok(better.is_none())
 }
 
-/// The grader failed in this worker, which says that it can grade.
+/// Notes that the grader failed in this worker, which says that it can grade.
 pub(crate) async fn failed(transaction: &mut Transaction, worker: &str, fault: &str) -> Result<(), DbError> {
     let statement = "UPDATE worker SET faults = faults + 1, in_a_row = in_a_row + 1, fault = ?, fault_at = {now}
         WHERE name = ?";
@@ -93,13 +93,13 @@ pub(crate) async fn failed(transaction: &mut Transaction, worker: &str, fault: &
     Ok(())
 }
 
-/// The worker brought a result.
+/// Notes that the worker brought a result.
 pub(crate) async fn graded(transaction: &mut Transaction, worker: &str) -> Result<(), DbError> {
     transaction.execute("UPDATE worker SET in_a_row = 0 WHERE name = ? AND in_a_row > 0", values![worker]).await?;
     Ok(())
 }
 
-/// A message without the folders of the machine that it comes from: of an absolute path the last name is left.
+/// Returns a message without the folders of the machine that it comes from: of an absolute path the last name is left.
 pub fn without_paths(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     let mut rest = text;

@@ -47,20 +47,20 @@ impl Instruments {
         })
     }
 
-    /// A request begins.
+    /// Counts a request that begins.
     #[must_use]
     pub fn begin(&self) -> InFlight {
         self.in_flight.inc();
         InFlight(self.in_flight.clone())
     }
 
-    /// A request was answered. Routes are templates, so that there are as many series as there are routes.
+    /// Counts a request that was answered. Routes are templates, so that there are as many series as there are routes.
     pub fn answered(&self, method: &str, route: &str, status: u16, took: Duration) {
         self.requests.with_label_values(&[method, route, &status.to_string()]).inc();
         self.seconds.with_label_values(&[method, route]).observe(took.as_secs_f64());
     }
 
-    /// The page of all numbers. Without a database that answers there is nothing about the queue.
+    /// Returns the page of all numbers. Without a database that answers there is nothing about the queue.
     ///
     /// # Errors
     /// When it can't be written as text.
@@ -94,7 +94,7 @@ pub struct Metrics {
     pub oldest: i64,
     /// Workers that were seen lately.
     pub workers: i64,
-    /// Their slots.
+    /// The workers' slots.
     pub slots: i64,
     /// Workers that take no jobs, because they can't grade.
     pub aside: i64,
@@ -134,7 +134,7 @@ impl MetricsPage {
         self.gauge(name, help, "", &[("", value)])
     }
 
-    /// The database's numbers about the queue.
+    /// Writes the database's numbers about the queue.
     fn queue(&self, queue: &Metrics) -> Result<(), prometheus::Error> {
         let named = |counts: &'_ [(String, i64)], name: &str| {
             counts.iter().find(|(known, _)| known == name).map_or(0.0, |(_, count)| *count as f64)

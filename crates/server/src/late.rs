@@ -28,12 +28,12 @@ pub struct Late {
 }
 
 impl LatePolicy {
-    /// The last moment at which an upload is taken of somebody for whom it is due then.
+    /// Returns the last moment at which an upload is taken of somebody for whom it is due then.
     pub(crate) fn closes_at(&self, due: i64) -> i64 {
         self.days_after(due, self.late_days.into())
     }
 
-    /// The same time of the day some days later, by the course's calendar: a day may have 23 or 25 hours.
+    /// Returns the same time of the day some days later, by the course's calendar: a day may have 23 or 25 hours.
     fn days_after(&self, due: i64, days: i64) -> i64 {
         let by_calendar = self.time_zone.and_then(|zone| {
             let due = DateTime::from_timestamp_millis(due)?.with_timezone(&zone);
@@ -43,8 +43,8 @@ impl LatePolicy {
         by_calendar.unwrap_or_else(|| due.saturating_add(days.saturating_mul(DAY)))
     }
 
-    /// How late a submission is that came at this moment, of somebody who has more time than the others, or not.
-    /// Nothing where it came in time, or where the assignment says nothing of late ones.
+    /// Returns how late a submission is that came at this moment, of somebody who has more time than the others, or
+    /// not. Nothing where it came in time, or where the assignment says nothing of late ones.
     pub(crate) fn late(&self, own_due: Option<i64>, came_at: i64) -> Option<Late> {
         let due = self.due_at.map(|due| due.max(own_due.unwrap_or(due)))?;
         // At most as late as anything may be: it was in time by an extension that was taken back. Where nothing is
@@ -61,14 +61,14 @@ impl LatePolicy {
 }
 
 impl Late {
-    /// How late a submission came, by its row with `created_at`, the assignment's `settings` and its owner's own due
-    /// date, `own_due`.
+    /// Returns how late a submission came, by its row with `created_at`, the assignment's `settings` and its owner's
+    /// own due date, `own_due`.
     pub(crate) fn of(row: &Row) -> Result<Option<Self>, DbError> {
         let policy: LatePolicy = serde_json::from_str(&row.text("settings")?).unwrap_or_default();
         Ok(policy.late(row.maybe_int("own_due")?, row.int("created_at")?))
     }
 
-    /// The rest of the grader's points.
+    /// Returns the rest of the grader's points.
     pub(crate) fn left_of(self, points: &str) -> String {
         let left = |points: f64| (points * (100 - self.percent) as f64 / 100.0).to_string();
         points.parse().map_or_else(|_| points.to_owned(), left)

@@ -115,7 +115,7 @@ async fn note(transaction: &mut Transaction, about: &JobFacts, kind: &str, text:
     Ok(())
 }
 
-/// A worker came too late: it changes nothing, and is counted. A job that it made up is not even that.
+/// Notes that a worker came too late: it changes nothing, and is counted. A job that it made up is not even that.
 async fn note_late(transaction: &mut Transaction, lease: &Lease, what: &str) -> Result<(), DbError> {
     let known =
         transaction.row("SELECT id FROM job WHERE id = ? AND attempt >= ?", values![lease.job, lease.attempt]).await?;

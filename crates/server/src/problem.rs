@@ -9,7 +9,7 @@ pub struct Problem {
     /// A name that programs may go by.
     #[serde(rename = "type")]
     pub kind: String,
-    /// The same in words.
+    /// The kind of problem in words.
     pub title: String,
     /// The status of the answer.
     pub status: u16,
@@ -84,7 +84,7 @@ problems! {
     not_found(what: &str): 404, "not-found", "Not found",
         format!("there is no such {what}, or you may not see it"),
         "check the address";
-    /// It was there, and is not kept any longer.
+    /// The thing was there, and is not kept any longer.
     removed(): 410, "removed", "Not kept any longer",
         "the upload and its reports are not kept any longer; the grade and its history are",
         "ask the course's staff about the grade";
@@ -92,7 +92,7 @@ problems! {
     invalid(detail: impl Into<String>): 400, "invalid", "Not understood",
         detail,
         "correct it and send it again";
-    /// It can't be done in the state that things are in.
+    /// The action can't be done in the present state.
     conflict(detail: impl Into<String>, remedy: &str): 409, "conflict", "Not possible now",
         detail,
         remedy;
@@ -155,7 +155,7 @@ pub(crate) fn ensure<E>(holds: bool, otherwise: E) -> Result<(), E> {
     if holds { Ok(()) } else { Err(otherwise) }
 }
 
-/// A size in bytes, in the unit that leaves few digits.
+/// Returns a size in bytes, in the unit that leaves few digits.
 pub(crate) fn size(bytes: u64) -> String {
     match bytes {
         few @ ..1024 => format!("{few} B"),

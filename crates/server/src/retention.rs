@@ -94,7 +94,7 @@ async fn give_up_submissions(database: &Database, keep: i64) -> Result<u64, DbEr
     Ok(submissions)
 }
 
-/// Those of these digests that the database names.
+/// Returns those of these digests that the database names.
 async fn named(database: &Database, digests: Vec<Digest>) -> Result<HashSet<Digest>, RetentionError> {
     let mut transaction = database.read().await?;
     let suites = suites(&mut transaction).await?;

@@ -1,6 +1,6 @@
 //! Random words that nobody can guess.
 
-/// 128 random bits in hexadecimal.
+/// Returns 128 random bits in hexadecimal.
 ///
 /// # Panics
 /// When the system has no random numbers, without which no secret is one.
@@ -10,7 +10,7 @@ pub fn random_hex() -> String {
     hex(&bytes)
 }
 
-/// Eight random bits, for what only should not be equal.
+/// Returns eight random bits, for what only should not be equal.
 pub(crate) fn random_byte() -> u8 {
     getrandom::u32().map_or(0, |word| word.to_le_bytes()[0])
 }

@@ -47,12 +47,12 @@ pub async fn of_outcome(store: &Store, files: &[OutputFile]) -> Result<KeptTexts
     Ok(KeptTexts { shown: shown.as_ref().map(text).unwrap_or_default(), failed: report.as_ref().map(failed) })
 }
 
-/// A `grade.json`, if it can be read.
+/// Reads a `grade.json`, if it can be read.
 fn read(grade: impl io::Read) -> Option<GradeFile> {
     serde_json::from_reader(io::BufReader::new(grade)).ok()
 }
 
-/// The scenes that are not accepted, hidden ones, too.
+/// Returns the scenes that are not accepted, hidden ones, too.
 fn failed(report: &GradeFile) -> String {
     let scenes = report.grades.iter().flat_map(GradeInFile::scenes).filter(|scene| scene.code != "AC");
     // A name with a line break would make two lines.
@@ -63,7 +63,7 @@ fn text(shown: &Shown) -> String {
     serde_json::to_string(shown).unwrap_or_default()
 }
 
-/// A grade of which nothing is shown.
+/// Returns a grade of which nothing is shown.
 fn nothing() -> Shown {
     Shown {
         verdict: "graded".to_owned(),
@@ -74,7 +74,7 @@ fn nothing() -> Shown {
     }
 }
 
-/// The rest of a `grade.json` without hidden groups; nothing where it hides none.
+/// Returns the rest of a `grade.json` without hidden groups; nothing where it hides none.
 fn of_file(report: &GradeFile) -> Option<Shown> {
     let groups: Vec<&GroupInFile> = report.grades.iter().flat_map(|grade| &grade.groups).collect();
     let is_visible =
@@ -103,7 +103,7 @@ fn of_file(report: &GradeFile) -> Option<Shown> {
 }
 
 impl Shown {
-    /// The grade in a text of the database; nothing where nothing is withheld.
+    /// Reads the grade in a text of the database; nothing where nothing is withheld.
     pub fn read(text: &str) -> Option<Self> {
         match text {
             "" => None,
@@ -111,12 +111,12 @@ impl Shown {
         }
     }
 
-    /// The points, and of how many.
+    /// Returns the points, and of how many.
     pub fn points(self) -> (Option<String>, Option<String>) {
         (self.points, self.max_points)
     }
 
-    /// The verdict in short, and the points.
+    /// Returns the verdict in short, and the points.
     pub fn line(self) -> (String, Option<String>) {
         (self.code, self.points)
     }
@@ -130,7 +130,7 @@ impl Shown {
     }
 }
 
-/// The full hour before a moment: a grade's own would tell how long hidden groups took.
+/// Returns the full hour before a moment: a grade's own would tell how long hidden groups took.
 pub fn hour(milliseconds: i64) -> i64 {
     milliseconds - milliseconds.rem_euclid(3_600_000)
 }

@@ -36,7 +36,7 @@ pub struct Storage {
 }
 
 impl Storage {
-    /// Storage that refuses uploads below this many free bytes.
+    /// Returns storage that refuses uploads below this many free bytes.
     pub fn new(database: Database, store: Store, incoming: PathBuf, low_water: u64) -> Self {
         Self { database, store, incoming, low_water, last: Mutex::default() }
     }
@@ -91,13 +91,13 @@ impl Storage {
         transaction.commit().await
     }
 
-    /// Free bytes of the data folder's disk, and its size, where it says so.
+    /// Returns free bytes of the data folder's disk, and its size, where it says so.
     pub fn disk(&self) -> Option<(u64, u64)> {
         let disk = statvfs(&self.incoming).ok()?;
         Some((disk.f_bavail.saturating_mul(disk.f_frsize), disk.f_blocks.saturating_mul(disk.f_frsize)))
     }
 
-    /// Whether there is room for an upload.
+    /// Checks that there is room for an upload.
     ///
     /// # Errors
     /// When less than the low-water mark is free: 507. Nothing was written.

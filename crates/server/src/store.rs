@@ -79,22 +79,22 @@ impl From<io::Error> for StoreError {
 }
 
 impl Digest {
-    /// The digest of bytes.
+    /// Returns the digest of bytes.
     pub fn of(bytes: &[u8]) -> Self {
         Self(hex(&Sha256::digest(bytes)))
     }
 
-    /// As text.
+    /// Returns the digest as text.
     pub fn as_str(&self) -> &str {
         &self.0
     }
 
-    /// Its beginning, for people.
+    /// Returns the digest's beginning, for people.
     pub fn short(&self) -> &str {
         &self.0[..12]
     }
 
-    /// Where it lies, in one of the two places.
+    /// Returns where it lies, in one of the two places.
     fn key(&self, place: &str) -> Key {
         Key::from(format!("{place}/{}/{}", &self.0[..2], &self.0[2..]))
     }
@@ -135,7 +135,7 @@ pub struct Store {
 }
 
 impl Store {
-    /// A folder as a store; made when it is missing. What was stored survives a power cut.
+    /// Returns a folder as a store; made when it is missing. What was stored survives a power cut.
     ///
     /// # Errors
     /// When the folder can't be made.
@@ -146,7 +146,7 @@ impl Store {
         Ok(Self { objects: Arc::new(objects), folder: Some(folder.to_owned()) })
     }
 
-    /// A bucket as a store: `s3://BUCKET` or `s3://BUCKET/PREFIX`, reached as the variables `AWS_...` say.
+    /// Returns a bucket as a store: `s3://BUCKET` or `s3://BUCKET/PREFIX`, reached as the variables `AWS_...` say.
     ///
     /// # Errors
     /// When the address is none, or this program was built without buckets.
@@ -209,7 +209,7 @@ impl Store {
         Ok(artefact)
     }
 
-    /// Whether there is an artefact of this digest.
+    /// Returns whether there is an artefact of this digest.
     ///
     /// # Errors
     /// When the store fails.
@@ -217,12 +217,12 @@ impl Store {
         Ok(self.age(&digest.key(KEPT)).await?.is_some() || self.age(&digest.key(ASIDE)).await?.is_some())
     }
 
-    /// Whether there is one that nobody will give up soon.
+    /// Returns whether there is one that nobody will give up soon.
     async fn has_fresh(&self, digest: &Digest) -> Result<bool, StoreError> {
         Ok(self.age(&digest.key(KEPT)).await?.is_some_and(|age| age < FRESH))
     }
 
-    /// How long ago an object was written; nothing when there is none.
+    /// Returns how long ago an object was written; nothing when there is none.
     async fn age(&self, key: &Key) -> Result<Option<Duration>, StoreError> {
         match self.objects.head(key).await {
             Ok(meta) => Ok(Some(age(&meta))),
@@ -238,7 +238,7 @@ fn age(meta: &object_store::ObjectMeta) -> Duration {
     SystemTime::now().duration_since(written).unwrap_or(Duration::ZERO)
 }
 
-/// The digest and size of a file.
+/// Returns the digest and size of a file.
 ///
 /// # Errors
 /// When it can't be read.
@@ -251,7 +251,7 @@ pub async fn digest_of_file(file: &Path) -> io::Result<Artefact> {
     Ok(Artefact { digest: Digest(hex(&hasher.finalize())), size })
 }
 
-/// A file in pieces, so that it is never held whole.
+/// Returns a file in pieces, so that it is never held whole.
 async fn pieces(file: &Path) -> io::Result<ReaderStream<tokio::fs::File>> {
     Ok(ReaderStream::with_capacity(tokio::fs::File::open(file).await?, CHUNK))
 }

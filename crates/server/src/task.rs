@@ -28,11 +28,11 @@ pub struct Task {
 /// The upload.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Input {
-    /// Its kind.
+    /// The upload's form.
     pub form: Form,
     /// The file's name, made harmless.
     pub name: String,
-    /// Its bytes.
+    /// The upload's bytes.
     #[serde(flatten)]
     pub artefact: Artefact,
 }
@@ -53,12 +53,12 @@ impl Form {
     /// Every one.
     pub const ALL: [Self; 3] = [Self::Program, Self::Sources, Self::Traces];
 
-    /// The one of this name.
+    /// Returns the one of this name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|form| form.name() == name)
     }
 
-    /// The thing to hand in, in words.
+    /// Returns the thing to hand in, in words.
     pub fn words(self) -> &'static str {
         match self {
             Self::Program => "a program for Linux",
@@ -67,7 +67,7 @@ impl Form {
         }
     }
 
-    /// Its name in tables and messages.
+    /// Returns the end's name in tables and messages.
     pub fn name(self) -> &'static str {
         match self {
             Self::Program => "program",
@@ -88,7 +88,7 @@ pub enum Suite {
 }
 
 impl Suite {
-    /// Its name, or the beginning of its digest.
+    /// Returns the suite's name, or the beginning of its digest.
     pub fn short(&self) -> String {
         match self {
             Self::Named(name) => name.clone(),
@@ -136,7 +136,8 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// The outcome of a job that was tried too often: our fault, and nobody's zero. Why is staff's to read, in the job.
+    /// Returns the outcome of a job that was tried too often: our fault, and nobody's zero. Why is staff's to read, in
+    /// the job.
     pub fn judge_error() -> Self {
         Self {
             verdict: "judge error".to_owned(),
@@ -150,7 +151,7 @@ impl Outcome {
     }
 }
 
-/// A number of points with two digits at most, for people.
+/// Returns a number of points with two digits at most, for people.
 pub fn rounded(number: &str) -> String {
     let Ok(value) = number.parse::<f64>() else { return number.to_owned() };
     let text = format!("{value:.2}");
@@ -163,12 +164,12 @@ pub const JUDGE_ERROR: &str = "JE";
 /// A report or log.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct OutputFile {
-    /// Its name, `grade.json` for example.
+    /// The file's name, `grade.json` for example.
     #[schema(value_type = ReportName)]
     pub name: String,
-    /// Its content.
+    /// The file's media type.
     pub media_type: String,
-    /// Its bytes.
+    /// The upload's bytes.
     #[serde(flatten)]
     pub artefact: Artefact,
 }

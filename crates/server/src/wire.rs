@@ -27,7 +27,7 @@ pub(crate) struct Alive {
     /// Why it can't.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) fault: Option<String>,
-    /// Its version.
+    /// The worker's version.
     #[serde(default)]
     #[schema(max_length = 60)]
     pub(crate) version: String,

@@ -85,7 +85,7 @@ const NAMES: [(Need, &str); 20] = [
 ];
 
 impl Need {
-    /// Its name in `FOSSSIM_REQUIRE`.
+    /// Returns the need's name in `FOSSSIM_REQUIRE`.
     #[must_use]
     pub fn name(self) -> &'static str {
         NAMES.iter().find(|(need, _)| *need == self).map_or("", |(_, name)| name)
@@ -117,7 +117,7 @@ pub fn skip(need: Need, why: impl fmt::Display) {
     drop(file.and_then(|mut file| file.write_all(line.as_bytes())));
 }
 
-/// Whether a test may be skipped for want of this.
+/// Checks that a test may be skipped for want of this.
 fn allowed(need: Need, required: &str) -> Result<(), String> {
     for word in required.split(',').map(str::trim).filter(|word| !word.is_empty()) {
         if word == "all" || word == need.name() {
@@ -131,8 +131,8 @@ fn allowed(need: Need, required: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// The list of this run: tests and the summary have the same parent, cargo. Other runners print no summary, and get a
-/// list only where they are told one.
+/// Returns the list of this run: tests and the summary have the same parent, cargo. Other runners print no summary, and
+/// get a list only where they are told one.
 #[must_use]
 pub fn list() -> Option<PathBuf> {
     if let Some(list) = std::env::var_os(LIST) {
@@ -142,7 +142,7 @@ pub fn list() -> Option<PathBuf> {
     of_cargo.then(|| std::env::temp_dir().join(format!("fosssim-skips-{}", std::os::unix::process::parent_id())))
 }
 
-/// The list in few lines, by need: how many tests, and why.
+/// Returns the list in few lines, by need: how many tests, and why.
 #[must_use]
 pub fn summary(list: &str) -> String {
     let mut lines = String::new();

@@ -57,7 +57,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// The program's author.
+    /// Returns the program's author.
     ///
     /// # Errors
     /// A sentence about a mistake that does not exist.
@@ -66,7 +66,7 @@ impl Options {
     }
 }
 
-/// The student with the mistakes that the command line, the program's name or the environment asks for.
+/// Returns the student with the mistakes that the command line, the program's name or the environment asks for.
 fn student(option: Option<String>) -> Result<Student, String> {
     let (source, ids) = if let Some(id) = pin::read(&PINNED) {
         ("this copy of the program", id.to_owned())
@@ -96,7 +96,7 @@ fn mistake_of_name(program: Option<&Path>) -> Option<String> {
     name.strip_prefix(NAME_PREFIX).map(str::to_owned)
 }
 
-/// The ids that a misspelt one may have meant.
+/// Returns the ids that a misspelt one may have meant.
 fn hint(id: &str) -> String {
     let alike: Vec<&str> =
         all_rows().map(|row| row.id).filter(|known| known.contains(id) || id.contains(known)).take(5).collect();

@@ -113,7 +113,7 @@ pub fn after_trace(student: Student, output: &mut impl Write) -> io::Result<()> 
     }
 }
 
-/// The status with which the program ends.
+/// Returns the status with which the program ends.
 pub fn exit_status(student: Student) -> u8 {
     u8::from(student.makes(Mistake::HostileExitOne))
 }

@@ -20,7 +20,7 @@ pub struct Trace<W> {
 }
 
 impl<W: Write> Trace<W> {
-    /// A trace for scenes of this collision type.
+    /// Creates a trace for scenes of this collision type.
     pub fn new(output: W, collision: &Collision, student: Student) -> Self {
         Self { output, student, collision: *collision, records: 0, bytes: Vec::new() }
     }

@@ -119,7 +119,7 @@ fn options(arguments: &CheckArguments) -> replay::Options {
     }
 }
 
-/// The list for wrong steps, of those that are to be shown.
+/// Returns the list for wrong steps, of those that are to be shown.
 fn wrong_steps(arguments: &CheckArguments, scene: &SceneInput) -> Result<WrongSteps> {
     let steps = scene.scene.steps();
     if let Some(step) = arguments.step.iter().find(|step| **step > steps) {
@@ -147,13 +147,13 @@ fn refuse_unreadable(outcome: &Outcome, scene: &SceneInput, trace: &TraceInput) 
     }
 }
 
-/// The evidence: of the whole trace, where what was kept is not all of it and the file can be read again.
+/// Returns the evidence: of the whole trace, where what was kept is not all of it and the file can be read again.
 fn evidence_of(examined: &Examined<'_>, name: &Path, lasts: bool) -> Evidence {
     let mut again = if lasts && !examined.trace.is_whole() { input::trace(name).ok() } else { None };
     examined.evidence(again.as_mut().map(|trace| &mut trace.reader as &mut dyn Read), evidence::BUDGET)
 }
 
-/// Whether a trace can be read a second time: then it need not be kept while it is judged.
+/// Returns whether a trace can be read a second time: then it need not be kept while it is judged.
 fn is_lasting(name: &Path) -> bool {
     name != Path::new("-") && !std::fs::metadata(name).is_ok_and(|data| !data.is_file())
 }

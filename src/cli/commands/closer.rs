@@ -16,7 +16,7 @@ pub(super) struct Closer<'a> {
 }
 
 impl Closer<'_> {
-    /// The commands.
+    /// Returns the commands.
     pub(super) fn advice(&self, grade: &Grade, scene: &SceneGrade) -> Vec<String> {
         let Some(submission) = self.submissions.iter().find(|one| one.name == grade.submission) else {
             return Vec::new();
@@ -44,7 +44,7 @@ impl Closer<'_> {
         lines
     }
 
-    /// The name of a scene for `check`.
+    /// Returns the name of a scene for `check`.
     fn scene(&self, name: &str) -> Option<String> {
         let task = self.plan.scenes().find(|task| task.name == name)?;
         if library::scene(name).is_some_and(|embedded| embedded == task.xml) {
@@ -54,7 +54,7 @@ impl Closer<'_> {
         file.is_file().then(|| file.to_string_lossy().into_owned())
     }
 
-    /// The command that grades this submission as it was graded.
+    /// Returns the command that grades this submission as it was graded.
     fn command(&self, submission: &Submission) -> String {
         let Arguments { suite, rules, program, single, recorded, unsafe_no_sandbox, output, .. } = self.arguments;
         let path = match &submission.program {
@@ -77,7 +77,7 @@ impl Closer<'_> {
     }
 }
 
-/// A word as a shell takes it.
+/// Returns a word as a shell takes it.
 fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "-_./:=+,@".contains(c);
     if !word.is_empty() && word.chars().all(is_plain) {

@@ -70,7 +70,7 @@ fn write(arguments: &DetectArguments, inputs: &[Identity], text: impl FnOnce(Sty
     }
 }
 
-/// The pair whose numbers were typed.
+/// Returns the pair whose numbers were typed.
 fn typed(arguments: &DetectArguments) -> Result<PairMotion> {
     const NOTHING: &str = "name a pair: its points (detect pe:3,1+4,1:5,9+2,6:5,3+5,8 --radii 1,1), or where it is in a scene \
                            (--scene, --step, --pair)";
@@ -78,7 +78,7 @@ fn typed(arguments: &DetectArguments) -> Result<PairMotion> {
     pair::motion(word, arguments.radii.as_deref())
 }
 
-/// A pair of a scene, in a step of the reference's run or of a trace.
+/// Reports on a pair of a scene, in a step of the reference's run or of a trace.
 fn of_scene(arguments: &DetectArguments, name: &Path) -> Result<()> {
     let scene = input::scene(name)?;
     let (Some(step), Some(word)) = (arguments.step, &arguments.pair) else { bail!("name a step and a pair") };
@@ -129,7 +129,7 @@ fn of_scene(arguments: &DetectArguments, name: &Path) -> Result<()> {
     show(arguments, &study, Some(place), &inputs)
 }
 
-/// The state before a step of the reference's run.
+/// Returns the state before a step of the reference's run.
 fn simulated(scene: &SceneInput, step: u32) -> Result<State> {
     let mut simulation = Simulation::new(&scene.scene, RootSearch::WhereNeeded);
     for _ in 1..step {

@@ -26,7 +26,7 @@ struct Bars {
 }
 
 impl<'a> LiveDisplay<'a> {
-    /// A display for these submissions.
+    /// Creates a display for these submissions.
     pub(super) fn new(plan: &'a Plan, submissions: &'a [Submission]) -> Self {
         let bars = console::wants_bars().then(|| {
             let all = console::show_bars();
@@ -99,7 +99,7 @@ pub(super) struct Counter {
 }
 
 impl Counter {
-    /// Nothing is done yet of these scenes, for each of these submissions.
+    /// Creates a display on which none of these scenes is done, for each of these submissions.
     ///
     /// # Errors
     /// When the file can't be written.

@@ -8,7 +8,7 @@ use crate::{
 /// The greatest number of scenes and mistakes shown of a class; class.txt has all.
 pub(super) const HARDEST: usize = 5;
 
-/// How a grading ends that nobody stopped.
+/// Returns how a grading ends that nobody stopped.
 pub(super) fn exit_code(grades: &[Grade]) -> u8 {
     if grades.iter().any(Grade::is_our_fault) {
         exit::FAULT
@@ -19,12 +19,12 @@ pub(super) fn exit_code(grades: &[Grade]) -> u8 {
     }
 }
 
-/// A scene's name as a file name.
+/// Returns a scene's name as a file name.
 pub(super) fn file_of_scene(name: &str) -> String {
     file_name(&name.replace('/', "_"))
 }
 
-/// A name as a file name: no separators, no leading dot, not too long, and another for every other name.
+/// Returns a name as a file name: no separators, no leading dot, not too long, and another for every other name.
 pub(super) fn file_name(name: &str) -> String {
     let safe = |c: char| if c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.' | ' ') { c } else { '_' };
     let plain: String = name.chars().map(safe).take(100).collect();
@@ -38,14 +38,14 @@ pub(super) fn file_name(name: &str) -> String {
     format!("{}{plain}~{digest}", if is_device(plain) { "_" } else { "" })
 }
 
-/// Whether Windows takes a name for a device, whatever follows its first dot.
+/// Returns whether Windows takes a name for a device, whatever follows its first dot.
 fn is_device(name: &str) -> bool {
     let stem = name.split('.').next().unwrap_or_default().trim_end().to_ascii_lowercase();
     let numbered = |device: &str| stem.strip_prefix(device).is_some_and(|number| "0123456789".contains(number));
     matches!(stem.as_str(), "con" | "prn" | "aux" | "nul") || numbered("com") || numbered("lpt")
 }
 
-/// How much is shown of each submission.
+/// Returns how much is shown of each submission.
 pub(super) const fn shown(arguments: &Arguments, is_class: bool) -> TextDetail {
     match (arguments.quiet, arguments.verbose) {
         (true, _) => TextDetail::Line,
@@ -55,8 +55,8 @@ pub(super) const fn shown(arguments: &Arguments, is_class: bool) -> TextDetail {
     }
 }
 
-/// The report for people who look at it now. On several submissions it ends with what the class comes to, its `hardest`
-/// scenes and mistakes, and who is not graded.
+/// Renders the report for people who look at it now. On several submissions it ends with what the class comes to, its
+/// `hardest` scenes and mistakes, and who is not graded.
 pub(super) fn text(
     grades: &[Grade],
     passed_over: &[PassedOver],

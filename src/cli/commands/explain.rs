@@ -130,8 +130,8 @@ fn case(
     (Case { scene: name, trace, accepted, note, first, explanations }, card.flatten(), outcome.steps_judged)
 }
 
-/// A program's path from the root, without `..`, which means another folder in a sandbox. Its own name stays, also that
-/// of a link: programs may go by the name that they are called.
+/// Returns a program's path from the root, without `..`, which means another folder in a sandbox. Its own name stays,
+/// also that of a link: programs may go by the name that they are called.
 fn placed(program: &Path) -> PathBuf {
     let folder = program.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     match (folder.canonicalize(), program.file_name()) {
@@ -240,15 +240,15 @@ fn own_milestone(runner: &Runner<'_>, program: &Path) -> Result<Assignment> {
     Ok(found)
 }
 
-/// The last line of a program's error output, where it wrote one.
+/// Returns the last line of a program's error output, where it wrote one.
 fn said(stderr: &[u8]) -> String {
     let text = printed(&String::from_utf8_lossy(stderr));
     let last = text.lines().rev().map(str::trim).find(|line| !line.is_empty());
     last.map(|line| format!("; its standard error ends with: {}", one_line(line))).unwrap_or_default()
 }
 
-/// The properties that the failing scenes have in common, by the end of the program in each and the number of complete
-/// steps.
+/// Returns the properties that the failing scenes have in common, by the end of the program in each and the number of
+/// complete steps.
 fn located(tasks: &[SceneTask], ends: &[(Option<Failing>, u32)]) -> Option<Located> {
     if ends.iter().all(|(failing, _)| failing.is_none()) {
         return None;
@@ -260,7 +260,7 @@ fn located(tasks: &[SceneTask], ends: &[(Option<Failing>, u32)]) -> Option<Locat
     locate(&tried.collect::<Vec<_>>())
 }
 
-/// The likely mistakes of the wrong traces together, and the keys of those that are ruled out.
+/// Returns the likely mistakes of the wrong traces together, and the keys of those that are ruled out.
 fn likely(whose: Assignment, cases: &[Case], tasks: &[SceneTask]) -> (Vec<Explanation>, Vec<String>) {
     let (right, wrong): (Vec<_>, Vec<_>) = cases.iter().zip(tasks).partition(|(case, _)| case.accepted);
     let wrong: Vec<(&Scene, &[Explanation])> =
@@ -270,8 +270,8 @@ fn likely(whose: Assignment, cases: &[Case], tasks: &[SceneTask]) -> (Vec<Explan
     (diagnose::several(wrong.into_iter().map(|(_, explanations)| explanations), &refuted), refuted)
 }
 
-/// The scenes to run: the probe scenes of the milestone, its suite's where these show what the probe scenes do not, and
-/// those that are named.
+/// Returns the scenes to run: the probe scenes of the milestone, its suite's where these show what the probe scenes do
+/// not, and those that are named.
 fn tasks(assignment: Assignment, plan: &Plan, scenes: &[PathBuf]) -> Result<Vec<SceneTask>> {
     let mut tasks = Vec::new();
     for (name, scene) in diagnose::probe_scenes(assignment) {

@@ -124,7 +124,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     session.grade_and_report(&submissions, &reports, &mut last_run).map(|(_, code)| code)
 }
 
-/// The sandbox, or a refusal that says what is missing.
+/// Returns the sandbox, or a refusal that says what is missing.
 pub(super) fn backend(unsafe_no_sandbox: bool) -> Result<Backend> {
     let supervisor = Supervisor::this_program();
     if unsafe_no_sandbox {
@@ -192,13 +192,13 @@ impl GradingSession<'_> {
         }
     }
 
-    /// Where the trace of a scene goes that is not accepted, when traces are kept.
+    /// Returns where the trace of a scene goes that is not accepted, when traces are kept.
     fn trace(&self, submission: &str, scene: &str) -> Option<Place> {
         let folder = self.folder.as_ref().filter(|_| self.arguments.keep_traces)?;
         Some(Place::new(folder, format!("traces/{}/{}.bin", file_name(submission), file_of_scene(scene))))
     }
 
-    /// The grades, and what kept the rest from being graded or kept.
+    /// Returns the grades, and what kept the rest from being graded or kept.
     fn grade(&self, submissions: &[Submission], fresh: bool) -> Result<(Vec<Grade>, Option<anyhow::Error>)> {
         let kept = match &self.folder {
             Some(folder) => {
@@ -258,7 +258,7 @@ impl GradingSession<'_> {
         Ok((grades, fault.map(anyhow::Error::from).or(log_error)))
     }
 
-    /// The counter of scenes for `--progress`: those that the reader of the pages sees.
+    /// Returns the counter of scenes for `--progress`: those that the reader of the pages sees.
     fn counter(&self, file: &Path, submissions: &[Submission]) -> Result<Counter> {
         let sees_all = self.arguments.reader == Audience::Staff;
         let groups = self.plan.groups.iter();
@@ -270,7 +270,7 @@ impl GradingSession<'_> {
             .with_context(|| format!("cannot write the progress to {}", file.display()))
     }
 
-    /// The entries that are no submissions. Of a shard, `merge` tells them.
+    /// Returns the entries that are no submissions. Of a shard, `merge` tells them.
     fn passed_over(&self) -> &[PassedOver] {
         if self.sharding.is_some() { &[] } else { &self.passed_over }
     }
@@ -287,7 +287,7 @@ impl GradingSession<'_> {
         results.write(reports, |grades| self.text(grades, submissions))
     }
 
-    /// The report for people who look at it now: of a class a table, and what it comes to.
+    /// Renders the report for people who look at it now: of a class a table, and what it comes to.
     fn text(&self, grades: &[Grade], submissions: &[Submission]) -> String {
         let shown = shown(self.arguments, grades.len() > 1);
         let trace = |submission: &str, scene: &str| self.trace(submission, scene).map(|place| place.path());

@@ -12,7 +12,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Its file in an output folder.
+/// The run's file in an output folder.
 const FILE: &str = "last-run.json";
 
 /// A larger one is not read: 10,000 submissions of 85 scenes write a quarter of it.
@@ -45,13 +45,13 @@ impl LastRun {
         Self { file, known: serde_json::from_slice(&text).unwrap_or_default() }
     }
 
-    /// The scenes that were not accepted, of whichever submission; nothing when no run is known.
+    /// Returns the scenes that were not accepted, of whichever submission; nothing when no run is known.
     pub(super) fn failed(&self) -> Option<BTreeSet<String>> {
         let scenes = self.known.values().flatten().filter(|(_, accepted)| !**accepted);
         (!self.known.is_empty()).then(|| scenes.map(|(scene, _)| scene.clone()).collect())
     }
 
-    /// Whether a scene of this submission was not accepted.
+    /// Returns whether a scene of this submission was not accepted.
     pub(super) fn has_failed(&self, submission: &str) -> bool {
         self.known.get(submission).is_none_or(|scenes| scenes.values().any(|accepted| !accepted))
     }
@@ -74,7 +74,7 @@ impl LastRun {
     }
 }
 
-/// The user's cache of this program.
+/// Returns the user's cache of this program.
 fn cache() -> Option<PathBuf> {
     let set = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let cache = set("XDG_CACHE_HOME").or_else(|| set("HOME").map(|home| home.join(".cache")))?;

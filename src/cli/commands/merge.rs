@@ -82,7 +82,7 @@ pub(super) fn run(arguments: &Merge) -> Result<u8> {
     Ok(exit_code(&grades))
 }
 
-/// The shards in these folders, or in their folders.
+/// Finds the shards in these folders, or in their folders.
 fn find(folders: &[PathBuf]) -> Result<Vec<(PathBuf, Part)>> {
     let mut parts: Vec<(PathBuf, Part)> = Vec::new();
     for folder in folders {

@@ -43,7 +43,7 @@ pub(super) fn run(arguments: &PageArguments) -> Result<()> {
     target.finish_and_tell(fosssim_browser::page(&module, course.as_ref()).as_bytes(), true)
 }
 
-/// The part of a suite that the page's readers may see.
+/// Returns the part of a suite that the page's readers may see.
 fn course(name: &str, reader: Audience) -> Result<CourseSuite> {
     let plan = plan::find(name)?;
     CourseSuite::of(&plan, reader).map_err(|why| anyhow!("the suite {name}: {why}"))

@@ -64,12 +64,12 @@ impl Pages {
         }
     }
 
-    /// The card of a scene, of those that its grade names.
+    /// Returns the card of a scene, of those that its grade names.
     pub(super) fn card(&self, scene: &SceneGrade) -> Option<Card> {
         Card::from_kept(&cards::read(&self.cards, scene.card.as_deref()?)?)
     }
 
-    /// The page of one submission.
+    /// Returns the page of one submission.
     pub(super) fn of_one(&self, grade: &Grade, class: Option<&str>, reader: Audience) -> String {
         GradePage { grade, card: &|scene| self.card(scene), class, reader }.html()
     }
@@ -135,7 +135,8 @@ pub(super) fn draw(judged: &Judged<'_>, recorded: bool) -> Option<String> {
     card.map(|card| if judged.is_cut { card.noting(cut) } else { card }.kept())
 }
 
-/// The card of a judged trace. `trace_name` is where its reader finds the trace, `depth` that of the heading above.
+/// Returns the card of a judged trace. `trace_name` is where its reader finds the trace, `depth` that of the heading
+/// above.
 pub(super) fn card(judged: &Judged<'_>, trace_name: Option<&str>, depth: usize) -> Option<Card> {
     let Judged { scene, name, trace, is_cut, outcome, rulings, explanations, rules, hints } = *judged;
     let (fair, focus) = (outcome.fair.is_some(), Focus::of(outcome));

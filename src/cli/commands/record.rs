@@ -39,14 +39,14 @@ struct Input {
     xml: Vec<u8>,
 }
 
-/// The scenes that come with the program. Their recordings are asked for by name.
+/// Returns the scenes that come with the program. Their recordings are asked for by name.
 fn bundled() -> Vec<Input> {
     let input =
         |name: &str| Some(Input { name: name.to_owned(), stem: name.to_owned(), xml: library::scene(name)?.into() });
     library::names().filter_map(input).collect()
 }
 
-/// The scenes of a folder by name, in alphabetical order.
+/// Returns the scenes of a folder by name, in alphabetical order.
 fn scenes(folder: &Path) -> Result<Vec<Input>> {
     let shown = folder.display();
     let files = scene_files::list(folder, ".xml").with_context(|| {
@@ -82,7 +82,7 @@ impl Recorded<'_> {
         }
     }
 
-    /// The paths of recordings, without their extension.
+    /// Returns the paths of recordings, without their extension.
     fn stems(&self) -> Vec<String> {
         let Some(folder) = self.0 else { return library::recordings().map(str::to_owned).collect() };
         // Nothing was recorded where there is no folder.
@@ -141,7 +141,7 @@ fn write(recordings: &[(String, Recording)], folder: &Path) -> Result<u8> {
     Ok(exit::ACCEPTED)
 }
 
-/// The manifest names scenes, wherever they lie.
+/// Returns the manifest names scenes, wherever they lie.
 fn manifest(recordings: &[(String, Recording)]) -> String {
     recording::manifest(recordings.iter().map(|(_, recording)| recording))
 }

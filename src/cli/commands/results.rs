@@ -25,7 +25,7 @@ pub(super) struct Report {
     pub(super) file: Option<PathBuf>,
 }
 
-/// The reports that `--format` asks for.
+/// Returns the reports that `--format` asks for.
 ///
 /// # Errors
 /// Unknown formats, and two of them at one place.
@@ -70,7 +70,7 @@ pub(super) fn refuse_several(reports: &[Report], submissions: usize, of_html: &s
     }
 }
 
-/// The pages of a grading, if somebody may look at them: in the folder for results or in a report.
+/// Returns the pages of a grading, if somebody may look at them: in the folder for results or in a report.
 ///
 /// # Errors
 /// When there is no room for them.
@@ -182,7 +182,7 @@ impl Results<'_> {
 }
 
 impl<'a> Results<'a> {
-    /// The grades with no more in them than this format tells the reader.
+    /// Returns the grades with no more in them than this format tells the reader.
     fn told(&self, format: Format) -> Cow<'a, [Grade]> {
         let told = |grade: &'a Grade| format.told(grade, self.reader, self.platform_hides);
         if self.grades.iter().all(|grade| matches!(told(grade), Cow::Borrowed(_))) {
@@ -192,7 +192,7 @@ impl<'a> Results<'a> {
     }
 }
 
-/// Whether a file is the one to which the steps of a GitHub job add their summaries.
+/// Returns whether a file is the one to which the steps of a GitHub job add their summaries.
 fn is_step_summary(file: &Path) -> bool {
     std::env::var_os("GITHUB_STEP_SUMMARY").is_some_and(|summary| Path::new(&summary) == file)
 }
@@ -218,7 +218,7 @@ fn write_in(folder: &Path, name: &str, text: impl FnOnce() -> String) -> Result<
     output::write_at(&place, text.as_bytes())
 }
 
-/// A text, or what the grader failed on while it made it.
+/// Returns a text, or what the grader failed on while it made it.
 fn made<T>(name: &str, text: impl FnOnce() -> T) -> Result<T> {
     guarded(text).map_err(|fault| anyhow::anyhow!("{name} could not be made: {fault}; please report this"))
 }

@@ -77,7 +77,7 @@ fn export(arguments: &SceneExport) -> Result<()> {
     Ok(())
 }
 
-/// Whether a file holds these bytes; nothing when there is none.
+/// Returns whether a file holds these bytes; nothing when there is none.
 fn holds(place: &Place, bytes: &[u8]) -> Option<bool> {
     match place.read(LARGEST_SCENE as u64) {
         Ok(old) => Some(old == bytes),
@@ -86,7 +86,7 @@ fn holds(place: &Place, bytes: &[u8]) -> Option<bool> {
     }
 }
 
-/// The names of the embedded scenes that these patterns select.
+/// Returns the names of the embedded scenes that these patterns select.
 fn matching(patterns: &[String]) -> Result<Vec<&'static str>> {
     let names: Vec<_> = library::all_names().collect();
     let selection = Selection::new(patterns, &names)?;

@@ -44,7 +44,7 @@ pub(super) struct Common {
 }
 
 impl Common {
-    /// The difference of two gradings, as a sentence.
+    /// Returns the difference of two gradings, as a sentence.
     pub(super) fn difference(&self, other: &Self) -> Option<&'static str> {
         [
             (self.schema == other.schema && self.version == other.version, "the grader's version differs"),
@@ -94,7 +94,7 @@ impl Part {
         Ok(Some(part))
     }
 
-    /// Whether it holds the grades of its own submissions, and points that follow from its verdicts.
+    /// Checks that it holds the grades of its own submissions, and points that follow from its verdicts.
     fn check(&self) -> Result<()> {
         let common = &self.common;
         if common.schema != SCHEMA {
@@ -116,8 +116,8 @@ impl Part {
     }
 }
 
-/// A shard's own entries of a list: every N-th one. Neighbours in the alphabet may have worked together and share slow
-/// programs; so they go to different machines.
+/// Returns a shard's own entries of a list: every N-th one. Neighbours in the alphabet may have worked together and
+/// share slow programs; so they go to different machines.
 fn own<T>(number: usize, of: usize, all: &[T]) -> impl Iterator<Item = &T> {
     all.iter().skip(number.wrapping_sub(1)).step_by(of.max(1))
 }
@@ -128,12 +128,12 @@ pub(super) struct Sharding {
     common: Common,
     /// The shard's own folder.
     pub(super) folder: PathBuf,
-    /// The same as a place that no link leads to.
+    /// The file as a place that no link leads to.
     begun: Place,
 }
 
 impl Sharding {
-    /// The shard of a grading of all these submissions.
+    /// Creates the shard of a grading of all these submissions.
     pub(super) fn new(shard: Shard, plan: &Plan, arguments: &Arguments, all: &[Submission], output: &Path) -> Self {
         let common = Common {
             schema: SCHEMA,
@@ -148,7 +148,7 @@ impl Sharding {
         Self { shard, common, folder: begun.path(), begun }
     }
 
-    /// The shard's own submissions.
+    /// Returns the shard's own submissions.
     pub(super) fn part(&self, all: Vec<Submission>) -> Vec<Submission> {
         own(self.shard.number, self.shard.of, &all).cloned().collect()
     }
@@ -177,7 +177,7 @@ impl Sharding {
     }
 }
 
-/// The digest of all that results depend on besides the programs.
+/// Returns the digest of all that results depend on besides the programs.
 fn digest(plan: &Plan, arguments: &Arguments) -> String {
     let mut hasher = blake3::Hasher::new();
     let mut add = |bytes: &[u8]| {

@@ -19,9 +19,9 @@ pub(super) fn completions(arguments: &Completions) -> Result<()> {
     console::print(&script)
 }
 
-/// A bash script whose labels are those that it asks for. clap writes a hyphen in the program's name once as `__` and
-/// once as the mark of a command, so that nothing is completed behind a command (clap issue 6421). Without a hyphen, or
-/// when clap is mended, nothing changes.
+/// Returns a bash script whose labels are those that it asks for. clap writes a hyphen in the program's name once as
+/// `__` and once as the mark of a command, so that nothing is completed behind a command (clap issue 6421). Without a
+/// hyphen, or when clap is mended, nothing changes.
 fn mended(script: &[u8]) -> Vec<u8> {
     let (asked, written) = (NAME.replace('-', "__"), NAME.replace('-', "__subcmd__"));
     String::from_utf8_lossy(script).replace(&written, &asked).into_bytes()

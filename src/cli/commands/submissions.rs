@@ -55,12 +55,12 @@ pub(super) struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    /// A search among these arguments.
+    /// Creates a search among these arguments.
     pub(super) const fn new(arguments: &'a Grade, build: Option<&'a BuildStep>, output: &'a Path) -> Self {
         Self { arguments, build, output }
     }
 
-    /// The submissions, each with a name of its own.
+    /// Returns the submissions, each with a name of its own.
     ///
     /// # Errors
     /// Paths that are not there, folders without any submission.
@@ -94,14 +94,14 @@ impl<'a> Search<'a> {
         Ok(Found { submissions, passed_over })
     }
 
-    /// The submission that a folder is: its sources when they are to be built, else the program inside. A program that
-    /// is missing is the submission's fault: its grade says so.
+    /// Returns the submission that a folder is: its sources when they are to be built, else the program inside. A
+    /// program that is missing is the submission's fault: its grade says so.
     fn folder(&self, path: &Path) -> Entry {
         let program = self.build.is_none().then(|| self.arguments.program.clone());
         Entry { path: path.to_owned(), folder: path.to_owned(), program, is_folder: true }
     }
 
-    /// Whether a folder is a submission itself: it holds the program, or what the suite's build begins with.
+    /// Returns whether a folder is a submission itself: it holds the program, or what the suite's build begins with.
     fn is_one(&self, path: &Path) -> bool {
         let holds = |name: &str| fs::symlink_metadata(path.join(name)).is_ok_and(|data| data.is_file());
         let Some(build) = self.build else { return holds(&self.arguments.program) };
@@ -116,14 +116,15 @@ impl<'a> Search<'a> {
         usual.iter().copied().chain(words).any(holds)
     }
 
-    /// Whether a folder is the one for results, or holds those of an earlier grading.
+    /// Returns whether a folder is the one for results, or holds those of an earlier grading.
     fn is_results(&self, path: &Path) -> bool {
         let same = |one: &Path, other: &Path| matches!((one.canonicalize(), other.canonicalize()), (Ok(one), Ok(other)) if one == other);
         same(path, self.output) || RESULTS.iter().all(|name| path.join(name).is_file())
     }
 
-    /// One submission per entry, in alphabetical order: folders, programs and archives. Other entries are passed over
-    /// with a word about each: hidden ones, results of gradings, and links, which could lead to another's submission.
+    /// Adds one submission per entry, in alphabetical order: folders, programs and archives. Other entries are passed
+    /// over with a word about each: hidden ones, results of gradings, and links, which could lead to another's
+    /// submission.
     fn entries(&self, folder: &Path, found: &mut Vec<Entry>, passed_over: &mut Vec<PassedOver>) -> Result<()> {
         let paths = listed(folder, MOST_ENTRIES)?;
         let holds_results = self.is_results(folder);
@@ -171,7 +172,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// The paths of a folder's entries, in alphabetical order.
+/// Returns the paths of a folder's entries, in alphabetical order.
 fn listed(folder: &Path, most: usize) -> Result<Vec<PathBuf>> {
     let listing = fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))?;
     let mut paths: Vec<PathBuf> = listing
@@ -186,8 +187,8 @@ fn listed(folder: &Path, most: usize) -> Result<Vec<PathBuf>> {
     Ok(paths)
 }
 
-/// Why a file in a class's folder is no submission. A file that may be executed is one, and so is one that begins as a
-/// program or an archive: learning platforms keep no permissions.
+/// Returns why a file in a class's folder is no submission. A file that may be executed is one, and so is one that
+/// begins as a program or an archive: learning platforms keep no permissions.
 fn refusal(folder: &Path, path: &Path, data: &fs::Metadata) -> Option<String> {
     if data.permissions().mode() & 0o111 != 0 {
         return None;
@@ -209,14 +210,14 @@ fn refusal(folder: &Path, path: &Path, data: &fs::Metadata) -> Option<String> {
     }
 }
 
-/// A program among others. It is opened beneath the folder, where no link is followed.
+/// Returns a program among others. It is opened beneath the folder, where no link is followed.
 fn entry(folder: &Path, path: &Path) -> Entry {
     let program = path.file_name().and_then(OsStr::to_str).map(str::to_owned);
     let folder = if program.is_some() { folder } else { path };
     Entry { path: path.to_owned(), folder: folder.to_owned(), program, is_folder: false }
 }
 
-/// A scene in the place of the program is a slip of the user.
+/// Rejects a scene in the place of the program, which is a slip of the user.
 fn refuse_scene(path: &Path) -> Result<()> {
     if input::is_scene(path) {
         let name = input::shown(path);
@@ -234,7 +235,7 @@ fn pass_over(passed_over: &mut Vec<PassedOver>, path: &Path, why: &str) {
     passed_over.push(PassedOver { name, why: why.to_owned() });
 }
 
-/// The last name of a path.
+/// Returns the last name of a path.
 fn last_name(path: &Path) -> OsString {
     if let Some(name) = path.file_name() {
         return name.to_owned();
@@ -243,9 +244,9 @@ fn last_name(path: &Path) -> OsString {
     absolute.file_name().unwrap_or(absolute.as_os_str()).to_owned()
 }
 
-/// The names of what lies at these paths, none twice: the last names; where several of these look the same, those that
-/// only look so are shown exactly, equal ones get as much of their paths as it takes, and names that still look the
-/// same get a number.
+/// Returns the names of what lies at these paths, none twice: the last names; where several of these look the same,
+/// those that only look so are shown exactly, equal ones get as much of their paths as it takes, and names that still
+/// look the same get a number.
 pub(super) fn distinct_names(paths: &[&Path]) -> Vec<String> {
     let own: Vec<OsString> = paths.iter().map(|path| last_name(path)).collect();
     let mut alike: BTreeMap<String, BTreeMap<&OsStr, usize>> = BTreeMap::new();
@@ -271,15 +272,15 @@ pub(super) fn distinct_names(paths: &[&Path]) -> Vec<String> {
     paths.iter().zip(&own).map(&mut name).collect()
 }
 
-/// The shortest end of a path that none of the others has.
+/// Returns the shortest end of a path that none of the others has.
 fn end_of<'a>(path: &'a Path, all: &[&Path]) -> &'a Path {
     let mut ends = path.ancestors().skip(1).filter_map(|folder| path.strip_prefix(folder).ok());
     let is_own = |end: &&Path| all.iter().filter(|other| other.ends_with(end)).count() == 1;
     ends.find(is_own).unwrap_or(path)
 }
 
-/// Which file each program is. Where several are one file, who owns it has handed it in: the owner of a folder, in
-/// which alone an entry of a class has an owner of its own.
+/// Returns which file each program is. Where several are one file, who owns it has handed it in: the owner of a folder,
+/// in which alone an entry of a class has an owner of its own.
 fn one_files(entries: &[Entry], names: &[String]) -> Vec<Option<OneFile>> {
     let file = |entry: &Entry| {
         let program = entry.program.as_ref()?;

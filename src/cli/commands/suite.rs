@@ -37,7 +37,7 @@ pub(super) fn run(suite: &Suite) -> Result<()> {
     }
 }
 
-/// A commented suite with the groups of one that comes with the program.
+/// Returns a commented suite with the groups of one that comes with the program.
 fn template(name: Option<&str>) -> Result<String> {
     let name = name.map_or_else(plan::default_name, str::to_owned);
     config::template(&name).with_context(|| {
@@ -46,7 +46,7 @@ fn template(name: Option<&str>) -> Result<String> {
     })
 }
 
-/// The suites that come with the program, and what each is called by.
+/// Returns the suites that come with the program, and what each is called by.
 fn built_in() -> Result<Vec<(String, plan::Plan)>> {
     plan::built_in_names().map(|name| plan::find(&name).map(|plan| (name, plan)).map_err(Into::into)).collect()
 }
@@ -58,7 +58,8 @@ fn undecided(plan: &plan::Plan) -> Vec<Undecided> {
     all.filter(|(_, found)| !matches!(found, Ok(found) if found.is_empty())).collect()
 }
 
-/// The coverage of the scenes, measured on all cores. `undecided` names a scene that can't be simulated to its end.
+/// Returns the coverage of the scenes, measured on all cores. `undecided` names a scene that can't be simulated to its
+/// end.
 fn coverage(plan: &plan::Plan) -> Coverage {
     let tasks: Vec<_> = plan.scenes().collect();
     let all = tasks.par_iter().filter_map(|task| Coverage::of(&task.scene).ok());

@@ -37,7 +37,7 @@ pub(super) struct SuiteContents {
     pub(super) parts: Vec<SeenPart>,
 }
 
-/// The whole report; `undecided` holds the scenes of which there is something to say.
+/// Renders the whole report; `undecided` holds the scenes of which there is something to say.
 pub(super) fn text(plan: &Plan, contents: &SuiteContents, undecided: &[Undecided], style: Style) -> String {
     let mut text = head(plan, style);
     for group in &plan.groups {
@@ -61,7 +61,7 @@ pub(super) fn text(plan: &Plan, contents: &SuiteContents, undecided: &[Undecided
 /// The version of the JSON list; it changes when a field's meaning does.
 const SCHEMA: u32 = 2;
 
-/// The suites that come with the program, a line on each.
+/// Returns the suites that come with the program, a line on each.
 pub(super) fn list(suites: &[(String, Plan)], style: Style) -> String {
     let width = suites.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     let line = |(name, plan): &(String, Plan)| {
@@ -72,7 +72,8 @@ pub(super) fn list(suites: &[(String, Plan)], style: Style) -> String {
     suites.iter().map(line).collect()
 }
 
-/// The same as one JSON object: `name` is what `--suite` takes, `default` says which one is meant where none is named.
+/// Renders the list as one JSON object: `name` is what `--suite` takes, `default` is the suite that counts where none
+/// is named.
 pub(super) fn list_json(suites: &[(String, Plan)]) -> String {
     let entry = |(name, plan): &(String, Plan)| {
         let (suite, version) = name.split_once('@').unwrap_or((name, "1"));
@@ -91,19 +92,19 @@ pub(super) fn list_json(suites: &[(String, Plan)]) -> String {
     serde_json::to_string_pretty(&list).unwrap_or_default() + "\n"
 }
 
-/// `12 scenes, 100 points`.
+/// Returns `12 scenes, 100 points`.
 fn size(plan: &Plan) -> String {
     format!("{}, {}", counted(plan.scenes().count() as u64, "scene"), counted_points(plan.max_points()))
 }
 
-/// `1 point`, `12.5 points`.
+/// Returns `1 point`, `12.5 points`.
 fn counted_points(value: f64) -> String {
     let words = points(value);
     let plural = if words == "1" { "" } else { "s" };
     format!("{words} point{plural}")
 }
 
-/// The meaning of the choice of rule books.
+/// Returns the meaning of the choice of rule books.
 const fn rules(rules: Rules) -> &'static str {
     match rules {
         Rules::Parity => "parity: the original's verdict counts, the fair rules are not asked",
@@ -112,7 +113,7 @@ const fn rules(rules: Rules) -> &'static str {
     }
 }
 
-/// The meaning of partial credit.
+/// Returns the meaning of partial credit.
 const fn credit(credit: Credit) -> &'static str {
     match credit {
         Credit::Scenes => "credit per scene",
@@ -181,7 +182,7 @@ fn of_group(group: &PlannedGroup, style: Style) -> String {
     text
 }
 
-/// How much of what can happen in steps the scenes contain; nothing for scenes of earlier assignments.
+/// Returns how much of what can happen in steps the scenes contain; nothing for scenes of earlier assignments.
 fn of_contents(contents: &SuiteContents, style: Style) -> String {
     let coverage = &contents.coverage;
     if coverage.is_empty() {
@@ -204,7 +205,7 @@ fn of_contents(contents: &SuiteContents, style: Style) -> String {
     text
 }
 
-/// The known mistakes that no scene shows.
+/// Returns the known mistakes that no scene shows.
 fn of_mistakes(parts: &[SeenPart], style: Style) -> String {
     if parts.is_empty() {
         return String::new();
@@ -227,7 +228,7 @@ fn of_mistakes(parts: &[SeenPart], style: Style) -> String {
     text
 }
 
-/// A note for each scene that programs of the suite's milestone do not know to the end.
+/// Returns a note for each scene that programs of the suite's milestone do not know to the end.
 fn unknown(plan: &Plan, style: Style) -> Vec<String> {
     let milestone = plan.assignment();
     let note = style.paint(Look::Notice, "note");
@@ -238,7 +239,7 @@ fn unknown(plan: &Plan, style: Style) -> Vec<String> {
     scenes.map(|(scene, unknown)| format!("\n{note}: {scene}: {unknown}\n")).collect()
 }
 
-/// A note that is no error, but worth knowing before a class is graded.
+/// Returns a note that is no error, but worth knowing before a class is graded.
 fn note(scene: &str, found: &Result<Vec<Borderline>, StepError>, style: Style) -> String {
     let (note, scene) = (style.paint(Look::Notice, "note"), one_line(scene));
     let found = match found {

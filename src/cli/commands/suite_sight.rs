@@ -30,7 +30,7 @@ pub(super) struct SeenPart {
 /// The number of scenes that are enough to show a mistake.
 pub(super) const ENOUGH: usize = 3;
 
-/// The parts in the order of the catalogue.
+/// Returns the parts in the order of the catalogue.
 pub(super) fn seen_parts(plan: &Plan) -> Vec<SeenPart> {
     let written = |scene: &Scene, student: Student| {
         student::trace_within(scene, student, MOST_POLYNOMIALS).unwrap_or_else(|(bytes, _)| bytes)

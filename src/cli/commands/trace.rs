@@ -23,7 +23,7 @@ pub(super) fn info(arguments: &TraceInfo) -> Result<u8> {
     Ok(if summary.trace.stopped.is_none() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }
 
-/// One step of a trace.
+/// Shows one step of a trace.
 pub(super) fn show(arguments: &TraceShow) -> Result<()> {
     let scene = input::scene(&arguments.scene)?;
     let mut trace = input::trace(&arguments.trace)?;

@@ -66,7 +66,7 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report]) -> Resu
     Ok(exit_code(&grades))
 }
 
-/// The grade of a folder of traces.
+/// Returns the grade of a folder of traces.
 fn grade(plan: &Plan, folder: &Path, submission: String, pages: Option<&Pages>) -> Grade {
     let tasks: Vec<&SceneTask> = plan.scenes().collect();
     // In the plan's order, whatever the number of threads.
@@ -79,7 +79,7 @@ fn grade(plan: &Plan, folder: &Path, submission: String, pages: Option<&Pages>) 
 /// Traces that are named in a warning.
 const NAMED: usize = 5;
 
-/// The traces in a folder and in the folders within it that belong to no scene, in words.
+/// Returns the traces in a folder and in the folders within it that belong to no scene, in words.
 fn strays(folder: &Folder, scenes: &[String]) -> Option<String> {
     let texts = |folder: &Folder| -> Vec<String> {
         let names = folder.names().unwrap_or_default();
@@ -107,7 +107,7 @@ fn strays(folder: &Folder, scenes: &[String]) -> Option<String> {
 /// The result of one scene, and what of it was passed over.
 type JudgedScene = (SceneResult, Option<String>);
 
-/// The result of one scene. A panic is its judge error.
+/// Returns the result of one scene. A panic is its judge error.
 fn scene(plan: &Plan, task: &SceneTask, folder: &io::Result<Folder>, pages: Option<&Pages>) -> JudgedScene {
     let failure = match folder.as_ref().map(|folder| guarded(|| judge(plan, task, folder, pages))) {
         Ok(Ok(Ok(judged))) => return judged,
@@ -141,8 +141,8 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) 
     Ok((result, passed_over))
 }
 
-/// The trace of a scene, under its whole name or the name behind its group, plain or packed. Nothing when there is
-/// none, and then in words what lies there that can't be used: what is no file, is damaged, or is reached by a link,
+/// Reads the trace of a scene, under its whole name or the name behind its group, plain or packed. Nothing when there
+/// is none, and then in words what lies there that can't be used: what is no file, is damaged, or is reached by a link,
 /// as another's may be. More than `most` bytes are not read: what is cut there is a bad trace.
 fn read(folder: &Folder, scene: &str, most: u64) -> io::Result<(Vec<u8>, Option<String>)> {
     let mut passed_over = None;

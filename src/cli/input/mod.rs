@@ -22,12 +22,12 @@ use std::{
     path::Path,
 };
 
-/// A file's name as typed, fit for printing: a stranger's file may be called by codes that a terminal obeys.
+/// Returns a file's name as typed, fit for printing: a stranger's file may be called by codes that a terminal obeys.
 pub(super) fn shown(name: &Path) -> String {
     one_line(&name.display().to_string())
 }
 
-/// The name after `asset:`.
+/// Returns the name after `asset:`.
 pub(super) fn asset(name: &Path) -> Option<&str> {
     name.to_str()?.strip_prefix("asset:")
 }
@@ -38,7 +38,7 @@ fn no_asset(what: &str, name: &str) -> String {
     format!("no embedded {what} is called `{name}`; the nearest are {near} (`fosssim-oracle scene list` lists all)")
 }
 
-/// A file that is not there, but would be what comes with the program, had it `asset:` before its name.
+/// Returns a file that is not there, but would be what comes with the program, had it `asset:` before its name.
 fn or_asset(name: &Path, error: io::Error) -> anyhow::Error {
     let known = name.to_str().map(|name| name.strip_suffix(".xml").unwrap_or(name));
     match known

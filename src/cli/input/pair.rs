@@ -7,7 +7,7 @@ use crate::{
 };
 use anyhow::{Context, Result, anyhow, bail};
 
-/// A pair and how it moves from its word: `pe:3,1+4,1:5,9+2,6:5,3+5,8`.
+/// Returns a pair and how it moves from its word: `pe:3,1+4,1:5,9+2,6:5,3+5,8`.
 ///
 /// # Errors
 /// When it is no such pair.
@@ -47,7 +47,7 @@ pub(in crate::cli) fn motion(word: &str, radii: Option<&str>) -> Result<PairMoti
     })
 }
 
-/// A pair of a scene: `pe:3,1`.
+/// Returns a pair of a scene: `pe:3,1`.
 ///
 /// # Errors
 /// When the scene has no such pair, or detection never looks at it.
@@ -95,7 +95,7 @@ fn kind_of(word: &str) -> Result<PairKind> {
     })
 }
 
-/// A point with its motion: `X,Y+DX,DY`, `X,Y..X,Y`, or `X,Y` at rest.
+/// Returns a point with its motion: `X,Y+DX,DY`, `X,Y..X,Y`, or `X,Y` at rest.
 ///
 /// # Errors
 /// When it is none of them.
@@ -116,7 +116,7 @@ fn moving(word: &str) -> Result<PointMotion> {
     }
 }
 
-/// `X,Y`
+/// Returns `X,Y`
 ///
 /// # Errors
 /// When it is no point with finite coordinates.

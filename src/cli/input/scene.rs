@@ -54,14 +54,14 @@ pub(in crate::cli) fn scene(name: &Path) -> Result<SceneInput> {
     }
 }
 
-/// Whether these bytes are no text at all: what its reader could say of them would help nobody. No XML in UTF-8 holds a
-/// NUL; UTF-16, which does, begins with its mark and gets the reader's own words.
+/// Returns whether these bytes are no text at all: what its reader could say of them would help nobody. No XML in UTF-8
+/// holds a NUL; UTF-16, which does, begins with its mark and gets the reader's own words.
 fn is_binary(bytes: &[u8]) -> bool {
     let is_utf_16 = bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]);
     bytes.starts_with(&ZSTD_MAGIC) || (!is_utf_16 && !bytes.starts_with(b"<") && bytes.contains(&0))
 }
 
-/// The bytes of a scene file, which may not be larger than any sensible scene.
+/// Returns the bytes of a scene file, which may not be larger than any sensible scene.
 fn scene_file(name: &Path) -> Result<(Vec<u8>, Option<Identity>)> {
     let (file, metadata) = open(name)?;
     let bytes = read_limited(file, &metadata, LARGEST_SCENE as u64)?;

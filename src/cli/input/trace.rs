@@ -19,7 +19,7 @@ use std::{
 pub(in crate::cli) struct TraceInput {
     /// The name as typed, fit for printing.
     pub(in crate::cli) name: String,
-    /// Its bytes, decompressed.
+    /// The trace's bytes, decompressed.
     pub(in crate::cli) reader: Box<dyn Read + Send>,
     /// The file, when there is one.
     pub(in crate::cli) identity: Option<Identity>,
@@ -29,7 +29,8 @@ pub(in crate::cli) struct TraceInput {
 }
 
 impl TraceInput {
-    /// The message of the operating system or the decoder when reading failed: not the fault of the trace's author.
+    /// Returns the message of the operating system or the decoder when reading failed: not the fault of the trace's
+    /// author.
     pub(in crate::cli) fn failure(&self) -> Option<String> {
         self.failure.get()
     }
@@ -98,7 +99,7 @@ pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
     Ok(TraceInput { name: shown, reader, identity, looks_like, failure })
 }
 
-/// Whether a file is a scene by its name and by how it begins.
+/// Returns whether a file is a scene by its name and by how it begins.
 pub(in crate::cli) fn is_scene(name: &Path) -> bool {
     if has_extension(name, "xml")
         && let Ok((file, metadata)) = open(name)
@@ -135,7 +136,7 @@ pub(super) const ZSTD_MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 /// latter, with which recordings are packed.
 const ZSTD_WINDOW: u32 = 23;
 
-/// The reader, decompressed when it starts like a zstd file.
+/// Returns the reader, decompressed when it starts like a zstd file.
 fn maybe_packed(mut reader: Box<dyn Read + Send>, must: bool, failure: &Failure) -> Result<Box<dyn Read + Send>> {
     let mut start = Vec::new();
     reader.by_ref().take(ZSTD_MAGIC.len() as u64).read_to_end(&mut start)?;
@@ -148,7 +149,8 @@ fn maybe_packed(mut reader: Box<dyn Read + Send>, must: bool, failure: &Failure)
     Ok(Box::new(Cursor::new(start).chain(reader)))
 }
 
-/// The bytes of a trace that may be packed, at most this number of them, or why its zstd data can't be unpacked.
+/// Returns the bytes of a trace that may be packed, at most this number of them, or why its zstd data can't be
+/// unpacked.
 ///
 /// # Errors
 /// When the file can't be read.

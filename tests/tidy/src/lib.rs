@@ -13,5 +13,6 @@ mod manifests;
 mod prose;
 mod ratchets;
 mod size;
+mod summaries;
 mod tree;
 mod vectors;

@@ -32,7 +32,7 @@ const UNSAFE: [(&str, &str); 7] = [
 ];
 
 /// The name of the function that a line begins.
-fn function(line: &str) -> Option<&str> {
+pub fn function(line: &str) -> Option<&str> {
     let mut words = line.trim_start();
     while let Some((word, rest)) = words.split_once(' ') {
         match word {

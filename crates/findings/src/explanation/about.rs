@@ -36,7 +36,7 @@ pub enum About {
 }
 
 impl About {
-    /// The kinds of pairs whose polynomials it is about, each once.
+    /// Returns the kinds of pairs whose polynomials it is about, each once.
     #[must_use]
     pub fn kinds(&self) -> Vec<PairKind> {
         let Self::Polynomials { subjects, .. } = self else { return Vec::new() };
@@ -49,9 +49,9 @@ impl About {
 pub enum OfPolynomials {
     /// A guess that reproduces them, or a part.
     Guess(Guess),
-    /// They are not handed over.
+    /// The polynomials are not handed over.
     Missing,
-    /// They are right but for too much round-off.
+    /// The polynomials are right but for too much round-off.
     NearlyRight,
     /// Nothing.
     Nothing,

@@ -30,17 +30,17 @@ pub enum PolynomialDetail {
         /// The expected number.
         of: usize,
     },
-    /// They are right up to this error, relative to the size of their terms.
+    /// The polynomials are right up to this error, relative to the size of their terms.
     RightUpTo(#[serde(with = "fosssim_num::written")] f64),
     /// A coefficient differs in some samples.
     Differs {
-        /// Of which polynomial, where several are told about.
+        /// The polynomial, where there are several.
         subject: Option<Subject>,
-        /// Its power of t.
+        /// The coefficient's power of t.
         power: usize,
         /// In how many samples.
         count: usize,
-        /// Of how many.
+        /// The number of all.
         of: usize,
     },
     /// The list holds this number alone.
@@ -87,7 +87,7 @@ pub enum PolynomialDetail {
     },
     /// A coefficient carries a factor.
     Factor {
-        /// Its power of t.
+        /// The coefficient's power of t.
         power: usize,
         /// The factor.
         #[serde(with = "fosssim_num::written")]
@@ -95,7 +95,7 @@ pub enum PolynomialDetail {
     },
     /// No simple change explains a coefficient.
     Unknown {
-        /// Its power of t.
+        /// The coefficient's power of t.
         power: usize,
     },
     /// A product has the wrong weight.
@@ -188,10 +188,10 @@ pub enum StageDetail {
         across: bool,
         /// In how many of them it is wrong.
         wrong: usize,
-        /// Of how many.
+        /// The number of all.
         of: usize,
     },
-    /// Of how many zones it is so.
+    /// The number of zones of which it is true.
     OfZones {
         /// The number.
         count: usize,
@@ -213,7 +213,7 @@ pub enum StageDetail {
 /// By how much a contact changes something.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Amount {
-    /// It should not change.
+    /// The quantity should not change.
     Unwanted,
     /// As it should along the contact vector.
     Right,
@@ -226,6 +226,6 @@ pub enum Amount {
 pub enum Ratios {
     /// All are this.
     All(#[serde(with = "fosssim_num::written")] f64),
-    /// They lie between the first and the second.
+    /// The ratios lie between the first and the second.
     Between(#[serde(with = "fosssim_num::written")] f64, #[serde(with = "fosssim_num::written")] f64),
 }

@@ -85,7 +85,7 @@ pub struct ExampleValue {
     /// Which.
     #[serde(rename = "name")]
     pub input: Input,
-    /// Its components.
+    /// The value's components.
     #[serde(with = "fosssim_num::written")]
     #[schemars(with = "Vec<fosssim_num::written::Number>")]
     pub value: Vec<f64>,

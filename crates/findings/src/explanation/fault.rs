@@ -155,7 +155,7 @@ pub enum ChangeRatio {
     Opposite,
     /// Another factor.
     Factor,
-    /// They have none in common.
+    /// The changes have no ratio in common.
     Other,
 }
 
@@ -173,30 +173,30 @@ pub enum WrongDecisions {
 /// A fault of contact vectors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum WrongVectors {
-    /// They are perpendicular to the right ones.
+    /// The vectors are perpendicular to the right ones.
     Perpendicular,
-    /// Their direction is another one.
+    /// The vectors have another direction.
     Direction,
-    /// They have no length.
+    /// The vectors have no length.
     Zero,
-    /// They are right but for their last digits.
+    /// The vectors are right but for their last digits.
     Inexact,
-    /// They point the other way round.
+    /// The vectors point the other way round.
     Reversed,
-    /// Their length.
+    /// The length is wrong.
     Length,
 }
 
 /// A fault of the changes by isolated contacts.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum WrongResponses {
-    /// They change nothing.
+    /// The responses change nothing.
     Nothing,
-    /// They leave these as they are.
+    /// The responses leave these as they are.
     Unchanged(Vec<Changed>),
-    /// They change these also across the contact vector.
+    /// The responses change these also across the contact vector.
     Across(Vec<Changed>),
-    /// They change these along the contact vector by another amount.
+    /// The responses change these along the contact vector by another amount.
     Amount(Vec<Changed>),
 }
 
@@ -235,12 +235,12 @@ pub enum WrongNumber {
 /// Whether the geometric part follows where it should not, or does not where it should.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum WrongGeometric {
-    /// It makes no pass though the rounds have run out.
+    /// The geometric part makes no pass although the rounds have run out.
     Left {
         /// Never; else it does in other steps.
         always: bool,
     },
-    /// It makes passes though nothing collides any more.
+    /// The geometric part makes passes although nothing collides any more.
     Superfluous,
 }
 
@@ -309,24 +309,24 @@ pub enum WrongMotion {
     Centre,
     /// The distances of their particles.
     Distances,
-    /// They do not turn.
+    /// The zones do not turn.
     NoTurn,
-    /// They do not turn as far.
+    /// The zones turn less than they should.
     LessTurn,
-    /// They turn further.
+    /// The zones turn further.
     MoreTurn,
-    /// They turn the other way.
+    /// The zones turn the other way.
     TurnBack,
-    /// They turn otherwise.
+    /// The zones turn by another angle.
     Turn,
-    /// Their velocities.
+    /// The zones' velocities are wrong.
     Velocities,
     /// The size of their velocities.
     Speeds,
 }
 
 impl StageFault {
-    /// The stage in which it is.
+    /// Returns the stage in which it is.
     #[must_use]
     pub const fn stage(&self) -> StepStage {
         match self {
@@ -349,7 +349,7 @@ impl StageFault {
         }
     }
 
-    /// The parts of the assignment in which it may lie.
+    /// Returns the parts of the assignment in which it may lie.
     #[must_use]
     pub const fn areas(&self) -> &'static [Area] {
         match self {
@@ -397,7 +397,7 @@ impl StageFault {
         }
     }
 
-    /// The kind of pair that alone it concerns.
+    /// Returns the kind of pair that alone it concerns.
     #[must_use]
     pub const fn kind(&self) -> Option<PairKind> {
         match self {
@@ -409,7 +409,7 @@ impl StageFault {
         }
     }
 
-    /// The explanation's key.
+    /// Returns the explanation's key.
     pub const fn key(&self) -> &'static str {
         match self {
             Self::Order => "stage-order",
@@ -464,7 +464,7 @@ pub enum NanStage {
     FirstRecord,
     /// The step itself, before any contact.
     Motion,
-    /// The same, where it solves a system of equations.
+    /// The integrator, where it solves a system of equations.
     ImplicitMotion,
     /// The detection of this kind of pair, as far as that is known: its coefficients.
     Detection(Option<PairKind>),

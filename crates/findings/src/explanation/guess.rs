@@ -24,19 +24,19 @@ pub enum Guess {
 }
 
 impl Guess {
-    /// Its key as claims have it, which may be the name of a formula: a digest.
+    /// Returns the guess's key as claims have it, which may be the name of a formula: a digest.
     #[must_use]
     pub fn word(&self) -> String {
         format!("{:08x}", digest(self.key()) >> 32)
     }
 
-    /// Whether it may be made of several polynomials, as one mistake.
+    /// Returns whether it may be made of several polynomials, as one mistake.
     #[must_use]
     pub const fn is_general(&self) -> bool {
         matches!(self, Self::List(_) | Self::Exchange(_) | Self::Special(_))
     }
 
-    /// The explanation's key.
+    /// Returns the explanation's key.
     #[must_use]
     pub fn key(&self) -> &str {
         match self {
@@ -49,7 +49,7 @@ impl Guess {
     }
 }
 
-/// A digest of a text, the same on every machine (FNV-1a).
+/// Returns a digest of a text, the same on every machine (FNV-1a).
 #[must_use]
 pub fn digest(text: &str) -> u64 {
     text.bytes().fold(0xcbf2_9ce4_8422_2325, |digest, byte| (digest ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
@@ -64,9 +64,9 @@ pub enum ListGuess {
     Constant,
     /// All are the same number everywhere.
     AllEqual,
-    /// They are rounded to single precision.
+    /// The coefficients are rounded to single precision.
     SinglePrecision,
-    /// They are divided by the leading one, whatever its sign.
+    /// The coefficients are divided by the leading one, whatever its sign.
     Monic,
     /// There are more of them than there should be.
     TooLong,
@@ -80,9 +80,9 @@ pub enum ListGuess {
     TwoExchanged,
     /// A zero follows them.
     TrailingZero,
-    /// They are those of another polynomial of the pair.
+    /// The coefficients are those of another polynomial of the pair.
     OtherPolynomial,
-    /// They are those of another polynomial of the pair, with the wrong sign.
+    /// The coefficients are those of another polynomial of the pair, with the wrong sign.
     OtherPolynomialNegated,
     /// Only the constant one is there.
     ConstantOnly,
@@ -120,11 +120,11 @@ impl ListGuess {
 /// A guess about one quantity of a formula, in all its places.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum QuantityGuess {
-    /// Its sign.
+    /// The sign is wrong.
     Sign,
-    /// It is zero.
+    /// The quantity is zero.
     Zero,
-    /// It carries a factor.
+    /// The quantity carries a factor.
     Factor,
     /// Another one stands there.
     Other,
@@ -135,13 +135,13 @@ pub enum QuantityGuess {
 pub enum CoefficientGuess {
     /// Several are wrong, each for itself.
     Several,
-    /// It is zero.
+    /// The coefficient is zero.
     Zero,
-    /// Its sign.
+    /// The sign is wrong.
     Sign,
-    /// It carries a factor.
+    /// The coefficient carries a factor.
     Factor,
-    /// It has a term that does not belong there.
+    /// The coefficient has a term too many.
     TermForeign,
     /// A term is missing.
     TermMissing,

@@ -38,7 +38,7 @@ pub struct Explanation {
     pub about: About,
     /// The exact form, a line each: which term of which coefficient has which weight. May give the right formula away.
     pub details: Vec<Detail>,
-    /// Of the samples that were looked at, how many it reproduces to round-off.
+    /// The number of checked samples that it reproduces to round-off.
     pub reproduced: u64,
     /// Samples that were looked at: polynomials, or steps.
     pub samples: u64,
@@ -76,7 +76,7 @@ impl Explanation {
     /// The key of what is right but for too much round-off.
     pub const NEARLY_RIGHT: &'static str = "nearly-right";
 
-    /// An explanation without any evidence for it yet.
+    /// Returns an explanation without any evidence for it yet.
     #[must_use]
     pub fn about(key: impl Into<String>, about: About) -> Self {
         Self {
@@ -92,55 +92,56 @@ impl Explanation {
         }
     }
 
-    /// The question whether a trace is of its scene; `has_length` says that at least the number of records is right.
+    /// Returns the question whether a trace is of its scene; `has_length` says that at least the number of records is
+    /// right.
     #[must_use]
     pub fn of_other_scene(has_length: bool) -> Self {
         Self::about(Self::OTHER_SCENE, About::Scene { has_length })
     }
 
-    /// These polynomials are wrong, and no exact form of what is found holds in most traces.
+    /// Creates the explanation that these polynomials are wrong, without an exact form that holds in most traces.
     #[must_use]
     pub fn of_wrong(subjects: Vec<Subject>, found: OfPolynomials) -> Self {
         Self::about(Self::UNEXPLAINED, About::Polynomials { subjects, found })
     }
 
-    /// Whether this is the question whether the trace is of its scene.
+    /// Returns whether this is the question whether the trace is of its scene.
     #[must_use]
     pub fn is_other_scene(&self) -> bool {
         matches!(self.about, About::Scene { .. })
     }
 
-    /// Whether it says from where on there is what is no finite number: at every level of hints but the lowest.
+    /// Returns whether it says from where on there is what is no finite number: at every level of hints but the lowest.
     #[must_use]
     pub const fn is_not_finite(&self) -> bool {
         matches!(self.about, About::NotFinite(_))
     }
 
-    /// Whether it is a mistake that reproduces all that was tried of what is wrong.
+    /// Returns whether it is a mistake that reproduces all that was tried of what is wrong.
     #[must_use]
     pub fn is_proven(&self) -> bool {
         self.about == About::Mistake && self.reproduced > 0 && self.is_complete()
     }
 
-    /// Whether it names stages that are still empty.
+    /// Returns whether it names stages that are still empty.
     #[must_use]
     pub fn is_unfinished(&self) -> bool {
         self.about == About::Unfinished
     }
 
-    /// Whether it says of polynomials that they are wrong, and has no exact form for it.
+    /// Returns whether it says of polynomials that they are wrong, and has no exact form for it.
     #[must_use]
     pub fn is_unexplained(&self) -> bool {
         self.key == Self::UNEXPLAINED
     }
 
-    /// Whether it says that polynomials are not handed over.
+    /// Returns whether it says that polynomials are not handed over.
     #[must_use]
     pub fn is_of_missing(&self) -> bool {
         matches!(self.about, About::Polynomials { found: OfPolynomials::Missing, .. })
     }
 
-    /// The statement in one word: equal for explanations in the same words, and different for others.
+    /// Returns the statement in one word: equal for explanations in the same words, and different for others.
     #[must_use]
     pub fn said(&self) -> String {
         match &self.about {
@@ -154,7 +155,7 @@ impl Explanation {
         }
     }
 
-    /// The polynomials that it is about, as far as it is about polynomials.
+    /// Returns the polynomials that it is about, as far as it is about polynomials.
     #[must_use]
     pub fn subjects(&self) -> Vec<Subject> {
         if let About::Polynomials { subjects, .. } = &self.about {
@@ -165,7 +166,7 @@ impl Explanation {
         all.filter(|subject| claims.contains_key(format!("{subject:?}").as_str())).collect()
     }
 
-    /// For each of its polynomials, all that would make it: the guess or the known mistake, and the whole word.
+    /// Returns for each of its polynomials all that would make it: the guess or the known mistake, and the whole word.
     #[must_use]
     pub fn claims_by_subject(&self) -> BTreeMap<&str, Vec<(&str, &str)>> {
         let mut all: BTreeMap<&str, Vec<(&str, &str)>> = BTreeMap::new();
@@ -183,19 +184,19 @@ impl Explanation {
         all
     }
 
-    /// Whether it says which stage of a step is wrong, which is an observation and no guess.
+    /// Returns whether it says which stage of a step is wrong, which is an observation and no guess.
     #[must_use]
     pub fn is_of_stage(&self) -> bool {
         self.stage().is_some()
     }
 
-    /// Whether it says no more than that something is wrong with a stage.
+    /// Returns whether it says no more than that something is wrong with a stage.
     #[must_use]
     pub const fn is_vague(&self) -> bool {
         matches!(self.about, About::Stage(StageFault::AfterRounds | StageFault::FirstRound | StageFault::ManyContacts))
     }
 
-    /// The stage of a step that it says is wrong.
+    /// Returns the stage of a step that it says is wrong.
     #[must_use]
     pub fn stage(&self) -> Option<StepStage> {
         match &self.about {
@@ -204,13 +205,13 @@ impl Explanation {
         }
     }
 
-    /// Whether it reproduces everything that was looked at.
+    /// Returns whether it reproduces everything that was looked at.
     #[must_use]
     pub const fn is_complete(&self) -> bool {
         self.reproduced == self.samples && self.samples > 0
     }
 
-    /// Whether it says something of the program that other traces may say, too.
+    /// Returns whether it says something of the program that other traces may say, too.
     #[must_use]
     pub fn is_vote(&self) -> bool {
         use OfPolynomials::{NearlyRight, Nothing};
@@ -218,7 +219,7 @@ impl Explanation {
         !is_nothing && !self.is_other_scene() && !self.is_not_finite()
     }
 
-    /// Whether it explains all that it is about, as far as that can be.
+    /// Returns whether it explains all that it is about, as far as that can be.
     #[must_use]
     pub fn is_settled(&self) -> bool {
         self.is_complete() || self.is_of_stage()

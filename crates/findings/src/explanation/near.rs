@@ -18,7 +18,7 @@ pub struct PairCounts {
     pub kind: PairKind,
     /// The numbers of pairs that are reported never, once and twice.
     pub times: [u64; 3],
-    /// Of these, the numbers of pairs with each trait, in the order of the table of traits.
+    /// The numbers of these pairs with each trait, in the order of the table of traits.
     pub traits: Vec<[u64; 3]>,
 }
 

@@ -24,7 +24,7 @@ pub enum Subject {
 }
 
 impl Subject {
-    /// The polynomials of one kind of pair, in the order of the trace.
+    /// Returns the polynomials of one kind of pair, in the order of the trace.
     #[must_use]
     pub const fn of(kind: PairKind) -> &'static [Self] {
         match kind {
@@ -34,7 +34,7 @@ impl Subject {
         }
     }
 
-    /// The kind of pair that it belongs to.
+    /// Returns the kind of pair that it belongs to.
     #[must_use]
     pub const fn kind(self) -> PairKind {
         match self {
@@ -44,7 +44,7 @@ impl Subject {
         }
     }
 
-    /// The degree of its polynomial.
+    /// Returns the degree of its polynomial.
     #[must_use]
     pub const fn degree(self) -> usize {
         match self {
@@ -55,7 +55,7 @@ impl Subject {
         }
     }
 
-    /// Its name in a message, such as `particle-edge alpha > 0`.
+    /// Returns the polynomial's name in a message, such as `particle-edge alpha > 0`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {

@@ -30,7 +30,7 @@ pub struct Version {
 }
 
 impl Version {
-    /// Whether a scene of the assignment belongs to it.
+    /// Returns whether a scene of the assignment belongs to it.
     #[must_use]
     pub fn has(&self, scene: &str) -> bool {
         self.scenes.is_none_or(|scenes| scenes.lines().any(|line| line == scene))
@@ -56,7 +56,7 @@ macro_rules! two_versions {
     };
 }
 
-/// The versions of an assignment's suite: 1 comes first, the newest last.
+/// Returns the versions of an assignment's suite: 1 comes first, the newest last.
 #[must_use]
 pub const fn versions(assignment: Assignment) -> &'static [Version] {
     match assignment {
@@ -69,7 +69,8 @@ pub const fn versions(assignment: Assignment) -> &'static [Version] {
     }
 }
 
-/// The assignment and the version that a name such as `t2m2@1` means, in letters of any case; `t2m2` is the newest one.
+/// Returns the assignment and the version that a name such as `t2m2@1` means, in letters of any case; `t2m2` is the
+/// newest one.
 #[must_use]
 pub fn version(name: &str) -> Option<(Assignment, Version)> {
     if matches!(name, "earlier" | "earlier@1") {
@@ -85,15 +86,15 @@ pub fn version(name: &str) -> Option<(Assignment, Version)> {
     Some((assignment, all[number]))
 }
 
-/// The names of the built-in suites, each with its version, such as `t2m2@2`: the newest one of the default assignment
-/// first.
+/// Returns the names of the built-in suites, each with its version, such as `t2m2@2`: the newest one of the default
+/// assignment first.
 pub fn names() -> impl Iterator<Item = String> {
     Assignment::ALL.into_iter().flat_map(|assignment| {
         (1..=versions(assignment).len()).rev().map(move |number| format!("{}@{number}", assignment.key()))
     })
 }
 
-/// The name of the suite that is meant where none is named.
+/// Returns the name of the suite that is meant where none is named.
 #[must_use]
 pub fn default_name() -> String {
     format!("{}@{}", Assignment::DEFAULT.key(), versions(Assignment::DEFAULT).len())

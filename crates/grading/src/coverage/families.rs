@@ -11,7 +11,7 @@ use super::axes::{
 pub struct Family {
     /// The name of the event.
     pub name: &'static str,
-    /// Its properties.
+    /// The family's properties.
     pub axes: &'static [Axis],
     /// Pairs of values that no event can have.
     pub(super) never: &'static [(Value, Value)],

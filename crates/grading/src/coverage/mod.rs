@@ -32,7 +32,7 @@ pub struct Pairing {
 }
 
 impl Pairing {
-    /// All that some event can have.
+    /// Returns all that some event can have.
     pub fn all() -> impl Iterator<Item = Self> {
         FAMILIES
             .iter()
@@ -55,7 +55,7 @@ impl Pairing {
         !family.never.iter().any(|never| *never == (one, other) || *never == (other, one))
     }
 
-    /// Both values in words: `fixed: the first, time: start of the step`.
+    /// Returns both values in words: `fixed: the first, time: start of the step`.
     #[must_use]
     pub fn words(self) -> String {
         let value = |(axis, value): (usize, usize)| {
@@ -73,7 +73,7 @@ pub struct Coverage {
 }
 
 impl Coverage {
-    /// The events of one scene; none where its collisions are not those of the assignment.
+    /// Returns the events of one scene; none where its collisions are not those of the assignment.
     ///
     /// # Errors
     /// When it can't be simulated to its end.
@@ -94,19 +94,19 @@ impl Coverage {
         self.seen.extend(&other.seen);
     }
 
-    /// Whether nothing is known of any step.
+    /// Returns whether nothing is known of any step.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.seen.is_empty()
     }
 
-    /// Whether some event has both values.
+    /// Returns whether some event has both values.
     #[must_use]
     pub fn has(&self, pairing: Pairing) -> bool {
         self.seen.contains(&pairing)
     }
 
-    /// The contents by single values: the kind of event, a property, and its value.
+    /// Returns the contents by single values: the kind of event, a property, and its value.
     pub fn values(&self) -> impl Iterator<Item = (usize, usize, usize)> {
         let values = self
             .seen
@@ -115,14 +115,14 @@ impl Coverage {
         values.collect::<BTreeSet<_>>().into_iter()
     }
 
-    /// How many of the pairs of values of a kind of event there are, and of how many that can be.
+    /// Returns how many of the pairs of values of a kind of event there are, and of how many that can be.
     #[must_use]
     pub fn counts(&self, family: usize) -> (usize, usize) {
         let all = || Pairing::all().filter(|pairing| pairing.family == family);
         (all().filter(|pairing| self.has(*pairing)).count(), all().count())
     }
 
-    /// The pairs of values that are missing.
+    /// Returns the pairs of values that are missing.
     pub fn missing(&self) -> impl Iterator<Item = Pairing> {
         Pairing::all().filter(|pairing| !self.has(*pairing))
     }

@@ -29,7 +29,7 @@ impl From<String> for FindError {
     }
 }
 
-/// The message for a suite that is not sound; each problem is a line.
+/// Returns the message for a suite that is not sound; each problem is a line.
 fn unsound(name: &str, SuiteError { problems }: &SuiteError) -> String {
     let lines: String = problems.iter().map(|(at, text)| format!("\n{name}:{at}: {text}")).collect();
     let plural = if problems.len() == 1 { "" } else { "s" };
@@ -104,7 +104,7 @@ fn files(pattern: &str, folder: &Path, room: &mut FileBudget) -> Result<Found, S
     Ok(found)
 }
 
-/// The bytes of a scene: of a regular file, which nobody has to wait for.
+/// Returns the bytes of a scene: of a regular file, which nobody has to wait for.
 fn scene_file(path: &Path) -> Result<Vec<u8>, String> {
     const LARGEST: u64 = scene::LARGEST_SCENE as u64;
     let (file, size) = open_file(path, true).map_err(|error| error.to_string())?;

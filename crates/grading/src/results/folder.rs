@@ -96,7 +96,7 @@ fn own_file(folder: &Folder, name: &str) -> io::Result<File> {
     })
 }
 
-/// The results of a journal, and where its last whole line ends.
+/// Reads the results of a journal, and where its last whole line ends.
 fn read(file: &File, found: &mut BTreeMap<Key, SceneResult>) -> io::Result<u64> {
     let mut sound = 0;
     each_line(BufReader::new(file), |line| -> io::Result<()> {
@@ -136,7 +136,7 @@ pub fn each_line<E: From<io::Error>>(
     }
 }
 
-/// A journal of our own with the first bytes of another.
+/// Returns a journal of our own with the first bytes of another.
 fn copy(mut file: &File, length: u64, folder: &Folder) -> io::Result<File> {
     let mut own = folder.replacement(OsStr::new(JOURNAL), None)?;
     file.rewind()?;

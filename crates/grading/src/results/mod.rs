@@ -11,7 +11,7 @@ use super::{key::Key, result::SceneResult};
 
 /// A place for results, which several jobs use at one time.
 pub trait Results: Sync {
-    /// The result that was kept under this key; of several the last one.
+    /// Finds the result that was kept under this key; of several the last one.
     fn find(&self, key: &Key) -> Option<SceneResult>;
 
     /// Keeps a result. A place that outlives the grader has it written when this returns. The submission's name is for

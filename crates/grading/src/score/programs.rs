@@ -14,8 +14,8 @@ use fosssim_mistakes::together::settle;
 use fosssim_model::assignments::Assignment;
 
 impl SubmissionGrading<'_> {
-    /// The grade, of the results of all scenes in the plan's order, each with the word whether it was found. Where the
-    /// suite gives points for speed, the submission is timed first.
+    /// Returns the grade, of the results of all scenes in the plan's order, each with the word whether it was found.
+    /// Where the suite gives points for speed, the submission is timed first.
     pub(crate) fn grade(&self, mut results: Vec<(SceneResult, bool)>) -> Grade {
         let (plan, options) = (self.grader.plan, self.grader.options);
         // A run beside the scene that was the end does not count, or the number of jobs would.
@@ -76,8 +76,8 @@ impl SubmissionGrading<'_> {
     }
 }
 
-/// The contents that the failing scenes have in common. `contents` are those of all scenes in their order, computed
-/// only where some fail and some do not.
+/// Returns the contents that the failing scenes have in common. `contents` are those of all scenes in their order,
+/// computed only where some fail and some do not.
 fn common<'a>(grade: &Grade, contents: impl FnOnce() -> &'a [Contents]) -> Option<Located> {
     let failing = |ended: &Option<Ended>| ended.as_ref().and_then(Failing::of);
     let was_run = |reason: &Reason| !matches!(reason, Reason::LeftOut(_) | Reason::Stopped | Reason::Failed(_));

@@ -9,8 +9,9 @@ use fosssim_model::{
     sim::{Detection, Observer, RootSearch, Simulation, StepError},
 };
 
-/// All decisions of the reference that roundings of [`FAIR_UNITS`](fosssim_num::tolerances::FAIR_UNITS) units can flip,
-/// in their order; `collides` is what the reference decides. Decisions whose arithmetic is exact are never among them.
+/// Returns all decisions of the reference that roundings of [`FAIR_UNITS`](fosssim_num::tolerances::FAIR_UNITS) units
+/// can flip, in their order; `collides` is what the reference decides. Decisions whose arithmetic is exact are never
+/// among them.
 ///
 /// # Errors
 /// When a step has no result.

@@ -8,7 +8,7 @@ use fosssim_findings::{
 };
 use fosssim_model::{assignments::CollisionType, sim::PairKind};
 
-/// Why the two rule books differ about a trace; `None` where they agree, or one of them has no verdict.
+/// Returns why the two rule books differ about a trace; `None` where they agree, or one of them has no verdict.
 #[must_use]
 pub fn cause(outcome: &Outcome) -> Option<Cause> {
     let fair = outcome.fair.as_deref()?;
@@ -19,7 +19,7 @@ pub fn cause(outcome: &Outcome) -> Option<Cause> {
     }
 }
 
-/// Parity fails what fair accepts.
+/// Returns parity fails what fair accepts.
 fn too_strict(outcome: &Outcome, fair: &Judgement) -> Cause {
     let Some(first) = &outcome.parity.findings.first_divergence else { return Cause::AccumulatedResiduals };
     // Not all borderline decisions are kept as examples; one that is not may be the one.
@@ -50,7 +50,7 @@ const fn is_approach_of_edge(role: Role, kind: PairKind) -> bool {
     matches!((role, kind), (Role::Approach, PairKind::ParticleEdge))
 }
 
-/// Parity passes what fair rejects.
+/// Returns parity passes what fair rejects.
 fn too_lax(outcome: &Outcome, fair: &Judgement) -> Cause {
     match fair.refusal {
         Some(FairRefusal::Damaged) => return Cause::Damage,
@@ -87,7 +87,7 @@ fn too_lax(outcome: &Outcome, fair: &Judgement) -> Cause {
     }
 }
 
-/// Whether what was compared is in a step's mid record, of the two that it has.
+/// Returns whether what was compared is in a step's mid record, of the two that it has.
 fn is_mid_record(finding: &Finding, outcome: &Outcome) -> bool {
     let has_mid_records = matches!(outcome.collisions, CollisionType::ContinuousTime | CollisionType::Hybrid);
     has_mid_records && finding.frame + 1 == 2 * u64::from(finding.step)
@@ -103,7 +103,7 @@ mod tests {
         samples::judged(&samples::scene(BOUNCE), trace)
     }
 
-    /// The reference trace with changed frames.
+    /// Returns the reference trace with changed frames.
     fn changed(change: impl FnOnce(&mut Vec<Frame>)) -> Vec<u8> {
         samples::changed(&samples::scene(BOUNCE), change)
     }

@@ -21,7 +21,7 @@ pub struct Match {
 /// A polynomial that is wrong.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Mismatch {
-    /// It has a coefficient too many, of this power, that is no round-off.
+    /// The polynomial has a coefficient too many, of this power, that is no round-off.
     TooLong,
     /// A coefficient is wrong.
     Coefficient {
@@ -72,10 +72,10 @@ const LEAST: f64 = 1e-100;
 pub(super) const MOST: f64 = 1e100;
 
 impl Similarity {
-    /// Of what is not compared.
+    /// The similarity of what is not compared.
     pub const NONE: Self = Self { sum: 0.0, logged: 0.0, scale: 0.0, worst: 0.0 };
 
-    /// Of these expected and logged coefficients, of which there are as many.
+    /// Returns the comparison of these expected and logged coefficients, of which there are as many.
     #[inline(always)]
     pub fn of(own: &[f64], logged: &[f64]) -> Self {
         // Loops of a known length are unrolled.
@@ -109,19 +109,19 @@ impl Similarity {
         Self { sum, logged, scale, worst }
     }
 
-    /// The same of polynomials that are right.
+    /// Returns the match of polynomials that are right.
     #[inline(always)]
     pub fn matched(&self) -> Match {
         Match { scale: Some(self.scale), share: self.worst / self.tolerance() }
     }
 
-    /// How far coefficients may be off at least.
+    /// Returns how far coefficients may be off at least.
     #[inline(always)]
     fn tolerance(&self) -> f64 {
         FAIR_NORM_UNITS * UNIT_ROUNDOFF * self.logged
     }
 
-    /// Whether they are right at once. Coefficients that both have lost are small with factors near 1 only.
+    /// Returns whether they are right at once. Coefficients that both have lost are small with factors near 1 only.
     #[inline(always)]
     pub fn is_clear(&self, is_whole: bool) -> bool {
         let is_moderate = |sum: f64| (LEAST..MOST).contains(&sum);
@@ -132,7 +132,8 @@ impl Similarity {
     }
 }
 
-/// [`compare`], where bounds need not be asked how far the coefficients may be off; `None` leaves it open.
+/// Compares as [`compare`] does, where bounds need not be asked how far the coefficients may be off; `None` leaves it
+/// open.
 fn is_clear(expected: &[Bounded], actual: &[f64]) -> Option<Match> {
     let lost = expected.iter().take_while(|r| r.value.abs() < LEADING_COEFFICIENT).count();
     let kept = &expected[lost..];
@@ -149,8 +150,8 @@ fn is_clear(expected: &[Bounded], actual: &[f64]) -> Option<Match> {
     is_right.then(|| similarity.matched())
 }
 
-/// Whether a logged polynomial is certainly wrong with every factor, found without looking for the best one. `false`
-/// leaves it open.
+/// Returns whether a logged polynomial is certainly wrong with every factor, found without looking for the best one.
+/// `false` leaves it open.
 ///
 /// A polynomial that [`compare`] takes for right stays near the expected one times its factor, at any time within the
 /// step: it is off by less than `WIDEST` units of all bounds together. For the tolerances of six coefficients are at
@@ -185,9 +186,9 @@ pub fn fits_with_no_factor(expected: &[Bounded], actual: &[f64]) -> bool {
     least > most + 1e-9 * most.abs()
 }
 
-/// [`compare`], where the logged polynomial is complete and right with the factor that fits best, as nearly all are;
-/// `None` leaves it open. The factor is found once, and all coefficients are compared with it at once, by the same
-/// operations.
+/// Compares as [`compare`] does, where the logged polynomial is complete and right with the factor that fits best, as
+/// nearly all are; `None` leaves it open. The factor is found once, and all coefficients are compared with it at once,
+/// by the same operations.
 fn fits(expected: &[Bounded], actual: &[f64]) -> Option<Match> {
     if expected.len() != actual.len() || expected.len() > MAX_COEFFICIENTS {
         return None;
@@ -213,7 +214,7 @@ fn fits(expected: &[Bounded], actual: &[f64]) -> Option<Match> {
     Some(Match { scale: Some(scale), share })
 }
 
-/// [`compare`], whatever it is.
+/// Compares as [`compare`] does, whatever it is.
 fn compare_closely(expected: &[Bounded], actual: &[f64], hints: &[f64]) -> Result<Match, Mismatch> {
     let degree = expected.len().max(actual.len()).max(1) - 1;
     if actual.len() > MAX_COEFFICIENTS {
@@ -276,7 +277,7 @@ pub(super) fn compare_with_one(expected: &[Bounded], actual: &[f64]) -> Result<(
     judge(expected, &logged[..expected.len()], missing, 1.0).map(|_| ())
 }
 
-/// Right, if numbers stand exactly where they should.
+/// Checks that numbers are exactly where they should be.
 fn has_numbers_where(should: fn(&Bounded) -> bool, right: &[Bounded], logged: &[f64]) -> Result<Match, Mismatch> {
     let wrong = right.iter().zip(logged).position(|(r, s)| should(r) != s.is_finite());
     let Some(k) = wrong else { return Ok(Match { scale: None, share: 0.0 }) };
@@ -284,23 +285,23 @@ fn has_numbers_where(should: fn(&Bounded) -> bool, right: &[Bounded], logged: &[
     Err(Mismatch::Coefficient { power: right.len() - 1 - k, expected, actual, tolerance: f64::NAN })
 }
 
-/// Whether a polynomial is zero on the whole step but for round-off.
+/// Returns whether a polynomial is zero on the whole step but for round-off.
 pub fn says_nothing(expected: &[Bounded]) -> bool {
     sum_of_moduli(expected) <= FAIR_UNITS * UNIT_ROUNDOFF * norm(expected) || !expected.iter().any(is_significant)
 }
 
-/// The sum of all values' moduli.
+/// Returns the sum of all values' moduli.
 fn sum_of_moduli(expected: &[Bounded]) -> f64 {
     expected.iter().map(|r| r.value.abs()).sum()
 }
 
-/// Whether a coefficient holds more than round-off.
+/// Returns whether a coefficient holds more than round-off.
 fn is_significant(r: &Bounded) -> bool {
     r.value.abs() > FAIR_UNITS * UNIT_ROUNDOFF * r.bound
 }
 
-/// The factor that fits best, each coefficient weighted by its precision; `None` where all are round-off. Not positive,
-/// not finite: the polynomial is wrong.
+/// Returns the factor that fits best, each coefficient weighted by its precision; `None` where all are round-off. Not
+/// positive, not finite: the polynomial is wrong.
 fn fit(right: &[Bounded], logged: &[f64], missing: usize) -> Option<f64> {
     let norm = norm(right);
     let (mut products, mut squares) = (0.0, 0.0);
@@ -314,13 +315,15 @@ fn fit(right: &[Bounded], logged: &[f64], missing: usize) -> Option<f64> {
     (squares > 0.0).then(|| products / squares)
 }
 
-/// How far a coefficient may be off, in units of the roundoff. Both sides round. A coefficient that is small beside the
-/// others may hold the rounding of all of them: some correct programs interpolate, and on [0, 1] no decision can tell.
+/// Returns how far a coefficient may be off, in units of the roundoff. Both sides round. A coefficient that is small
+/// beside the others may hold the rounding of all of them: some correct programs interpolate, and on [0, 1] no decision
+/// can tell.
 fn units(r: &Bounded, norm: f64) -> f64 {
     f64::max(2.0 * FAIR_UNITS * r.bound, FAIR_NORM_UNITS * norm)
 }
 
-/// The used share of the tolerance, or the tolerance that is exceeded. A factor that is not positive fails always.
+/// Returns the used share of the tolerance, or the tolerance that is exceeded. A factor that is not positive fails
+/// always.
 fn check(r: &Bounded, s: f64, norm: f64, is_missing: bool, scale: f64) -> Result<f64, f64> {
     if !(scale > 0.0) {
         return Err(f64::NAN);
@@ -337,14 +340,14 @@ fn check(r: &Bounded, s: f64, norm: f64, is_missing: bool, scale: f64) -> Result
     Err(tolerance)
 }
 
-/// The sum of all bounds.
+/// Returns the sum of all bounds.
 fn norm(right: &[Bounded]) -> f64 {
     right.iter().map(|c| c.bound).sum()
 }
 
-/// The factors with which a logged polynomial would be right although it does not tell its own: at least so large that
-/// what it holds is round-off, at most so small that the course's library drops what it lacks. `None` if it tells, or
-/// if there is no such factor.
+/// Returns the factors with which a logged polynomial would be right although it does not tell its own: at least so
+/// large that what it holds is round-off, at most so small that the course's library drops what it lacks. `None` if it
+/// tells, or if there is no such factor.
 pub fn possible_factors(expected: &[Bounded], actual: &[f64]) -> Option<[f64; 2]> {
     let missing = expected.len().checked_sub(actual.len())?;
     let (dropped, held) = expected.split_at(missing);
@@ -360,20 +363,20 @@ pub fn possible_factors(expected: &[Bounded], actual: &[f64]) -> Option<[f64; 2]
 /// Twice the tolerance of a coefficient beside which all others are small, in its bound.
 const UNIT: f64 = 2.0 * FAIR_UNITS * UNIT_ROUNDOFF;
 
-/// The greatest factor with which the course's library drops all of these.
+/// Returns the greatest factor with which the course's library drops all of these.
 fn most_factor(dropped: &[Bounded]) -> f64 {
     LEADING_COEFFICIENT / dropped.iter().fold(0.0_f64, |most, r| most.max(r.value.abs() - UNIT * r.bound))
 }
 
-/// Whether at least two coefficients of a right polynomial agree on its factor, so that no other polynomial has to
-/// vouch for it.
+/// Returns whether at least two coefficients of a right polynomial agree on its factor, so that no other polynomial has
+/// to vouch for it.
 pub fn shows_factor(expected: &[Bounded], actual: &[f64]) -> bool {
     let missing = expected.len().saturating_sub(actual.len());
     expected[missing..].iter().filter(|r| is_significant(r)).count() > 1
 }
 
-/// The factors that a right polynomial claims and does not show: it has a single coefficient, of whatever size, and
-/// lacks others that the course's library would not drop with the factor 1. `None` if it shows its factor, or lacks
+/// Returns the factors that a right polynomial claims and does not show: it has a single coefficient, of whatever size,
+/// and lacks others that the course's library would not drop with the factor 1. `None` if it shows its factor, or lacks
 /// nothing.
 pub fn claimed_factors(expected: &[Bounded], actual: &[f64], scale: f64) -> Option<[f64; 2]> {
     let missing = expected.len().checked_sub(actual.len())?;
@@ -386,14 +389,14 @@ pub fn claimed_factors(expected: &[Bounded], actual: &[f64], scale: f64) -> Opti
     Some([scale * (1.0 - room), scale * (1.0 + room)])
 }
 
-/// How many coefficients are wrong with this factor.
+/// Returns how many coefficients are wrong with this factor.
 fn wrong(right: &[Bounded], logged: &[f64], missing: usize, scale: f64) -> usize {
     let norm = norm(right);
     let all = right.iter().zip(logged).enumerate();
     all.filter(|&(k, (r, &s))| check(r, s, norm, k < missing, scale).is_err()).count()
 }
 
-/// The largest used share with this factor, or the first wrong coefficient.
+/// Returns the largest used share with this factor, or the first wrong coefficient.
 fn judge(right: &[Bounded], logged: &[f64], missing: usize, scale: f64) -> Result<f64, Mismatch> {
     let norm = norm(right);
     let mut share = 0.0_f64;
@@ -412,9 +415,9 @@ fn judge(right: &[Bounded], logged: &[f64], missing: usize, scale: f64) -> Resul
     Ok(share)
 }
 
-/// The largest used share of the tolerance of the polynomial's *values* within the step, if they are all right. Who
-/// interpolates from values within the step has their round-off many times over in the higher coefficients, where they
-/// cancel.
+/// Returns the largest used share of the tolerance of the polynomial's *values* within the step, if they are all right.
+/// A program that interpolates from values within the step has their round-off many times over in the higher
+/// coefficients, where they cancel.
 fn share_within_step(right: &[Bounded], logged: &[f64], missing: usize, scale: f64) -> Option<f64> {
     /// The number of sample times, evenly spread: a polynomial of degree five is hardly larger between them.
     const TIMES: u8 = 16;

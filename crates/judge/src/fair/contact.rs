@@ -26,7 +26,7 @@ use fosssim_num::{
 
 fosssim_model::drops_leading!();
 
-/// A polynomial's value at time `t` and the tolerance of that value, both from bounded coefficients.
+/// Returns a polynomial's value at time `t` and the tolerance of that value, both from bounded coefficients.
 fn value(polynomial: &[Bounded], t: f64) -> (f64, f64) {
     let (mut value, mut bound) = (0.0, 0.0);
     for c in polynomial {
@@ -36,7 +36,8 @@ fn value(polynomial: &[Bounded], t: f64) -> (f64, f64) {
     (value, FAIR_ROOT_UNITS * UNIT_ROUNDOFF * bound)
 }
 
-/// As [`value`], but leading coefficients that the course's library drops, with a factor near 1, may be missing.
+/// Returns the value as [`value`] does, but leading coefficients that the course's library drops, with a factor near 1,
+/// may be missing.
 fn value_without_losses(polynomial: &[Bounded], t: f64) -> (f64, f64) {
     let moduli = polynomial.iter().map(|c| c.value.abs());
     let missing: f64 = moduli.take_while(|c| *c < FAIR_LOSS * LEADING_COEFFICIENT).sum();
@@ -47,7 +48,8 @@ fn value_without_losses(polynomial: &[Bounded], t: f64) -> (f64, f64) {
 /// A polynomial's value at a time, and the tolerance of that value.
 type Value = fn(&[Bounded], f64) -> (f64, f64);
 
-/// Whether a pair may come into contact at time `t`: one polynomial is about to turn positive, and none is negative.
+/// Returns whether a pair may come into contact at time `t`: one polynomial is about to turn positive, and none is
+/// negative.
 fn is_possible(expected: &Expected, t: f64, value: Value) -> bool {
     if !(0.0..=1.0).contains(&t) {
         return false;
@@ -57,8 +59,8 @@ fn is_possible(expected: &Expected, t: f64, value: Value) -> bool {
     none_is_negative && (t == 0.0 || values().any(|(value, tolerance)| value.abs() <= tolerance))
 }
 
-/// Whether a pair may be in contact at time `t` first: it may be so at all, and the polynomials were not all positive
-/// between `t` and the reference's time.
+/// Returns whether a pair may be in contact at time `t` first: it may be so at all, and the polynomials were not all
+/// positive between `t` and the reference's time.
 fn time_fits(expected: &Expected, own: f64, t: f64, value: Value) -> bool {
     // Between the two times nothing may be decided: else one of them is not the first.
     let undecided = || {
@@ -74,8 +76,8 @@ fn time_fits(expected: &Expected, own: f64, t: f64, value: Value) -> bool {
     is_near || is_possible(expected, t, value) && undecided()
 }
 
-/// Whether a time of impact is that of the reference, whose polynomials may have lost coefficients themselves, or one
-/// of the polynomials without losses.
+/// Returns whether a time of impact is that of the reference, whose polynomials may have lost coefficients themselves,
+/// or one of the polynomials without losses.
 pub(super) fn is_time_without_losses(expected: &Expected, own: f64, t: f64) -> bool {
     let is_near = (own - t).abs() <= FAIR_TIME;
     is_near || time_fits(expected, possible_time(expected), t, value_without_losses)
@@ -129,9 +131,9 @@ pub(super) fn possible_hit(
     compare_normal(Impulse { pair, normal, time: actual.time }, tolerance, actual, judged)
 }
 
-/// The contact normal at a time, and the tolerance of that vector. Of the whole vector: in axes of another direction
-/// the round-off of one component is that of both. The assignment asks for the shortest vector: where the round-off of
-/// the time leads beyond an edge's end, that to the end is as right as that to the line.
+/// Returns the contact normal at a time, and the tolerance of that vector. Of the whole vector: in axes of another
+/// direction the round-off of one component is that of both. The assignment asks for the shortest vector: where the
+/// round-off of the time leads beyond an edge's end, that to the end is as right as that to the line.
 fn normal(motion: &BoundedPairMotion, t: f64) -> (Vec2, f64) {
     let normal = motion.normal(t);
     let bound = length(Vec2::new(normal.x.bound, normal.y.bound));
@@ -139,7 +141,8 @@ fn normal(motion: &BoundedPairMotion, t: f64) -> (Vec2, f64) {
     (value, FAIR_UNITS * UNIT_ROUNDOFF * bound + length(motion.to_nearest(t) - value))
 }
 
-/// The tolerance of contact normals that come from positions at once, whose roundings are of the largest one's size.
+/// Returns the tolerance of contact normals that come from positions at once, whose roundings are of the largest one's
+/// size.
 fn simple_tolerance(before: &State) -> f64 {
     FAIR_UNITS * UNIT_ROUNDOFF * largest(&before.positions)
 }
@@ -160,7 +163,8 @@ fn compare_normal(
     None
 }
 
-/// From a pair's first object to the nearest point of the second at these positions (collisions.md 6).
+/// Returns the vector from a pair's first object to the nearest point of the second at these positions (collisions.md
+/// 6).
 fn overlap_normal(context: &Context<'_>, pair: Pair, positions: &[f64]) -> Vec2 {
     BoundedPairMotion::of(context.scene, pair, positions, positions).to_nearest(1.0)
 }
@@ -173,7 +177,7 @@ pub(super) struct Tolerances<'a> {
 }
 
 impl<'a> Tolerances<'a> {
-    /// Around this state of the reference.
+    /// Returns around this state of the reference.
     pub fn of(context: &Context<'_>, own: &State, sensitivity: Option<&'a State>) -> Self {
         let roundings = FAIR_UNITS * UNIT_ROUNDOFF;
         let size = largest(&own.positions);
@@ -186,12 +190,12 @@ impl<'a> Tolerances<'a> {
         Self { position: roundings * size, velocity: roundings * (speed + from_positions), sensitivity }
     }
 
-    /// Of a particle's position.
+    /// Returns the tolerance of a particle's position.
     pub fn position(&self, particle: usize) -> f64 {
         self.with(self.position, particle, |known| &known.positions)
     }
 
-    /// Of a particle's velocity.
+    /// Returns the tolerance of a particle's velocity.
     pub fn velocity(&self, particle: usize) -> f64 {
         self.with(self.velocity, particle, |known| &known.velocities)
     }
@@ -233,8 +237,9 @@ pub(super) fn states(judged: &mut StepJudgement, frame: u64, own: &State, logged
     }
 }
 
-/// How far two vectors are apart. Where the reference itself has no number, or an infinite one, from the trace's own
-/// state, a trace that has the same is not to blame: such components are no distance. NaN against a number is NaN.
+/// Returns how far two vectors are apart. Where the reference itself has no number, or an infinite one, from the
+/// trace's own state, a trace that has the same is not to blame: such components are no distance. NaN against a number
+/// is NaN.
 fn distance(expected: Vec2, actual: Vec2) -> f64 {
     let apart = |expected: f64, actual: f64| {
         let same = expected == actual || expected.is_nan() && actual.is_nan();
@@ -243,26 +248,26 @@ fn distance(expected: Vec2, actual: Vec2) -> f64 {
     length(Vec2::new(apart(expected.x, actual.x), apart(expected.y, actual.y)))
 }
 
-/// A logged collision as a decision, if a response can be computed from it.
+/// Returns a logged collision as a decision, if a response can be computed from it.
 pub(super) fn followed(logged: LoggedImpulse) -> Option<Decision> {
     let LoggedImpulse { normal, time, .. } = logged;
     let is_usable = normal.x.is_finite() && normal.y.is_finite() && time.is_finite() && normal != normal * 0.0;
     is_usable.then_some(Decision::Hit { time, normal })
 }
 
-/// Whether the root finder certainly ends with these coefficients.
+/// Returns whether the root finder certainly ends with these coefficients.
 #[inline]
 pub(super) fn is_searchable(coefficients: &[f64]) -> bool {
     coefficients.len() <= MAX_COEFFICIENTS && coefficients.iter().fold(true, |all, c| all & is_ordinary(*c))
 }
 
-/// Whether a coefficient is zero, or far from where numbers overflow and underflow.
+/// Returns whether a coefficient is zero, or far from where numbers overflow and underflow.
 fn is_ordinary(c: f64) -> bool {
     (c == 0.0) | (c.abs() >= SEARCH_SMALLEST_COEFFICIENT) & (c.abs() <= SEARCH_LARGEST_COEFFICIENT)
 }
 
-/// The time of impact of these polynomials as they are, infinite where there is certainly none; `None` where the root
-/// finder does not end.
+/// Returns the time of impact of these polynomials as they are, infinite where there is certainly none; `None` where
+/// the root finder does not end.
 pub(super) fn time_of(polynomials: &[Polynomial]) -> Option<f64> {
     if excludes_unit_interval(polynomials) {
         return Some(f64::INFINITY);
@@ -270,7 +275,7 @@ pub(super) fn time_of(polynomials: &[Polynomial]) -> Option<f64> {
     first_time(polynomials).ok()
 }
 
-/// The decision that the polynomials lead to, where round-off can't change it.
+/// Returns the decision that the polynomials lead to, where round-off can't change it.
 ///
 /// Where a parabola's inputs have so few digits that every way to evaluate the formulas is exact, there is no round-off
 /// to excuse anything: touching at the very end of the step is then as certain as anything else.
@@ -291,12 +296,12 @@ pub fn decides(motion: &BoundedPairMotion, expected: &Expected) -> Option<bool> 
 /// Inputs of this number of bits make a parabola's coefficients, of fourth degree in them, and its discriminant exact.
 const EXACT_BITS: u32 = 6;
 
-/// Whether round-off may flip the decision.
+/// Returns whether round-off may flip the decision.
 pub(super) fn is_borderline(motion: &BoundedPairMotion, expected: &Expected) -> bool {
     decides(motion, expected).is_none()
 }
 
-/// A time of impact for a pair that may collide or not.
+/// Returns a time of impact for a pair that may collide or not.
 pub(super) fn possible_time(expected: &Expected) -> f64 {
     let earliest = decide(&expected.polynomials()[..expected.count()], FAIR_UNITS).time;
     earliest.map_or(1.0, |[low, high]| low.midpoint(high).clamp(0.0, 1.0))

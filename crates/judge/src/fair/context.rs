@@ -26,7 +26,7 @@ pub(crate) struct Context<'a> {
 }
 
 impl<'a> Context<'a> {
-    /// The context of a scene.
+    /// Creates the context of a scene.
     pub fn new(scene: &'a Scene) -> Self {
         let pairs = pairs(scene);
         let counts = pairs.counts();
@@ -36,7 +36,7 @@ impl<'a> Context<'a> {
         Self { scene, per_pass, pairs, of_kinds, records_per_step, ordinary: Ordinary::of(scene), looks_closely: false }
     }
 
-    /// The particles of a pair: one, two, or three with an edge.
+    /// Returns the particles of a pair: one, two, or three with an edge.
     pub(super) fn particles(&self, pair: Pair) -> [Option<usize>; 3] {
         let (first, second) = (pair.first as usize, pair.second as usize);
         match pair.kind {
@@ -51,15 +51,15 @@ impl<'a> Context<'a> {
 }
 
 impl Records<'_> {
-    /// Whether it starts from states that are nothing out of the ordinary; the geometric part starts from the mid
-    /// record.
+    /// Returns whether it starts from states that are nothing out of the ordinary; the geometric part starts from the
+    /// mid record.
     pub fn start_ordinarily(&self, context: &Context<'_>) -> bool {
         let is_hybrid = matches!(context.scene.collision, Collision::Hybrid { .. });
         let mid = self.mid.filter(|_| is_hybrid);
         context.ordinary.holds(self.before) && mid.is_none_or(|mid| context.ordinary.holds(&mid.state))
     }
 
-    /// The states that the step is about.
+    /// Returns the states that the step is about.
     pub fn states(&self) -> impl Iterator<Item = &State> {
         [self.before, &self.end.state].into_iter().chain(self.mid.map(|mid| &mid.state))
     }
@@ -68,7 +68,7 @@ impl Records<'_> {
 /// One step of the trace.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Records<'a> {
-    /// Its number, from 1.
+    /// The step's number, from 1.
     pub step: u32,
     /// The number of its end record, from 0.
     pub frame: u64,

@@ -56,19 +56,19 @@ impl Factors {
         }
     }
 
-    /// The last factor; 1 where there is none.
+    /// Returns the last factor; 1 where there is none.
     pub(super) fn last(&self) -> f64 {
         self.last
     }
 
-    /// The least and the greatest; none of no factor.
+    /// Returns the least and the greatest; none of no factor.
     #[must_use]
     pub fn range(&self) -> Option<[f64; 2]> {
         (self.count > 0).then_some([self.least, self.greatest])
     }
 
-    /// The factors that are usual: the whole range but for outliers, which say nothing of polynomials that are gone;
-    /// none of no factor.
+    /// Returns the factors that are usual: the whole range but for outliers, which say nothing of polynomials that are
+    /// gone; none of no factor.
     pub(super) fn usual(&self) -> Option<[f64; 2]> {
         let [least, greatest] = self.range()?;
         let of_all = |sum: i64| sum as f64 / self.count as f64;
@@ -79,7 +79,7 @@ impl Factors {
     }
 }
 
-/// 2 to this power, rounded down; 0 and infinity beyond normal numbers.
+/// Returns 2 to this power, rounded down; 0 and infinity beyond normal numbers.
 fn power_of_two(power: f64) -> f64 {
     if power < -1022.0 {
         return 0.0;

@@ -28,8 +28,8 @@ pub struct BoundedPointMotion {
 }
 
 impl BoundedPointMotion {
-    /// The way between two points whose coordinates may be off by roundings of `size`: a program may compute in axes of
-    /// its own, turned or shifted. Nothing is off if it rests for certain.
+    /// Returns the way between two points whose coordinates may be off by roundings of `size`: a program may compute in
+    /// axes of its own, turned or shifted. Nothing is off if it rests for certain.
     fn between([start, end]: [Vec2; 2], size: f64, rests: bool) -> Self {
         let start_place = within(start, size);
         let shift = if rests { Bounded2::default() } else { within(end, size) - start_place };
@@ -61,17 +61,18 @@ pub struct Expected {
 }
 
 impl Expected {
-    /// Polynomial `number` of the pair.
+    /// Returns polynomial `number` of the pair.
     pub fn polynomial(&self, number: usize) -> &[Bounded] {
         &self.polynomials[number][MAX_COEFFICIENTS - self.sizes[number]..]
     }
 
-    /// All polynomials; those beyond their number are empty.
+    /// Returns all polynomials; those beyond their number are empty.
     pub fn polynomials(&self) -> [&[Bounded]; 4] {
         std::array::from_fn(|number| self.polynomial(number))
     }
 
-    /// The other accepted form of polynomial `number`: the mathematically right approach of a particle and an edge.
+    /// Returns the other accepted form of polynomial `number`: the mathematically right approach of a particle and an
+    /// edge.
     pub fn other_form(&self, number: usize) -> Option<&[Bounded]> {
         if number == 3 { self.right_approach.as_ref().map(|right| &right[..]) } else { None }
     }
@@ -84,7 +85,7 @@ impl Expected {
         self
     }
 
-    /// Number of polynomials.
+    /// Returns number of polynomials.
     pub fn count(&self) -> usize {
         self.sizes.iter().filter(|&&size| size > 0).count()
     }
@@ -96,7 +97,7 @@ impl Expected {
 }
 
 impl BoundedPairMotion {
-    /// The pair's motion in a step.
+    /// Returns the pair's motion in a step.
     pub fn of(scene: &Scene, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Self {
         let (first, second) = (pair.first as usize, pair.second as usize);
         let places = |particle| [at(q_start, particle), at(q_end, particle)];
@@ -128,7 +129,7 @@ impl BoundedPairMotion {
         }
     }
 
-    /// The same motion, of particles whose end positions may be off by `deviations` (2N, scene unit) on top.
+    /// Returns the motion of particles whose end positions may be off by `deviations` (2N, scene unit) on top.
     pub fn widened(mut self, particles: [Option<usize>; 3], deviations: &[f64]) -> Self {
         let widen = |way: &mut BoundedPointMotion, particle: Option<usize>| {
             let Some(particle) = particle else { return };
@@ -152,8 +153,8 @@ impl BoundedPairMotion {
         self
     }
 
-    /// Whether every way to evaluate the formulas of a parabola is exact: all inputs are multiples of one power of two,
-    /// by less than two to the `bits`. A particle and an edge have higher degrees, whose zeros are never exact.
+    /// Returns whether every way to evaluate the formulas of a parabola is exact: all inputs are multiples of one power
+    /// of two, by less than two to the `bits`. A particle and an edge have higher degrees, whose zeros are never exact.
     pub fn is_exact(&self, bits: u32) -> bool {
         let parts = |v: Bounded2| [v.x.value, v.y.value];
         match self {
@@ -169,7 +170,7 @@ impl BoundedPairMotion {
         }
     }
 
-    /// The detection polynomials.
+    /// Returns the detection polynomials.
     pub fn polynomials(&self) -> Expected {
         let mut expected = Expected::default();
         match *self {
@@ -199,8 +200,8 @@ impl BoundedPairMotion {
         expected
     }
 
-    /// Whether two times within the step are one moment: the points are where they are, but for some roundings of the
-    /// size of their positions.
+    /// Returns whether two times within the step are one moment: the points are where they are, but for some roundings
+    /// of the size of their positions.
     pub fn is_moment(&self, one: f64, other: f64) -> bool {
         let ways = match self {
             Self::Particles(ways, _) => &ways[..],
@@ -215,8 +216,9 @@ impl BoundedPairMotion {
         one <= 1.0 && other <= 1.0 && ways.iter().all(is_so)
     }
 
-    /// The vector to the nearest point of the second object at time `t`. It differs from [`Self::normal`] beyond the
-    /// ends of an edge, and a time of impact at which the particle comes in over an end may be there by its round-off.
+    /// Returns the vector to the nearest point of the second object at time `t`. It differs from [`Self::normal`]
+    /// beyond the ends of an edge, and a time of impact at which the particle comes in over an end may be there by its
+    /// round-off.
     pub fn to_nearest(&self, t: f64) -> Vec2 {
         let place = |way: &BoundedPointMotion| {
             let place = way.start + Bounded::exact(t) * way.shift;
@@ -231,7 +233,7 @@ impl BoundedPairMotion {
         x2 + ((x1 - x2).dot(&along) / along.dot(&along)).clamp(0.0, 1.0) * along - x1
     }
 
-    /// The contact normal at time `t`, not normalised.
+    /// Returns the contact normal at time `t`, not normalised.
     pub fn normal(&self, t: f64) -> Bounded2 {
         let t = Bounded::exact(t);
         let place = |way: &BoundedPointMotion| way.start + t * way.shift;
@@ -251,18 +253,18 @@ impl BoundedPairMotion {
     }
 }
 
-/// A vector whose components may each be off by a rounding of this size.
+/// Returns a vector whose components may each be off by a rounding of this size.
 fn within(v: Vec2, size: f64) -> Bounded2 {
     let component = |value| Bounded { value, bound: size };
     Bounded2 { x: component(v.x), y: component(v.y) }
 }
 
-/// A vector that the scene gives, in axes of any direction.
+/// Returns a vector that the scene gives, in axes of any direction.
 fn turned(v: Vec2) -> Bounded2 {
     within(v, extent(v))
 }
 
-/// The size of a vector's roundings in axes of any direction: between its length and the root of 2 times that.
+/// Returns the size of a vector's roundings in axes of any direction: between its length and the root of 2 times that.
 pub(super) fn extent(v: Vec2) -> f64 {
     v.x.abs() + v.y.abs()
 }

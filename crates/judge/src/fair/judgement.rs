@@ -13,7 +13,7 @@ use fosssim_model::sim::{ByKind, PairKind, StepError};
 /// The greatest number of examples of borderline decisions that are kept.
 const EXAMPLES: usize = 8;
 
-/// So few decisions, though they may be most of a trace's, can be all that a small scene has.
+/// The number of decisions that a small scene may have in all.
 const FEW: u64 = 64;
 
 /// The fair rules' judgement of a trace, as far as it goes, and the polynomials that hang on the rest of the trace.
@@ -99,9 +99,9 @@ impl Judging {
         self.pending.extend(hanging);
     }
 
-    /// The finding about polynomials that hang on factors, with the factors that are usual in the trace so far. Others
-    /// show these, beside the reference's own polynomials; where there are none of either, it takes those that all
-    /// claim, or else 1.
+    /// Returns the finding about polynomials that hang on factors, with the factors that are usual in the trace so far.
+    /// Others show these, beside the reference's own polynomials; where there are none of either, it takes those that
+    /// all claim, or else 1.
     fn finding(&self, pending: &Pending) -> Option<Finding> {
         let (kind, number) = pending.place;
         let mut told = self.scales[kind][number];
@@ -146,12 +146,13 @@ impl Judging {
         }
     }
 
-    /// Whether most decisions are borderline and not the reference's: some are in every correct program, most in none.
+    /// Returns whether most decisions are borderline and not the reference's: some are in every correct program, most
+    /// in none.
     fn is_undecided(&self) -> bool {
         self.said.borderline >= FEW && self.said.borderline > self.said.decisions / 2
     }
 
-    /// From this step on it judges nothing.
+    /// Ends judging: from this step on nothing is judged.
     pub(crate) fn give_up(&mut self, step: u32) {
         self.said.given_up = Some(step);
     }
@@ -188,7 +189,7 @@ impl Judging {
     }
 }
 
-/// Whether a finding comes after that about a polynomial.
+/// Returns whether a finding comes after that about a polynomial.
 fn follows(finding: &Finding, polynomial: &Finding) -> bool {
     let is_decision = matches!(finding.kind(), FindingKind::TrimmedDecision);
     finding.step > polynomial.step || finding.step == polynomial.step && is_decision

@@ -18,7 +18,7 @@ pub(crate) struct Ordinary {
 }
 
 impl Ordinary {
-    /// The range of the scene's start: most states need no other.
+    /// Returns the range of the scene's start: most states need no other.
     pub fn of(scene: &Scene) -> Self {
         let radii = scene.particles.iter().map(|particle| extent(particle.position) + particle.radius);
         let sizes = radii.chain(scene.half_planes.iter().map(|half_plane| extent(half_plane.point)));
@@ -29,12 +29,12 @@ impl Ordinary {
         Self { position, velocity, spread: spread(places) }
     }
 
-    /// Whether nothing in a state is out of the ordinary.
+    /// Returns whether nothing in a state is out of the ordinary.
     pub fn holds(&self, state: &State) -> bool {
         self.beyond(state).is_none()
     }
 
-    /// The first particle whose state is beyond what the range allows.
+    /// Returns the first particle whose state is beyond what the range allows.
     pub(super) fn beyond(&self, state: &State) -> Option<usize> {
         let particles = state.positions.len() / 2;
         let is_far = |value: f64, most: f64| !(value <= FAIR_REACH * most);
@@ -57,13 +57,13 @@ fn places(state: &State) -> impl Iterator<Item = Vec2> {
     (0..state.positions.len() / 2).map(|particle| at(&state.positions, particle))
 }
 
-/// The size of the largest vector, in whatever directions the axes point.
+/// Returns the size of the largest vector, in whatever directions the axes point.
 pub(super) fn largest(vectors: &[f64]) -> f64 {
     let all = (0..vectors.len() / 2).map(|index| extent(at(vectors, index)));
     all.fold(0.0, f64::max)
 }
 
-/// The extent of all points together; 0 of one point.
+/// Returns the extent of all points together; 0 of one point.
 fn spread(points: impl Iterator<Item = Vec2>) -> f64 {
     let none = [f64::INFINITY, f64::NEG_INFINITY];
     let [x, y] = points.fold([none; 2], |[x, y], point| [widened(x, point.x), widened(y, point.y)]);

@@ -24,7 +24,7 @@ pub(crate) struct Pending {
 }
 
 impl Pending {
-    /// The finding, if there is one, where the program's factors lie between these.
+    /// Returns the finding, if there is one, where the program's factors lie between these.
     pub fn finding(&self, [low, high]: [f64; 2]) -> Option<Finding> {
         // Factors are known but for rounding.
         let room = 1e-9;
@@ -35,7 +35,7 @@ impl Pending {
         (!(most.0 >= low * (1.0 - room))).then_some(most.1)
     }
 
-    /// Whether it counts in a trace of this form.
+    /// Returns whether it counts in a trace of this form.
     pub fn is_of(&self, form: Form) -> bool {
         self.form == Form::Either || self.form == form
     }

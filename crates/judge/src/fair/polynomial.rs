@@ -19,28 +19,28 @@ fosssim_model::drops_leading!();
 /// A logged polynomial and where it stands.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Logged<'a> {
-    /// Its place.
+    /// The polynomial's place.
     pub place: PolynomialPlace,
-    /// Its number among those of its pair.
+    /// The polynomial's number among those of its pair.
     pub number: usize,
-    /// Its coefficients, highest power first.
+    /// The polynomial's coefficients, highest power first.
     pub list: &'a [f64],
 }
 
 /// The judgement of a logged polynomial.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Said {
-    /// It is right.
+    /// The polynomial is right.
     Right,
-    /// It is right, and of the definition's form, not the course's.
+    /// The polynomial is right, and of the definition's form, not the course's.
     RightForm,
-    /// It tells no factor, and is right with some only.
+    /// The polynomial tells no factor, and is right with some only.
     Hangs,
-    /// It is wrong.
+    /// The polynomial is wrong.
     Wrong(Mismatch),
 }
 
-/// How a polynomial compares with the course's form.
+/// Returns how a polynomial compares with the course's form.
 pub(super) fn compare_first(
     judged: &StepJudgement,
     expected: &Expected,
@@ -185,7 +185,7 @@ impl StepJudgement {
     }
 }
 
-/// The finding about a wrong polynomial.
+/// Returns the finding about a wrong polynomial.
 pub(super) fn wrong_polynomial(logged: &Logged<'_>, expected: &[Bounded], mismatch: Mismatch) -> FindingDetail {
     let &Logged { place, list, .. } = logged;
     let right: Vec<f64> = expected.iter().map(|c| c.value).collect();
@@ -214,7 +214,7 @@ mod tests {
     use fosssim_findings::Role;
     use fosssim_model::sim::{Pair, Pass, Stage};
 
-    /// Whether polynomials that are right with factors between these, one after the other, are right with one.
+    /// Returns whether polynomials that are right with factors between these, one after the other, are right with one.
     fn are_right_with(bounds: &[[f64; 2]], factor: f64) -> bool {
         let pair = Pair { kind: PairKind::ParticleParticle, first: 0, second: 1 };
         let pass = Pass { stage: Stage::ContinuousTime, index: 0 };

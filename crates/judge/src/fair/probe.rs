@@ -120,7 +120,7 @@ impl Signs {
         Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15))
     }
 
-    /// 1 or -1.
+    /// Returns 1 or -1.
     fn next(&mut self) -> f64 {
         // Xorshift (Marsaglia, J. Stat. Softw. 8(14), 2003): only the signs matter.
         self.0 ^= self.0 << 13;
@@ -131,7 +131,7 @@ impl Signs {
 }
 
 impl PerturbedRun<'_> {
-    /// The same hit, a little later or earlier, with either vector to an edge's end: no root finder is exact.
+    /// Returns the hit a little later or earlier, with either vector to an edge's end: no root finder is exact.
     fn late(&self, time: f64) -> Option<Decision> {
         let motion = self.motion.as_ref()?;
         let time = match self.seed {
@@ -186,8 +186,8 @@ impl Steer for PerturbedRun<'_> {
         self.motion = Some(BoundedPairMotion::of(self.context.scene, pair, q_start, q_end));
     }
 
-    /// A solver leaves the solution for a matrix that is off by roundings of its largest entries, wherever it
-    /// has an entry: the matrix's condition says what becomes of them (Wilkinson, J. ACM 8(3), 1961).
+    /// Changes a matrix by roundings of its largest entries, as a solver leaves the solution for such a one, wherever
+    /// it has an entry: the matrix's condition says what becomes of them (Wilkinson, J. ACM 8(3), 1961).
     fn system(&mut self, matrix: &mut [f64]) {
         let squares: f64 = matrix.iter().map(|entry| entry * entry).sum();
         let size = (squares / (matrix.len() as f64).sqrt()).sqrt();

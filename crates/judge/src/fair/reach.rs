@@ -37,7 +37,7 @@ struct Run {
 }
 
 impl<'a> Reach<'a> {
-    /// Nothing but the scene is known.
+    /// Creates the reach when nothing but the scene is known.
     pub fn new(scene: &'a Scene) -> Self {
         Self { scene, range: Ordinary::of(scene), run: None, other: None }
     }
@@ -70,13 +70,13 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// Whether the reference's own run gets to the end of this step.
+    /// Returns whether the reference's own run gets to the end of this step.
     pub fn has_result(&mut self, step: u32) -> bool {
         self.run_to(step);
         self.run.as_ref().is_some_and(|run| !run.is_lost)
     }
 
-    /// The first particle that is where the reference never comes near.
+    /// Returns the first particle that is where the reference never comes near.
     fn beyond_reach(&self, records: &Records<'_>) -> Option<FindingDetail> {
         records.states().find_map(|state| {
             let particle = self.range.beyond(state)?;

@@ -112,8 +112,8 @@ fn compare_records(context: &Context<'_>, records: Records<'_>, judged: &mut Ste
     }
 }
 
-/// Whether the record holds what the course's library does not write: small leading coefficients that were not dropped,
-/// or more coefficients than any detection has.
+/// Returns whether the record holds what the course's library does not write: small leading coefficients that were not
+/// dropped, or more coefficients than any detection has.
 fn is_impossible(frame: &LenientFrame) -> bool {
     let log = &frame.polynomials;
     frame.note.is_none() && !frame.plain || (0..log.len()).any(|index| log.get(index).len() > MAX_COEFFICIENTS)

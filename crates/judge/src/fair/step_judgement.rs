@@ -46,7 +46,8 @@ pub(crate) struct StepJudgement {
 }
 
 impl StepJudgement {
-    /// Of a step whose records are the reference's bit for bit, with this number of polynomials in the end record.
+    /// Creates the judgement of a step whose records are the reference's bit for bit, with this number of polynomials
+    /// in the end record.
     pub fn identical(context: &Context<'_>, step: u32, polynomials: usize) -> Self {
         let frame = u64::from(step) * u64::from(context.records_per_step);
         let passes = polynomials.checked_div(context.per_pass).unwrap_or(0);
@@ -64,20 +65,20 @@ impl StepJudgement {
         }
     }
 
-    /// The same, with one more finding.
+    /// Adds one more finding.
     pub fn also(mut self, records: Records<'_>, detail: FindingDetail) -> Self {
         (self.step, self.frame) = (records.step, records.frame);
         self.charge(Finding { step: self.step, frame: self.frame, detail });
         self
     }
 
-    /// The factors that a polynomial may have whose coefficients tell its own only roughly: that of the same polynomial
-    /// of another pair of its kind, or 1. Factors of other polynomials vouch for nothing.
+    /// Returns the factors that a polynomial may have whose coefficients tell its own only roughly: that of the same
+    /// polynomial of another pair of its kind, or 1. Factors of other polynomials vouch for nothing.
     pub(super) fn hints(&self, kind: PairKind, number: usize) -> [f64; 2] {
         [self.scales[kind][number].last(), 1.0]
     }
 
-    /// How many polynomials hang on factors.
+    /// Returns how many polynomials hang on factors.
     pub(super) fn pended(&self) -> u64 {
         self.pending.iter().map(|pending| pending.count).sum()
     }
@@ -87,12 +88,12 @@ impl StepJudgement {
         self.borderline.push(Borderline { step: self.step, pass, pair, collides });
     }
 
-    /// Number of findings.
+    /// Returns number of findings.
     pub(super) fn total(&self) -> u64 {
         self.findings.len() as u64 + self.more.total()
     }
 
-    /// Whether it has findings that the step's sensitivity could excuse. Those about polynomials of known
+    /// Returns whether it has findings that the step's sensitivity could excuse. Those about polynomials of known
     /// positions are not among them: their own bounds are all that counts.
     pub(super) fn hangs_on_round_off(&self) -> bool {
         self.hangs
@@ -110,7 +111,7 @@ impl StepJudgement {
             })
     }
 
-    /// Whether it has findings that another decision could explain: it would have led pairs elsewhere.
+    /// Returns whether it has findings that another decision could explain: it would have led pairs elsewhere.
     pub(super) fn hangs_on_decisions(&self) -> bool {
         self.hangs
             || self.findings.iter().any(|finding| {

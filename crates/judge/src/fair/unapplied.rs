@@ -44,8 +44,8 @@ impl NearPair {
     }
 }
 
-/// How often a step from `before` applied the force of each near pair: never, once or twice. The reference ends in
-/// `own`. Pairs of which the velocities do not tell it are left out.
+/// Returns how often a step from `before` applied the force of each near pair: never, once or twice. The reference ends
+/// in `own`. Pairs of which the velocities do not tell it are left out.
 #[must_use]
 pub fn applied(scene: &Scene, before: &State, own: &State, logged: &State) -> Vec<(Pair, usize)> {
     let context = Context::new(scene);
@@ -62,8 +62,8 @@ pub fn applied(scene: &Scene, before: &State, own: &State, logged: &State) -> Ve
     wrong.chain(near.right.iter().map(|pair| (*pair, 1))).collect()
 }
 
-/// The pairs that explain wrong velocities of a step from `before`, and the reference's result with these faults;
-/// `None` where nothing is explained.
+/// Returns the pairs that explain wrong velocities of a step from `before`, and the reference's result with these
+/// faults; `None` where nothing is explained.
 pub(super) fn explain(
     context: &Context<'_>,
     tolerances: &Tolerances<'_>,
@@ -168,8 +168,8 @@ impl NearPairs {
     }
 }
 
-/// Of a contest with a layer: the scene with the force between all pairs, and the pairs whose force is due at positions
-/// `x`, since they overlap without their layers or one of them is a half-plane.
+/// Returns for a contest with a layer the scene with the force between all pairs, and the pairs whose force is due at
+/// positions `x`, since they overlap without their layers or one of them is a half-plane.
 fn layer_of_contest(scene: &Scene, x: &[f64]) -> Option<(Scene, BTreeSet<Pair>)> {
     let Collision::Penalty { stiffness, thickness, detection: CollisionDetection::Contest } = scene.collision else {
         return None;
@@ -224,12 +224,13 @@ fn settle(
     }
 }
 
-/// The number of choices among this number of pairs: each was left out, applied once or twice.
+/// Returns the number of choices among this number of pairs: each was left out, applied once or twice.
 fn choices(pairs: usize) -> usize {
     (0..pairs).fold(1, |product, _| 3 * product)
 }
 
-/// How often each of these pairs was applied too often, if one answer alone explains the rest of a particle's velocity.
+/// Returns how often each of these pairs was applied too often, if one answer alone explains the rest of a particle's
+/// velocity.
 fn only_choice(
     candidates: &[NearPair],
     open: &[usize],

@@ -12,13 +12,13 @@ pub(super) struct ContestOrder {
 }
 
 impl ContestOrder {
-    /// Before the first step.
+    /// Creates the state before the first step.
     pub(super) fn new(scene: &Scene) -> Self {
         Self { simulation: Simulation::new(scene, RootSearch::WhereNeeded), order: SweepOrder::default() }
     }
 
-    /// Steps from `before`, spending `most_work` at most. Returns the order from which the reference begins this step;
-    /// it is empty but in a contest.
+    /// Returns steps from `before`, spending `most_work` at most. Returns the order from which the reference begins
+    /// this step; it is empty but in a contest.
     pub(super) fn follow(&mut self, step: u32, before: &State, most_work: u64) -> &SweepOrder {
         if self.simulation.penalty_pairs().is_some_and(|pairs| pairs.order(&mut self.order)) {
             self.simulation.state_mut().clone_from(before);

@@ -86,7 +86,7 @@ impl Pending {
     }
 }
 
-/// A wrong coefficient, under the name that a person would give it.
+/// Returns a wrong coefficient, under the name that a person would give it.
 fn wrong_coefficient(
     place: PolynomialPlace,
     rescaled: Rescaled,

@@ -23,7 +23,7 @@ enum Outcome {
     Same,
     /// The mistake is named first.
     First,
-    /// It is among those that this trace can't tell from the first one.
+    /// The mistake is among those that this trace can't tell from the first one.
     Among(String),
     /// Something else is named.
     Other(String),
@@ -101,7 +101,7 @@ fn count(wrong: &[(&Row, &Vec<ExplainedTrace>)]) {
     );
 }
 
-/// The explanation that all traces of a mistake give together.
+/// Counts the explanation that all traces of a mistake give together.
 fn together(wrong: &[(&Row, &Vec<ExplainedTrace>)]) {
     let mut confused = Vec::new();
     for (row, outcomes) in wrong {

@@ -26,10 +26,10 @@ enum Answer {
     Same,
     /// Another trace, which is accepted.
     Accepted,
-    /// It is refused for nothing but decisions that hang on coefficients which the course's library dropped as too
-    /// small: the factor of the polynomials is to blame, and the program really does something else then.
+    /// The trace is rejected for nothing but decisions that hang on coefficients which the course's library dropped as
+    /// too small: the factor of the polynomials is to blame, and the program really does something else then.
     Lost,
-    /// It is refused.
+    /// The trace is rejected.
     Refused,
 }
 
@@ -82,7 +82,7 @@ fn main() -> anyhow::Result<ExitCode> {
     Ok(ExitCode::from(u8::from(!invisible.is_empty() || uncaught > 0 || accuses)))
 }
 
-/// The mistakes that some scene catches under a rule book, or that none does.
+/// Returns the mistakes that some scene catches under a rule book, or that none does.
 fn mistakes(rows: &[&Row], matrix: &[Vec<MatrixCell>], book: usize, caught: bool) -> Vec<&'static str> {
     rows.iter()
         .zip(matrix)
@@ -91,7 +91,7 @@ fn mistakes(rows: &[&Row], matrix: &[Vec<MatrixCell>], book: usize, caught: bool
         .collect()
 }
 
-/// The correct variants that a rule book refuses, each with the scene.
+/// Returns the correct variants that a rule book refuses, each with the scene.
 fn accused<'a>(
     book: usize,
     rows: &[&'a Row],
@@ -116,7 +116,7 @@ fn cell(case: &Watched, row: &Row) -> MatrixCell {
     [parity(&outcome), fair(&outcome)]
 }
 
-/// Whether this rule book refuses the trace.
+/// Returns whether this rule book refuses the trace.
 fn refused(cell: &MatrixCell, book: usize) -> bool {
     cell[book] == Answer::Refused
 }
@@ -163,8 +163,8 @@ fn print_list(title: &str, names: &[impl Display]) {
     println!();
 }
 
-/// A small set of scenes that catches every mistake that can be caught: the scene with the most new ones first, then
-/// without those that others made superfluous.
+/// Returns a small set of scenes that catches every mistake that can be caught: the scene with the most new ones first,
+/// then without those that others made superfluous.
 fn sufficient(book: usize, rows: &[&Row], scenes: usize, matrix: &[Vec<MatrixCell>]) -> BTreeSet<usize> {
     let caught = |scene: usize| -> BTreeSet<usize> {
         (0..rows.len()).filter(|&row| rows[row].kind == RowKind::Wrong && refused(&matrix[row][scene], book)).collect()

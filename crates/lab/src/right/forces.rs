@@ -15,7 +15,7 @@ pub(super) struct ForceTerms<'a> {
     drawn: u64,
 }
 
-/// The mass of a particle.
+/// Returns the mass of a particle.
 pub(super) fn mass(scene: &Scene, particle: usize) -> f64 {
     scene.particles[particle].mass
 }
@@ -29,7 +29,7 @@ impl<'a> ForceTerms<'a> {
         Self { scene, arithmetic, near, drawn: 1 }
     }
 
-    /// The force on every particle at these positions and velocities.
+    /// Returns the force on every particle at these positions and velocities.
     pub(super) fn at(&mut self, x: &[f64], v: &[f64]) -> Vec<f64> {
         let mut terms = Vec::new();
         for force in &self.scene.forces {
@@ -148,7 +148,8 @@ impl<'a> ForceTerms<'a> {
         self.arithmetic.add_product(a.x * b.x, a.y, b.y)
     }
 
-    /// `M - h dF/dv - h^2 dF/dx`, with rows and columns of the identity for fixed particles; `None` with a vortex.
+    /// Returns `M - h dF/dv - h^2 dF/dx`, with rows and columns of the identity for fixed particles; `None` with a
+    /// vortex.
     pub(super) fn system(&self, x: &[f64], v: &[f64]) -> Option<DMatrix<f64>> {
         let (scene, h) = (self.scene, self.scene.time_step);
         let mut matrix = DMatrix::zeros(x.len(), x.len());

@@ -77,7 +77,7 @@ fn accelerations(scene: &Scene, forces: &mut ForceTerms<'_>, state: &State) -> V
     free(scene, (0..force.len()).map(|k| force[k] / mass(scene, k / 2)).collect())
 }
 
-/// The same, with zeros for fixed particles.
+/// Returns the entries with zeros for fixed particles.
 fn free(scene: &Scene, mut values: Vec<f64>) -> Vec<f64> {
     values.iter_mut().enumerate().filter(|(k, _)| scene.particles[k / 2].fixed).for_each(|(_, value)| *value = 0.0);
     values

@@ -13,7 +13,7 @@ use fosssim_oracle::student::{Contact, Record, State, StepLog, Student};
 /// The way of a program to compute.
 #[derive(Debug, Clone, Copy)]
 pub struct Arithmetic {
-    /// Its name in tables.
+    /// The arithmetic's name in tables.
     pub name: &'static str,
     /// How it adds forces up.
     pub sum: Sum,
@@ -57,7 +57,7 @@ pub const ALL: [Arithmetic; 5] = [
 ];
 
 impl Arithmetic {
-    /// `addend + a * b`.
+    /// Returns `addend + a * b`.
     fn add_product(self, addend: f64, a: f64, b: f64) -> f64 {
         if self.fused {
             #[expect(clippy::disallowed_methods, reason = "a compiler may fuse, and these programs say that it did")]
@@ -66,8 +66,8 @@ impl Arithmetic {
         addend + a * b
     }
 
-    /// The whole trace of a scene, whose collision handling logs no polynomials. `hear` is told the state and the
-    /// contacts after every step.
+    /// Returns the whole trace of a scene, whose collision handling logs no polynomials. `hear` is told the state and
+    /// the contacts after every step.
     ///
     /// # Errors
     /// The steps so far, where a step has no result: a vortex force in an implicit step, or Newton's method that does
@@ -92,7 +92,7 @@ impl Arithmetic {
     }
 }
 
-/// The state in which a scene starts.
+/// Returns the state in which a scene starts.
 #[must_use]
 pub fn start(scene: &Scene) -> State {
     let particles = &scene.particles;

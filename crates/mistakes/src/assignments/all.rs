@@ -9,12 +9,12 @@ use std::sync::LazyLock;
 static STATES: LazyLock<Vec<Row>> =
     LazyLock::new(|| EDITS.iter().chain(STEPS).map(|row| row.of(Mistake::Step(row.mistake))).collect());
 
-/// All rows, in the order of the assignments: forces and integrators come first.
+/// Returns all rows, in the order of the assignments: forces and integrators come first.
 pub fn all_rows() -> impl Iterator<Item = &'static Row> {
     STATES.iter().chain(CATALOGUE)
 }
 
-/// The row with this id.
+/// Finds the row with this id.
 #[must_use]
 pub fn find(id: &str) -> Option<&'static Row> {
     all_rows().find(|row| row.id == id)

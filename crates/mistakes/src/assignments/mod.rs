@@ -10,8 +10,8 @@ use fosssim_model::{
     scene::{self, Scene},
 };
 
-/// The probe scenes of an assignment, each with a name that can be a file's. They make every part of a program's work
-/// visible, together with the scenes of its suite.
+/// Returns the probe scenes of an assignment, each with a name that can be a file's. They make every part of a
+/// program's work visible, together with the scenes of its suite.
 ///
 /// # Panics
 /// When one is not sound; a test reads them all.

@@ -20,7 +20,7 @@ pub enum RowKind {
 }
 
 impl RowKind {
-    /// Its name in listings.
+    /// Returns the area's name in listings.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -50,27 +50,27 @@ pub struct RowOf<M> {
 }
 
 impl<M> RowOf<M> {
-    /// The same row with this mistake.
+    /// Returns the row with this mistake.
     #[must_use]
     pub fn of<N>(self, mistake: N) -> RowOf<N> {
         let Self { id, kind, area, what, term, .. } = self;
         RowOf { mistake, id, kind, area, what, term }
     }
 
-    /// The sentence about it, with the part of the program in front.
+    /// Returns the sentence about it, with the part of the program in front.
     #[must_use]
     pub fn sentence(&self) -> String {
         format!("{}: {}", self.place(), self.what)
     }
 
-    /// The kind of pair for which alone the mistake is made.
+    /// Returns the kind of pair for which alone the mistake is made.
     #[must_use]
     pub fn kind_of_pair(&self) -> Option<PairKind> {
         PairKind::ALL.into_iter().find(|kind| kind.name().eq_ignore_ascii_case(self.place()))
     }
 
-    /// The part of the program in which the mistake is made: the kind of pair where it is made for one kind only, else
-    /// the part of the assignment.
+    /// Returns the part of the program in which the mistake is made: the kind of pair where it is made for one kind
+    /// only, else the part of the assignment.
     #[must_use]
     pub fn place(&self) -> &'static str {
         match (self.id.split_once('-'), self.area) {
@@ -114,7 +114,7 @@ macro_rules! rows {
         }
 
         impl $type {
-            /// The part of the assignment that it belongs to.
+            /// Returns the part of the assignment that it belongs to.
             #[must_use]
             pub const fn area(self) -> $crate::assignments::rows::Area {
                 match self {

@@ -36,13 +36,13 @@ impl OpenTrace {
         self.symptoms.iter().any(|symptom| symptom.allowed.get(said) == Some(&true))
     }
 
-    /// Whether it needs this mistake beside others: they reproduce it together, and neither does alone.
+    /// Returns whether it needs this mistake beside others: they reproduce it together, and neither does alone.
     pub(super) fn needs(&self, said: &str) -> bool {
         self.symptoms.iter().any(|symptom| symptom.one.is_complete() && symptom.one.key == said)
     }
 }
 
-/// The symptoms of a trace without the words that something speaks against.
+/// Returns the symptoms of a trace without the words that something speaks against.
 pub(super) fn symptoms(list: &[Explanation], is_refuted: &impl Fn(&String) -> bool) -> Vec<Symptom> {
     let of_one = |one: &Explanation| {
         if is_refuted(&one.key) && find(&one.key).is_none() {
@@ -74,7 +74,7 @@ struct Support<'a> {
     complete: usize,
     /// Traces that tell it first.
     first: usize,
-    /// Of what is seen of a stage: traces in which the same is wrong, in whatever way.
+    /// The number of traces in which the same is wrong, in whatever way.
     kin: usize,
     /// Traces in which the same polynomials are wrong in another way.
     against: usize,
@@ -83,12 +83,13 @@ struct Support<'a> {
 }
 
 impl Support<'_> {
-    /// Whether as many traces speak against a guess about polynomials as for it.
+    /// Returns whether as many traces speak against a guess about polynomials as for it.
     fn is_denied(&self) -> bool {
         self.against > 0 && self.against >= self.complete
     }
 
-    /// Of a stage, all that is seen says that it is wrong; what most of it says is wrong with it.
+    /// Returns the weight of an explanation. All that is seen of a stage says that it is wrong; what most of it says is
+    /// wrong with it.
     fn weight(&self) -> (usize, usize, usize) {
         (self.complete.max(self.kin), self.traces.max(self.kin), self.complete)
     }
@@ -128,8 +129,8 @@ fn evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
     all
 }
 
-/// Whether a trace's explanation, which does not allow it, speaks against what is told of polynomials: the same ones
-/// are wrong.
+/// Returns whether a trace's explanation, which does not allow it, speaks against what is told of polynomials: the same
+/// ones are wrong.
 fn speaks_against(one: &Explanation, told: &Explanation) -> bool {
     let is_of_formula = match &told.about {
         About::Polynomials { found, .. } => matches!(found, OfPolynomials::Guess(_)),
@@ -140,8 +141,8 @@ fn speaks_against(one: &Explanation, told: &Explanation) -> bool {
     is_of_formula && one.subjects().iter().any(|subject| subjects.contains(subject))
 }
 
-/// The likeliest mistake behind what is open: the one that the most traces allow. Ties go to mistakes of the catalogue,
-/// then to the one that is told first more often, then to the one that is told earlier.
+/// Returns the likeliest mistake behind what is open: the one that the most traces allow. Ties go to mistakes of the
+/// catalogue, then to the one that is told first more often, then to the one that is told earlier.
 pub(super) fn likeliest(open: &[OpenTrace]) -> Option<Explanation> {
     let all = evidence(open);
     let is_known = |word: &str| find(word).is_some();
@@ -165,8 +166,8 @@ pub(super) fn likeliest(open: &[OpenTrace]) -> Option<Explanation> {
     Some(Explanation { same_as, ..united(told, open) })
 }
 
-/// An explanation with the polynomials of all traces that say the same of others, and with no other exact form than
-/// those that all of them allow.
+/// Returns an explanation with the polynomials of all traces that say the same of others, and with no other exact form
+/// than those that all of them allow.
 fn united(told: &Explanation, open: &[OpenTrace]) -> Explanation {
     let mut told = told.clone();
     let said = told.said();
@@ -200,7 +201,7 @@ const fn is_alternative(detail: &Detail) -> bool {
     matches!(detail, Detail::Polynomial(PolynomialDetail::Alternative(_)))
 }
 
-/// For each alternative in an exact form, the whole form with it.
+/// Returns for each alternative in an exact form the whole form with it.
 fn other_forms(details: &[Detail]) -> Vec<Vec<PolynomialDetail>> {
     let polynomial = |detail: &Detail| match detail {
         Detail::Polynomial(detail) => Some(detail.clone()),

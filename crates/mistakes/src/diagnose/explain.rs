@@ -24,8 +24,8 @@ use fosssim_model::{
 /// explanations keep whole, takes some hundred bytes a pair. Where numbers end is told all the same.
 const MOST_PAIRS: usize = 400_000;
 
-/// The likely mistakes of the program that left this trace, the likeliest first; empty when nothing is wrong, or when
-/// nothing that is known explains it.
+/// Returns the likely mistakes of the program that left this trace, the likeliest first; empty when nothing is wrong,
+/// or when nothing that is known explains it.
 ///
 /// A known mistake that reproduces all wrong steps comes first, with the details of polynomials that it gets wrong.
 /// Else explanations of polynomials come first that reproduce all their samples, then those that reproduce a part. The
@@ -37,13 +37,13 @@ pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
     explain_source(scene, Source::whole(trace))
 }
 
-/// As [`explain`], of what was kept of a trace.
+/// Explains what was kept of a trace, as [`explain`] does.
 #[must_use]
 pub fn explain_kept(scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
     explain_source(scene, trace.into())
 }
 
-/// As [`explain`], whatever the trace's records are read from.
+/// Explains a trace as [`explain`] does, whatever its records are read from.
 fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     if Layout::of(scene).polynomials && pairs(scene).count() > MOST_PAIRS {
         return not_finite::of_source(scene, source);
@@ -135,7 +135,7 @@ fn explain_letters(explanation: &mut Explanation) {
     }
 }
 
-/// Whether mistakes of this part of the assignment are mistakes of polynomials.
+/// Returns whether mistakes of this part of the assignment are mistakes of polynomials.
 pub(super) const fn is_formula(area: Area) -> bool {
     matches!(area, Area::ParticleParticle | Area::ParticleEdge | Area::ParticleHalfPlane | Area::Handover)
 }

@@ -23,9 +23,9 @@ const MOST: usize = 3;
 /// Among this number of traces, one that looks as if a stage were empty is no evidence.
 const MANY: usize = 8;
 
-/// The likely mistakes of a program that left several traces, at most three besides stages that are still empty, which
-/// count as one and are told first. `refuted` are keys of mistakes that right traces of the same program speak against.
-/// Where numbers end counts as none, and comes last: it follows from the others.
+/// Returns the likely mistakes of a program that left several traces, at most three besides stages that are still
+/// empty, which count as one and are told first. `refuted` are keys of mistakes that right traces of the same program
+/// speak against. Where numbers end counts as none, and comes last: it follows from the others.
 ///
 /// A scene alone often can't tell mistakes apart; several together nearly always can.
 #[must_use]
@@ -85,7 +85,7 @@ pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted:
     unfinished(empty).into_iter().chain(found).chain(end).collect()
 }
 
-/// Where numbers end, in the stage in which they end in most traces.
+/// Returns where numbers end, in the stage in which they end in most traces.
 fn not_finite(traces: &[&[Explanation]]) -> Option<Explanation> {
     let ends = || traces.iter().filter_map(|list| list.iter().find(|one| one.is_not_finite()));
     let agreeing = |one: &Explanation| ends().filter(|other| other.said() == one.said()).count();
@@ -100,7 +100,7 @@ fn not_finite(traces: &[&[Explanation]]) -> Option<Explanation> {
     Some(likeliest)
 }
 
-/// The detections whose coefficients are all zero, where that is what it says.
+/// Returns the detections whose coefficients are all zero, where that is what it says.
 fn zeros(one: &Explanation) -> Vec<Explanation> {
     let is_zero =
         matches!(&one.about, About::Polynomials { found: OfPolynomials::Guess(Guess::List(ListGuess::AllZero)), .. });
@@ -121,8 +121,8 @@ fn zeros(one: &Explanation) -> Vec<Explanation> {
     kinds.filter_map(row).map(told).collect()
 }
 
-/// Several stages that are still empty as one explanation; their keys are in [`Explanation::same_as`]. One for which
-/// something else would do as well is told for itself.
+/// Returns several stages that are still empty as one explanation; their keys are in [`Explanation::same_as`]. One for
+/// which something else would do as well is told for itself.
 fn unfinished(empty: Vec<Explanation>) -> Vec<Explanation> {
     let has_rival = |one: &Explanation| one.same_as.iter().filter_map(|key| find(key)).any(|row| !is_empty_stage(row));
     let (doubted, sure): (Vec<Explanation>, Vec<Explanation>) = empty.into_iter().partition(has_rival);
@@ -140,8 +140,8 @@ fn unfinished(empty: Vec<Explanation>) -> Vec<Explanation> {
     std::iter::once(all).chain(doubted).collect()
 }
 
-/// The polynomials that are wrong in most traces, where no exact form holds in most and what comes first says nothing
-/// of them: their place, and what most traces say of them without an exact form.
+/// Returns the polynomials that are wrong in most traces, where no exact form holds in most and what comes first says
+/// nothing of them: their place, and what most traces say of them without an exact form.
 fn wrong_polynomials(
     traces: &[Vec<Explanation>],
     found: &[Explanation],
@@ -177,14 +177,14 @@ fn wrong_polynomials(
     }
 }
 
-/// Whether a trace that something explains needs this known mistake, too.
+/// Returns whether a trace that something explains needs this known mistake, too.
 fn is_needed(next: &Explanation, open: &[OpenTrace]) -> bool {
     let said = next.said();
     open.iter().any(|trace| trace.is_covered && trace.needs(&said))
 }
 
-/// Whether a further mistake is one that was told, in other words: a program has one formula for a polynomial and for a
-/// contact vector, and what is seen of a stage may follow from what is told of that one or of one before it.
+/// Returns whether a further mistake is one that was told, in other words: a program has one formula for a polynomial
+/// and for a contact vector, and what is seen of a stage may follow from what is told of that one or of one before it.
 fn is_said_already(found: &[Explanation], next: &Explanation, open: &[OpenTrace]) -> bool {
     let are_needed = is_needed(next, open);
     let subjects = next.subjects();
@@ -219,7 +219,7 @@ fn is_said_already(found: &[Explanation], next: &Explanation, open: &[OpenTrace]
     found.iter().any(is_said)
 }
 
-/// Where steps log states only, all that is seen of them may follow from a mistake that explains one of the traces.
+/// Drops what may follow from a mistake that explains one of the traces, where steps log states only.
 fn drop_what_follows(open: &mut Vec<OpenTrace>) {
     let is_of_states = |word: &String| find(word).is_some_and(|row| matches!(row.mistake, Mistake::Step(_)));
     let names_one = |symptom: &Symptom| symptom.allowed.iter().any(|(word, is_whole)| *is_whole && is_of_states(word));
@@ -229,7 +229,7 @@ fn drop_what_follows(open: &mut Vec<OpenTrace>) {
     }
 }
 
-/// Of the explanations of stages, leaves those of the earliest one only: later faults may follow from it. Also drops
+/// Keeps of the explanations of stages those of the earliest one only: later faults may follow from it. Also drops
 /// known mistakes of that stage or a later one that explain fewer traces than show it wrong: they only resemble the
 /// fault.
 fn keep_earliest_stage(open: &mut Vec<OpenTrace>) {
@@ -261,7 +261,7 @@ fn keep_earliest_stage(open: &mut Vec<OpenTrace>) {
     open.retain(|trace| !trace.symptoms.is_empty());
 }
 
-/// The stage of a step in which mistakes of this part of the assignment are made; nothing for
+/// Returns the stage of a step in which mistakes of this part of the assignment are made; nothing for
 /// polynomials and for the trace.
 const fn stage_of(area: Area) -> Option<StepStage> {
     match area {
@@ -273,13 +273,13 @@ const fn stage_of(area: Area) -> Option<StepStage> {
     }
 }
 
-/// Whether traces enough look as if this stage were empty.
+/// Returns whether traces enough look as if this stage were empty.
 fn is_seen_again(open: &[OpenTrace], said: &str) -> bool {
     open.len() < MANY || open.iter().filter(|trace| trace.allows_wholly(said)).count() > 1
 }
 
-/// Whether enough of what is left names this further mistake: a trace that nothing explains yet, one that needs it
-/// beside a mistake that was told, or two others, where there are several. Traces in which a stage looks wrong count
+/// Returns whether enough of what is left names this further mistake: a trace that nothing explains yet, one that needs
+/// it beside a mistake that was told, or two others, where there are several. Traces in which a stage looks wrong count
 /// only where nothing explains them, and one alone may follow from what was found before. That polynomials are missing
 /// does.
 fn is_supported(open: &[OpenTrace], next: &Explanation) -> bool {

@@ -4,7 +4,7 @@ use crate::student::{Row, all_rows, find};
 use fosssim_findings::explanation::{Detail, Explanation};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The explanation of the same steps by this known mistake instead.
+/// Returns the explanation of the same steps by this known mistake instead.
 pub(super) fn as_row(one: &Explanation, row: &Row, same_as: Vec<String>) -> Explanation {
     let of_row = |detail: &Detail| match detail {
         Detail::Term(_) => Detail::Term(row.id.into()),
@@ -15,8 +15,8 @@ pub(super) fn as_row(one: &Explanation, row: &Row, same_as: Vec<String>) -> Expl
     Explanation { key: row.id.to_owned(), about: About::Mistake, details, same_as, ..one.clone() }
 }
 
-/// Whether these explanations of a trace name it, told or as not to be told apart; of what is not written yet, one
-/// stage.
+/// Returns whether these explanations of a trace name it, told or as not to be told apart; of what is not written yet,
+/// one stage.
 #[must_use]
 pub fn is_named_in(mistake: &Explanation, explanations: &[Explanation]) -> bool {
     if mistake.is_unfinished() {
@@ -37,9 +37,9 @@ pub fn is_named_in(mistake: &Explanation, explanations: &[Explanation]) -> bool 
     explanations.iter().any(|one| alternatives(one).contains_key(&said))
 }
 
-/// The words ([`Explanation::said`]) that explain as much as this explanation of a trace: its own, those that it can't
-/// tell apart, and all that would make its polynomials as they are. Each with whether it explains all that this is
-/// about.
+/// Returns the words ([`Explanation::said`]) that explain as much as this explanation of a trace: its own, those that
+/// it can't tell apart, and all that would make its polynomials as they are. Each with whether it explains all that
+/// this is about.
 pub(super) fn alternatives(one: &Explanation) -> BTreeMap<String, bool> {
     let is_known = |key: &&String| find(key).is_some();
     let mut all: BTreeMap<String, bool> = BTreeMap::from([(one.said(), one.is_settled())]);
@@ -61,7 +61,7 @@ pub(super) fn alternatives(one: &Explanation) -> BTreeMap<String, bool> {
     all
 }
 
-/// Whether this, found in the polynomials of one kind alone, is this known mistake: `radii-squared-apart` of
+/// Returns whether this, found in the polynomials of one kind alone, is this known mistake: `radii-squared-apart` of
 /// particles and edges is `pe-radii-squared-apart`.
 pub(super) fn is_in_other_words(one: &Explanation, row: &Row) -> bool {
     let is_called_so = row.id.split_once('-').is_some_and(|(_, own)| own == one.key);

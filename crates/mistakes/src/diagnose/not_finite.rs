@@ -15,14 +15,14 @@ use fosssim_model::{
     trace::{LenientFrame, LoggedImpulse, PolynomialLog},
 };
 
-/// The explanation of the first value of a kept trace that is no finite number, and no other explanation; empty where
-/// all values are finite, or where the reference comes to the same.
+/// Returns the explanation of the first value of a kept trace that is no finite number, and no other explanation; empty
+/// where all values are finite, or where the reference comes to the same.
 #[must_use]
 pub fn not_finite(scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
     of_source(scene, trace.into())
 }
 
-/// The same, of the records at hand.
+/// Explains the records at hand.
 pub(super) fn of_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     let (mut steps, mut reference, mut first) =
         (StepReader::new(scene, source), Reference::new(scene), First::default());
@@ -67,13 +67,13 @@ impl First {
         }
     }
 
-    /// The explanation of that value.
+    /// Returns the explanation of that value.
     pub(super) fn explanation(self) -> Option<Explanation> {
         self.told.map(|found| Explanation::about(Explanation::NOT_FINITE, About::NotFinite(found)))
     }
 }
 
-/// The first value that is no finite number.
+/// Returns the first value that is no finite number.
 fn wild_value(state: &State) -> Option<f64> {
     state.positions.iter().chain(&state.velocities).copied().find(|value| !value.is_finite())
 }
@@ -93,8 +93,8 @@ fn is_wild(frame: &LenientFrame) -> bool {
         || frame.polynomials.coefficients.iter().any(|value| !value.is_finite())
 }
 
-/// The stage of a step that leaves what is no number, of a state that is numbers; nothing where the reference does as
-/// well.
+/// Returns the stage of a step that leaves what is no number, of a state that is numbers; nothing where the reference
+/// does as well.
 fn of_step(reference: &mut Reference<'_>, scene: &Scene, step: u32, frames: &StepFrames) -> Option<NotFinite> {
     let mut capture = Capture::new(&scene.collision);
     let has_result = reference.step(step, &frames.before.state, &mut capture).is_some();
@@ -105,7 +105,7 @@ fn of_step(reference: &mut Reference<'_>, scene: &Scene, step: u32, frames: &Ste
     (has_result && capture.records.is_finite()).then_some(found)
 }
 
-/// The first stage whose results are no numbers, with the first such value.
+/// Returns the first stage whose results are no numbers, with the first such value.
 fn stage(scene: &Scene, frames: &StepFrames) -> Option<(NanStage, f64)> {
     let StepFrames { mid, end, .. } = frames;
     let polynomial = wild_polynomial(&end.polynomials);
@@ -137,7 +137,8 @@ fn stage(scene: &Scene, frames: &StepFrames) -> Option<(NanStage, f64)> {
     }
 }
 
-/// The stage in the one pass of `continuous-time`, where each contact is resolved before the next pair is looked at.
+/// Returns the stage in the one pass of `continuous-time`, where each contact is resolved before the next pair is
+/// looked at.
 fn in_one_pass(scene: &Scene, end: &LenientFrame, polynomial: Option<(usize, f64)>) -> Option<(NanStage, f64)> {
     let all = pairs(scene);
     let place = |contact: &LoggedImpulse| contact.pair().and_then(|pair| all.iter().position(|one| one == pair));
@@ -159,7 +160,7 @@ fn in_one_pass(scene: &Scene, end: &LenientFrame, polynomial: Option<(usize, f64
     Some((if is_moved { NanStage::Responses } else { NanStage::Detection(Some(pair.kind)) }, value))
 }
 
-/// The pair to which a polynomial of a pass belongs, with its place in the pass.
+/// Returns the pair to which a polynomial of a pass belongs, with its place in the pass.
 fn pair_at(scene: &Scene, index: usize) -> Option<(usize, Pair)> {
     let mut first = 0;
     pairs(scene).iter().enumerate().find(|(_, pair)| {

@@ -28,7 +28,7 @@ fn supplied(whose: Assignment, wrong: &[(&Scene, &[Explanation])]) -> Vec<String
     named.into_iter().filter(|(_, is_own)| !is_own).map(|(key, _)| key).collect()
 }
 
-/// Whether each trace in which numbers end does so, too, when a program makes one of these mistakes alone.
+/// Returns whether each trace in which numbers end does so, too, when a program makes one of these mistakes alone.
 fn make_its_end(likely: &[Explanation], wrong: &[(&Scene, &[Explanation])]) -> bool {
     let mistakes = likely.iter().filter(|one| one.is_proven()).filter_map(|one| find(&one.key));
     let students: Vec<Student> = mistakes.map(|row| Student::new(Some(row.mistake))).collect();

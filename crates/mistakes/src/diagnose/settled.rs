@@ -26,7 +26,7 @@ pub fn settled(own: &[Explanation], likely: &[Explanation], refuted: &[String]) 
     Settled { agreed: explanations.len(), explanations }
 }
 
-/// The explanation without what is refuted; nothing where that is all of it.
+/// Returns the explanation without what is refuted; nothing where that is all of it.
 fn without(one: &Explanation, refuted: &[String]) -> Option<Explanation> {
     let mut same_as = one.same_as.iter().filter(|key| !refuted.contains(key)).cloned();
     if !refuted.contains(&one.key) || one.is_not_finite() {
@@ -36,7 +36,7 @@ fn without(one: &Explanation, refuted: &[String]) -> Option<Explanation> {
     Some(as_row(one, row, same_as.collect()))
 }
 
-/// This explanation as the trace shows it; nothing where the trace's own ones do not name it.
+/// Returns this explanation as the trace shows it; nothing where the trace's own ones do not name it.
 fn agreed(own: &[Explanation], likely: &Explanation) -> Vec<Explanation> {
     if likely.is_unexplained() {
         // Each trace may say more of them.

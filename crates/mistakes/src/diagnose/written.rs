@@ -5,8 +5,8 @@ use fosssim_model::{
     scene::Scene,
 };
 
-/// Whether a student of this milestone writes the code in which the mistake is made, or hands in its file; what is
-/// written to a trace, and how a program ends, may be anybody's.
+/// Returns whether a student of this milestone writes the code in which the mistake is made, or hands in its file; what
+/// is written to a trace, and how a program ends, may be anybody's.
 #[must_use]
 pub fn is_written(row: &Row, whose: Assignment) -> bool {
     let is_of = |part: &Part| match (row.area, *part) {
@@ -21,8 +21,8 @@ pub fn is_written(row: &Row, whose: Assignment) -> bool {
     whose.definition().student.iter().any(is_of)
 }
 
-/// The quantity in which a mistake of forces, integrators and what follows from them is made: a row's name begins with
-/// it.
+/// Returns the quantity in which a mistake of forces, integrators and what follows from them is made: a row's name
+/// begins with it.
 pub(super) fn term(row: &Row) -> Term {
     if let Mistake::Step(StepMistake::Edit(edit)) = row.mistake {
         return edit.term;
@@ -42,7 +42,7 @@ pub(super) fn term(row: &Row) -> Term {
     }
 }
 
-/// The milestone of a submission that runs on these scenes: the first one whose programs know all of them.
+/// Returns the milestone of a submission that runs on these scenes: the first one whose programs know all of them.
 #[must_use]
 pub fn milestone<'a>(scenes: impl IntoIterator<Item = &'a Scene>) -> Option<Assignment> {
     let of_scene = |scene: &'a Scene| scene.assignments().collect::<Vec<_>>();

@@ -6,8 +6,9 @@
 /// Names of polynomials, which the assignment gives them: they are no formulas.
 const NAMES: [&str; 2] = ["alpha > 0", "alpha < 1"];
 
-/// The first piece of a formula in a sentence: a number, an operator, a product with a dot, a function's argument, or a
-/// letter that stands for a quantity. `None` where all is words; `alpha > 0` and `alpha < 1` count as names.
+/// Returns the first piece of a formula in a sentence: a number, an operator, a product with a dot, a function's
+/// argument, or a letter that stands for a quantity. `None` where all is words; `alpha > 0` and `alpha < 1` count as
+/// names.
 #[must_use]
 pub fn formula_in(sentence: &str) -> Option<String> {
     let text = NAMES.iter().fold(sentence.to_owned(), |text, name| text.replace(name, "alpha"));
@@ -33,12 +34,12 @@ pub fn formula_in(sentence: &str) -> Option<String> {
         .map(str::to_owned)
 }
 
-/// Whether a letter means nothing by itself; digits are looked at before.
+/// Returns whether a letter means nothing by itself; digits are looked at before.
 const fn is_plain_alone(letter: char) -> bool {
     matches!(letter, 'a' | 'A' | '\'' | '0'..='9')
 }
 
-/// Whether a digit behind this is one of a step's number, which is a place.
+/// Returns whether a digit behind this is one of a step's number, which is a place.
 fn is_of_step(before: &[char]) -> bool {
     let number = before.iter().rev().take_while(|letter| letter.is_ascii_digit()).count();
     before[..before.len() - number].ends_with(&[' ', 's', 't', 'e', 'p', ' '])

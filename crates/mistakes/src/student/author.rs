@@ -12,12 +12,12 @@ impl Student {
     /// The greatest number of mistakes of one student.
     pub const MOST: usize = 8;
 
-    /// A student who makes this mistake.
+    /// Creates a student who makes this mistake.
     pub fn new(mistake: Option<Mistake>) -> Self {
         Self::default().and(mistake)
     }
 
-    /// The same student, who makes this mistake, too. Of two mistakes in one formula or rule only the first is made.
+    /// Returns the student with this mistake added. Of two mistakes in one formula or rule only the first is made.
     #[must_use]
     pub fn and(mut self, mistake: Option<Mistake>) -> Self {
         if let Some(free) = self.mistakes.iter_mut().find(|place| place.is_none()) {
@@ -26,41 +26,41 @@ impl Student {
         self
     }
 
-    /// The mistakes, which stand before all free places.
+    /// Returns the mistakes, which stand before all free places.
     pub(super) fn mistakes(self) -> impl Iterator<Item = Mistake> {
         self.mistakes.into_iter().map_while(|mistake| mistake)
     }
 
-    /// Whether the student makes this mistake.
+    /// Returns whether the student makes this mistake.
     pub fn makes(self, mistake: impl Into<Mistake>) -> bool {
         let mistake = mistake.into();
         self.mistakes().any(|made| made == mistake)
     }
 
-    /// Whether the student makes no mistake of the catalogue.
+    /// Returns whether the student makes no mistake of the catalogue.
     pub(super) fn makes_none(self) -> bool {
         self.mistakes[0].is_none()
     }
 
-    /// The mistake of these parts of the assignment, where many are told apart in one place; the first part that has
-    /// one counts.
+    /// Returns the mistake of these parts of the assignment, where many are told apart in one place; the first part
+    /// that has one counts.
     pub fn mistake_in(self, areas: &[Area]) -> Option<Mistake> {
         areas.iter().find_map(|area| self.mistakes().find(|mistake| mistake.area() == *area))
     }
 
-    /// The first of these mistakes that the student makes.
+    /// Returns the first of these mistakes that the student makes.
     pub(super) fn mistake_among(self, rows: &[Mistake]) -> Option<Mistake> {
         self.mistakes().find(|mistake| rows.contains(mistake))
     }
 
-    /// The same student, who has put the supplied particle-edge approach right (collisions.md 2). That is correct, too,
+    /// Returns the student with the supplied particle-edge approach put right (collisions.md 2). That is correct, too,
     /// and independent of the mistake.
     #[must_use]
     pub fn with_right_approach(self) -> Self {
         Self { right_approach: true, ..self }
     }
 
-    /// Whether the particle-edge approach is mathematically right, not the supplied one.
+    /// Returns whether the particle-edge approach is mathematically right, not the supplied one.
     #[must_use]
     pub fn approach_is_right(self) -> bool {
         self.right_approach || self.makes(Mistake::QuinticRightRearranged)

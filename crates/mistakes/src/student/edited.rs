@@ -23,19 +23,19 @@ pub struct TermPart {
 }
 
 impl TermPart {
-    /// A particle's part of a quantity that knows no pairs; it is added.
+    /// Returns a particle's part of a quantity that knows no pairs; it is added.
     pub const fn of(term: Term, particle: usize) -> Self {
         Self { term, particle, first: particle, role: 0, length: 1.0, is_negative: false }
     }
 }
 
 impl Student {
-    /// The slips in a quantity, or in one of which it is a part.
+    /// Returns the slips in a quantity, or in one of which it is a part.
     pub fn slips(self, term: Term) -> impl Iterator<Item = Slip> {
         self.edits().filter(move |edit| edit.term.covers(term)).map(|edit| edit.slip)
     }
 
-    /// Whether the student makes this slip in the quantity.
+    /// Returns whether the student makes this slip in the quantity.
     pub fn slips_by(self, term: Term, slip: Slip) -> bool {
         self.slips(term).any(|made| made == slip)
     }
@@ -49,18 +49,19 @@ impl Student {
 }
 
 impl World {
-    /// The weight of a quantity that is a number, in this student's program: its slips, but for those of the whole.
+    /// Returns the weight of a quantity that is a number, in this student's program: its slips, but for those of the
+    /// whole.
     pub fn weight(&self, term: Term, length: f64) -> f64 {
         let own = self.student.edits().filter(|edit| edit.term == term);
         own.map(|edit| self.factor(edit.slip, 0, length)).product()
     }
 
-    /// The weight of what a particle gets of a quantity, with the slips of the whole.
+    /// Returns the weight of what a particle gets of a quantity, with the slips of the whole.
     pub fn whole_weight(&self, term: Term, particle: usize, length: f64) -> f64 {
         self.student.slips(term).map(|slip| self.factor(slip, particle, length)).product()
     }
 
-    /// The factor that a slip puts to a quantity.
+    /// Returns the factor that a slip puts to a quantity.
     fn factor(&self, slip: Slip, particle: usize, length: f64) -> f64 {
         let power = |base: f64, by: i8| {
             let product: f64 = (0..by.unsigned_abs()).map(|_| base).product();

@@ -8,17 +8,17 @@ pub struct MovingBody {
     pub start: Vec2,
     /// How far it goes within the step.
     pub displacement: Vec2,
-    /// Its radius.
+    /// The body's radius.
     pub radius: f64,
 }
 
 impl MovingBody {
-    /// Where its centre is at time `t`, a fraction of the step.
+    /// Returns where its centre is at time `t`, a fraction of the step.
     pub fn at(&self, t: f64) -> Vec2 {
         self.start + t * self.displacement
     }
 
-    /// Where its centre is at the end of the step.
+    /// Returns where its centre is at the end of the step.
     pub fn end(&self) -> Vec2 {
         self.at(1.0)
     }
@@ -34,7 +34,8 @@ pub enum Encounter {
     HalfPlane(MovingBody, Vec2, Vec2),
 }
 
-/// The parameter of the closest point on the infinite line at time `t`: 0 at the first endpoint, 1 at the second.
+/// Returns the parameter of the closest point on the infinite line at time `t`: 0 at the first endpoint, 1 at the
+/// second.
 pub fn alpha([one, two, three]: &[MovingBody; 3], t: f64) -> f64 {
     let to_particle = one.start + t * one.displacement - two.start - t * two.displacement;
     let along = three.start + t * three.displacement - two.start - t * two.displacement;

@@ -26,7 +26,7 @@ const STOPS: &[Mistake] = &[
     Mistake::FailsafeStopKeepsVelocity,
 ];
 
-/// The mistake in how a zone moves.
+/// Returns the mistake in how a zone moves.
 fn mistake_of_motion(student: Student) -> Option<Mistake> {
     student.mistakes().find(|mistake| HERE.contains(&mistake.area()) && !STOPS.contains(mistake))
 }
@@ -47,7 +47,7 @@ pub fn perform(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
     }
 }
 
-/// Whether something in the zone cannot move.
+/// Returns whether something in the zone cannot move.
 fn stops(world: &World, zone: &Zone) -> bool {
     let student = world.student;
     let fixed = particles(world, zone).into_iter().any(|particle| world.fixed(particle));
@@ -62,7 +62,7 @@ fn stops(world: &World, zone: &Zone) -> bool {
     half_plane || fixed || student.makes(Mistake::FailsafeAlwaysStops)
 }
 
-/// The particles of a zone in the order in which a loop goes through them.
+/// Returns the particles of a zone in the order in which a loop goes through them.
 fn particles(world: &World, zone: &Zone) -> Vec<usize> {
     match (zone.particles.first(), zone.particles.last()) {
         (Some(&first), Some(&last)) if world.student.makes(Mistake::FailsafeRange) => (first..=last).collect(),
@@ -93,11 +93,11 @@ struct Rigid<'a> {
     centre: Vec2,
     /// How far it moves within the step.
     shift: Vec2,
-    /// Its angular momentum about the centre, times the step.
+    /// The zone's angular momentum about the centre, times the step.
     momentum: f64,
     /// How far the body turns within the step, radians.
     angle: f64,
-    /// Its moment of inertia.
+    /// The zone's moment of inertia.
     inertia: f64,
 }
 
@@ -114,7 +114,7 @@ impl<'a> Rigid<'a> {
         mistake_of_motion(self.world.student)
     }
 
-    /// The mass of a particle, which is the one with this number in its zone.
+    /// Returns the mass of a particle, which is the one with this number in its zone.
     fn mass(&self, number: usize, particle: usize) -> f64 {
         if self.mistake() == Some(Mistake::FailsafeUnweighted) {
             return 1.0;
@@ -127,7 +127,7 @@ impl<'a> Rigid<'a> {
         self.world.masses[index]
     }
 
-    /// The centre of mass and its motion, from the particles' momenta.
+    /// Computes the centre of mass and its motion, from the particles' momenta.
     fn translation(&mut self, zone: &Zone, state: &State) {
         let mut total = 0.0;
         let (student, both) = (self.world.student, self.mistake() == Some(Mistake::FailsafeMeansUnweighted));
@@ -162,7 +162,7 @@ impl<'a> Rigid<'a> {
         }
     }
 
-    /// The angle, from the particles' angular momenta about the centre of mass.
+    /// Computes the angle from the particles' angular momenta about the centre of mass.
     fn rotation(&mut self, zone: &Zone, state: &State) {
         let mut momentum = 0.0;
         let mut inertia = 0.0;

@@ -10,7 +10,7 @@ use super::{
     world::{World, add, subtract},
 };
 
-/// The gradient of all forces at positions `x` and velocities `v`, in the order in which they act.
+/// Returns the gradient of all forces at positions `x` and velocities `v`, in the order in which they act.
 pub fn gradient(world: &World, x: &[f64], v: &[f64]) -> Vec<f64> {
     let mut g = vec![0.0; x.len()];
     for force in &world.scene.forces {
@@ -84,7 +84,7 @@ fn spring(world: &World, force: &Force, x: &[f64], v: &[f64], g: &mut [f64]) {
     world.contribute_opposite(g, Term::SpringDamping, (a, b), damped, l);
 }
 
-/// The number that stands before a direction, of a student who takes its modulus, or a square as in the energy;
+/// Returns the number that stands before a direction, of a student who takes its modulus, or a square as in the energy;
 /// `factor` is what is squared in it.
 fn amended(student: Student, term: Term, value: f64, factor: f64) -> f64 {
     match () {
@@ -111,7 +111,7 @@ fn gravitation(world: &World, (first, second): (usize, usize), constant: f64, x:
     world.contribute_opposite(g, Term::Gravitation, (first, second), pull, r);
 }
 
-/// The library's own force.
+/// Adds the library's own force.
 fn vortex(force: &Force, x: &[f64], v: &[f64], g: &mut [f64]) {
     let Force::Vortex { first, second, strength, coupling } = *force else { return };
     let d = at(x, second) - at(x, first);

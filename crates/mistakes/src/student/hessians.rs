@@ -9,8 +9,8 @@ type Matrix2 = [[f64; 2]; 2];
 
 const IDENTITY: Matrix2 = [[1.0, 0.0], [0.0, 1.0]];
 
-/// The system matrix `M + h Hv + h^2 Hx`, column by column, with the rows and columns of fixed particles replaced by
-/// those of the identity.
+/// Returns the system matrix `M + h Hv + h^2 Hx`, column by column, with the rows and columns of fixed particles
+/// replaced by those of the identity.
 pub fn system_matrix(world: &World, x: &[f64], v: &[f64]) -> Result<Vec<f64>, StepFailure> {
     let (size, h) = (x.len(), world.scene.time_step);
     let is_linear = world.scene.integrator == Integrator::LinearizedImplicitEuler;
@@ -88,7 +88,7 @@ impl HessianSum<'_> {
         Ok(())
     }
 
-    /// Whether a derivative is added in this turn, in this student's program.
+    /// Returns whether a derivative is added in this turn, in this student's program.
     fn takes(&self, term: Term, is_of_velocities: bool) -> bool {
         let is_other = self.world.student.slips_by(term, Slip::OtherMatrix);
         self.is_of_velocities == (is_of_velocities != is_other)
@@ -161,7 +161,7 @@ fn gravitation_block(world: &World, force: &Force, x: &[f64]) -> Matrix2 {
     block(|row, column| (all * IDENTITY[row][column] - three * n[row] * n[column]) * scale)
 }
 
-/// The second derivatives of a spring's elastic part.
+/// Returns the second derivatives of a spring's elastic part.
 fn elastic_block(world: &World, force: &Force, x: &[f64]) -> Matrix2 {
     let Force::Spring { edge, stiffness, rest_length, .. } = *force else { return Matrix2::default() };
     let makes = |mistake: StepMistake| world.student.makes(mistake);
@@ -181,7 +181,7 @@ fn elastic_block(world: &World, force: &Force, x: &[f64]) -> Matrix2 {
     block(|r, c| (along * outer[r][c] + across * (stretch * (IDENTITY[r][c] - removed[r][c]) * inverse)) * stiffness)
 }
 
-/// The derivatives of a spring's damping by positions.
+/// Returns the derivatives of a spring's damping by positions.
 fn damping_block(world: &World, force: &Force, x: &[f64], v: &[f64]) -> Matrix2 {
     let Force::Spring { edge, damping, .. } = *force else { return Matrix2::default() };
     let makes = |mistake: StepMistake| world.student.makes(mistake);
@@ -203,7 +203,7 @@ fn damping_block(world: &World, force: &Force, x: &[f64], v: &[f64]) -> Matrix2 
     block(|r, c| -((damped[r][c] - (damped[r][0] * removed[0][c] + damped[r][1] * removed[1][c])) * factor))
 }
 
-/// The derivatives of a spring's damping by velocities.
+/// Returns the derivatives of a spring's damping by velocities.
 fn velocity_block(world: &World, force: &Force, x: &[f64]) -> Matrix2 {
     let Force::Spring { edge, damping, .. } = *force else { return Matrix2::default() };
     let edge = world.scene.edges[edge];

@@ -113,7 +113,7 @@ fn end_before_rounds(
     Ok(ending)
 }
 
-/// How many rounds this program allows itself.
+/// Returns how many rounds this program allows itself.
 fn limit(world: &World, max_iterations: i32) -> i32 {
     match world.student.mistake_in(&[Area::ImpulseLoop]) {
         Some(Mistake::ImpulsesOneFewer) => max_iterations.saturating_sub(1),
@@ -125,7 +125,7 @@ fn limit(world: &World, max_iterations: i32) -> i32 {
     }
 }
 
-/// One round's impulses, all computed from the positions at its beginning.
+/// Applies one round's impulses, all computed from the positions at its beginning.
 fn resolve(
     world: &World,
     start: &[f64],

@@ -45,7 +45,7 @@ pub fn advance(world: &World, state: &mut State, solves: &mut u32) -> Result<(),
 
 const SYMPLECTIC: [Term; 2] = [Term::SymplecticPositions, Term::SymplecticVelocities];
 
-/// The step of an integrator that students write.
+/// Returns the step of an integrator that students write.
 const fn whole(integrator: Integrator) -> Option<Term> {
     Some(match integrator {
         Integrator::ExplicitEuler => Term::Explicit,
@@ -69,7 +69,7 @@ fn treat_fixed(world: &World, whole: Term, before: &State, state: &mut State) {
     }
 }
 
-/// The rate at which velocities move positions, of a student who may take another one than the assignment's.
+/// Returns the rate at which velocities move positions, of a student who may take another one than the assignment's.
 fn rate(world: &World, term: Term, right: &[f64], other: &[f64]) -> Vec<f64> {
     match () {
         () if world.student.slips_by(term, Slip::OtherVelocity) => other.to_vec(),
@@ -80,8 +80,8 @@ fn rate(world: &World, term: Term, right: &[f64], other: &[f64]) -> Vec<f64> {
     }
 }
 
-/// One step of the explicit integrators, which move positions by the old or by the new velocities, under the forces of
-/// a world that may have another author.
+/// Makes one step of the explicit integrators, which move positions by the old or by the new velocities, under the
+/// forces of a world that may have another author.
 fn explicit(world: &World, forces: &World, [of_x, of_v]: [Term; 2], moves_by_old: bool, state: &mut State) {
     let (student, h) = (world.student, world.scene.time_step);
     // The factor must stay a factor: as a change of sign it would turn the sign of a NaN.
@@ -191,7 +191,7 @@ fn implicit(world: &World, state: &mut State, solves: &mut u32) -> Result<(), St
     Ok(())
 }
 
-/// The length of a vector of even size, its squares summed over even and odd entries apart.
+/// Returns the length of a vector of even size, its squares summed over even and odd entries apart.
 fn norm(vector: &[f64]) -> f64 {
     let squares = |start: usize| {
         let squares = vector.iter().skip(start).step_by(2).map(|entry| entry * entry);

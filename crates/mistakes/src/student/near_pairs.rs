@@ -18,7 +18,7 @@ pub struct NearPairSearch<'a> {
 type BoundingBox = [Vec2; 2];
 
 impl<'a> NearPairSearch<'a> {
-    /// At positions `x`, which velocities `v` have led to, for layers of thickness `h`.
+    /// Creates the search at positions `x`, which velocities `v` have led to, for layers of thickness `h`.
     pub fn new(world: &'a World, h: f64, x: &[f64], v: &[f64]) -> Self {
         let student = world.student;
         let start = || world.initial_state().x;
@@ -41,7 +41,7 @@ impl<'a> NearPairSearch<'a> {
         Self { world, h, x, ranks }
     }
 
-    /// How often this pair is found that is near.
+    /// Returns how often this pair is found that is near.
     pub fn times(&self, kind: PairKind, one: usize, other: usize) -> u32 {
         if !self.is_found(kind, one, other) {
             return 0;
@@ -107,7 +107,7 @@ impl<'a> NearPairSearch<'a> {
         [centre - Vec2::new(side, side), centre + Vec2::new(side, side)]
     }
 
-    /// The boxes by which an edge is looked for.
+    /// Returns the boxes by which an edge is looked for.
     fn edge(&self, edge: usize) -> Vec<BoundingBox> {
         let edge = self.world.scene.edges[edge];
         let side = edge.radius + 0.5 * self.h;

@@ -32,7 +32,7 @@ pub enum Object {
 }
 
 impl Object {
-    /// The number of its kind, in traces and at places, and its index.
+    /// Returns the number of its kind, in traces and at places, and its index.
     pub const fn numbers(self) -> (usize, usize) {
         match self {
             Self::Particle(index) => (0, index),
@@ -56,7 +56,7 @@ pub struct Contact {
 /// Particles to be moved together.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Zone {
-    /// Their indices.
+    /// The particles' indices.
     pub particles: BTreeSet<usize>,
     /// Whether one of them hits a half-plane.
     pub half_plane: bool,

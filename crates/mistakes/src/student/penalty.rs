@@ -76,7 +76,7 @@ impl PenaltySum<'_> {
         }
     }
 
-    /// `k` times how deep the layers of two bodies overlap, a negative number; none where they do not.
+    /// Returns `k` times how deep the layers of two bodies overlap, a negative number; none where they do not.
     fn depth(&self, term: Term, distance: f64, [first, second]: [f64; 2]) -> Option<[f64; 2]> {
         let PenaltyLayer { k, h, detection } = self.layer;
         let makes = |slip: Slip| self.world.student.slips_by(term, slip);
@@ -171,7 +171,8 @@ impl PenaltySum<'_> {
     }
 }
 
-/// The closest point of an edge in this student's formulas, which should be kept between its ends as `limited` does.
+/// Returns the closest point of an edge in this student's formulas, which should be kept between its ends as `limited`
+/// does.
 pub fn closest(student: Student, term: Term, alpha: f64, limited: impl Fn(f64) -> f64) -> f64 {
     student
         .slips(term)

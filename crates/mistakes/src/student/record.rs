@@ -30,7 +30,7 @@ pub struct Record {
 }
 
 impl Record {
-    /// The record that this student writes in a scene of this collision type.
+    /// Creates the record that this student writes in a scene of this collision type.
     #[must_use]
     pub fn new(student: Student, collision: &Collision, state: &State, log: &StepLog) -> Self {
         let has_polynomials = matches!(collision, Collision::ContinuousTime { .. } | Collision::Hybrid { .. });
@@ -70,7 +70,7 @@ impl Record {
     }
 }
 
-/// The whole trace that this student's program writes, in memory; up to the step that fails, if one does.
+/// Returns the whole trace that this student's program writes, in memory; up to the step that fails, if one does.
 ///
 /// # Errors
 /// The bytes that were written, and why there are no more.
@@ -78,7 +78,7 @@ pub fn trace(scene: &Scene, student: Student) -> Result<Vec<u8>, (Vec<u8>, StepF
     written(scene, student, StepLog::default())
 }
 
-/// The same of a program that may go on for ever: up to the step that has more polynomials than this.
+/// Returns the trace of a program that may go on for ever: up to the step that has more polynomials than this.
 ///
 /// # Errors
 /// The bytes that were written, and why there are no more.
@@ -130,7 +130,7 @@ fn impulses(student: Student, impulses: &[Contact]) -> Vec<Contact> {
     listed
 }
 
-/// The coefficients of the record's polynomial `index`, as this program logs them.
+/// Returns the coefficients of the record's polynomial `index`, as this program logs them.
 fn polynomial(student: Student, log: &StepLog, index: usize) -> Vec<f64> {
     let partner = index ^ 1;
     let swapped = student.makes(Mistake::LogSwapped) && partner < log.polynomials.len();

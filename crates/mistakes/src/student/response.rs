@@ -13,7 +13,7 @@ use super::{
 /// The parts of the assignment whose mistakes are made here.
 const HERE: &[Area] = &[Area::Response];
 
-/// Twice `(1 + COR) / 2`.
+/// Returns twice `(1 + COR) / 2`.
 pub fn bounce(world: &World) -> f64 {
     let student = world.student;
     let f = match student.mistake_in(HERE) {
@@ -25,7 +25,7 @@ pub fn bounce(world: &World) -> f64 {
     if student.makes(Mistake::ResponseHalved) { f } else { 2.0 * f }
 }
 
-/// The coefficient of restitution of the scene; 1 where it has none.
+/// Returns the coefficient of restitution of the scene; 1 where it has none.
 fn restitution(world: &World) -> f64 {
     match world.scene.collision {
         Collision::Simple { restitution }
@@ -63,7 +63,7 @@ struct PairResponse<'a> {
 }
 
 impl PairResponse<'_> {
-    /// The particle's mean velocity over the step.
+    /// Returns the particle's mean velocity over the step.
     fn velocity(&self, particle: usize) -> Vec2 {
         if self.world.student.makes(Mistake::ResponseEndVelocity) {
             return at(&self.predicted.v, particle);
@@ -147,7 +147,7 @@ impl PairResponse<'_> {
         }
     }
 
-    /// A half-plane bounces fixed particles, too: the course's own response has no test for them.
+    /// Bounces a particle off a half-plane, fixed ones, too: the course's own response has no test for them.
     fn particle_half_plane(&mut self, one: usize) {
         let student = self.world.student;
         let spares = student.makes(Mistake::ResponseHalfPlaneSparesFixed) && self.world.fixed(one);
@@ -175,7 +175,7 @@ impl PairResponse<'_> {
     }
 }
 
-/// The masses of two particles in this student's formulas.
+/// Returns the masses of two particles in this student's formulas.
 pub fn masses(student: Student, first: f64, second: f64) -> (f64, f64) {
     match student.mistake_in(HERE) {
         Some(Mistake::ResponseMassesSwapped) => (second, first),
@@ -184,7 +184,7 @@ pub fn masses(student: Student, first: f64, second: f64) -> (f64, f64) {
     }
 }
 
-/// The share of an edge's second end in this student's formulas.
+/// Returns the share of an edge's second end in this student's formulas.
 pub fn share_of_second(student: Student, alpha: f64) -> f64 {
     match student.mistake_in(HERE) {
         Some(Mistake::ResponseEdgeMiddle) => 0.5,
@@ -193,7 +193,7 @@ pub fn share_of_second(student: Student, alpha: f64) -> f64 {
     }
 }
 
-/// Between 0 and 1; 0 when it is not a number.
+/// Clamps a number between 0 and 1; 0 when it is not a number.
 pub fn clamped(alpha: f64) -> f64 {
     let positive = if 0.0 < alpha { alpha } else { 0.0 };
     if positive < 1.0 { positive } else { 1.0 }

@@ -3,7 +3,7 @@ use fosssim_num::vector::{Vec2, at, put};
 
 use super::{Mistake, author::Student};
 
-/// A number as a `float` holds it.
+/// Returns a number as a `float` holds it.
 pub fn single(value: f64) -> f64 {
     #[expect(clippy::cast_possible_truncation, reason = "this is the mistake: a float where a double belongs")]
     let single = value as f32;
@@ -11,7 +11,7 @@ pub fn single(value: f64) -> f64 {
 }
 
 impl Student {
-    /// `addend + a * b`.
+    /// Returns `addend + a * b`.
     pub fn add_product(self, addend: f64, a: f64, b: f64) -> f64 {
         if self.makes(Mistake::FusedArithmetic) {
             #[expect(clippy::disallowed_methods, reason = "a student's compiler fuses what it likes")]
@@ -20,17 +20,17 @@ impl Student {
         addend + a * b
     }
 
-    /// `v + s * w`.
+    /// Returns `v + s * w`.
     pub fn add_scaled(self, v: Vec2, s: f64, w: Vec2) -> Vec2 {
         Vec2::new(self.add_product(v.x, s, w.x), self.add_product(v.y, s, w.y))
     }
 
-    /// The dot product.
+    /// Returns the dot product.
     pub fn dot(self, a: Vec2, b: Vec2) -> f64 {
         self.add_product(a.x * b.x, a.y, b.y)
     }
 
-    /// `a + factor * b`, entry by entry.
+    /// Returns `a + factor * b`, entry by entry.
     pub fn sum(self, a: &[f64], factor: f64, b: &[f64]) -> Vec<f64> {
         a.iter().zip(b).map(|(a, b)| self.add_product(*a, factor, *b)).collect()
     }

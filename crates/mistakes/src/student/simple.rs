@@ -67,7 +67,7 @@ impl SimplePass<'_> {
         self.world.student.slips_by(term, slip)
     }
 
-    /// Whether bodies with these radii collide, whose contact vector is `n`, with the relative velocity `w`.
+    /// Returns whether bodies with these radii collide, whose contact vector is `n`, with the relative velocity `w`.
     fn collides(&self, kind: &SimpleKind, n: Vec2, radii: [f64; 2], w: Vec2) -> bool {
         let [first, second] = radii;
         let reach = match () {
@@ -86,7 +86,7 @@ impl SimplePass<'_> {
             && holds(kind.approach, 0.0, w.dot(&n))
     }
 
-    /// The contact vector as the program returns it.
+    /// Returns the contact vector as the program returns it.
     fn returned(&self, kind: &SimpleKind, n: Vec2) -> Vec2 {
         self.world.student.slips(kind.normal).fold(n, |n, slip| match slip {
             Slip::Sign => -n,
@@ -97,7 +97,7 @@ impl SimplePass<'_> {
         })
     }
 
-    /// `1 + COR`.
+    /// Returns `1 + COR`.
     fn bounce(&self, kind: &SimpleKind) -> f64 {
         let Collision::Simple { restitution } = self.world.scene.collision else { return 2.0 };
         match () {
@@ -109,13 +109,13 @@ impl SimplePass<'_> {
         }
     }
 
-    /// The velocity from which an impulse is computed.
+    /// Returns the velocity from which an impulse is computed.
     fn velocity(&self, kind: &SimpleKind, state: &State, particle: usize) -> Vec2 {
         let from_start = self.makes(kind.response, Slip::StartVelocity);
         at(if from_start { &self.start } else { &state.v }, particle)
     }
 
-    /// The mass of a body of the pair: infinite where it is fixed.
+    /// Returns the mass of a body of the pair: infinite where it is fixed.
     fn mass(&self, kind: &SimpleKind, particle: usize) -> f64 {
         let is_finite = [Slip::FixedFinite, Slip::FixedAsFree].into_iter().any(|slip| self.makes(kind.response, slip));
         match () {
@@ -155,7 +155,7 @@ impl SimplePass<'_> {
         Some(n)
     }
 
-    /// The velocities of two bodies as the test of approach takes them into account.
+    /// Returns the velocities of two bodies as the test of approach takes them into account.
     fn seen(&self, kind: &SimpleKind, [first, second]: [Vec2; 2]) -> [Vec2; 2] {
         match () {
             () if self.makes(kind.approach, Slip::FirstOnly) => [first, Vec2::zeros()],
@@ -225,7 +225,7 @@ impl SimplePass<'_> {
         self.push(kind, state, (2, three), n, -(of_three * third / (m3 / m1 + low * m3 / m2 + high) * u));
     }
 
-    /// A fixed particle is changed, too.
+    /// Responds to a contact with a half-plane; a fixed particle is changed, too.
     fn particle_half_plane(&self, state: &mut State, one: usize, index: usize) -> Option<Vec2> {
         let kind = &HALF_PLANES;
         let plane = self.world.scene.half_planes[index];

@@ -60,7 +60,7 @@ pub fn step(
     Ok(())
 }
 
-/// The cost of one solve of an implicit integrator's system, in polynomials: some thousand operations each.
+/// Returns the cost of one solve of an implicit integrator's system, in polynomials: some thousand operations each.
 fn solve_work(world: &World) -> u64 {
     10 + (2 * world.scene.particles.len() as u64).pow(3) / 1500
 }

@@ -62,18 +62,18 @@ impl World {
         Self { scene, student, masses }
     }
 
-    /// The same scene for another student's program.
+    /// Returns the scene for another student's program.
     #[must_use]
     pub fn of(&self, student: Student) -> Self {
         Self { scene: Arc::clone(&self.scene), student, masses: Arc::clone(&self.masses) }
     }
 
-    /// The pairs of one detection pass, in order (collisions.md 1).
+    /// Returns the pairs of one detection pass, in order (collisions.md 1).
     pub fn pairs(&self) -> impl Iterator<Item = Pair> {
         pairs(&self.scene, self.student)
     }
 
-    /// The state at time zero.
+    /// Returns the state at time zero.
     pub fn initial_state(&self) -> State {
         let particles = &self.scene.particles;
         State {
@@ -82,7 +82,7 @@ impl World {
         }
     }
 
-    /// The particle's mass as collisions see it: nothing moves a fixed particle, so its mass is infinite.
+    /// Returns the particle's mass as collisions see it: nothing moves a fixed particle, so its mass is infinite.
     pub fn collision_mass(&self, particle: usize) -> f64 {
         let particle = &self.scene.particles[particle];
         if particle.fixed && !self.student.makes(Mistake::ResponseFixedMassFinite) {
@@ -92,19 +92,19 @@ impl World {
         }
     }
 
-    /// Whether the particle is fixed.
+    /// Returns whether the particle is fixed.
     pub fn fixed(&self, particle: usize) -> bool {
         self.scene.particles[particle].fixed
     }
 }
 
-/// Whether an edge joins two particles.
+/// Returns whether an edge joins two particles.
 fn are_connected(scene: &Scene, one: usize, two: usize) -> bool {
     scene.edges.iter().any(|edge| [(one, two), (two, one)].contains(&(edge.first, edge.second)))
 }
 
-/// All pairs in the order of detection: per particle the later particles, the edges of which it is not an endpoint,
-/// the half-planes.
+/// Returns all pairs in the order of detection: per particle the later particles, the edges of which it is not an
+/// endpoint, the half-planes.
 fn pairs(scene: &Scene, student: Student) -> impl Iterator<Item = Pair> {
     let (planes_first, of) = (student.makes(Mistake::PairsHalfPlanesFirst), OfParticle { scene, student });
     let particles = 0..scene.particles.len();

@@ -11,7 +11,7 @@ use super::{
 /// The parts of the assignment whose mistakes are made here.
 const HERE: &[Area] = &[Area::ImpactZones];
 
-/// The zone of one contact.
+/// Returns the zone of one contact.
 pub fn zone_of(world: &World, contact: &Contact) -> Zone {
     let (student, all) = (world.student, world.scene.particles.len());
     let one = contact.pair.particle;
@@ -96,7 +96,7 @@ fn everything(zones: Vec<Zone>) -> Vec<Zone> {
     whole.into_iter().collect()
 }
 
-/// The same zones by way of disjoint sets (union and find), in the order of their first particles.
+/// Merges the zones by way of disjoint sets (union and find), in the order of their first particles.
 fn disjoint_sets(zones: &[Zone]) -> Vec<Zone> {
     let count = zones.iter().filter_map(|zone| zone.particles.last()).max().map_or(0, |last| last + 1);
     let mut parents: Vec<usize> = (0..count).collect();
@@ -127,7 +127,7 @@ fn root(parents: &[usize], mut particle: usize) -> usize {
     particle
 }
 
-/// Whether two lists hold the same zones, in whatever order.
+/// Returns whether two lists hold the same zones, in whatever order.
 pub fn equal(student: Student, old: &[Zone], new: &[Zone]) -> bool {
     let same = |one: &Zone, other: &Zone| match student.mistake_in(HERE) {
         Some(Mistake::ZonesEqualByCount) => true,

@@ -11,7 +11,8 @@ use told::cut_result;
 
 pub mod told;
 
-/// The grade with no more of its scenes than hints tell students. Groups that students do not see are in it, too.
+/// Returns the grade with no more of its scenes than hints tell students. Groups that students do not see are in it,
+/// too.
 #[must_use]
 pub fn told_to_students(grade: &Grade) -> Cow<'_, Grade> {
     if grade.groups.iter().all(|group| group.hints == Hints::Full) {
@@ -30,8 +31,8 @@ pub fn told_to_students(grade: &Grade) -> Cow<'_, Grade> {
     Cow::Owned(told)
 }
 
-/// The grade with nothing in it but what students see at once: points and verdict are those of the groups that are
-/// left, and hints say how much is told of their scenes ([`told_to_students`]). Unless the suite shows all that
+/// Returns the grade with nothing in it but what students see at once: points and verdict are those of the groups that
+/// are left, and hints say how much is told of their scenes ([`told_to_students`]). Unless the suite shows all that
 /// programs print, scenes tell their verdicts only ([`withhold`](fosssim_findings::SceneResult::withhold)).
 #[must_use]
 pub fn for_students(grade: &Grade) -> Cow<'_, Grade> {
@@ -60,16 +61,16 @@ pub fn for_students(grade: &Grade) -> Cow<'_, Grade> {
     Cow::Owned(visible)
 }
 
-/// The mistake that explains most wrong scenes, where several have explanations: together they nearly always tell
-/// mistakes apart that one scene can't.
+/// Returns the mistake that explains most wrong scenes, where several have explanations: together they nearly always
+/// tell mistakes apart that one scene can't.
 #[must_use]
 pub fn likely_mistake(grade: &Grade) -> Option<Explanation> {
     let explained = grade.scenes().filter(|scene| !scene.explanations.is_empty()).count();
     if explained > 1 { likely_mistakes(grade).into_iter().next().map(|(likely, _)| likely) } else { None }
 }
 
-/// The likely mistakes, at most three, with the number of wrong scenes that each explains: the one that explains
-/// most, then of what is left the one that explains most of it, provided that it explains it completely
+/// Returns the likely mistakes, at most three, with the number of wrong scenes that each explains: the one that
+/// explains most, then of what is left the one that explains most of it, provided that it explains it completely
 /// ([`several`]).
 #[must_use]
 pub fn likely_mistakes(grade: &Grade) -> Vec<(Explanation, usize)> {
@@ -82,7 +83,7 @@ pub fn likely_mistakes(grade: &Grade) -> Vec<(Explanation, usize)> {
         .collect()
 }
 
-/// How many scenes' explanations name this mistake, or a stage of what is not written yet.
+/// Returns how many scenes' explanations name this mistake, or a stage of what is not written yet.
 #[must_use]
 pub fn explained_by(grade: &Grade, mistake: &Explanation) -> usize {
     grade.scenes().filter(|scene| is_named_in(mistake, &scene.explanations)).count()

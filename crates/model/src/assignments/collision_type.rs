@@ -19,7 +19,7 @@ impl CollisionType {
     /// All of them.
     pub const ALL: [Self; 5] = [Self::None, Self::Simple, Self::Penalty, Self::ContinuousTime, Self::Hybrid];
 
-    /// Its name in scenes: `continuous-time`.
+    /// Returns the type's name in scenes: `continuous-time`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {

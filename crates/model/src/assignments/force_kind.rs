@@ -5,11 +5,11 @@
 pub enum ForceKind {
     /// A spring along an edge, with damping.
     Spring,
-    /// The same acceleration for every particle.
+    /// One acceleration for every particle.
     SimpleGravity,
     /// The attraction of two particles by their masses.
     Gravitation,
-    /// The same force on every particle.
+    /// One force on every particle.
     Constant,
     /// Drag against each particle's velocity.
     Drag,

@@ -25,13 +25,13 @@ impl Integrator {
         ("linearized-implicit-euler", Self::LinearizedImplicitEuler),
     ];
 
-    /// Its name in scenes.
+    /// Returns the integrator's name in scenes.
     #[must_use]
     pub const fn name(self) -> &'static str {
         Self::NAMED[self as usize].0
     }
 
-    /// Whether it solves a system of equations in every step.
+    /// Returns whether it solves a system of equations in every step.
     #[must_use]
     pub const fn is_implicit(self) -> bool {
         match self {

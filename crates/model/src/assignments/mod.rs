@@ -51,7 +51,7 @@ impl Assignment {
     /// The one that is meant where none is named.
     pub const DEFAULT: Self = Self::T2M2;
 
-    /// Everything that it asks for.
+    /// Returns everything that it asks for.
     #[must_use]
     pub const fn definition(self) -> &'static Definition {
         match self {
@@ -64,7 +64,7 @@ impl Assignment {
         }
     }
 
-    /// The assignment that brought this collision type into the course.
+    /// Returns the assignment that brought this collision type into the course.
     #[must_use]
     pub const fn of(collision: CollisionType) -> Self {
         match collision {
@@ -74,13 +74,13 @@ impl Assignment {
         }
     }
 
-    /// Its key: the name of its suite and of its folder in every room that has one.
+    /// Returns the assignment's key: the name of its suite and of its folder in every room that has one.
     #[must_use]
     pub const fn key(self) -> &'static str {
         self.definition().key
     }
 
-    /// The assignment with this key.
+    /// Returns the assignment with this key.
     #[must_use]
     pub fn named(key: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|assignment| assignment.key() == key)
@@ -90,9 +90,9 @@ impl Assignment {
 /// The rules of an assignment.
 #[derive(Debug)]
 pub struct Definition {
-    /// Its key, a word for command lines and folders.
+    /// The assignment's key, a word for command lines and folders.
     pub key: &'static str,
-    /// Its name in the course.
+    /// The assignment's name in the course.
     pub title: &'static str,
     /// The collision types that it brings, and what a program does for each.
     pub handlings: &'static [Handling],
@@ -129,7 +129,7 @@ const COMMON: Definition = Definition {
 };
 
 impl Definition {
-    /// How it handles a collision type; none where another assignment brings it.
+    /// Returns how it handles a collision type; none where another assignment brings it.
     #[must_use]
     pub fn handling(&self, collision: CollisionType) -> Option<&Handling> {
         self.handlings.iter().find(|handling| handling.collision == collision)
@@ -141,9 +141,9 @@ impl Definition {
 /// It refuses a scene with another integrator ("Invalid integrator"), and ignores elements of other forces.
 #[derive(Debug, Clone, Copy)]
 pub struct Library {
-    /// Its integrators.
+    /// The library's integrators.
     pub integrators: &'static [Integrator],
-    /// Its forces.
+    /// The library's forces.
     pub forces: &'static [ForceKind],
     /// The collision types that scenes of the assignment may have.
     pub collisions: &'static [CollisionType],
@@ -193,7 +193,7 @@ pub struct RecordLists {
 pub enum ImpulseList {
     /// There is no such list.
     Absent,
-    /// It is there and always empty, whatever happens in the step.
+    /// The list is there and always empty, whatever happens in the step.
     Empty,
     /// The responses of the step.
     Responses,

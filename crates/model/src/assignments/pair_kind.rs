@@ -14,7 +14,7 @@ pub enum PairKind {
 }
 
 impl PairKind {
-    /// How many polynomials a detection call of this kind logs: 2, 4, 2.
+    /// Returns how many polynomials a detection call of this kind logs: 2, 4, 2.
     #[must_use]
     pub const fn polynomials(self) -> usize {
         match self {
@@ -23,7 +23,7 @@ impl PairKind {
         }
     }
 
-    /// How many coefficients each of them has before small leading ones are dropped; 0 where there is none.
+    /// Returns how many coefficients each of them has before small leading ones are dropped; 0 where there is none.
     #[must_use]
     pub const fn coefficients(self) -> [usize; Self::MOST_POLYNOMIALS] {
         match self {
@@ -32,7 +32,7 @@ impl PairKind {
         }
     }
 
-    /// The number that a trace writes.
+    /// Returns the number that a trace writes.
     #[must_use]
     pub const fn code(self) -> i32 {
         self as i32
@@ -44,20 +44,20 @@ impl PairKind {
     /// All kinds, in the order in which a pass looks at a particle's pairs, and of the trace's numbers.
     pub const ALL: [Self; 3] = [Self::ParticleParticle, Self::ParticleEdge, Self::ParticleHalfPlane];
 
-    /// Its place in [`PairKind::ALL`].
+    /// Returns the kind's place in [`PairKind::ALL`].
     #[inline]
     #[must_use]
     pub const fn index(self) -> usize {
         self as usize
     }
 
-    /// The kind that a trace writes as this number; none for numbers of a damaged trace.
+    /// Returns the kind that a trace writes as this number; none for numbers of a damaged trace.
     #[must_use]
     pub fn from_code(code: i32) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| kind.code() == code)
     }
 
-    /// Its name: `particle-edge`.
+    /// Returns the kind's name: `particle-edge`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -67,7 +67,7 @@ impl PairKind {
         }
     }
 
-    /// Its name on command lines and in keys: `pe`.
+    /// Returns the kind's name on command lines and in keys: `pe`.
     #[must_use]
     pub const fn short(self) -> &'static str {
         match self {
@@ -77,7 +77,7 @@ impl PairKind {
         }
     }
 
-    /// The kind of the second object: `edge`.
+    /// Returns the kind of the second object: `edge`.
     #[must_use]
     pub const fn second(self) -> &'static str {
         match self {
@@ -87,7 +87,7 @@ impl PairKind {
         }
     }
 
-    /// The original's name for the second object (oracle-behaviour.md 6.1).
+    /// Returns the original's name for the second object (oracle-behaviour.md 6.1).
     #[must_use]
     pub const fn second_of_original(self) -> &'static str {
         match self {

@@ -31,7 +31,7 @@ pub enum Part {
 }
 
 impl Part {
-    /// The file that the student hands in for it.
+    /// Returns the file that the student hands in for it.
     #[must_use]
     pub const fn file(self) -> &'static str {
         match self {

@@ -35,7 +35,7 @@ pub(super) fn check(document: &Document<'_>, parts: &SceneParts<'_, '_>, report:
     }
 }
 
-/// An error or warning about an element.
+/// Returns an error or warning about an element.
 fn about(tag: &Tag<'_>, message: String, help: &str) -> Problem {
     Problem::of(tag.rule.name, &tag.span, message).help(help)
 }
@@ -114,7 +114,7 @@ fn normals(parts: &SceneParts<'_, '_>, report: &mut Report) {
     }
 }
 
-/// Half-planes reflect fixed particles, too.
+/// Checks particles that are fixed and move: half-planes reflect these, too.
 fn fixed_and_moving(parts: &SceneParts<'_, '_>, report: &mut Report) {
     let responds = matches!(
         parts.collision,
@@ -133,7 +133,7 @@ fn fixed_and_moving(parts: &SceneParts<'_, '_>, report: &mut Report) {
     }
 }
 
-/// Whether two particles start in one place, as far as these could be read.
+/// Returns whether two particles start in one place, as far as these could be read.
 fn in_one_place(parts: &SceneParts<'_, '_>, first: usize, second: usize) -> bool {
     parts.place(first).zip(parts.place(second)).is_some_and(|(first, second)| first == second)
 }
@@ -191,7 +191,7 @@ impl ContactRule {
         }
     }
 
-    /// Whether objects of these radii at distance zero touch.
+    /// Returns whether objects of these radii at distance zero touch.
     fn touches(&self, radii: f64) -> bool {
         0.0 < radii + if self.penalty { self.thickness } else { 0.0 }
     }

@@ -177,7 +177,8 @@ impl<'t> DocumentReader<'t, '_> {
         }
     }
 
-    /// The original joins lines: a name with nothing but a line feed behind it becomes one with what follows.
+    /// Warns where the original joins lines: a name with nothing but a line feed behind it becomes one with what
+    /// follows.
     fn glued(&mut self, inner: &str, name: &str, span: &Range<usize>) {
         let behind = inner[name.len()..].trim_start_matches('\n');
         let glued = behind.len() < inner.len() - name.len() && behind.bytes().next().is_some_and(|b| !is_space(b));

@@ -11,40 +11,40 @@ impl Element {
         Self(format!("<{name}"))
     }
 
-    /// An attribute whose value needs no references.
+    /// Returns an attribute whose value needs no references.
     pub(super) fn with(mut self, name: &str, value: impl fmt::Display) -> Self {
         self.0 += &format!(r#" {name}="{value}""#);
         self
     }
 
-    /// A number in its shortest form, with an exponent where that is shorter.
+    /// Returns a number in its shortest form, with an exponent where that is shorter.
     pub(super) fn number(self, name: &str, value: f64) -> Self {
         let written = format!("{value:?}");
         self.with(name, written.strip_suffix(".0").unwrap_or(&written))
     }
 
-    /// Two numbers.
+    /// Returns two numbers.
     pub(super) fn vector(self, x: &str, y: &str, value: Vec2) -> Self {
         self.number(x, value.x).number(y, value.y)
     }
 
-    /// A colour's three attributes.
+    /// Returns a colour's three attributes.
     pub(super) fn color(self, Color { red, green, blue }: Color) -> Self {
         self.number("r", red).number("g", green).number("b", blue)
     }
 
-    /// The index of an edge.
+    /// Returns the index of an edge.
     pub(super) fn edge(self, name: &str, index: usize) -> Self {
         self.with(name, index)
     }
 
-    /// The index of a particle.
+    /// Returns the index of a particle.
     pub(super) fn particle(self, name: &str, index: usize) -> Self {
         self.with(name, index)
     }
 
-    /// Any text. White space other than the space is written as references, since line feeds vanish in the original
-    /// and other programs change the rest.
+    /// Returns any text. White space other than the space is written as references, since line feeds vanish in the
+    /// original and other programs change the rest.
     pub(super) fn text(self, name: &str, text: &str) -> Self {
         let mut value = String::new();
         for c in text.chars() {

@@ -30,7 +30,8 @@ pub(super) struct TagFields<'d, 't, 'r> {
 }
 
 impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
-    /// `number` is the element's number among its kind, when there may be several.
+    /// Creates the reader of an element's attributes; `number` is the element's number among its kind, when there may
+    /// be several.
     pub(super) fn new(tag: &'d Tag<'t>, number: Option<usize>, report: &'r mut Report) -> Self {
         Self { tag, number, report }
     }
@@ -39,34 +40,34 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         self.raw(name).is_some()
     }
 
-    /// The place of an attribute's value, or of the element when it has no such attribute.
+    /// Returns the place of an attribute's value, or of the element when it has no such attribute.
     pub(super) fn span(&self, name: &str) -> Range<usize> {
         self.raw(name).map_or_else(|| self.tag.span.clone(), |attribute| attribute.span.clone())
     }
 
-    /// An error about an attribute's value: `NAME of WHO MESSAGE`.
+    /// Reports an error about an attribute's value: `NAME of WHO MESSAGE`.
     pub(super) fn error(&mut self, name: &str, message: &str, help: impl Into<String>) {
         self.complain(Severity::Error, name, || (message.to_owned(), help.into()));
     }
 
-    /// A warning about an attribute's value: `NAME of WHO MESSAGE`.
+    /// Reports a warning about an attribute's value: `NAME of WHO MESSAGE`.
     pub(super) fn warning(&mut self, name: &str, message: &str, help: impl Into<String>) {
         self.complain(Severity::Warning, name, || (message.to_owned(), help.into()));
     }
 
-    /// An error about an attribute's value, which is shown as written.
+    /// Reports an error about an attribute's value, which is shown as written.
     pub(super) fn bad(&mut self, name: &str, help: impl Into<String>) {
         let written = self.raw(name).map_or("", |attribute| attribute.value);
         self.complain(Severity::Error, name, || (format!("is `{}`", quote(written)), help.into()));
     }
 
-    /// A warning about an attribute's value, which is shown as written.
+    /// Reports a warning about an attribute's value, which is shown as written.
     pub(super) fn odd(&mut self, name: &str, help: impl Into<String>) {
         let written = self.raw(name).map_or("", |attribute| attribute.value);
         self.complain(Severity::Warning, name, || (format!("is `{}`", quote(written)), help.into()));
     }
 
-    /// The words are made only if there is room for them.
+    /// Reports a problem, whose words are made only if there is room for them.
     fn complain(&mut self, severity: Severity, name: &str, words: impl FnOnce() -> (String, String)) {
         let (span, tag, number) = (self.span(name), self.tag, self.number);
         self.report.add(severity, || {
@@ -77,12 +78,12 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         });
     }
 
-    /// Whether an attribute is absent or empty.
+    /// Returns whether an attribute is absent or empty.
     pub(super) fn is_blank(&self, name: &str) -> bool {
         self.raw(name).is_none_or(|attribute| attribute.value.is_empty())
     }
 
-    /// The text of a required attribute.
+    /// Returns the text of a required attribute.
     pub(super) fn text(&mut self, name: &str, what: &str) -> Option<String> {
         let attribute = self.required(name, what)?;
         let text = self.decoded(attribute)?.into_owned();
@@ -92,12 +93,12 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         Some(text)
     }
 
-    /// The text of an optional attribute; the outer `None` means unreadable.
+    /// Returns the text of an optional attribute; the outer `None` means unreadable.
     pub(super) fn optional_text(&mut self, name: &str) -> Option<Option<String>> {
         if self.has(name) { self.text(name, "").map(Some) } else { Some(None) }
     }
 
-    /// One of some names.
+    /// Returns one of some names.
     pub(super) fn choice<T: Copy>(&mut self, name: &str, choices: &[(&str, T)]) -> Option<T> {
         let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
         let attribute = self.required(name, &list(&names))?;
@@ -113,13 +114,13 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         None
     }
 
-    /// A required scalar.
+    /// Returns a required scalar.
     pub(super) fn scalar(&mut self, name: &str) -> Option<f64> {
         let attribute = self.required(name, "a number")?;
         self.number(attribute)
     }
 
-    /// A scalar with a default.
+    /// Returns a scalar with a default.
     pub(super) fn scalar_or(&mut self, name: &str, default: f64) -> Option<f64> {
         match self.raw(name) {
             Some(attribute) => self.number(attribute),
@@ -127,13 +128,13 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         }
     }
 
-    /// Two required scalars.
+    /// Returns two required scalars.
     pub(super) fn vector(&mut self, x: &str, y: &str) -> Option<Vec2> {
         let (x, y) = (self.scalar(x), self.scalar(y));
         Some(Vec2::new(x?, y?))
     }
 
-    /// A required whole number of 32 bits.
+    /// Returns a required whole number of 32 bits.
     pub(super) fn integer(&mut self, name: &str) -> Option<i32> {
         let attribute = self.required(name, "a whole number")?;
         let text = self.one_line(attribute)?;
@@ -143,7 +144,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         }
     }
 
-    /// A required index of an existing object.
+    /// Returns a required index of an existing object.
     pub(super) fn index(&mut self, name: &str, of: Count) -> Option<usize> {
         let written = self.integer(name)?;
         let index = usize::try_from(written).ok();
@@ -162,7 +163,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         None
     }
 
-    /// A required truth value.
+    /// Returns a required truth value.
     pub(super) fn boolean(&mut self, name: &str) -> Option<bool> {
         let attribute = self.required(name, "0 or 1")?;
         let text = self.one_line(attribute)?;
@@ -178,7 +179,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         None
     }
 
-    /// The colour in `r`, `g` and `b`.
+    /// Returns the colour in `r`, `g` and `b`.
     pub(super) fn color(&mut self) -> Option<Color> {
         let mut component = |name: &str| {
             let value = self.scalar(name)?;
@@ -196,7 +197,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         self.tag.attributes.iter().find(|attribute| attribute.name == name)
     }
 
-    /// A required attribute. Its absence is not reported when it may be there, misspelt or unreadable.
+    /// Returns a required attribute. Its absence is not reported when it may be there, misspelt or unreadable.
     fn required(&mut self, name: &str, what: &str) -> Option<&'d Attribute<'t>> {
         let attribute = self.raw(name);
         if attribute.is_none() && !self.tag.broken && !self.tag.meant.contains(name) {
@@ -210,7 +211,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         attribute
     }
 
-    /// The value as the original sees it: lines joined, references translated.
+    /// Returns the value as the original sees it: lines joined, references translated.
     fn decoded(&mut self, attribute: &'d Attribute<'t>) -> Option<Cow<'d, str>> {
         let joined: Cow<'d, str> = if attribute.value.contains('\n') {
             attribute.value.replace('\n', "").into()
@@ -240,7 +241,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         }
     }
 
-    /// The text of a number, which must not be broken over lines.
+    /// Returns the text of a number, which must not be broken over lines.
     fn one_line(&mut self, attribute: &'d Attribute<'t>) -> Option<Cow<'d, str>> {
         let text = self.decoded(attribute)?;
         if attribute.value.trim_ascii().contains('\n') {
@@ -271,7 +272,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
     }
 }
 
-/// `particle 3`, or `integrator`.
+/// Returns `particle 3`, or `integrator`.
 fn who(tag: &Tag<'_>, number: Option<usize>) -> String {
     match number {
         Some(number) => format!("{} {number}", tag.rule.name),
@@ -279,7 +280,7 @@ fn who(tag: &Tag<'_>, number: Option<usize>) -> String {
     }
 }
 
-/// The message about a bad number: its flaw, and the remedy.
+/// Returns the message about a bad number: its flaw, and the remedy.
 fn words(text: &str, flaw: &Flaw) -> (String, String) {
     let text = quote(text.trim_ascii());
     match flaw {

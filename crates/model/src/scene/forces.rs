@@ -10,13 +10,13 @@ use fosssim_num::vector::Vec2;
 pub(super) trait Source {
     /// Why an attribute can't be used.
     type Error;
-    /// The index of an edge.
+    /// Returns the index of an edge.
     fn edge(&mut self, name: &'static str) -> Result<usize, Self::Error>;
-    /// The index of a particle.
+    /// Returns the index of a particle.
     fn particle(&mut self, name: &'static str) -> Result<usize, Self::Error>;
-    /// A number with its default, if it has one, and the odd effect of one below zero.
+    /// Returns a number with its default, if it has one, and the odd effect of one below zero.
     fn number(&mut self, name: &'static str, default: Option<f64>, odd: Option<&str>) -> Result<f64, Self::Error>;
-    /// Two numbers.
+    /// Returns two numbers.
     fn vector(&mut self, x: &'static str, y: &'static str) -> Result<Vec2, Self::Error> {
         let (x, y) = (self.number(x, None, None), self.number(y, None, None));
         Ok(Vec2::new(x?, y?))
@@ -26,13 +26,13 @@ pub(super) trait Source {
 macro_rules! forces {
     ($($kind:ident $element:literal { $($field:ident: $part:ident($($name:literal),+ $(; $($rule:expr),+)?)),+ })+) => {
         impl ForceKind {
-            /// The name of its element.
+            /// Returns the name of its element.
             #[must_use]
             pub const fn element(self) -> &'static str {
                 match self { $(Self::$kind => $element),+ }
             }
 
-            /// The force that an element describes. All attributes are read before the first error is returned.
+            /// Reads the force that an element describes. All attributes are read before the first error is returned.
             pub(super) fn read<S: Source>(self, source: &mut S) -> Result<Force, S::Error> {
                 match self {
                     $(Self::$kind => {
@@ -44,7 +44,7 @@ macro_rules! forces {
         }
 
         impl Force {
-            /// Its kind.
+            /// Returns the force's kind.
             #[must_use]
             pub const fn kind(&self) -> ForceKind {
                 match self { $(Self::$kind { .. } => ForceKind::$kind),+ }
@@ -54,7 +54,7 @@ macro_rules! forces {
         /// The elements of forces.
         pub(super) static RULES: &[Rule] = &[$(Rule { name: $element, attributes: &[$($($name),+),+] }),+];
 
-        /// The element of a force.
+        /// Returns the element of a force.
         pub(super) fn element(force: &Force) -> Element {
             match *force {
                 $(Force::$kind { $($field),+ } => Element::new($element)$(.$part($($name),+, $field))+,)+

@@ -33,12 +33,12 @@ fn rules() -> impl Iterator<Item = &'static Rule> {
     OTHERS.iter().chain(forces::RULES)
 }
 
-/// The rule for an element of this name.
+/// Returns the rule for an element of this name.
 pub(super) fn rule(name: &str) -> Option<&'static Rule> {
     rules().find(|rule| rule.name == name)
 }
 
-/// The known element that `name` looks like.
+/// Returns the known element that `name` looks like.
 pub(super) fn similar_element(name: &str) -> Option<&'static str> {
     closest(name, rules().map(|rule| rule.name))
 }
@@ -55,7 +55,7 @@ const HABITS: [(&str, &str); 8] = [
     ("vortex", "vortexforce"),
 ];
 
-/// The candidate that `word` was probably meant to be: the same but for case and punctuation, a customary other
+/// Returns the candidate that `word` was probably meant to be: the same but for case and punctuation, a customary other
 /// name, the beginning of it, or few slips away (a third of its letters, at most two).
 pub(super) fn closest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> Option<&'c str> {
     const LONGEST: usize = 40;
@@ -82,12 +82,12 @@ pub(super) fn closest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>)
         .map(|(_, candidate)| candidate)
 }
 
-/// Lowercase letters and digits only.
+/// Returns lowercase letters and digits only.
 fn plain(word: &str) -> String {
     word.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
 }
 
-/// Insertions, deletions, replacements and swaps of neighbours that lead from one word to the other.
+/// Counts the insertions, deletions, replacements and swaps of neighbours that lead from one word to the other.
 fn distance(a: &str, b: &str) -> usize {
     let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
     let mut before: Vec<usize> = Vec::new();

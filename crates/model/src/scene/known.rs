@@ -30,7 +30,7 @@ pub enum UnknownPart {
 }
 
 impl Unknown {
-    /// Whether a program refuses the scene and writes no trace.
+    /// Returns whether a program refuses the scene and writes no trace.
     #[must_use]
     pub const fn is_refused(&self) -> bool {
         match self.part {
@@ -62,7 +62,7 @@ impl fmt::Display for Unknown {
 }
 
 impl Scene {
-    /// Everything that programs of this assignment do not know, each kind once.
+    /// Returns everything that programs of this assignment do not know, each kind once.
     pub fn unknown_to(&self, assignment: Assignment) -> impl Iterator<Item = Unknown> {
         let library = &assignment.definition().library;
         let integrator = Some(self.integrator).filter(|integrator| !library.integrators.contains(integrator));
@@ -91,13 +91,13 @@ impl Scene {
         parts.chain(forces.map(UnknownPart::Force)).chain(collision).map(move |part| Unknown { assignment, part })
     }
 
-    /// The assignments whose programs can run it, in the order of the course.
+    /// Returns the assignments whose programs can run it, in the order of the course.
     pub fn assignments(&self) -> impl Iterator<Item = Assignment> {
         Assignment::COURSE.into_iter().filter(|assignment| self.unknown_to(*assignment).next().is_none())
     }
 
-    /// The first assignment of the course whose programs can run it; where there is none, the one that brought its
-    /// collision handling.
+    /// Returns the first assignment of the course whose programs can run it; where there is none, the one that brought
+    /// its collision handling.
     #[must_use]
     pub fn assignment(&self) -> Assignment {
         match self.collision {

@@ -29,8 +29,8 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Number of steps as the original computes it: the 32-bit conversion of `ceil(duration / dt)`; zero, negative
-    /// and unrepresentable quotients give no step (scene-format.md 4).
+    /// Returns number of steps as the original computes it: the 32-bit conversion of `ceil(duration / dt)`; zero,
+    /// negative and unrepresentable quotients give no step (scene-format.md 4).
     #[must_use]
     pub fn steps(&self) -> u32 {
         let quotient = (self.duration / self.time_step).ceil();
@@ -83,7 +83,7 @@ pub enum Collision {
 }
 
 impl Collision {
-    /// Its type, without the numbers.
+    /// Returns the handling's type, without the numbers.
     #[must_use]
     pub const fn kind(&self) -> CollisionType {
         match self {
@@ -95,7 +95,7 @@ impl Collision {
         }
     }
 
-    /// The handling that its assignment asks of a program.
+    /// Returns the handling that its assignment asks of a program.
     ///
     /// # Panics
     /// Never: a test holds every type to be handled by its assignment.
@@ -150,7 +150,7 @@ pub struct Edge {
 pub struct HalfPlane {
     /// A point on its boundary.
     pub point: Vec2,
-    /// Its normal as written, of any length.
+    /// The half-plane's normal as written, of any length.
     pub normal: Vec2,
 }
 
@@ -229,7 +229,7 @@ pub struct Display {
 /// The visible part of the plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Viewport {
-    /// Its centre.
+    /// The viewport's centre.
     pub center: Vec2,
     /// Half its extent; zero or negative means "fit".
     pub size: f64,
@@ -253,6 +253,6 @@ pub struct ParticlePath {
     pub particle: usize,
     /// How long the trail lasts, seconds.
     pub duration: f64,
-    /// Its colour.
+    /// The path's colour.
     pub color: Color,
 }

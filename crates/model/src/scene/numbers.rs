@@ -24,7 +24,7 @@ pub(super) enum Flaw {
     TooLarge,
 }
 
-/// A finite 64-bit float, and whether a number other than zero became zero.
+/// Returns a finite 64-bit float, and whether a number other than zero became zero.
 pub(super) fn scalar(text: &str) -> Result<(f64, bool), Flaw> {
     let text = text.trim_ascii();
     let length = shape(text);
@@ -40,7 +40,7 @@ pub(super) fn scalar(text: &str) -> Result<(f64, bool), Flaw> {
     Ok((value, vanished))
 }
 
-/// A whole 32-bit number.
+/// Returns a whole 32-bit number.
 pub(super) fn integer(text: &str) -> Result<i32, Flaw> {
     let text = text.trim_ascii();
     let digits = text.strip_prefix(['+', '-']).unwrap_or(text);
@@ -71,7 +71,7 @@ fn flaw(text: &str, length: usize) -> Flaw {
     }
 }
 
-/// How many bytes at the start have the shape of a number; 0 when there are no digits.
+/// Returns how many bytes at the start have the shape of a number; 0 when there are no digits.
 fn shape(text: &str) -> usize {
     let bytes = text.as_bytes();
     let Some(end) = mantissa(bytes) else { return 0 };
@@ -85,7 +85,7 @@ fn shape(text: &str) -> usize {
     end
 }
 
-/// Where a number's sign, digits and fraction end; `None` without digits.
+/// Returns where a number's sign, digits and fraction end; `None` without digits.
 pub(super) fn mantissa(text: &[u8]) -> Option<usize> {
     let sign = usize::from(matches!(text.first(), Some(b'+' | b'-')));
     let whole = digits(text, sign);
@@ -94,7 +94,7 @@ pub(super) fn mantissa(text: &[u8]) -> Option<usize> {
     (whole > 0 || fraction > 1).then_some(point + fraction)
 }
 
-/// How many digits stand at `from`.
+/// Returns how many digits stand at `from`.
 pub(super) fn digits(text: &[u8], from: usize) -> usize {
     text.get(from..).unwrap_or_default().iter().take_while(|byte| byte.is_ascii_digit()).count()
 }

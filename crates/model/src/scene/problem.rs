@@ -35,7 +35,7 @@ pub struct Problem {
 }
 
 impl fmt::Display for Problem {
-    /// `line:column: message (help)`; a warning says so.
+    /// Writes `line:column: message (help)`; a warning says so.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}:{}: ", self.line, self.column)?;
         if self.severity == Severity::Warning {
@@ -58,14 +58,14 @@ pub struct Problems {
 }
 
 impl Problems {
-    /// A refusal of the whole text, pointing to its start.
+    /// Returns a refusal of the whole text, pointing to its start.
     pub(super) fn whole(source: &str, message: String, help: &str) -> Self {
         Self { source: source.to_owned(), list: vec![Problem::new(0..0, message).help(help)], omitted: 0 }
     }
 }
 
 impl fmt::Display for Problems {
-    /// One problem a line, without the source's name and without a newline at the end.
+    /// Writes one problem a line, without the source's name and without a newline at the end.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (number, problem) in self.list.iter().enumerate() {
             let separator = if number == 0 { "" } else { "\n" };
@@ -87,7 +87,7 @@ impl Problem {
         Self { severity, line: 1, column: 1, span, element: None, attribute: None, message, help: None }
     }
 
-    /// About an element of this name.
+    /// Returns about an element of this name.
     pub(super) fn of(element: &str, span: &Range<usize>, message: impl Into<String>) -> Self {
         Self { element: Some(quote(element)), ..Self::new(span.clone(), message) }
     }
@@ -138,7 +138,8 @@ impl Report {
         self.kept[Severity::Error as usize] > 0
     }
 
-    /// The problems in the order of their places, and how many more there were. `text` is what the spans refer to.
+    /// Returns the problems in the order of their places, and how many more there were. `text` is what the spans refer
+    /// to.
     pub(super) fn finish(mut self, text: &[u8]) -> (Vec<Problem>, usize) {
         self.list.sort_by_key(|problem| (problem.span.start, problem.severity));
         let mut place = Place::at_start(text);
@@ -179,7 +180,7 @@ impl Place {
     }
 }
 
-/// A piece of the scene for a message: control characters escaped, cut when long.
+/// Returns a piece of the scene for a message: control characters escaped, cut when long.
 pub(super) fn quote(text: &str) -> String {
     const LONGEST: usize = 40;
     let mut quoted: String = text.chars().take(LONGEST).flat_map(char::escape_debug).collect();

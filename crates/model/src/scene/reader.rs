@@ -62,7 +62,7 @@ pub fn read(name: &str, text: &[u8]) -> Result<Loaded, Problems> {
     }
 }
 
-/// The text with every byte that is not UTF-8 replaced by `?`, so that places stay where they are.
+/// Returns the text with every byte that is not UTF-8 replaced by `?`, so that places stay where they are.
 fn decode<'t>(text: &'t [u8], report: &mut Report) -> Cow<'t, str> {
     if let Some(at) = text.iter().position(|&byte| byte == 0) {
         report.error(|| Problem::new(at..at + 1, "a NUL byte").help("the original stops reading there"));

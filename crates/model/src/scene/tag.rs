@@ -94,7 +94,7 @@ impl<'t> Tag<'t> {
     }
 }
 
-/// The fault in the form of an attribute. `start` is where `inner` starts in the text.
+/// Returns the fault in the form of an attribute. `start` is where `inner` starts in the text.
 fn broken(rule: &Rule, inner: &str, start: usize, error: &AttrError) -> Problem {
     let (at, message) = match *error {
         AttrError::ExpectedEq(at) => (at, "`=` and a value are missing after"),
@@ -117,17 +117,17 @@ fn broken(rule: &Rule, inner: &str, start: usize, error: &AttrError) -> Problem 
     Problem::of(rule.name, &(start + from..start + before.len()), format!("{message} in `{}`", rule.name)).help(help)
 }
 
-/// White space of XML.
+/// Returns whether it is white space of XML.
 pub(super) fn is_space(byte: u8) -> bool {
     matches!(byte, b' ' | b'\n' | b'\r' | b'\t')
 }
 
-/// Where a part of the text starts.
+/// Returns where a part of the text starts.
 pub(super) fn offset(text: &str, part: &str) -> usize {
     (part.as_ptr() as usize).saturating_sub(text.as_ptr() as usize).min(text.len())
 }
 
-/// Names for a message: `a`, `b` and `c`.
+/// Returns names for a message: `a`, `b` and `c`.
 pub(super) fn list(names: &[&str]) -> String {
     let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
     match quoted.split_last() {

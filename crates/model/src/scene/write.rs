@@ -66,7 +66,7 @@ fn integrator(scene: &Scene) -> Element {
     Element::new("integrator").with("type", scene.integrator.name()).number("dt", scene.time_step)
 }
 
-/// The element of a collision handling; none where there is none.
+/// Returns the element of a collision handling; none where there is none.
 fn collision(collision: Collision) -> Option<Element> {
     let element = Element::new("collision").with("type", collision.kind().name());
     Some(match collision {
@@ -84,13 +84,13 @@ fn collision(collision: Collision) -> Option<Element> {
     })
 }
 
-/// The element of a scene's integrator and time step.
+/// Returns the element of a scene's integrator and time step.
 #[must_use]
 pub fn integrator_element(scene: &Scene) -> String {
     integrator(scene).to_string()
 }
 
-/// The element of a scene's collision handling; empty where there is none.
+/// Returns the element of a scene's collision handling; empty where there is none.
 #[must_use]
 pub fn collision_element(handling: Collision) -> String {
     collision(handling).map_or_else(String::new, |element| element.to_string())

@@ -31,18 +31,18 @@ pub(super) struct Part<'d, 't, T> {
     pub(super) value: Option<T>,
 }
 
-/// All values, when nothing of them is missing.
+/// Returns all values, when nothing of them is missing.
 fn values<T>(parts: Vec<Part<'_, '_, T>>) -> Option<Vec<T>> {
     parts.into_iter().map(|part| part.value).collect()
 }
 
 impl SceneParts<'_, '_> {
-    /// Where a particle starts, if it could be read.
+    /// Returns where a particle starts, if it could be read.
     pub(super) fn place(&self, particle: usize) -> Option<Vec2> {
         Some(self.particles.get(particle)?.value.as_ref()?.position)
     }
 
-    /// The scene, when nothing of it is missing.
+    /// Returns the scene, when nothing of it is missing.
     pub(super) fn into_scene(self) -> Option<Scene> {
         let (integrator, time_step) = self.integrator?.value?;
         Some(Scene {
@@ -110,7 +110,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
         tags.map(read).collect()
     }
 
-    /// The first element of a kind of which only one counts.
+    /// Returns the first element of a kind of which only one counts.
     fn single<T>(
         &mut self,
         name: &str,
@@ -127,7 +127,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
         Some(Part { tag, value: read(&mut TagFields::new(tag, None, self.report)) })
     }
 
-    /// A single element that may be absent; the outer `None` means unreadable.
+    /// Returns a single element that may be absent; the outer `None` means unreadable.
     fn optional<T>(
         &mut self,
         name: &str,
@@ -136,7 +136,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
         self.single(name, read).map_or(Some(None), |part| part.value.map(Some))
     }
 
-    /// A single element that must be there.
+    /// Returns a single element that must be there.
     fn required<T>(
         &mut self,
         name: &str,
@@ -160,7 +160,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
         Count { what, count, certain: !self.document.broken && !self.document.meant.contains(name) }
     }
 
-    /// Whether the scene is one of the unfinished rigid-body stub; reports wrong types, too.
+    /// Returns whether the scene is one of the unfinished rigid-body stub; reports wrong types, too.
     fn is_rigid(&mut self) -> bool {
         let types = [("particle-system", false), ("rigid-body", true)];
         let stub = "rigid bodies are an unfinished stub of the original and are not simulated";
@@ -182,7 +182,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
         rigid
     }
 
-    /// All forces in the order in which they act.
+    /// Returns all forces in the order in which they act.
     fn forces(&mut self, particles: Count, edges: Count) -> Vec<Part<'d, 't, Force>> {
         let mut forces = Vec::new();
         for kind in ForceKind::ALL {
@@ -193,7 +193,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
         forces
     }
 
-    /// The collision handling, with the detection that its penalty force uses.
+    /// Returns the collision handling, with the detection that its penalty force uses.
     fn collision(&mut self) -> Option<Collision> {
         let read = self.single("collision", collision).map_or(Some(Collision::None), |part| part.value);
         let Some(part) = self.single("collisiondetection", detection) else { return read };
@@ -306,7 +306,7 @@ fn collision(fields: &mut TagFields<'_, '_, '_>) -> Option<Collision> {
     }
 }
 
-/// `maxiters`: a scalar in the original, which cuts off its fraction.
+/// Returns `maxiters`: a scalar in the original, which cuts off its fraction.
 fn max_iterations(fields: &mut TagFields<'_, '_, '_>) -> Option<i32> {
     let written = fields.scalar_or("maxiters", 10.0)?;
     if written.trunc() != written || written < f64::from(i32::MIN) || written > f64::from(i32::MAX) {
@@ -347,14 +347,14 @@ fn edge(fields: &mut TagFields<'_, '_, '_>, particles: Count) -> Option<Edge> {
     Some(Edge { first, second, radius: radius? })
 }
 
-/// Two different particles in `i` and `j`.
+/// Returns two different particles in `i` and `j`.
 fn pair(fields: &mut TagFields<'_, '_, '_>, particles: Count) -> Option<(usize, usize)> {
     let first = fields.index("i", particles);
     let second = other(fields, first, particles);
     Some((first?, second?))
 }
 
-/// The particle in `j`, which is another one than that in `i`.
+/// Returns the particle in `j`, which is another one than that in `i`.
 fn other(fields: &mut TagFields<'_, '_, '_>, first: Option<usize>, particles: Count) -> Option<usize> {
     let second = fields.index("j", particles)?;
     if first == Some(second) {

@@ -55,18 +55,18 @@ impl Bodies {
         }
     }
 
-    /// Number of particles N.
+    /// Returns number of particles N.
     pub fn particles(&self) -> usize {
         self.masses.len()
     }
 
-    /// How many objects of each kind there are to make pairs of.
+    /// Returns how many objects of each kind there are to make pairs of.
     #[inline]
     pub fn objects(&self) -> Objects {
         Objects { particles: self.particles(), edges: self.edges.len(), half_planes: self.points.len() }
     }
 
-    /// The particles of a pair; the last one stands for those that it lacks.
+    /// Returns the particles of a pair; the last one stands for those that it lacks.
     pub fn particles_of(&self, pair: Pair) -> [usize; 3] {
         let (first, second) = (pair.first as usize, pair.second as usize);
         match pair.kind {
@@ -76,7 +76,7 @@ impl Bodies {
         }
     }
 
-    /// About how many pairs a pass looks at.
+    /// Returns about how many pairs a pass looks at.
     pub fn pairs(&self) -> usize {
         self.particles() * (self.particles() / 2 + self.edges.len() + self.points.len())
     }

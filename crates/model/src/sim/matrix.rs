@@ -13,7 +13,7 @@ pub(crate) fn couple(matrix: &mut DMatrix<f64>, [a, b]: [usize; 2], block: &Matr
     }
 }
 
-/// The opposite: with the negative block [`couple`] would give a NaN another sign.
+/// Subtracts the block, the opposite of [`couple`]: with the negative block [`couple`] would give a NaN another sign.
 pub(crate) fn decouple(matrix: &mut DMatrix<f64>, [a, b]: [usize; 2], block: &Matrix2<f64>) {
     for [row, column] in [[a, a], [b, b]] {
         let mut place = matrix.fixed_view_mut::<2, 2>(2 * row, 2 * column);

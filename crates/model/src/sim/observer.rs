@@ -14,55 +14,56 @@ use serde::{Deserialize, Serialize};
 ///
 /// An observer changes nothing. One that has the step go on with other values hands out a [`Steer`].
 pub trait Observer {
-    /// A step begins; steps count from 1.
+    /// Hears that a step begins; steps count from 1.
     fn begin_step(&mut self, _step: u32) {}
-    /// A detection pass begins.
+    /// Hears that a detection pass begins.
     fn begin_pass(&mut self, _pass: Pass) {}
-    /// Where particles start and end (2N each) as the pass begins to see them, right after `begin_pass`.
+    /// Returns where particles start and end (2N each) as the pass begins to see them, right after `begin_pass`.
     fn pass_positions(&mut self, _q_start: &[f64], _q_end: &[f64]) {}
-    /// The wishes of this observer about the pass's pairs; asked once or more in each pass. Unless it wants
+    /// Returns the wishes of this observer about the pass's pairs; asked once or more in each pass. Unless it wants
     /// [`Wanted::Calls`], `detection` is not called, nobody steers calls, and pairs are computed many at a time.
     #[inline]
     fn wanted(&mut self) -> Wanted<'_> {
         Wanted::Calls
     }
-    /// The one who steers the step, if anybody does.
+    /// Returns the one who steers the step, if anybody does.
     #[inline]
     fn steers(&mut self) -> Option<&mut dyn Steer> {
         None
     }
-    /// A pair was looked at.
+    /// Hears that a pair was tested.
     fn detection(&mut self, _detection: &Detection<'_>) {}
-    /// A pair collides: right after its `detection`, which not everybody wants.
+    /// Hears that a pair collides: right after its `detection`, which not everybody wants.
     fn hit(&mut self, _pair: Pair) {}
-    /// The pass is over; `hits` pairs collide.
+    /// Hears that the pass is over; `hits` pairs collide.
     fn end_pass(&mut self, _pass: Pass, _hits: usize) {}
-    /// A response was applied.
+    /// Hears that a response was applied.
     fn impulse(&mut self, _impulse: &Impulse) {}
-    /// The synchronisation point: the state that the mid record holds, before anybody puts another in its place.
+    /// Hears the synchronisation point: the state that the mid record holds, before anybody puts another in its place.
     fn synchronised(&mut self, _state: &State) {}
-    /// Impact zones after the merge of geometric round `round` (0: before the first failsafe).
+    /// Hears the impact zones after the merge of geometric round `round` (0: before the first failsafe).
     fn zones(&mut self, _round: u32, _zones: &[Zone<'_>]) {}
-    /// The rigid failsafe is about to move this zone.
+    /// Hears that the rigid failsafe is about to move this zone.
     fn failsafe(&mut self, _round: u32, _zone: &Zone<'_>) {}
-    /// The step is over, with this state.
+    /// Hears that the step is over, with this state.
     fn end_step(&mut self, _step: u32, _state: &State) {}
 }
 
 /// Steers a step: what it puts in place the step goes on with. Every method changes nothing by default.
 pub trait Steer {
-    /// The polynomials of a pair, trimmed, are about to be searched for a time of impact. Others may be put in their
-    /// place; search, decision and [`Observer::detection`] then go by those. Not called by `simple`, which has none.
+    /// Returns the polynomials of a pair, trimmed, are about to be searched for a time of impact. Others may be put in
+    /// their place; search, decision and [`Observer::detection`] then go by those. Not called by `simple`, which has
+    /// none.
     fn solve(&mut self, _pair: Pair, _q_start: &[f64], _q_end: &[f64], _polynomials: &mut [Polynomial]) {}
-    /// The system matrix of an implicit integrator, column by column, is about to be solved; as often in a step as
-    /// the method solves one. The step goes on with the entries that are left.
+    /// Returns the system matrix of an implicit integrator, column by column, is about to be solved; as often in a step
+    /// as the method solves one. The step goes on with the entries that are left.
     fn system(&mut self, _matrix: &mut [f64]) {}
-    /// The decision about a pair. The step goes on with the one that is returned.
+    /// Returns the decision about a pair. The step goes on with the one that is returned.
     fn decide(&mut self, _pair: Pair, decision: Decision) -> Decision {
         decision
     }
-    /// The synchronisation point, after [`Observer::synchronised`]. What is written here is what the step goes on with;
-    /// the geometric part of `hybrid` starts from the values that the answer names.
+    /// Returns the synchronisation point, after [`Observer::synchronised`]. What is written here is what the step goes
+    /// on with; the geometric part of `hybrid` starts from the values that the answer names.
     fn synchronise(&mut self, _state: &mut State) -> Resume {
         Resume::Own
     }
@@ -136,7 +137,7 @@ impl<O: Observer + ?Sized> Observer for &mut O {
 /// Two observers hear the same, the first one first.
 impl<A: Observer, B: Observer> Observer for (A, B) {
     go_on!(self => self.0, self.1);
-    /// The wish of one of them, if the other one wants nothing.
+    /// Returns the wish of one of them, if the other one wants nothing.
     fn wanted(&mut self) -> Wanted<'_> {
         if matches!(self.1.wanted(), Wanted::Nothing) {
             self.0.wanted()
@@ -275,28 +276,29 @@ pub struct Detection<'a> {
 /// How a detection call ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Decision {
-    /// They collide at `time` (fraction of the step) with contact normal `normal`, from the first object to the second.
+    /// The objects collide at `time` (fraction of the step) with contact normal `normal`, from the first object to the
+    /// second.
     Hit {
         /// Time of impact in [0, 1]; 0 for `simple`.
         time: f64,
         /// Contact normal, not normalised.
         normal: Vec2,
     },
-    /// They do not collide within the step.
+    /// The objects do not collide within the step.
     Miss {
-        /// Its knowledge of the time.
+        /// The knowledge of the time.
         time: Time,
     },
 }
 
 impl Decision {
-    /// Whether the pair collides within the step.
+    /// Returns whether the pair collides within the step.
     #[must_use]
     pub const fn collides(self) -> bool {
         matches!(self, Self::Hit { .. })
     }
 
-    /// The time that was found; infinite where there is none, or none was looked for.
+    /// Returns the time that was found; infinite where there is none, or none was looked for.
     #[must_use]
     pub const fn time(self) -> f64 {
         match self {
@@ -333,7 +335,7 @@ pub struct Impulse {
 /// An impact zone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Zone<'a> {
-    /// Its particles, ascending.
+    /// The zone's particles, ascending.
     pub particles: &'a [u32],
     /// Whether a half-plane is part of it.
     pub half_plane: bool,

@@ -14,7 +14,7 @@ pub struct Pair {
     pub second: u32,
 }
 
-/// Names a pair.
+/// Returns names a pair.
 #[inline]
 #[expect(clippy::cast_possible_truncation, reason = "a scene with 2^32 objects does not fit into memory")]
 pub(super) fn pair(kind: PairKind, first: usize, second: usize) -> Pair {
@@ -26,7 +26,7 @@ pub(super) fn pair(kind: PairKind, first: usize, second: usize) -> Pair {
 pub struct ByKind<T>([T; PairKind::ALL.len()]);
 
 impl<T> ByKind<T> {
-    /// The values that a function gives.
+    /// Returns the values that a function gives.
     #[must_use]
     pub fn from_fn(value: impl FnMut(PairKind) -> T) -> Self {
         Self(PairKind::ALL.map(value))
@@ -37,17 +37,17 @@ impl<T> ByKind<T> {
         PairKind::ALL.into_iter().zip(&self.0)
     }
 
-    /// The values, in the order of [`PairKind::ALL`].
+    /// Returns the values, in the order of [`PairKind::ALL`].
     pub fn values(&self) -> impl Iterator<Item = &T> {
         self.0.iter()
     }
 
-    /// The values, to be changed.
+    /// Returns the values, to be changed.
     pub fn values_mut(&mut self) -> impl Iterator<Item = &mut T> {
         self.0.iter_mut()
     }
 
-    /// The values themselves.
+    /// Returns the values themselves.
     pub fn into_values(self) -> impl Iterator<Item = T> {
         self.0.into_iter()
     }

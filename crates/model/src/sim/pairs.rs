@@ -30,13 +30,13 @@ pub(super) struct PassCursor {
 }
 
 impl PassCursor {
-    /// The first pair in which this particle comes first.
+    /// Returns the first pair in which this particle comes first.
     #[inline]
     pub const fn of(first: usize) -> Self {
         Self { first, kind: PairKind::ALL[0], second: 0 }
     }
 
-    /// The pair behind one.
+    /// Returns the pair behind one.
     #[inline]
     pub const fn behind(kind: PairKind, first: usize, second: usize) -> Self {
         Self { first, kind, second: second + 1 }
@@ -44,7 +44,7 @@ impl PassCursor {
 }
 
 impl Objects {
-    /// The numbers of what a particle meets: of particles the later ones, of edges all (but see [`is_end`]), of
+    /// Returns the numbers of what a particle meets: of particles the later ones, of edges all (but see [`is_end`]), of
     /// half-planes all.
     #[inline]
     fn seconds(self, kind: PairKind, first: usize) -> Range<usize> {
@@ -55,8 +55,8 @@ impl Objects {
         }
     }
 
-    /// The rest of a particle's pairs from a place on: for each kind, in the order of the pass, the numbers of the
-    /// objects that it meets. Among edges there are those that it is an end of ([`is_end`]).
+    /// Returns the rest of a particle's pairs from a place on: for each kind, in the order of the pass, the numbers of
+    /// the objects that it meets. Among edges there are those that it is an end of ([`is_end`]).
     #[inline(always)]
     pub fn row(self, from: PassCursor) -> [Range<usize>; PairKind::ALL.len()] {
         PairKind::ALL.map(|kind| {
@@ -70,7 +70,7 @@ impl Objects {
     }
 }
 
-/// Whether a particle is an end of an edge, with which it is no pair then.
+/// Returns whether a particle is an end of an edge, with which it is no pair then.
 #[inline]
 pub(super) fn is_end(ends: [usize; 2], particle: usize) -> bool {
     ends.contains(&particle)
@@ -85,7 +85,7 @@ pub struct Pairs {
     half_planes: usize,
 }
 
-/// The pairs of one pass over a scene.
+/// Returns the pairs of one pass over a scene.
 #[must_use]
 pub fn pairs(scene: &Scene) -> Pairs {
     let edges = scene.edges.iter().map(|edge| [edge.first, edge.second]).collect();
@@ -93,13 +93,13 @@ pub fn pairs(scene: &Scene) -> Pairs {
 }
 
 impl Pairs {
-    /// All pairs, in the order of the pass: particle by particle, with all later particles, then with the edges that it
-    /// is no end of, then with the half-planes.
+    /// Returns all pairs, in the order of the pass: particle by particle, with all later particles, then with the edges
+    /// that it is no end of, then with the half-planes.
     pub fn iter(&self) -> impl Iterator<Item = Pair> + Clone {
         (0..self.particles).flat_map(|particle| self.of(particle))
     }
 
-    /// The pairs in which this particle comes first.
+    /// Returns the pairs in which this particle comes first.
     pub fn of(&self, first: usize) -> impl Iterator<Item = Pair> + Clone {
         PairKind::ALL.into_iter().zip(self.objects().row(PassCursor::of(first))).flat_map(move |(kind, seconds)| {
             let is_pair = move |&second: &usize| match kind {
@@ -114,7 +114,7 @@ impl Pairs {
         Objects { particles: self.particles, edges: self.edges.len(), half_planes: self.half_planes }
     }
 
-    /// How many pairs of each kind there are.
+    /// Returns how many pairs of each kind there are.
     #[must_use]
     pub fn counts(&self) -> ByKind<usize> {
         let at_ends: usize = self.edges.iter().map(|[one, other]| if one == other { 1 } else { 2 }).sum();
@@ -125,20 +125,20 @@ impl Pairs {
         })
     }
 
-    /// How many pairs there are.
+    /// Returns how many pairs there are.
     #[must_use]
     pub fn count(&self) -> usize {
         self.counts().values().sum()
     }
 
-    /// How many polynomials a pass logs, where passes log any.
+    /// Returns how many polynomials a pass logs, where passes log any.
     #[must_use]
     pub fn polynomials(&self) -> usize {
         self.counts().iter().map(|(kind, count)| kind.polynomials() * count).sum()
     }
 
-    /// The owner of polynomial `index` of a step's list: the number of the pass, the pair, and the polynomial's number
-    /// among its own. None where a pass has no polynomial.
+    /// Returns the owner of polynomial `index` of a step's list: the number of the pass, the pair, and the polynomial's
+    /// number among its own. None where a pass has no polynomial.
     #[must_use]
     pub fn polynomial(&self, index: usize) -> Option<(usize, Pair, usize)> {
         let per_pass = self.polynomials();
@@ -171,7 +171,7 @@ mod tests {
         sim::{Detection, Observer, Pass, RootSearch, Simulation},
     };
 
-    /// Five discs, edges that share ends, half-planes; far apart, but for two discs that meet.
+    /// Returns five discs, edges that share ends, half-planes; far apart, but for two discs that meet.
     fn scene(collision: &str) -> Scene {
         let particle = |x: f64, y: f64, vx: f64| {
             format!("<particle m=\"1\" px=\"{x}\" py=\"{y}\" vx=\"{vx}\" vy=\"0\" fixed=\"0\" radius=\"0.25\"/>")

@@ -38,29 +38,29 @@ impl PolynomialBytes {
         (self.begin, self.count, self.largest) = (self.used, 0, 0.0);
     }
 
-    /// Where the list stands among [all](Self::all) that are there.
+    /// Returns where the list stands among [all](Self::all) that are there.
     pub(crate) fn range(&self) -> Range<usize> {
         self.begin..self.used
     }
 
-    /// The bytes of all lists that are there.
+    /// Returns the bytes of all lists that are there.
     pub(crate) fn all(&self) -> &[u8] {
         &self.bytes[..self.used]
     }
 
-    /// Number of polynomials.
+    /// Returns number of polynomials.
     #[must_use]
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// The list's bytes.
+    /// Returns the list's bytes.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes[self.range()]
     }
 
-    /// The bytes of each polynomial's coefficients.
+    /// Returns the bytes of each polynomial's coefficients.
     pub fn iter(&self) -> impl Iterator<Item = &[u8]> {
         let mut rest = self.bytes();
         std::iter::from_fn(move || {
@@ -71,7 +71,7 @@ impl PolynomialBytes {
         })
     }
 
-    /// No coefficient has a larger modulus than this; a NaN does not count. It may be that of a pair that is not
+    /// Returns a bound of all moduli of coefficients; a NaN does not count. It may be that of a pair that is not
     /// logged.
     #[must_use]
     pub fn largest(&self) -> f64 {
@@ -100,7 +100,7 @@ impl PolynomialBytes {
         self.added(4 + 8 * coefficients.len(), 1);
     }
 
-    /// The room behind the list, of `bytes` or more.
+    /// Returns the room behind the list, of `bytes` or more.
     #[inline]
     pub(super) fn room(&mut self, bytes: usize) -> &mut [u8] {
         if self.bytes.len() - self.used < bytes {

@@ -2,7 +2,7 @@
 use crate::scene::{Collision, Display, Edge, Force, HalfPlane, Integrator, Particle, Scene};
 use fosssim_num::vector::Vec2;
 
-/// A free particle.
+/// Returns a free particle.
 pub(crate) fn particle(position: (f64, f64), velocity: (f64, f64), mass: f64, radius: f64) -> Particle {
     Particle {
         position: Vec2::new(position.0, position.1),
@@ -14,22 +14,22 @@ pub(crate) fn particle(position: (f64, f64), velocity: (f64, f64), mass: f64, ra
     }
 }
 
-/// The same particle, fixed.
+/// Returns the particle, fixed.
 pub(crate) fn fixed(particle: Particle) -> Particle {
     Particle { fixed: true, ..particle }
 }
 
-/// An edge.
+/// Returns an edge.
 pub(crate) fn edge(first: usize, second: usize, radius: f64) -> Edge {
     Edge { first, second, radius }
 }
 
-/// A half-plane.
+/// Returns a half-plane.
 pub(crate) fn half_plane(point: (f64, f64), normal: (f64, f64)) -> HalfPlane {
     HalfPlane { point: Vec2::new(point.0, point.1), normal: Vec2::new(normal.0, normal.1) }
 }
 
-/// A scene of these particles: explicit Euler, dt 0.5, one step, no collision handling.
+/// Returns a scene of these particles: explicit Euler, dt 0.5, one step, no collision handling.
 pub(crate) fn scene(particles: Vec<Particle>) -> Scene {
     Scene {
         duration: 0.5,
@@ -49,7 +49,7 @@ pub(crate) fn scene(particles: Vec<Particle>) -> Scene {
 pub(crate) struct Numbers(pub u64);
 
 impl Numbers {
-    /// The next number.
+    /// Returns the next number.
     pub fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         #[expect(clippy::cast_precision_loss, reason = "53 bits fit")]
@@ -57,7 +57,7 @@ impl Numbers {
         2.0 * fraction - 1.0
     }
 
-    /// The next pair of numbers.
+    /// Returns the next pair of numbers.
     pub fn pair(&mut self) -> (f64, f64) {
         let x = self.next();
         (x, self.next())

@@ -32,13 +32,13 @@ pub struct SearchCounts {
 }
 
 impl SearchCounts {
-    /// The work of these calls, in calls that a certificate excludes. It is the same on every machine.
+    /// Returns the work of these calls, in calls that a certificate excludes. It is the same on every machine.
     #[must_use]
     pub const fn work(&self) -> u64 {
         self.calls + SEARCH_WORK * self.searched + self.steps + self.subnormal
     }
 
-    /// Each count made of both.
+    /// Combines each count of both.
     fn with(self, other: Self, made: fn(u64, u64) -> u64) -> Self {
         Self {
             calls: made(self.calls, other.calls),
@@ -75,7 +75,7 @@ pub(crate) const SUBNORMAL_WORK: u64 = 32;
 /// The least modulus whose powers, and those of differences with it, stay normal up to the fifth.
 const SMALLEST_OF_NORMAL_POWERS: f64 = 1e-40;
 
-/// Whether products of some of these numbers may be subnormal.
+/// Returns whether products of some of these numbers may be subnormal.
 pub(crate) fn have_subnormal_products(numbers: &[f64]) -> bool {
     numbers.iter().any(|number| *number != 0.0 && number.abs() < SMALLEST_OF_NORMAL_POWERS)
 }

@@ -45,19 +45,20 @@ impl Simulation {
         }
     }
 
-    /// The current state.
+    /// Returns the current state.
     #[must_use]
     pub fn state(&self) -> &State {
         &self.state
     }
 
-    /// The current state, to be replaced from outside (a submission's own, before a step is judged). Both arrays must
-    /// keep their length 2N.
+    /// Returns the current state, to be replaced from outside (a submission's own, before a step is judged). Both
+    /// arrays must keep their length 2N.
     pub fn state_mut(&mut self) -> &mut State {
         &mut self.state
     }
 
-    /// The pairs of the penalty force, if the scene has one. In a contest their order depends on the steps before.
+    /// Returns the pairs of the penalty force, if the scene has one. In a contest their order depends on the steps
+    /// before.
     pub fn penalty_pairs(&mut self) -> Option<&mut PenaltyPairs> {
         self.forces.pairs()
     }
@@ -98,7 +99,7 @@ impl Simulation {
         self.handler.counts()
     }
 
-    /// The work of all steps so far: detection ([`SearchCounts::work`]) and Newton's method.
+    /// Returns the work of all steps so far: detection ([`SearchCounts::work`]) and Newton's method.
     #[must_use]
     pub fn work(&self) -> u64 {
         self.handler.counts().work() + self.stepper.work()
@@ -183,7 +184,7 @@ mod tests {
         }
     }
 
-    /// The scene of trace-format.md 3: a particle that falls on a half-plane.
+    /// Returns the scene of trace-format.md 3: a particle that falls on a half-plane.
     fn falling(collision: Collision) -> Scene {
         let mut scene = scene(vec![particle((0.0, 0.5), (0.0, -1.0), 1.0, 0.25)]);
         scene.half_planes.push(half_plane((0.0, 0.0), (0.0, 1.0)));

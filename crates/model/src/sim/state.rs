@@ -11,7 +11,7 @@ pub struct State {
 }
 
 impl State {
-    /// The state in which a scene starts.
+    /// Returns the state in which a scene starts.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let mut state = Self::default();
@@ -22,7 +22,7 @@ impl State {
         state
     }
 
-    /// Whether all numbers are finite.
+    /// Returns whether all numbers are finite.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         self.positions.iter().chain(&self.velocities).all(|value| value.is_finite())

@@ -34,7 +34,7 @@ pub enum StepError {
 }
 
 impl StepError {
-    /// The step, from 1.
+    /// Returns the step, from 1.
     #[must_use]
     pub const fn step(&self) -> u32 {
         match *self {

@@ -71,7 +71,7 @@ pub(crate) fn impulses<R: Read>(source: &mut Source<R>, count: usize, out: &mut 
     whole
 }
 
-/// The size of an ordinary polynomial (0 to 6, wholly in `bytes`), and what follows its size.
+/// Returns the size of an ordinary polynomial (0 to 6, wholly in `bytes`), and what follows its size.
 #[inline(always)]
 fn ordinary(bytes: &[u8]) -> Option<(usize, &[u8])> {
     let (head, rest) = bytes.split_first_chunk::<4>()?;
@@ -79,7 +79,7 @@ fn ordinary(bytes: &[u8]) -> Option<(usize, &[u8])> {
     (size <= MAX_COEFFICIENTS && 8 * size <= rest.len()).then_some((size, rest))
 }
 
-/// Whether the next polynomial is ordinary, and wholly in the window now.
+/// Returns whether the next polynomial is ordinary, and wholly in the window now.
 pub(crate) fn has_ordinary<R: Read>(source: &mut Source<R>) -> bool {
     if source.ensure(4) < 4 {
         return false;
@@ -136,7 +136,7 @@ pub(crate) fn pass_over(bytes: &[u8], most: u64) -> (usize, u64, bool) {
     (at, done, false)
 }
 
-/// Memory that the log's content takes, in bytes.
+/// Returns memory that the log's content takes, in bytes.
 pub(crate) fn memory(log: &PolynomialLog) -> usize {
     8 * log.coefficients.len() + POLYNOMIAL_MEMORY * log.ends.len()
 }

@@ -35,7 +35,7 @@ impl fmt::Debug for Sha {
 pub struct Short(pub u64);
 
 impl Short {
-    /// The shortened digest.
+    /// Returns the shortened digest.
     pub(super) fn of(digest: Sha256) -> Self {
         let [a, b, c, d, e, f, g, h, ..] = finish(digest).0;
         Self(u64::from_be_bytes([a, b, c, d, e, f, g, h]))
@@ -93,7 +93,7 @@ impl Digests {
         Self::walk(&mut stream, layout, &mut |_, _, _| {})
     }
 
-    /// The same; `frame` sees every record: its number, content and notes.
+    /// Digests a trace; `frame` sees every record: its number, content and notes.
     pub(super) fn walk(
         stream: &mut dyn Read,
         layout: Layout,

@@ -26,7 +26,7 @@ impl TraceError {
     }
 }
 
-/// A record and its step in words.
+/// Returns a record and its step in words.
 fn record_name(record: u64, step: u32) -> String {
     match step {
         0 => format!("record {record} (initial state)"),
@@ -44,7 +44,7 @@ pub enum List {
 }
 
 impl List {
-    /// Fewest bytes of an entry: 36 for an impulse, 4 for an empty polynomial.
+    /// Returns fewest bytes of an entry: 36 for an impulse, 4 for an empty polynomial.
     #[must_use]
     pub const fn entry_bytes(self) -> u64 {
         match self {
@@ -137,7 +137,7 @@ pub enum Malformation {
     SizeBeyondEnd {
         /// Number of the polynomial in the list, from 0.
         polynomial: u64,
-        /// Its size.
+        /// The claimed size.
         size: i32,
         /// Bytes left after the size.
         left: u64,
@@ -147,7 +147,7 @@ pub enum Malformation {
     NegativeSize {
         /// Number of the polynomial in the list, from 0.
         polynomial: u64,
-        /// Its size.
+        /// The claimed size.
         size: i32,
     },
     /// More coefficients than any detection polynomial has (six).
@@ -155,7 +155,7 @@ pub enum Malformation {
     OversizedPolynomial {
         /// Number of the polynomial in the list, from 0.
         polynomial: u64,
-        /// Its size.
+        /// The claimed size.
         size: i32,
     },
     /// An impulse whose kind is not 0, 1 or 2.
@@ -163,7 +163,7 @@ pub enum Malformation {
     UnknownKind {
         /// Number of the impulse in the list, from 0.
         impulse: u64,
-        /// Its kind.
+        /// The claimed kind.
         kind: i32,
     },
     /// An impulse that names an object which the scene does not have.
@@ -210,7 +210,7 @@ pub enum Malformation {
     /// The stream reported an error.
     #[error("reading failed: {message}")]
     Io {
-        /// Its text.
+        /// The error's text.
         message: String,
     },
 }

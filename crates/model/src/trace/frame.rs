@@ -16,7 +16,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Whether both frames hold the same, bit for bit.
+    /// Returns whether both frames hold the same, bit for bit.
     #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {
         same_bits(&self.state.positions, &other.state.positions)
@@ -105,20 +105,20 @@ impl TryFrom<ImpulseForm> for LoggedImpulse {
 }
 
 impl LoggedImpulse {
-    /// The kind of its pair; none in a damaged trace.
+    /// Returns the kind of its pair; none in a damaged trace.
     #[must_use]
     pub fn kind(&self) -> Option<PairKind> {
         PairKind::from_code(self.kind)
     }
 
-    /// Its pair; none where it names nothing that could be one.
+    /// Returns the impulse's pair; none where it names nothing that could be one.
     #[must_use]
     pub fn pair(&self) -> Option<Pair> {
         let (first, second) = (u32::try_from(self.first).ok()?, u32::try_from(self.second).ok()?);
         Some(Pair { kind: self.kind()?, first, second })
     }
 
-    /// Whether both are equal bit for bit.
+    /// Returns whether both are equal bit for bit.
     #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {
         let numbers = |impulse: &Self| [impulse.normal.x, impulse.normal.y, impulse.time];
@@ -156,14 +156,14 @@ pub struct PolynomialLog {
 }
 
 impl PolynomialLog {
-    /// Number of polynomials.
+    /// Returns number of polynomials.
     #[inline]
     #[must_use]
     pub fn len(&self) -> usize {
         self.ends.len()
     }
 
-    /// Whether there is none.
+    /// Returns whether there is none.
     #[inline]
     #[must_use]
     pub fn is_empty(&self) -> bool {
@@ -182,7 +182,7 @@ impl PolynomialLog {
         self.ends.push(self.coefficients.len());
     }
 
-    /// The coefficients of polynomial `index`.
+    /// Returns the coefficients of polynomial `index`.
     ///
     /// # Panics
     /// When there is no such polynomial.
@@ -193,7 +193,7 @@ impl PolynomialLog {
         &self.coefficients[start..self.ends[index]]
     }
 
-    /// All polynomials in order.
+    /// Returns all polynomials in order.
     pub fn iter(&self) -> impl Iterator<Item = &[f64]> {
         (0..self.len()).map(|index| self.get(index))
     }

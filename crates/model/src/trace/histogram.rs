@@ -14,12 +14,12 @@ impl Histogram {
         *self.0.entry(entries).or_default() += 1;
     }
 
-    /// Pairs of a number of entries and how many steps have it, ascending.
+    /// Returns pairs of a number of entries and how many steps have it, ascending.
     pub fn iter(&self) -> impl Iterator<Item = (u64, u64)> {
         self.0.iter().map(|(&entries, &steps)| (entries, steps))
     }
 
-    /// The sum of all entries.
+    /// Returns the sum of all entries.
     #[must_use]
     pub fn total(&self) -> u64 {
         self.iter().map(|(entries, steps)| entries * steps).sum()

@@ -17,9 +17,9 @@ pub struct Label {
     pub number: usize,
 }
 
-/// The labels of the polynomials that the reference logs in the step after `before`, in the order of the trace. A
-/// submission's list has the same labels as long as it has the same length. Empty when the step has no result, or when
-/// `before` has another number of particles than the scene.
+/// Returns the labels of the polynomials that the reference logs in the step after `before`, in the order of the trace.
+/// A submission's list has the same labels as long as it has the same length. Empty when the step has no result, or
+/// when `before` has another number of particles than the scene.
 #[must_use]
 pub fn labels(scene: &Scene, before: &State) -> Vec<Label> {
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);

@@ -15,7 +15,7 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// The layout of this scene's traces.
+    /// Returns the layout of this scene's traces.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let records = scene.collision.handling().records;
@@ -49,19 +49,19 @@ impl Layout {
         more && self.particles > 0 && bytes == (1 + u64::from(self.steps)) * self.state_bytes() as u64
     }
 
-    /// The step that record `record` belongs to, from 1; 0 for the initial record.
+    /// Returns the step that record `record` belongs to, from 1; 0 for the initial record.
     #[must_use]
     pub fn step_of(&self, record: u64) -> u32 {
         u32::try_from(record.div_ceil(u64::from(self.records_per_step()))).unwrap_or(u32::MAX)
     }
 
-    /// Whether record `record` is a mid record, i.e. not the last one of its step.
+    /// Returns whether record `record` is a mid record, i.e. not the last one of its step.
     #[must_use]
     pub fn is_mid(&self, record: u64) -> bool {
         self.polynomials && record % 2 == 1
     }
 
-    /// Number of the end record of step `step` (0: the initial record).
+    /// Returns the number of the end record of step `step` (0: the initial record).
     #[must_use]
     pub fn end_record(&self, step: u32) -> u64 {
         u64::from(self.records_per_step()) * u64::from(step)

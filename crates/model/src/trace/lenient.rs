@@ -36,8 +36,8 @@ const POLYNOMIAL_MEMORY: usize = size_of::<f64>() * MAX_COEFFICIENTS + size_of::
 /// The number of coefficients that are kept of a longer polynomial; any number above [`MAX_COEFFICIENTS`] is as wrong.
 const LONGEST_POLYNOMIAL: usize = 4096;
 
-/// Memory that the lists of one record of this scene's traces may take, in bytes: what the polynomials of all detection
-/// passes take that a step can make (collisions.md 4 and 5), within bounds.
+/// Returns memory that the lists of one record of this scene's traces may take, in bytes: what the polynomials of all
+/// detection passes take that a step can make (collisions.md 4 and 5), within bounds.
 #[must_use]
 pub fn record_memory(scene: &Scene) -> usize {
     let particles = scene.particles.len();
@@ -48,7 +48,7 @@ pub fn record_memory(scene: &Scene) -> usize {
     pass.saturating_mul(most_passes(scene)).saturating_mul(POLYNOMIAL_MEMORY).clamp(FLOOR, LIMIT)
 }
 
-/// The detection passes that a step makes at most.
+/// Returns the detection passes that a step makes at most.
 fn most_passes(scene: &Scene) -> usize {
     match scene.collision {
         // Two passes of the geometric part, and one more for each change of the zones: with every change a particle or
@@ -92,7 +92,7 @@ pub struct LenientFrame {
 }
 
 impl LenientFrame {
-    /// Whether the polynomial list is longer than what was kept of it.
+    /// Returns whether the polynomial list is longer than what was kept of it.
     #[must_use]
     pub fn is_cut(&self) -> bool {
         self.logged > self.polynomials.len()
@@ -155,7 +155,7 @@ pub struct Lenient<R> {
 }
 
 impl<'a> Lenient<&'a [u8]> {
-    /// A reader of a trace in memory.
+    /// Returns a reader of a trace in memory.
     #[must_use]
     pub fn of_slice(trace: &'a [u8], layout: Layout) -> Self {
         let mut reader = Self::new(trace, layout);
@@ -165,7 +165,7 @@ impl<'a> Lenient<&'a [u8]> {
 }
 
 impl<R: Read> Lenient<R> {
-    /// A reader at the beginning of `stream`, which needs no buffer of its own.
+    /// Creates a reader at the beginning of `stream`, which needs no buffer of its own.
     pub fn new(stream: R, layout: Layout) -> Self {
         let (source, notes) = (Source::new(stream), Vec::new());
         Self { source, layout, record: 0, begin: 0, failed: false, notes, limit: LIMIT, strict: false }
@@ -207,25 +207,25 @@ impl<R: Read> Lenient<R> {
         Ok(())
     }
 
-    /// Number of records read.
+    /// Returns number of records read.
     #[must_use]
     pub fn records(&self) -> u64 {
         self.record
     }
 
-    /// Byte offset of the last record (of the next one before the first call of [`Lenient::next`]).
+    /// Returns byte offset of the last record (of the next one before the first call of [`Lenient::next`]).
     #[must_use]
     pub fn record_offset(&self) -> u64 {
         self.begin
     }
 
-    /// Byte offset of what is read next.
+    /// Returns byte offset of what is read next.
     #[must_use]
     pub fn offset(&self) -> u64 {
         self.source.offset()
     }
 
-    /// Whether bytes follow; the original never looks at those behind the last record.
+    /// Returns whether bytes follow; the original never looks at those behind the last record.
     pub fn has_more(&mut self) -> bool {
         self.source.ensure(1) > 0
     }
@@ -243,12 +243,12 @@ impl<R: Read> Lenient<R> {
         }
     }
 
-    /// Memory that the polynomials take so far, in bytes.
+    /// Returns whether the polynomials fill the memory that they may take.
     fn is_full(&self, frame: &LenientFrame) -> bool {
         decode::memory(&frame.polynomials) > self.limit
     }
 
-    /// The last record's notes.
+    /// Returns the last record's notes.
     pub(super) fn notes(&self) -> &[TraceError] {
         &self.notes
     }
@@ -288,7 +288,7 @@ impl<R: Read> Lenient<R> {
         }
     }
 
-    /// A count or size.
+    /// Reads a count or size.
     fn integer(&mut self) -> i32 {
         let mut bytes = [0; 4];
         self.bytes(&mut bytes);

@@ -18,20 +18,20 @@ pub(super) struct Log {
 }
 
 impl Log {
-    /// A step begins, with empty lists.
+    /// Begins a step with empty lists.
     pub(super) fn begin_step(&mut self) {
         self.polynomials.clear();
         self.begin_step_behind();
     }
 
-    /// The same; polynomials of earlier steps are kept.
+    /// Begins a step and keeps the polynomials of earlier steps.
     pub(super) fn begin_step_behind(&mut self) {
         self.impulses.clear();
         self.polynomials.begin();
         self.logs_impulses = false;
     }
 
-    /// A detection pass begins.
+    /// Begins a detection pass.
     pub(super) fn begin_pass(&mut self, pass: Pass) {
         self.logs_impulses = matches!(pass.stage, Stage::Simple | Stage::ContinuousTime);
     }
@@ -48,7 +48,7 @@ impl Log {
         }
     }
 
-    /// Number of impulses.
+    /// Returns number of impulses.
     pub(super) fn impulses(&self) -> usize {
         self.impulses.len() / IMPULSE_BYTES
     }

@@ -44,7 +44,7 @@ pub struct Reader<R> {
 }
 
 impl<'a> Reader<&'a [u8]> {
-    /// A reader of a trace in memory.
+    /// Returns a reader of a trace in memory.
     #[must_use]
     pub fn of_slice(trace: &'a [u8], layout: Layout) -> Self {
         Self::over(Lenient::of_slice(trace, layout), layout)
@@ -52,7 +52,7 @@ impl<'a> Reader<&'a [u8]> {
 }
 
 impl<R: Read> Reader<R> {
-    /// A reader at the beginning of `stream`, which needs no buffer of its own.
+    /// Creates a reader at the beginning of `stream`, which needs no buffer of its own.
     pub fn new(stream: R, layout: Layout) -> Self {
         Self::over(Lenient::new(stream, layout), layout)
     }
@@ -129,25 +129,25 @@ impl<R: Read> Reader<R> {
         &self.raw
     }
 
-    /// Number of records read.
+    /// Returns number of records read.
     #[must_use]
     pub fn records(&self) -> u64 {
         self.records.records()
     }
 
-    /// Byte offset of the last record (of the next one before the first call of [`Reader::next`]).
+    /// Returns byte offset of the last record (of the next one before the first call of [`Reader::next`]).
     #[must_use]
     pub fn record_offset(&self) -> u64 {
         self.records.record_offset()
     }
 
-    /// Byte offset behind the last record.
+    /// Returns byte offset behind the last record.
     #[must_use]
     pub fn offset(&self) -> u64 {
         self.records.offset()
     }
 
-    /// The layout.
+    /// Returns the layout.
     #[must_use]
     pub fn layout(&self) -> Layout {
         self.layout
@@ -182,7 +182,7 @@ impl<R: Read> Reader<R> {
         self.notes.extend(odd);
     }
 
-    /// An oddity of an impulse.
+    /// Returns an oddity of an impulse.
     fn odd(&self, number: u64, impulse: &LoggedImpulse) -> Option<Malformation> {
         let particles = self.layout.particles;
         let Some(kind) = impulse.kind() else {

@@ -30,13 +30,13 @@ impl<W: Write> Recorder<W> {
         Self { writer, layout, log }
     }
 
-    /// The bytes and records written so far, those in the buffer included.
+    /// Returns the bytes and records written so far, those in the buffer included.
     #[must_use]
     pub fn written(&self) -> WrittenTrace {
         self.writer.written()
     }
 
-    /// Whether writing has failed: there is no point in stepping on.
+    /// Returns whether writing has failed: there is no point in stepping on.
     #[must_use]
     pub fn failed(&self) -> bool {
         self.writer.failed()

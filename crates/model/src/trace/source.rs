@@ -26,13 +26,13 @@ pub(crate) struct Source<R> {
 }
 
 impl<R: Read> Source<R> {
-    /// A source at the beginning of `stream`.
+    /// Creates a source at the beginning of `stream`.
     pub(crate) fn new(stream: R) -> Self {
         let (buffer, length, error, tape) = (Vec::new(), None, None, None);
         Self { stream, buffer, start: 0, end: 0, offset: 0, length, ended: false, error, tape }
     }
 
-    /// The same source, with a known length of the whole stream.
+    /// Returns the source with a known length of the whole stream.
     pub(crate) fn with_length(mut self, bytes: u64) -> Self {
         self.length = Some(bytes);
         self
@@ -49,18 +49,18 @@ impl<R: Read> Source<R> {
         self.tape.take().unwrap_or_default()
     }
 
-    /// Absolute offset of the next byte.
+    /// Returns absolute offset of the next byte.
     #[inline]
     pub(crate) fn offset(&self) -> u64 {
         self.offset
     }
 
-    /// The error that ended the stream.
+    /// Returns the error that ended the stream.
     pub(crate) fn error(&self) -> Option<Malformation> {
         self.error.clone()
     }
 
-    /// The bytes in the buffer.
+    /// Returns the bytes in the buffer.
     #[inline]
     pub(crate) fn window(&self) -> &[u8] {
         &self.buffer[self.start..self.end]
@@ -78,7 +78,7 @@ impl<R: Read> Source<R> {
         self.end - self.start
     }
 
-    /// Steps over `count` bytes of the window.
+    /// Skips `count` bytes of the window.
     #[inline]
     pub(crate) fn consume(&mut self, count: usize) {
         if let Some(tape) = &mut self.tape {

@@ -167,8 +167,8 @@ impl StepView {
     }
 }
 
-/// The digests of steps in groups of equal length, of which a trace of `all` steps has few. The initial record is by
-/// itself. A single step keeps its own digest, the one that a listing of all steps shows.
+/// Returns the digests of steps in groups of equal length, of which a trace of `all` steps has few. The initial record
+/// is by itself. A single step keeps its own digest, the one that a listing of all steps shows.
 fn groups(steps: &[Short], all: u32) -> Vec<(u32, u32, Short)> {
     let (initial, later) = steps.split_at(steps.len().min(1));
     let mut first = 0;
@@ -183,7 +183,7 @@ fn groups(steps: &[Short], all: u32) -> Vec<(u32, u32, Short)> {
     initial.chunks(1).chain(later.chunks(all.div_ceil(GROUPS).max(1) as usize)).map(group).collect()
 }
 
-/// `1 particle`, `2 particles`.
+/// Returns `1 particle`, `2 particles`.
 fn number(count: impl Into<u64>, thing: &str) -> String {
     let count = count.into();
     format!("{count} {thing}{}", if count == 1 { "" } else { "s" })

@@ -38,14 +38,14 @@ pub struct Writer<W: Write> {
     /// Long lists that are not in the buffer: where they belong in it, and where they stand among the log's
     /// polynomials.
     lists: Vec<(usize, Range<usize>)>,
-    /// Their bytes.
+    /// The bytes of the lists.
     listed: usize,
     written: WrittenTrace,
     error: Option<io::Error>,
 }
 
 impl<W: Write> Writer<W> {
-    /// A writer of records with the blocks of `layout`.
+    /// Creates a writer of records with the blocks of `layout`.
     pub fn new(stream: W, layout: Layout) -> Self {
         Self {
             stream,
@@ -93,17 +93,17 @@ impl<W: Write> Writer<W> {
         self.written.records += 1;
     }
 
-    /// Whether there is enough to be handed on.
+    /// Returns whether there is enough to be handed on.
     pub(super) fn is_full(&self) -> bool {
         self.buffer.len() + self.listed >= PIECE || self.lists.len() + 2 > LISTS
     }
 
-    /// Whether polynomials of the log are still to be written.
+    /// Returns whether polynomials of the log are still to be written.
     pub(super) fn borrows(&self) -> bool {
         !self.lists.is_empty()
     }
 
-    /// The bytes and records written so far, those in the buffer included.
+    /// Returns the bytes and records written so far, those in the buffer included.
     #[must_use]
     pub fn written(&self) -> WrittenTrace {
         WrittenTrace {
@@ -112,7 +112,7 @@ impl<W: Write> Writer<W> {
         }
     }
 
-    /// Whether writing has failed; what follows is thrown away then.
+    /// Returns whether writing has failed; what follows is thrown away then.
     #[must_use]
     pub fn failed(&self) -> bool {
         self.error.is_some()

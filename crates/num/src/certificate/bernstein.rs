@@ -9,7 +9,7 @@ use super::{
     separated::zeros_are_separated,
 };
 
-/// Whether a polynomial of degree three to five is certainly not positive in `[0, 1]`. NaN gives `false`.
+/// Returns whether a polynomial of degree three to five is certainly not positive in `[0, 1]`. NaN gives `false`.
 #[inline]
 pub(super) fn never_positive(coefficients: &[f64]) -> bool {
     match *coefficients {
@@ -22,8 +22,8 @@ pub(super) fn never_positive(coefficients: &[f64]) -> bool {
     }
 }
 
-/// Whether all Bernstein coefficients are negative with margin, and the zeros near and apart. From coefficients,
-/// highest power first, and the reciprocals of the binomial coefficients.
+/// Returns whether all Bernstein coefficients are negative with margin, and the zeros near and apart. From
+/// coefficients, highest power first, and the reciprocals of the binomial coefficients.
 #[inline(always)]
 fn negative<const LENGTH: usize>(coefficients: &[f64; LENGTH], reciprocals: &[f64; LENGTH]) -> bool {
     let mut near = coefficients[0].abs();

@@ -12,8 +12,8 @@ use super::{
     Level,
 };
 
-/// Whether a polynomial of degree at most two (as it is solved, small leading coefficients dropped) is certainly not
-/// positive within the step. NaN and infinities never give a wrong `Some`.
+/// Returns whether a polynomial of degree at most two (as it is solved, small leading coefficients dropped) is
+/// certainly not positive within the step. NaN and infinities never give a wrong `Some`.
 #[inline]
 pub(super) fn never_positive(coefficients: &[f64]) -> Option<Level> {
     let (level, excluded) = match *coefficients {
@@ -28,7 +28,7 @@ pub(super) fn never_positive(coefficients: &[f64]) -> Option<Level> {
     excluded.then_some(level)
 }
 
-/// The line `a t + b`, neither zero.
+/// Returns whether the line `a t + b` is excluded, neither zero.
 #[inline]
 fn line(a: f64, b: f64) -> bool {
     if a < 0.0 {
@@ -45,7 +45,7 @@ fn line(a: f64, b: f64) -> bool {
     exact_line(a, b)
 }
 
-/// The root finder's own operations: one zero and the samples on its two sides.
+/// Runs the root finder's own operations: one zero and the samples on its two sides.
 fn exact_line(a: f64, b: f64) -> bool {
     let zero = -b / a;
     let before = evaluate(&[a, b], zero - 1.0) > 0.0;
@@ -54,13 +54,13 @@ fn exact_line(a: f64, b: f64) -> bool {
     !meets && !zero.is_nan()
 }
 
-/// The parabola `a t^2 + b t + c`, `a` not zero and not both others.
+/// Returns whether the parabola `a t^2 + b t + c` is excluded, `a` not zero and not both others.
 #[inline]
 fn parabola(a: f64, b: f64, c: f64) -> bool {
     c < 0.0 && (misses(a, b, c) || negative(a, b, c))
 }
 
-/// Whether it has no real zero, clearly: then the only sample is the one at 0, which is c.
+/// Returns whether it has no real zero, clearly: then the only sample is the one at 0, which is c.
 ///
 /// The discriminant's relative distance from 0 is 2^-20, its rounding a few u. The imaginary part is at least
 /// 2^-10 sqrt(c/a), hence above the 1e-8 below which a zero counts as real.
@@ -75,7 +75,7 @@ fn misses(a: f64, b: f64, c: f64) -> bool {
         && (SEARCH_SMALLEST_COEFFICIENT..SEARCH_LARGEST_COEFFICIENT).contains(&-a)
 }
 
-/// Whether it is below zero on `[0, 1]` with margin, and its zeros are near.
+/// Returns whether it is below zero on `[0, 1]` with margin, and its zeros are near.
 ///
 /// The computed zeros are those of a parabola whose coefficients differ by a few u times the sum of the moduli, far
 /// less than the margin, so none lies in `[0, 1]`. They are of modulus at most r = 2^23, so a value is rounded by at

@@ -11,13 +11,14 @@ use super::super::{
     },
 };
 
-/// Where a coefficient is so small that it is dropped when it leads.
+/// Returns where a coefficient is so small that it is dropped when it leads.
 #[inline(always)]
 pub fn is_small<S: Simd>(coefficient: Lanes<S>) -> Mask<S> {
     coefficient.abs().below(LEADING_COEFFICIENT)
 }
 
-/// Where the polynomial `a t + b`, with small leading coefficients dropped, is certainly not positive within the step.
+/// Returns where the polynomial `a t + b`, with small leading coefficients dropped, is certainly not positive within
+/// the step.
 #[inline(always)]
 pub fn never_positive_line<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Mask<S> {
     let (zero, small) = (a.like(0.0), is_small(a));
@@ -31,7 +32,7 @@ pub fn never_positive_line<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Mask<S> {
     if open.any() { known | (open & exact_line(a, b)) } else { known }
 }
 
-/// The root finder's own operations: one zero and the samples on its two sides.
+/// Returns the root finder's own operations: one zero and the samples on its two sides.
 #[inline(always)]
 fn exact_line<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Mask<S> {
     let (nothing, one) = (a.like(0.0), a.like(1.0));
@@ -41,8 +42,8 @@ fn exact_line<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Mask<S> {
     !((before & nothing.lt(zero)) | (after & zero.le(one)))
 }
 
-/// Where the polynomial `a t^2 + b t + c`, with small leading coefficients dropped, is certainly not positive within
-/// the step.
+/// Returns where the polynomial `a t^2 + b t + c`, with small leading coefficients dropped, is certainly not positive
+/// within the step.
 #[inline(always)]
 pub fn never_positive<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask<S> {
     let small = is_small(a);
@@ -51,7 +52,7 @@ pub fn never_positive<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask<S>
     if small.any() { whole | (small & never_positive_line(b, c)) } else { whole }
 }
 
-/// The parabola with a leading coefficient that counts: it has no real zero, or is below zero with margin.
+/// Returns the parabola with a leading coefficient that counts: it has no real zero, or is below zero with margin.
 #[inline(always)]
 fn parabola<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask<S> {
     let product = 4.0 * a * c;
@@ -71,21 +72,21 @@ fn parabola<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask<S> {
     c.below(0.0) & (misses | negative)
 }
 
-/// Where a value is at least `low` and less than `high`.
+/// Returns where a value is at least `low` and less than `high`.
 #[inline(always)]
 fn within<S: Simd>(value: Lanes<S>, low: f64, high: f64) -> Mask<S> {
     value.at_least(low) & value.below(high)
 }
 
-/// Where an impact is excluded of a pair of particles, or with a half-plane: one of its polynomials, a parabola and a
-/// line, is certainly not positive within the step.
+/// Returns where an impact is excluded of a pair of particles, or with a half-plane: one of its polynomials, a parabola
+/// and a line, is certainly not positive within the step.
 #[inline(always)]
 pub fn excludes_two<S: Simd>([a, b, c]: [Lanes<S>; 3], [d, e]: [Lanes<S>; 2]) -> Mask<S> {
     never_positive(a, b, c) | never_positive_line(d, e)
 }
 
-/// Where the closed forms exclude an impact of a pair with an edge: one of its polynomials is certainly not positive
-/// within the step, and the search among all of them would end, which `ends` says of the first and the last.
+/// Returns where the closed forms exclude an impact of a pair with an edge: one of its polynomials is certainly not
+/// positive within the step, and the search among all of them would end, which `ends` says of the first and the last.
 #[inline(always)]
 pub fn excludes_edge<S: Simd>(
     ends: Mask<S>,
@@ -113,7 +114,7 @@ pub fn excludes_edge<S: Simd>(
     excluded & ends
 }
 
-/// Where all coefficients are of a size with which a search is known to end.
+/// Returns where all coefficients are of a size with which a search is known to end.
 #[inline(always)]
 pub fn search_ends<S: Simd, const LENGTH: usize>(coefficients: &[Lanes<S>; LENGTH]) -> Mask<S> {
     let mut all = ends(coefficients[0]);
@@ -160,7 +161,7 @@ mod tests {
         }
     }
 
-    /// Of all sizes that formulas make, with zeros and bounds of the certificate among them.
+    /// Returns numbers of all sizes that formulas make, with zeros and bounds of the certificate among them.
     fn coefficient() -> impl Strategy<Value = f64> {
         let exponents = prop_oneof![-7..7_i32, -53..53_i32, -530..465_i32];
         let power = |exponent: i32| f64::from_bits(u64::try_from(1023 + exponent).expect("not negative") << 52);

@@ -50,7 +50,7 @@ impl Level {
     pub const ALL: [Self; 4] = [Self::Vanishing, Self::Line, Self::Parabola, Self::Bernstein];
 }
 
-/// Whether [`first_time`](super::first_time::first_time) of these polynomials is certainly greater than 1 (or
+/// Returns whether [`first_time`](super::first_time::first_time) of these polynomials is certainly greater than 1 (or
 /// infinite), with a margin that covers the root finder's own errors, and certainly ends. `false` means "not known".
 ///
 /// Coefficients that are not finite give `false` unless a polynomial of degree at most two decides and every other
@@ -61,14 +61,14 @@ pub fn excludes_unit_interval(polynomials: &[Polynomial]) -> bool {
     exclusion(polynomials).is_some()
 }
 
-/// [`excludes_unit_interval`], with the level that has decided.
+/// Excludes as [`excludes_unit_interval`] does, with the level that has decided.
 #[inline]
 #[must_use]
 pub fn exclusion(polynomials: &[Polynomial]) -> Option<Level> {
     exclusion_of(polynomials.iter().map(Polynomial::coefficients))
 }
 
-/// [`exclusion`] by lists of coefficients without small leading ones.
+/// Excludes as [`exclusion`] does, by lists of coefficients without small leading ones.
 #[inline]
 pub fn exclusion_of<'a>(lists: impl Iterator<Item = &'a [f64]> + Clone) -> Option<Level> {
     let mut best = None;
@@ -83,7 +83,7 @@ pub fn exclusion_of<'a>(lists: impl Iterator<Item = &'a [f64]> + Clone) -> Optio
     if searches { with_search(lists, best) } else { best }
 }
 
-/// The levels for lists with a polynomial that needs a search; `known` is what the others have shown.
+/// Returns the levels for lists with a polynomial that needs a search; `known` is what the others have shown.
 fn with_search<'a>(lists: impl Iterator<Item = &'a [f64]> + Clone, known: Option<Level>) -> Option<Level> {
     let mut searched = lists.filter(|list| list.len() > 3);
     if !searched.clone().all(search_ends) {
@@ -95,15 +95,15 @@ fn with_search<'a>(lists: impl Iterator<Item = &'a [f64]> + Clone, known: Option
     searched.any(|list| nowhere_positive(list) || bernstein::never_positive(list)).then_some(Level::Bernstein)
 }
 
-/// Whether the root finder rejects the polynomial and its only sample, at 0, is not positive: a leading zero (in the
-/// non-dropping build), or `c z^m`.
+/// Returns whether the root finder rejects the polynomial and its only sample, at 0, is not positive: a leading zero
+/// (in the non-dropping build), or `c z^m`.
 #[inline]
 fn nowhere_positive(coefficients: &[f64]) -> bool {
     coefficients[coefficients.len() - 1] <= 0.0
         && (coefficients[0] == 0.0 || coefficients[1..].iter().all(|&coefficient| coefficient == 0.0))
 }
 
-/// Whether all coefficients are finite and, unless zero, of a size with which the search is known to end.
+/// Returns whether all coefficients are finite and, unless zero, of a size with which the search is known to end.
 #[inline]
 fn search_ends(coefficients: &[f64]) -> bool {
     coefficients.iter().all(|coefficient| {

@@ -14,15 +14,15 @@ struct Entries<const LENGTH: usize> {
 }
 
 impl<const LENGTH: usize> Entries<LENGTH> {
-    /// Whether the leading one stays clear of zero. NaN does not.
+    /// Returns whether the leading one stays clear of zero. NaN does not.
     #[inline(always)]
     fn is_clear(&self) -> bool {
         self.values[0].abs() > DISCRIMINANT_MARGIN * self.changes[0]
     }
 
-    /// One step of the division: subtracts the multiple of the divisor at which the leading coefficient vanishes, and
-    /// moves up by one place. All places are computed, since those behind the last ones stay 0 and what has no branches
-    /// is done for several at once.
+    /// Makes one step of the division: subtracts the multiple of the divisor at which the leading coefficient vanishes,
+    /// and moves up by one place. All places are computed, since those behind the last ones stay 0 and what has no
+    /// branches is done for several at once.
     #[inline(always)]
     fn less(&mut self, divisor: &Self, reciprocal: f64) {
         let Self { values, changes } = self;
@@ -36,8 +36,8 @@ impl<const LENGTH: usize> Entries<LENGTH> {
     }
 }
 
-/// Whether no change of the coefficients (highest power first) by [`DISCRIMINANT_MARGIN`] of their moduli makes two
-/// zeros coincide. `false` also where an intermediate remainder is of lower degree than usual.
+/// Returns whether no change of the coefficients (highest power first) by [`DISCRIMINANT_MARGIN`] of their moduli makes
+/// two zeros coincide. `false` also where an intermediate remainder is of lower degree than usual.
 #[inline]
 pub(super) fn zeros_are_separated<const LENGTH: usize>(coefficients: &[f64; LENGTH]) -> bool {
     let mut dividend = Entries { values: *coefficients, changes: coefficients.map(f64::abs) };

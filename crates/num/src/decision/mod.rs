@@ -146,7 +146,7 @@ pub fn decide(polynomials: &[&[Bounded]], units: f64) -> Certified {
     }
 }
 
-/// The decision when all coefficients are exact.
+/// Returns the decision when all coefficients are exact.
 fn without_errors(problem: &Problem, search: &Search, units: f64) -> Certified {
     match search.answer {
         Answer::Reached(time) => yes([search.from, time], units + problem.slack_of_yes(time), Level::Subdivision),
@@ -158,7 +158,7 @@ fn without_errors(problem: &Problem, search: &Search, units: f64) -> Certified {
     }
 }
 
-/// The decision by exact arithmetic; `upper_hits` and `lower_misses` are the answers that are known already.
+/// Returns the decision by exact arithmetic; `upper_hits` and `lower_misses` are the answers that are known already.
 fn by_integers(upper: &Problem, lower: &Problem, units: f64, upper_hits: bool, lower_misses: bool) -> Certified {
     let ExactAnswer::First { time: first, .. } = exact(upper) else {
         debug_assert!(!upper_hits, "the subdivision has proved a hit");
@@ -170,7 +170,7 @@ fn by_integers(upper: &Problem, lower: &Problem, units: f64, upper_hits: bool, l
     borderline(Some(first), Level::Exact)
 }
 
-/// [`exact_first`] of a problem's coefficients.
+/// Decides as [`exact_first`] does, by a problem's coefficients.
 fn exact(problem: &Problem) -> ExactAnswer {
     let lists = problem.highest_first();
     let mut slices = [&[] as &[f64]; MAX_POLYNOMIALS];

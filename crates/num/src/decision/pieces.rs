@@ -83,12 +83,12 @@ impl Controls {
         &self.list[..self.count]
     }
 
-    /// Whether all are positive at the left end.
+    /// Returns whether all are positive at the left end.
     fn begin_positive(&self) -> bool {
         self.as_slice().iter().all(|control| control.values[0] > control.error)
     }
 
-    /// Whether all are positive at the right end.
+    /// Returns whether all are positive at the right end.
     fn end_positive(&self) -> bool {
         self.as_slice().iter().all(|control| control.values[control.length - 1] > control.error)
     }
@@ -172,8 +172,8 @@ impl PieceWalk<'_> {
     }
 }
 
-/// Whether the Bernstein coefficients are negative up to some place and positive from the next one on, or the next but
-/// one: whatever the sign between, it changes once, so the polynomial does (Descartes' rule of signs).
+/// Returns whether the Bernstein coefficients are negative up to some place and positive from the next one on, or the
+/// next but one: whatever the sign between, it changes once, so the polynomial does (Descartes' rule of signs).
 fn rises_once(control: &Control) -> bool {
     let values = &control.values[..control.length];
     let negative = values.iter().take_while(|&&value| value < -control.error).count();
@@ -213,8 +213,8 @@ impl Sign {
     }
 }
 
-/// The Bernstein coefficients of the two halves (de Casteljau). A sum is rounded, halving is exact but for underflow,
-/// which the error already covers; all intermediate values are convex combinations of the first ones.
+/// Returns the Bernstein coefficients of the two halves (de Casteljau). A sum is rounded, halving is exact but for
+/// underflow, which the error already covers; all intermediate values are convex combinations of the first ones.
 fn halves(control: &Control) -> (Control, Control) {
     let (mut left, mut right) = (*control, *control);
     let length = control.length;

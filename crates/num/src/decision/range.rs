@@ -58,7 +58,7 @@ pub(crate) struct Problem {
 }
 
 impl Problem {
-    /// The choice at these ends, rounded outwards; coefficients without error stay as they are.
+    /// Creates the choice at these ends, rounded outwards; coefficients without error stay as they are.
     ///
     /// # Panics
     /// With too many polynomials or coefficients.
@@ -78,13 +78,13 @@ impl Problem {
         problem
     }
 
-    /// The polynomials.
+    /// Returns the polynomials.
     #[inline]
     pub(crate) fn polynomials(&self) -> &[Exactly] {
         &self.list[..self.count]
     }
 
-    /// Whether all coefficients are finite.
+    /// Returns whether all coefficients are finite.
     #[inline]
     pub(crate) fn is_finite(&self) -> bool {
         self.polynomials().iter().all(|polynomial| {
@@ -93,8 +93,8 @@ impl Problem {
         })
     }
 
-    /// Whether one polynomial alone shows that nothing happens within the step, at which level, and how many further
-    /// units of the bounds this survives. An empty problem is excluded.
+    /// Returns whether one polynomial alone shows that nothing happens within the step, at which level, and how many
+    /// further units of the bounds this survives. An empty problem is excluded.
     #[inline]
     pub(crate) fn exclusion(&self) -> Option<(Level, f64)> {
         if self.count == 0 {
@@ -106,19 +106,19 @@ impl Problem {
         by(Exactly::range, Level::Range).or_else(|| by(Exactly::bernstein, Level::Bernstein))
     }
 
-    /// Whether all polynomials are positive at 0 (exact, no arithmetic is needed).
+    /// Returns whether all polynomials are positive at 0 (exact, no arithmetic is needed).
     #[inline]
     pub(crate) fn starts_positive(&self) -> bool {
         self.polynomials().iter().all(|polynomial| polynomial.coefficients[0] > 0.0)
     }
 
-    /// Whether two problems of the same shape have the same coefficients.
+    /// Returns whether two problems of the same shape have the same coefficients.
     pub(crate) fn coefficients_equal(&self, other: &Self) -> bool {
         let pairs = self.polynomials().iter().zip(other.polynomials());
         pairs.into_iter().all(|(one, two)| one.coefficients == two.coefficients)
     }
 
-    /// The coefficients, highest power first, with their number.
+    /// Returns the coefficients, highest power first, with their number.
     pub(crate) fn highest_first(&self) -> [([f64; MAX_COEFFICIENTS], usize); MAX_POLYNOMIALS] {
         self.list.map(|polynomial| {
             let mut list = [0.0; MAX_COEFFICIENTS];
@@ -129,7 +129,8 @@ impl Problem {
         })
     }
 
-    /// Over how many powers of two the sizes of one polynomial's coefficients spread, at most; zeros do not count.
+    /// Returns over how many powers of two the sizes of one polynomial's coefficients spread, at most; zeros do not
+    /// count.
     pub(crate) fn spread(&self) -> u64 {
         let spread = |polynomial: &Exactly| {
             let exponents =
@@ -139,9 +140,9 @@ impl Problem {
         self.polynomials().iter().map(spread).max().unwrap_or(0)
     }
 
-    /// How many further units of the bounds a hit survives: at the best of some times from this one on, the least of
-    /// the polynomials' values over their bounds. At least 0. The times are spread evenly over the rest of the step,
-    /// and ever closer after the first, because a hit may be short.
+    /// Returns how many further units of the bounds a hit survives: at the best of some times from this one on, the
+    /// least of the polynomials' values over their bounds. At least 0. The times are spread evenly over the rest of the
+    /// step, and ever closer after the first, because a hit may be short.
     pub(crate) fn slack_of_yes(&self, first: f64) -> f64 {
         let slack_at = |t: f64| {
             let slacks = self.polynomials().iter().map(|polynomial| polynomial.slack_at(t));
@@ -158,7 +159,7 @@ impl Problem {
     }
 }
 
-/// One end of the interval in which a coefficient lies, rounded outwards.
+/// Returns one end of the interval in which a coefficient lies, rounded outwards.
 #[inline]
 fn end(coefficient: Bounded, units: f64, ends: Ends) -> f64 {
     if units == 0.0 || coefficient.bound == 0.0 {
@@ -174,7 +175,7 @@ fn end(coefficient: Bounded, units: f64, ends: Ends) -> f64 {
     }
 }
 
-/// How many units of a bound a distance from zero is worth.
+/// Returns how many units of a bound a distance from zero is worth.
 #[inline]
 pub(crate) fn slack(distance: f64, bound: f64) -> f64 {
     // A hundredth less covers the rounding of the bound and of the quotient.
@@ -182,8 +183,8 @@ pub(crate) fn slack(distance: f64, bound: f64) -> f64 {
 }
 
 impl Exactly {
-    /// L0: by signs (no coefficient is positive, so none of its values after 0 is), or because the positive terms
-    /// cannot make up for a negative constant.
+    /// Returns l0: by signs (no coefficient is positive, so none of its values after 0 is), or because the positive
+    /// terms cannot make up for a negative constant.
     #[inline]
     fn range(&self) -> Option<f64> {
         let (mut greatest, mut size) = (self.coefficients[0], self.coefficients[0].abs());
@@ -197,7 +198,7 @@ impl Exactly {
         if distance > 0.0 || none_positive { Some(slack(distance, self.bound)) } else { None }
     }
 
-    /// L1: all Bernstein coefficients are negative.
+    /// Returns l1: all Bernstein coefficients are negative.
     #[inline]
     fn bernstein(&self) -> Option<f64> {
         // Positive at 0: no need to look.
@@ -210,7 +211,8 @@ impl Exactly {
         (distance > 0.0).then(|| slack(distance, self.bound))
     }
 
-    /// The Bernstein coefficients on `[0, 1]`. An overflow makes the error infinite, so that nothing follows from it.
+    /// Returns the Bernstein coefficients on `[0, 1]`. An overflow makes the error infinite, so that nothing follows
+    /// from it.
     #[inline]
     pub(crate) fn control(&self) -> Control {
         let values = match self.length {
@@ -225,8 +227,8 @@ impl Exactly {
         Control { values, length: self.length, error: CONVERSION * size + UNDERFLOW, index: 0 }
     }
 
-    /// The Bernstein coefficients on `[0, end]`, for an end that is a power of two between `2^-150` and 1: scaling is
-    /// exact but for underflow.
+    /// Returns the Bernstein coefficients on `[0, end]`, for an end that is a power of two between `2^-150` and 1:
+    /// scaling is exact but for underflow.
     pub(crate) fn control_until(&self, end: f64) -> Control {
         let (mut stretched, mut power) = (*self, 1.0);
         for value in &mut stretched.coefficients {
@@ -252,13 +254,13 @@ impl Exactly {
         values
     }
 
-    /// How many units of the bound the value at `t` in `[0, 1]` lies above zero, at least 0.
+    /// Returns how many units of the bound the value at `t` in `[0, 1]` lies above zero, at least 0.
     fn slack_at(&self, t: f64) -> f64 {
         let (value, error) = self.value_at(t);
         if value > error { slack(value - error, self.bound) } else { 0.0 }
     }
 
-    /// The value at `t` in `[0, 1]`, and by how much it may be off.
+    /// Returns the value at `t` in `[0, 1]`, and by how much it may be off.
     pub(crate) fn value_at(&self, t: f64) -> (f64, f64) {
         let (mut value, mut size) = (0.0, 0.0);
         for &coefficient in self.coefficients[..self.length].iter().rev() {

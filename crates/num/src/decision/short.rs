@@ -3,8 +3,8 @@
 //! A double is an integer times a power of two. If all inputs of a formula are integer multiples of *one* power of two
 //! and the integers are short, every sum and product of the formula still fits into 53 bits and nothing is rounded.
 
-/// Whether all values are integer multiples of one power of two with quotients of modulus below `2^bits`. Zeros fit
-/// everywhere; a value that is not finite fits nowhere. `bits` 0 admits zeros only.
+/// Returns whether all values are integer multiples of one power of two with quotients of modulus below `2^bits`. Zeros
+/// fit everywhere; a value that is not finite fits nowhere. `bits` 0 admits zeros only.
 #[must_use]
 pub fn all_exact(values: &[f64], bits: u32) -> bool {
     let (mut lowest, mut highest) = (i32::MAX, i32::MIN);
@@ -22,7 +22,7 @@ pub fn all_exact(values: &[f64], bits: u32) -> bool {
     highest == i32::MIN || i64::from(highest) - i64::from(lowest) <= i64::from(bits)
 }
 
-/// `|value|` as mantissa times a power of two; the mantissa of zero is 0. For finite values.
+/// Returns `|value|` as mantissa times a power of two; the mantissa of zero is 0. For finite values.
 pub(super) fn split(value: f64) -> (u64, i32) {
     let bits = value.to_bits();
     let exponent = i32::try_from((bits >> 52) & 0x7FF).unwrap_or(0);

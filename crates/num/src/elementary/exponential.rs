@@ -19,7 +19,7 @@ const TINY: u64 = 0x3c9;
 const LARGE: u64 = 0x408;
 const TOO_LARGE: u64 = 0x409;
 
-/// `e^x`; infinite above 709.78, zero below -745.13.
+/// Returns `e^x`; infinite above 709.78, zero below -745.13.
 #[must_use]
 pub fn exp(x: f64) -> f64 {
     let exponent = x.to_bits() >> 52 & 0x7ff;
@@ -51,7 +51,8 @@ pub fn exp(x: f64) -> f64 {
     small(f64::from_bits(power.wrapping_add(1022 << 52)), more) * f64::MIN_POSITIVE
 }
 
-/// `power (1 + more)`, rounded as a subnormal number is, whose last bits a product with 2^-1022 would round once more.
+/// Returns `power (1 + more)`, rounded as a subnormal number is, whose last bits a product with 2^-1022 would round
+/// once more.
 fn small(power: f64, more: f64) -> f64 {
     let change = power * more;
     let value = power + change;

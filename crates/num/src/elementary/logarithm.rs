@@ -11,7 +11,7 @@ const SERIES: [f64; 5] = [
     f64::from_bits(0x3fc9_99b3_24f1_0111),
     f64::from_bits(0xbfc5_5575_e506_c89f),
 ];
-/// The same for arguments from `1 - 2^-4` to `1 + 0x1.09p-4`.
+/// The series for arguments from `1 - 2^-4` to `1 + 0x1.09p-4`.
 const SERIES_AT_ONE: [f64; 11] = [
     f64::from_bits(0xbfe0_0000_0000_0000),
     f64::from_bits(0x3fd5_5555_5555_5577),
@@ -33,7 +33,7 @@ const NUMBERS_AT_ONE: u64 = 0x0003_0900_0000_0000;
 /// 2^27: half of a number's bits.
 const HALF: f64 = 134_217_728.0;
 
-/// The natural logarithm; `-inf` at zero, NaN below.
+/// Returns the natural logarithm; `-inf` at zero, NaN below.
 #[must_use]
 pub fn ln(x: f64) -> f64 {
     let mut bits = x.to_bits();
@@ -63,7 +63,7 @@ pub fn ln(x: f64) -> f64 {
     fused(r * square, inner, low) + sum
 }
 
-/// The logarithm of a number close to one: the first two terms with twice the precision.
+/// Returns the logarithm of a number close to one: the first two terms with twice the precision.
 fn at_one(x: f64) -> f64 {
     if x == 1.0 {
         return 0.0;

@@ -18,7 +18,7 @@ pub use exponential::exp;
 pub use logarithm::ln;
 pub use trigonometry::{cos, sin};
 
-/// `a * b + c`, rounded once.
+/// Returns `a * b + c`, rounded once.
 #[inline]
 fn fused(a: f64, b: f64, c: f64) -> f64 {
     a.mul_add(b, c)

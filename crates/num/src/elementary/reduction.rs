@@ -17,7 +17,7 @@ pub(super) const QUARTER: [f64; 2] = [f64::from_bits(0x3ff9_21fb_5444_2d18), f64
 const TO_QUARTERS: f64 = f64::from_bits(0x3fe4_5f30_6dc9_c883);
 /// Adding this to a number rounds it to a whole one, which stands in the lowest bits of the sum.
 const ROUNDS: f64 = f64::from_bits(0x4338_0000_0000_0000);
-/// The same for multiples of four.
+/// The constant for multiples of four.
 const ROUNDS_TO_TURNS: f64 = f64::from_bits(0x4358_0000_0000_0000);
 /// π/2 in four pieces; products of the first three with the quarters of a near angle are exact.
 const PIECES: [f64; 4] = [
@@ -31,12 +31,12 @@ const HALVES: [f64; 2] = [PIECES[0], f64::from_bits(0xbe4d_de97_4000_0000)];
 /// A number times this, less the rest, is its upper half: 2^27 + 1.
 const SPLITS: f64 = 134_217_729.0;
 
-/// A power of two.
+/// Returns a power of two.
 const fn power(exponent: i32) -> f64 {
     f64::from_bits(((1023 + exponent) as u64) << 52)
 }
 
-/// Of an angle below 1.05e8.
+/// Reduces an angle below 1.05e8.
 pub(super) fn near(x: f64) -> Reduced {
     let shifted = fused(x, TO_QUARTERS, ROUNDS);
     let quarters = shifted - ROUNDS;
@@ -47,7 +47,7 @@ pub(super) fn near(x: f64) -> Reduced {
     Reduced { quarters: shifted.to_bits() as u32 & 3, angle, rest }
 }
 
-/// Of any finite angle from there on.
+/// Reduces any finite angle from there on.
 pub(super) fn far(x: f64) -> Reduced {
     let x = x * power(-600);
     let scaled = x * SPLITS;
@@ -86,7 +86,7 @@ struct Quarters {
     rest: f64,
 }
 
-/// The quarters of half of an angle's digits, times 2^-600.
+/// Returns the quarters of half of an angle's digits, times 2^-600.
 fn quarters_of(half: f64) -> Quarters {
     // Digits whose product is a multiple of a turn are left out.
     let exponent = (half.to_bits() >> 52 & 0x7ff) as i32;

@@ -28,7 +28,7 @@ const TAYLOR: [f64; 5] = [
 const SINE: [f64; 2] = [f64::from_bits(0xbfc5_5555_5555_5515), f64::from_bits(0x3f81_1110_e829_872f)];
 const COSINE: [f64; 3] = [0.5, f64::from_bits(0xbfa5_5555_5555_5535), f64::from_bits(0x3f56_c16b_edd9_e239)];
 
-/// The sine of an angle in radians; NaN of an infinite one.
+/// Returns the sine of an angle in radians; NaN of an infinite one.
 #[must_use]
 pub fn sin(angle: f64) -> f64 {
     match high_word(angle) {
@@ -39,7 +39,7 @@ pub fn sin(angle: f64) -> f64 {
     }
 }
 
-/// The cosine of an angle in radians; NaN of an infinite one.
+/// Returns the cosine of an angle in radians; NaN of an infinite one.
 #[must_use]
 pub fn cos(angle: f64) -> f64 {
     match high_word(angle) {
@@ -54,7 +54,7 @@ pub fn cos(angle: f64) -> f64 {
     }
 }
 
-/// The upper half of the bits of an angle's modulus: in the order of the angles.
+/// Returns the upper half of the bits of an angle's modulus: in the order of the angles.
 fn high_word(angle: f64) -> u32 {
     (angle.abs().to_bits() >> 32) as u32
 }
@@ -67,21 +67,21 @@ fn reduced(angle: f64, word: u32) -> Option<Reduced> {
     }
 }
 
-/// The sine of an angle that is larger by this number of quarter turns.
+/// Returns the sine of an angle that is larger by this number of quarter turns.
 fn at_quarter(Reduced { quarters, angle, rest }: Reduced, more: u32) -> f64 {
     let quarter = quarters + more;
     let value = if quarter & 1 == 0 { sine(angle, rest) } else { cosine(angle, rest) };
     if quarter & 2 == 0 { value } else { -value }
 }
 
-/// The next angle of the table, which the sum's lowest bits name, with the difference to it.
+/// Returns the next angle of the table, which the sum's lowest bits name, with the difference to it.
 fn looked_up(modulus: f64) -> ([f64; 4], f64) {
     let sum = ROUNDS + modulus;
     let row = 4 * (sum.to_bits() as u32) as usize;
     (std::array::from_fn(|i| f64::from_bits(ANGLES[row + i])), modulus - (sum - ROUNDS))
 }
 
-/// The sine of `x + dx` for `|x|` up to 0.86 and a `dx` that is small beside it.
+/// Returns the sine of `x + dx` for `|x|` up to 0.86 and a `dx` that is small beside it.
 fn sine(x: f64, dx: f64) -> f64 {
     if x.abs() < TAYLOR_ENDS {
         let square = x * x;
@@ -97,7 +97,7 @@ fn sine(x: f64, dx: f64) -> f64 {
     (sine + fused(s, cosine, rest)).copysign(x)
 }
 
-/// The cosine of `x + dx` for the same.
+/// Returns the cosine of `x + dx` for the same.
 fn cosine(x: f64, dx: f64) -> f64 {
     let ([sine, sine_rest, cosine, cosine_rest], difference) = looked_up(x.abs());
     let difference = difference + if x < 0.0 { -dx } else { dx };
@@ -108,7 +108,7 @@ fn cosine(x: f64, dx: f64) -> f64 {
     cosine + fused(-s, sine, rest)
 }
 
-/// `(1 - cos x) / x^2` for a small `x` of this square.
+/// Returns `(1 - cos x) / x^2` for a small `x` of this square.
 fn one_less_cosine(square: f64) -> f64 {
     fused(square, fused(COSINE[2], square, COSINE[1]), COSINE[0])
 }

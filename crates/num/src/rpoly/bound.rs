@@ -6,8 +6,8 @@ use crate::elementary::{exp, ln};
 /// Newton steps after which the iteration is known to cycle; every other one makes fewer than 500.
 const MAX_NEWTON_STEPS: usize = 1000;
 
-/// The bound for a polynomial of degree `N`; 0 when its constant term is 0. The steps that it takes are added to
-/// `steps`.
+/// Returns the bound for a polynomial of degree `N`; 0 when its constant term is 0. The steps that it takes are added
+/// to `steps`.
 ///
 /// # Errors
 /// [`DoesNotTerminate`] when a coefficient is not finite, or when the Newton iteration cycles among subnormals.
@@ -25,7 +25,8 @@ pub(super) fn lower_bound<const N: usize>(polynomial: &Coefficients, steps: &mut
     newton::<N>(&moduli, x, steps)
 }
 
-/// The starting point: the geometric mean of the zeros' moduli, or the Newton step from the origin if that is nearer.
+/// Returns the starting point: the geometric mean of the zeros' moduli, or the Newton step from the origin if that is
+/// nearer.
 #[inline]
 #[expect(clippy::cast_precision_loss, reason = "N is at most six")]
 fn start<const N: usize>(moduli: &Coefficients) -> f64 {
@@ -58,7 +59,8 @@ fn decimate<const N: usize>(moduli: &Coefficients, mut x: f64, steps: &mut u32) 
     }
 }
 
-/// Newton's iteration until a step changes less than half a per cent. With `x = 0` the ratio is NaN and none is made.
+/// Returns newton's iteration until a step changes less than half a per cent. With `x = 0` the ratio is NaN and none is
+/// made.
 #[inline]
 fn newton<const N: usize>(moduli: &Coefficients, mut x: f64, all_steps: &mut u32) -> Result<f64, DoesNotTerminate> {
     let mut step = x;

@@ -23,7 +23,7 @@ struct Measure {
 impl Convergence {
     const START: Self = Self { previous: 0.0, previous_change: 1.0, threshold: 0.25 };
 
-    /// Two successive small relative changes pass.
+    /// Returns the measure by which two successive small relative changes pass.
     #[inline(always)]
     fn measure(&self, estimate: f64) -> Measure {
         let change = if estimate == 0.0 { 1.0 } else { ((estimate - self.previous) / estimate).abs() };
@@ -37,15 +37,15 @@ impl Convergence {
         self.previous_change = change;
     }
 
-    /// After an iteration has failed, convergence must be clearer before it is tried again.
+    /// Tightens the measure: after an iteration has failed, convergence must be clearer before it is tried again.
     #[inline(always)]
     fn tighten(&mut self) {
         self.threshold *= 0.25;
     }
 }
 
-/// Steps with the fixed factor `z^2 + u z + v` until an iteration started from the estimates succeeds, `limit` steps
-/// at most. All steps, those of the iterations among them, are added to `steps`.
+/// Returns steps with the fixed factor `z^2 + u z + v` until an iteration started from the estimates succeeds, `limit`
+/// steps at most. All steps, those of the iterations among them, are added to `steps`.
 pub(super) fn run<const N: usize>(
     polynomial: &Coefficients,
     mut k: Coefficients,

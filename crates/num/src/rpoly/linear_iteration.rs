@@ -11,7 +11,7 @@ const MAX_STEPS: usize = 10;
 pub(super) enum Outcome {
     /// A zero, and the quotient.
     Zero(f64, Coefficients),
-    /// It stands still near this point: two zeros may be close together.
+    /// The iteration stands still near this point: two zeros may be close together.
     Cluster(f64),
     /// No convergence.
     Failed,
@@ -60,7 +60,7 @@ pub(super) fn run<const N: usize>(
     }
 }
 
-/// Horner's scheme: the quotient by `z - s`, and in entry `N` the value at `s`.
+/// Returns horner's scheme: the quotient by `z - s`, and in entry `N` the value at `s`.
 #[inline(always)]
 fn horner<const N: usize>(polynomial: &Coefficients, s: f64) -> Coefficients {
     let mut q = Coefficients::default();
@@ -71,7 +71,7 @@ fn horner<const N: usize>(polynomial: &Coefficients, s: f64) -> Coefficients {
     q
 }
 
-/// The next K polynomial with the shift `s`.
+/// Returns the next K polynomial with the shift `s`.
 #[inline(always)]
 fn next_k<const N: usize>(k: &Coefficients, q: &Coefficients, s: f64, value: f64) -> Coefficients {
     let mut w = Coefficients::default();

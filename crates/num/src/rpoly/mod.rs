@@ -50,23 +50,23 @@ pub struct Zeros {
 impl Zeros {
     const REJECTED: Self = Self { rejected: true, length: 0, steps: 0, list: [(0.0, 0.0); MAX_DEGREE] };
 
-    /// The count that the original returns: the degree, less when the search gave up, `-1` when the polynomial was
-    /// rejected (a leading zero, or `c z^m`; root-finder.md 2 and 3).
+    /// Returns the count that the original returns: the degree, less when the search gave up, `-1` when the polynomial
+    /// was rejected (a leading zero, or `c z^m`; root-finder.md 2 and 3).
     #[must_use]
     pub fn count(&self) -> i32 {
         #[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "at most six")]
         if self.rejected { -1 } else { self.length as i32 }
     }
 
-    /// The zeros as pairs (real part, imaginary part); none when the polynomial was rejected.
+    /// Returns the zeros as pairs (real part, imaginary part); none when the polynomial was rejected.
     #[inline]
     #[must_use]
     pub fn as_slice(&self) -> &[(f64, f64)] {
         &self.list[..self.length]
     }
 
-    /// The steps of all stages together: some dozens as a rule, thousands where polynomials are nearly nothing but
-    /// round-off or subnormal. Only the time that the search took depends on them.
+    /// Returns the steps of all stages together: some dozens as a rule, thousands where polynomials are nearly nothing
+    /// but round-off or subnormal. Only the time that the search took depends on them.
     #[must_use]
     pub fn steps(&self) -> u32 {
         self.steps
@@ -85,7 +85,7 @@ enum Found {
     Two { zeros: [Zero; 2], quotient: Coefficients },
 }
 
-/// All zeros of the polynomial with these coefficients, highest power first (root-finder.md 3).
+/// Returns all zeros of the polynomial with these coefficients, highest power first (root-finder.md 3).
 ///
 /// The result depends on nothing but the coefficients. A leading zero and `c z^m` are rejected; when all twenty
 /// shifts fail, the zeros found before that are returned. Degrees 1 and 2 use closed forms and accept coefficients
@@ -121,7 +121,7 @@ pub fn zeros(coefficients: &[f64]) -> Result<Zeros, DoesNotTerminate> {
     Ok(zeros)
 }
 
-/// The zeros of a line or a parabola: the ends of the recursion.
+/// Finds the zeros of a line or a parabola: the ends of the recursion.
 #[inline]
 fn closed_form(zeros: &mut Zeros, coefficients: &[f64]) {
     match *coefficients {
@@ -162,7 +162,7 @@ fn search(zeros: &mut Zeros, mut polynomial: Coefficients, mut degree: usize) ->
     }
 }
 
-/// One search: scaling, bound, no-shift stage, then up to twenty shifts (root-finder.md 3, steps 5 and 6).
+/// Makes one search: scaling, bound, no-shift stage, then up to twenty shifts (root-finder.md 3, steps 5 and 6).
 #[inline(never)]
 fn find<const N: usize>(
     polynomial: &mut Coefficients,

@@ -4,7 +4,8 @@ use super::{Coefficients, constants::ETA};
 /// The steps of this stage.
 const STEPS: usize = 5;
 
-/// The K polynomial (degree `N - 1`) after five steps without shift, started from the derivative divided by `N`.
+/// Returns the K polynomial (degree `N - 1`) after five steps without shift, started from the derivative divided by
+/// `N`.
 #[inline]
 pub(super) fn run<const N: usize>(polynomial: &Coefficients) -> Coefficients {
     let mut k = derivative::<N>(polynomial);

@@ -13,7 +13,7 @@ pub(super) fn divide<const M: usize>(f: &Coefficients, u: f64, v: f64) -> Coeffi
     g
 }
 
-/// The zeros of `a z^2 + b z + c`, the smaller first; in a complex pair the positive imaginary part first.
+/// Returns the zeros of `a z^2 + b z + c`, the smaller first; in a complex pair the positive imaginary part first.
 ///
 /// `a = 0` gives the zero of the line and a second zero at the origin. Coefficients need not be finite.
 #[inline]

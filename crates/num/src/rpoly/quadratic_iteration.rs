@@ -11,7 +11,7 @@ const MAX_STEPS: usize = 20;
 /// Steps of the cluster's extra fixed-shift loop.
 const CLUSTER_STEPS: usize = 5;
 
-/// Two zeros and the quotient, from the starting factor `z^2 + u z + v`; `None` on failure, with `k` changed.
+/// Returns two zeros and the quotient, from the starting factor `z^2 + u z + v`; `None` on failure, with `k` changed.
 #[inline]
 pub(super) fn run<const N: usize>(
     polynomial: &Coefficients,
@@ -69,7 +69,7 @@ pub(super) fn run<const N: usize>(
     }
 }
 
-/// A bound on the rounding error of P at the factor's zero with real part `x`.
+/// Returns a bound on the rounding error of P at the factor's zero with real part `x`.
 #[inline(always)]
 fn rounding_error<const N: usize>(division: &Division<N>, x: f64) -> f64 {
     let (a, b) = (division.a(), division.b());

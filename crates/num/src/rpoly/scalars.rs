@@ -102,7 +102,7 @@ impl<const N: usize> Scalars<N> {
         scalars
     }
 
-    /// The next K polynomial.
+    /// Returns the next K polynomial.
     #[inline(always)]
     pub(super) fn next_k(&self, division: &Division<N>) -> Coefficients {
         let (q, w) = (&division.q, &self.w);
@@ -132,7 +132,7 @@ impl<const N: usize> Scalars<N> {
         k
     }
 
-    /// The new estimate `(u, v)` of the quadratic factor; `(0, 0)` when there is none.
+    /// Returns the new estimate `(u, v)` of the quadratic factor; `(0, 0)` when there is none.
     #[inline(always)]
     pub(super) fn estimate(&self, k: &Coefficients, polynomial: &Coefficients, division: &Division<N>) -> (f64, f64) {
         let Self { c, d, s, g, y, phi, delta, psi, .. } = *self;

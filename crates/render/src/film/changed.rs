@@ -11,8 +11,9 @@ pub struct ChangedArea {
 }
 
 impl ChangedArea {
-    /// The smallest part outside of which two pictures of a byte per pixel are the same; one pixel where they are
-    /// the same everywhere, because a film has no empty pictures. All of a film's first picture, which has none before.
+    /// Returns the smallest part outside of which two pictures of a byte per pixel are the same; one pixel where they
+    /// are the same everywhere, because a film has no empty pictures. All of a film's first picture, which has none
+    /// before.
     pub fn of(size: Size, before: &[u8], after: &[u8]) -> Self {
         if before.is_empty() {
             return Self { left: 0, top: 0, width: size.width(), height: size.height() };
@@ -45,7 +46,7 @@ impl ChangedArea {
         part
     }
 
-    /// The bytes of this part, row by row.
+    /// Returns the bytes of this part, row by row.
     pub fn cut(self, size: Size, bytes: &[u8]) -> Vec<u8> {
         let row = size.width() as usize;
         let mut part = Vec::with_capacity(self.width as usize * self.height as usize);

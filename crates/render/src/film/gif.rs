@@ -80,7 +80,7 @@ impl<'a> Gif<'a> {
     }
 }
 
-/// A side of a picture or a place in it; sizes are far below the limit.
+/// Returns a side of a picture or a place in it; sizes are far below the limit.
 fn side(pixels: u32) -> u16 {
     u16::try_from(pixels).unwrap_or(u16::MAX)
 }
@@ -92,7 +92,7 @@ fn error(error: gif::EncodingError) -> io::Error {
     }
 }
 
-/// At most 256 colours: the given ones first, then steps towards the first one, then a cube of all colours.
+/// Returns at most 256 colours: the given ones first, then steps towards the first one, then a cube of all colours.
 fn palette(colours: &[Colour]) -> Vec<Colour> {
     let background = colours.first().copied().unwrap_or(Colour::WHITE);
     let mut palette = Vec::new();

@@ -13,7 +13,7 @@ pub struct Rate(u16);
 pub const FASTEST: u16 = 240;
 
 impl Rate {
-    /// A rate from 1 to [`FASTEST`]; nothing for others.
+    /// Creates a rate from 1 to [`FASTEST`]; nothing for others.
     #[must_use]
     pub const fn new(per_second: u16) -> Option<Self> {
         if per_second == 0 || per_second > FASTEST { None } else { Some(Self(per_second)) }

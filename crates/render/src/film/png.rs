@@ -2,7 +2,7 @@
 use crate::raster::Raster;
 use std::io::{self, Write};
 
-/// A picture as the bytes of a PNG file, without transparency.
+/// Writes a picture as the bytes of a PNG file, without transparency.
 ///
 /// # Errors
 /// When `out` can't be written.

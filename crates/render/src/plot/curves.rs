@@ -10,11 +10,11 @@ use fosssim_num::{interval::Interval, polynomial::evaluate};
 /// A polynomial.
 #[derive(Debug, Clone)]
 pub struct PlottedPolynomial<'a> {
-    /// Its name, in a few words.
+    /// The polynomial's name, in a few words.
     pub name: String,
-    /// Its coefficients, highest power first.
+    /// The polynomial's coefficients, highest power first.
     pub coefficients: &'a [f64],
-    /// Its real zeros.
+    /// The polynomial's real zeros.
     pub zeros: Vec<f64>,
     /// Where it is positive.
     pub positive: &'a [Interval],
@@ -23,7 +23,7 @@ pub struct PlottedPolynomial<'a> {
 /// The contents of a plot of polynomials.
 #[derive(Debug, Clone, Copy)]
 pub struct PolynomialPlot<'a> {
-    /// Its title.
+    /// The plot's title.
     pub title: &'a str,
     /// The polynomials; four styles tell them apart.
     pub curves: &'a [PlottedPolynomial<'a>],
@@ -44,7 +44,7 @@ const SAMPLES: u32 = 128;
 const PIECE: usize = 8;
 
 impl PolynomialPlot<'_> {
-    /// The plot.
+    /// Renders the plot.
     #[must_use]
     pub fn svg(&self, embedding: Embedding) -> String {
         let rows = self.curves.len() + usize::from(self.common.is_some());
@@ -87,7 +87,7 @@ impl PolynomialPlot<'_> {
         sheet.finish()
     }
 
-    /// The plot in words, for readers who do not see it.
+    /// Returns the plot in words, for readers who do not see it.
     fn description(&self) -> String {
         let mut words: Vec<String> =
             self.curves.iter().map(|curve| format!("{} is positive {}", curve.name, within(curve.positive))).collect();
@@ -105,7 +105,7 @@ fn x(time: f64) -> f64 {
     LEFT + time * (RIGHT - LEFT)
 }
 
-/// A curve on `[0, 1]`, scaled to its largest modulus there: a positive factor moves no zero.
+/// Draws a curve on `[0, 1]`, scaled to its largest modulus there: a positive factor moves no zero.
 fn draw(curve: &PlottedPolynomial<'_>, ink: Ink, number: usize, sheet: &mut Sheet) {
     let times: Vec<f64> = (0..=SAMPLES).map(|k| f64::from(k) / f64::from(SAMPLES)).collect();
     let values: Vec<f64> = times.iter().map(|&time| evaluate(curve.coefficients, time)).collect();
@@ -142,7 +142,7 @@ fn draw(curve: &PlottedPolynomial<'_>, ink: Ink, number: usize, sheet: &mut Shee
     }
 }
 
-/// The coefficients of the derivative, highest power first.
+/// Returns the coefficients of the derivative, highest power first.
 fn derivative(coefficients: &[f64]) -> Vec<f64> {
     let powers = (1_u32..).take(coefficients.len().saturating_sub(1)).map(f64::from);
     let mut slopes: Vec<f64> =
@@ -151,7 +151,7 @@ fn derivative(coefficients: &[f64]) -> Vec<f64> {
     slopes
 }
 
-/// A row of bars: sets of time as far as they lie in `[0, 1]`; a single time is a diamond.
+/// Draws a row of bars: sets of time as far as they lie in `[0, 1]`; a single time is a diamond.
 fn sets(list: &[Interval], ink: Ink, top: f64, opacity: f64, sheet: &mut Sheet) {
     for interval in list {
         let (lo, hi) = (interval.lo.max(0.0), interval.hi.min(1.0));

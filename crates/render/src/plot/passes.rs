@@ -7,7 +7,7 @@ use super::{
 /// The contents of a plot of passes.
 #[derive(Debug, Clone, Copy)]
 pub struct PassPlot<'a> {
-    /// Its title.
+    /// The plot's title.
     pub title: &'a str,
     /// Detection passes of each step, from the first one on, as the reference makes them.
     pub expected: &'a [u32],
@@ -20,7 +20,7 @@ const BOTTOM: f64 = 150.0;
 const HEIGHT: f64 = 192.0;
 
 impl PassPlot<'_> {
-    /// The plot.
+    /// Renders the plot.
     #[must_use]
     pub fn svg(&self, embedding: Embedding) -> String {
         let mut sheet = Sheet::new(HEIGHT, self.title, &self.description(), embedding);
@@ -73,7 +73,7 @@ impl PassPlot<'_> {
         }
     }
 
-    /// The plot in words, for readers who do not see it.
+    /// Returns the plot in words, for readers who do not see it.
     fn description(&self) -> String {
         let compared = self.expected.len().min(self.actual.len());
         let differing = (0..compared).filter(|&place| self.differs(place)).count();

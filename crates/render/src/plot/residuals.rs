@@ -8,7 +8,7 @@ use crate::number::{decades, short};
 /// A residual of every step, from the first one on.
 #[derive(Debug, Clone, Copy)]
 pub struct Series<'a> {
-    /// Its name, in a word or two.
+    /// The series' name, in a word or two.
     pub name: &'a str,
     /// One value per step.
     pub values: &'a [f64],
@@ -17,7 +17,7 @@ pub struct Series<'a> {
 /// The contents of a plot of residuals.
 #[derive(Debug, Clone, Copy)]
 pub struct ResidualPlot<'a> {
-    /// Its title.
+    /// The plot's title.
     pub title: &'a str,
     /// One to four residuals.
     pub series: &'a [Series<'a>],
@@ -34,7 +34,7 @@ const LANE: f64 = 14.0;
 const HEIGHT: f64 = 284.0;
 
 impl ResidualPlot<'_> {
-    /// The plot.
+    /// Renders the plot.
     #[must_use]
     pub fn svg(&self, embedding: Embedding) -> String {
         let steps = self.series.iter().map(|series| series.values.len()).max().unwrap_or(0);
@@ -71,7 +71,7 @@ impl ResidualPlot<'_> {
         sheet.finish()
     }
 
-    /// The plot in words, for readers who do not see it.
+    /// Returns the plot in words, for readers who do not see it.
     fn description(&self) -> String {
         let of = |Series { name, values }: &Series<'_>| {
             let (place, value) = worst(values, 0..values.len())?;
@@ -87,7 +87,7 @@ impl ResidualPlot<'_> {
     }
 }
 
-/// The worst value among some steps, and its place: NaN is worse than any number.
+/// Returns the worst value among some steps, and its place: NaN is worse than any number.
 fn worst(values: &[f64], range: std::ops::Range<usize>) -> Option<(usize, f64)> {
     let rank = |value: f64| if value.is_nan() { f64::INFINITY } else { value.abs() };
     let places = range.start.min(values.len())..range.end.min(values.len());

@@ -10,7 +10,7 @@ pub const WIDTH: f64 = 640.0;
 pub const LEFT: f64 = 64.0;
 pub const RIGHT: f64 = WIDTH - 16.0;
 
-/// The same, for others who draw on them.
+/// The axis's ends, for others who draw on them.
 pub const STEPS_AXIS: [f64; 2] = [LEFT, RIGHT];
 
 /// The ink of a mark: its class in the style sheet, and the colour for readers without one.
@@ -30,7 +30,7 @@ pub enum Ink {
 const SERIES: [&str; 4] = ["#0063a6", "#a34e00", "#00694a", "#84367c"];
 
 impl Ink {
-    /// The class of what is drawn along (`s`) or filled (`f`), and the colour. Axes and grids are never filled.
+    /// Returns the class of what is drawn along (`s`) or filled (`f`), and the colour. Axes and grids are never filled.
     fn look(self, kind: char) -> (String, &'static str) {
         match self {
             Self::Axis => ("ax".to_owned(), "#1b1f24"),
@@ -40,7 +40,7 @@ impl Ink {
         }
     }
 
-    /// The dashes of a series' line.
+    /// Returns the dashes of a series' line.
     const fn dash(self) -> &'static str {
         match self {
             Self::Series(number) => match number % 4 {
@@ -80,7 +80,7 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// A sheet of this height.
+    /// Creates a sheet of this height.
     pub fn new(height: f64, title: &str, description: &str, embedding: Embedding) -> Self {
         let (title, description) = (escaped(title), escaped(description));
         let (width, height) = (pixel(WIDTH), pixel(height));
@@ -101,35 +101,35 @@ impl Sheet {
         Self { svg, is_styled }
     }
 
-    /// The finished SVG.
+    /// Returns the finished SVG.
     pub fn finish(mut self) -> String {
         self.svg += "</svg>\n";
         self.svg
     }
 
-    /// An attribute about looks, where no style sheet says it.
+    /// Returns an attribute about looks, where no style sheet says it.
     fn look(&self, attribute: &str, value: &str) -> String {
         if self.is_styled { String::new() } else { format!(" {attribute}=\"{value}\"") }
     }
 
-    /// The attributes of a path that is drawn along.
+    /// Returns the attributes of a path that is drawn along.
     fn along(&self, ink: Ink) -> String {
         let (class, colour) = ink.look('s');
         format!(" class=\"{class}\"{}{}", self.look("stroke", colour), self.look("fill", "none"))
     }
 
-    /// The attributes of a shape that is filled.
+    /// Returns the attributes of a shape that is filled.
     fn filled(&self, ink: Ink) -> String {
         let (class, colour) = ink.look('f');
         format!(" class=\"{class}\"{}", self.look("fill", colour))
     }
 
-    /// A thin straight line without dashes.
+    /// Draws a thin straight line without dashes.
     pub fn rule(&mut self, ink: Ink, from: [f64; 2], to: [f64; 2]) {
         self.rules(ink, &[(from, to)]);
     }
 
-    /// Thin straight lines without dashes.
+    /// Draws thin straight lines without dashes.
     pub fn rules(&mut self, ink: Ink, lines: &[([f64; 2], [f64; 2])]) {
         let ink = self.along(ink);
         let piece = |&([x1, y1], [x2, y2]): &([f64; 2], [f64; 2])| {
@@ -140,7 +140,7 @@ impl Sheet {
         let _ = writeln!(self.svg, "<path{ink} stroke-width=\"1\" d=\"{list}\"/>");
     }
 
-    /// A line with the ink's dashes.
+    /// Draws a line with the ink's dashes.
     pub fn line(&mut self, ink: Ink, width: f64, points: &[[f64; 2]]) {
         if points.len() < 2 {
             return;
@@ -149,7 +149,7 @@ impl Sheet {
         self.path(ink, width, &list);
     }
 
-    /// A line of cubic curves: where it starts, and for each piece two control points and its end.
+    /// Draws a line of cubic curves: where it starts, and for each piece two control points and its end.
     pub fn curve(&mut self, ink: Ink, width: f64, points: &[[f64; 2]]) {
         let Some((&[x, y], rest)) = points.split_first().filter(|(_, rest)| !rest.is_empty()) else { return };
         let list = rest.iter().map(|&[x, y]| format!("{} {}", pixel(x), pixel(y))).collect::<Vec<_>>().join(" ");
@@ -168,7 +168,7 @@ impl Sheet {
         );
     }
 
-    /// A filled rectangle.
+    /// Draws a filled rectangle.
     pub fn bar(&mut self, ink: Ink, [left, top]: [f64; 2], [width, height]: [f64; 2], opacity: f64) {
         let ink = self.filled(ink);
         let [left, top, width, height] = [left, top, width.max(0.5), height].map(pixel);
@@ -180,7 +180,7 @@ impl Sheet {
         );
     }
 
-    /// A marker; each series has a shape of its own: disc, square, triangle, diamond. Anything wrong has a cross.
+    /// Draws a marker; each series has a shape of its own: disc, square, triangle, diamond. Anything wrong has a cross.
     pub fn marker(&mut self, ink: Ink, [x, y]: [f64; 2]) {
         let path = match ink {
             Ink::Series(number) => match number % 4 {
@@ -200,7 +200,7 @@ impl Sheet {
         let _ = writeln!(self.svg, "<path{ink} d=\"{path}\"/>");
     }
 
-    /// A line of text; `[x, y]` is on its base line.
+    /// Draws a line of text; `[x, y]` is on its base line.
     pub fn text(&mut self, [x, y]: [f64; 2], anchor: Anchor, tone: Tone, text: &str) {
         // A text starts at its place unless something else is said.
         let anchor = match anchor {
@@ -223,7 +223,7 @@ impl Sheet {
         );
     }
 
-    /// The axis of the steps: numbers on one line, its name on another.
+    /// Draws the axis of the steps: numbers on one line, its name on another.
     pub fn steps(&mut self, columns: &Columns, numbers: f64, name: f64) {
         for tick in ticks(columns.steps) {
             self.text([columns.x(tick - 1), numbers], Anchor::Middle, Tone::Faint, &tick.to_string());
@@ -231,14 +231,14 @@ impl Sheet {
         self.text([RIGHT, name], Anchor::End, Tone::Faint, "step");
     }
 
-    /// The line of a series, the `number`th of `most`, with its markers between those of the others.
+    /// Draws the line of a series, the `number`th of `most`, with its markers between those of the others.
     pub fn series(&mut self, ink: Ink, points: &[[f64; 2]], number: usize, most: usize) {
         self.line(ink, 1.5, points);
         let every = (points.len() / 12).max(1);
         points.iter().skip(every * number / most).step_by(every).for_each(|&point| self.marker(ink, point));
     }
 
-    /// A legend in a row: line, marker and name of each series.
+    /// Draws a legend in a row: line, marker and name of each series.
     pub fn legend(&mut self, [left, base]: [f64; 2], names: &[(Ink, &str)]) {
         let mut x = left;
         for &(ink, name) in names {
@@ -270,7 +270,7 @@ impl Columns {
         Self { steps, columns: steps.clamp(1, MOST_COLUMNS) }
     }
 
-    /// The places (from 0) of the steps in a column.
+    /// Returns the places (from 0) of the steps in a column.
     pub fn range(&self, column: usize) -> std::ops::Range<usize> {
         let at = |column: usize| {
             let place = column as u128 * self.steps as u128 / self.columns as u128;
@@ -279,7 +279,7 @@ impl Columns {
         at(column)..at(column + 1)
     }
 
-    /// The middle of a step's place (from 0).
+    /// Returns the middle of a step's place (from 0).
     #[expect(clippy::cast_precision_loss, reason = "steps fit into 32 bits")]
     pub fn x(&self, place: usize) -> f64 {
         let steps = (self.steps.max(2) - 1) as f64;
@@ -287,7 +287,7 @@ impl Columns {
     }
 }
 
-/// Round steps for the labels of an axis that counts from 1 to `last`: at most six.
+/// Returns round steps for the labels of an axis that counts from 1 to `last`: at most six.
 pub fn ticks(last: usize) -> Vec<usize> {
     // 1, 2, 5, 10, 20, 50 and so on.
     let units = (0..18).flat_map(|power| [1, 2, 5].map(|digit| digit * 10_usize.pow(power)));

@@ -16,7 +16,7 @@ pub(crate) fn lines(check: &Check<'_>) -> Vec<&'static str> {
     }
 }
 
-/// The advice of milestones whose steps log states only, by their collision handling.
+/// Returns the advice of milestones whose steps log states only, by their collision handling.
 fn of_milestone(finding: &Finding, collisions: CollisionType) -> Option<&'static [&'static str]> {
     Some(match (finding.detail, collisions) {
         (FindingDetail::MissedCollision { .. }, CollisionType::Simple) => &[
@@ -45,7 +45,7 @@ fn of_milestone(finding: &Finding, collisions: CollisionType) -> Option<&'static
     })
 }
 
-/// By the kind of the first finding: what comes later often follows from it.
+/// Returns the advice by the kind of the first finding: what comes later often follows from it.
 fn of_finding(finding: &Finding, collisions: CollisionType) -> &'static [&'static str] {
     if let Some(advice) = of_milestone(finding, collisions) {
         return advice;
@@ -127,7 +127,7 @@ fn of_finding(finding: &Finding, collisions: CollisionType) -> &'static [&'stati
     }
 }
 
-/// The advice where a pair's force was left out, or applied twice.
+/// Returns the advice where a pair's force was left out, or applied twice.
 const fn of_pair(is_doubled: bool) -> &'static [&'static str] {
     match is_doubled {
         false => &[

@@ -3,7 +3,7 @@ use fosssim_findings::{Outcome, Overall, Stop};
 use fosssim_judge::{Unreadable, fair::FairVerdict};
 use fosssim_model::sim::StepError;
 
-/// Whether there is something to explain: the fair rules know better what is a mistake.
+/// Returns whether there is something to explain: the fair rules know better what is a mistake.
 #[must_use]
 pub fn is_wrong(outcome: &Outcome) -> bool {
     match &outcome.fair {
@@ -12,7 +12,7 @@ pub fn is_wrong(outcome: &Outcome) -> bool {
     }
 }
 
-/// Why a scene has no verdict, whatever the trace; `None` for nearly all scenes.
+/// Returns why a scene has no verdict, whatever the trace; `None` for nearly all scenes.
 #[must_use]
 pub fn no_verdict(outcome: &Outcome, scene: &str) -> Option<String> {
     match outcome.parity.endless {
@@ -23,7 +23,7 @@ pub fn no_verdict(outcome: &Outcome, scene: &str) -> Option<String> {
     }
 }
 
-/// The message where a trace could not be read to its end, and so has no verdict.
+/// Returns the message where a trace could not be read to its end, and so has no verdict.
 #[must_use]
 pub fn not_read(outcome: &Outcome, trace: &str, why: &str) -> String {
     let place = match &outcome.stop {

@@ -2,8 +2,8 @@
 use super::{Check, first};
 use crate::describe::pair_key;
 
-/// The commands, ready to be typed; none where nothing is wrong, or where the trace came from standard input and is
-/// gone.
+/// Returns the commands, ready to be typed; none where nothing is wrong, or where the trace came from standard input
+/// and is gone.
 pub(super) fn commands(check: &Check<'_>) -> Vec<String> {
     let Some(first) = first::first(check).filter(|_| check.trace != "-") else { return Vec::new() };
     let (scene, trace, step) = (quoted(check.scene), quoted(check.trace), first.step);
@@ -23,7 +23,7 @@ pub(super) fn commands(check: &Check<'_>) -> Vec<String> {
     commands
 }
 
-/// A word as a shell takes it.
+/// Returns a word as a shell takes it.
 fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "_./:@%+=,-".contains(c);
     match !word.is_empty() && word.chars().all(is_plain) {

@@ -7,7 +7,7 @@ use super::super::{
 use fosssim_judge::{Finding, FindingDetail, Power, Rescaled, differing, factor};
 use fosssim_model::trace::LoggedImpulse;
 
-/// The block about one finding, with a heading and without advice.
+/// Renders the block about one finding, with a heading and without advice.
 pub(super) fn render(finding: &Finding, steps: u32, style: Style) -> String {
     format!(
         "{}\n{}",
@@ -16,7 +16,7 @@ pub(super) fn render(finding: &Finding, steps: u32, style: Style) -> String {
     )
 }
 
-/// Where a finding is, for a heading.
+/// Returns where a finding is, for a heading.
 pub(crate) fn place(finding: &Finding, steps: u32) -> String {
     let record = if finding.frame == 2 * u64::from(finding.step) { " (end record)" } else { "" };
     match finding.step {
@@ -25,7 +25,7 @@ pub(crate) fn place(finding: &Finding, steps: u32) -> String {
     }
 }
 
-/// One finding in words, and its values side by side.
+/// Returns one finding in words, and its values side by side.
 pub(super) fn block(finding: &Finding, style: Style) -> String {
     format!("  {}\n{}", finding.what(), side_by_side(&finding.detail).text(style))
 }
@@ -42,7 +42,7 @@ pub(crate) enum Value {
 }
 
 impl Value {
-    /// The value to its last bit.
+    /// Returns the value to its last bit.
     pub(crate) fn exact(self) -> String {
         match self {
             Self::Nothing => "none".to_owned(),
@@ -55,7 +55,7 @@ impl Value {
 /// Two values that a finding compares.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Row {
-    /// Their name.
+    /// The name of both values.
     pub(crate) name: &'static str,
     /// The reference's.
     pub(crate) expected: Value,
@@ -92,7 +92,7 @@ impl SideBySide {
     }
 }
 
-/// The values of a finding.
+/// Returns the values of a finding.
 pub(crate) fn side_by_side(detail: &FindingDetail) -> SideBySide {
     let rows = |rows: Vec<Row>| SideBySide { rows, ..SideBySide::default() };
     match detail {
@@ -157,12 +157,13 @@ fn logged_by(place: &fosssim_judge::PolynomialPlace) -> String {
     format!("polynomial {} of the record", place.index)
 }
 
-/// Two polynomials by power, marked where they part once the factor on which most coefficients agree is taken out.
+/// Returns two polynomials by power, marked where they part once the factor on which most coefficients agree is taken
+/// out.
 fn polynomials(place: &fosssim_judge::PolynomialPlace, expected: &[f64], actual: &[f64]) -> SideBySide {
     polynomials_with(place, expected, actual, factor(expected, actual), None)
 }
 
-/// The same with this factor, which the expected values carry; one power is known to differ.
+/// Compares two polynomials by power with this factor, which the expected values carry; one power is known to differ.
 fn polynomials_with(
     place: &fosssim_judge::PolynomialPlace,
     expected: &[f64],
@@ -198,7 +199,7 @@ fn polynomials_with(
 /// The powers of a polynomial's coefficients; none has more.
 const POWERS: [&str; 7] = ["1", "t", "t^2", "t^3", "t^4", "t^5", "t^6"];
 
-/// Contact normal and time.
+/// Returns contact normal and time.
 fn collision(expected: Option<LoggedImpulse>, actual: Option<LoggedImpulse>) -> Vec<Row> {
     let row = |name, part: fn(LoggedImpulse) -> f64| match (expected.map(part), actual.map(part)) {
         (Some(expected), Some(actual)) => numbers(name, expected, actual),

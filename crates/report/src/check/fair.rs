@@ -11,7 +11,7 @@ use fosssim_judge::{
     share,
 };
 
-/// The section; nothing when the fair rules were not asked.
+/// Renders the section; nothing when the fair rules were not asked.
 pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
     let fair = outcome.fair.as_deref()?;
     let mut text = style.paint(Look::Strong, "Fair rules") + "\n";
@@ -60,7 +60,7 @@ pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
     Some(text)
 }
 
-/// The kinds of findings of a book, with their first examples.
+/// Returns the kinds of findings of a book, with their first examples.
 pub(super) fn kinds(found: &BookFindings, style: Style) -> String {
     let mut table = Table::new([Align::Left, Align::Right, Align::Left]);
     table.heading(["kind", "count", "first example"]);
@@ -71,7 +71,7 @@ pub(super) fn kinds(found: &BookFindings, style: Style) -> String {
     table.render(style)
 }
 
-/// The verdict's word, and its look.
+/// Returns the verdict's word, and its look.
 pub(super) const fn verdict(fair: &Judgement) -> (Look, &'static str) {
     match fair.verdict {
         FairVerdict::Accepted => (Look::Good, "accepted"),
@@ -80,7 +80,7 @@ pub(super) const fn verdict(fair: &Judgement) -> (Look, &'static str) {
     }
 }
 
-/// The grounds of the fair verdict, in one line.
+/// Returns the grounds of the fair verdict, in one line.
 pub(super) fn summary(fair: &Judgement, outcome: &Outcome) -> String {
     let refusal = match fair.refusal {
         Some(FairRefusal::Stopped) => Some("the trace can't be read to its end"),
@@ -113,7 +113,7 @@ pub(super) fn summary(fair: &Judgement, outcome: &Outcome) -> String {
     }
 }
 
-/// `coefficients 12 %, positions 3 %`; what was not used is left out.
+/// Returns `coefficients 12 %, positions 3 %`; what was not used is left out.
 fn shares(fair: &Judgement) -> Option<String> {
     let shares = fair.shares;
     let list: Vec<String> = [
@@ -133,7 +133,7 @@ fn percent(share: f64) -> String {
     if share < 0.01 { "< 1 %".to_owned() } else { format!("{:.0} %", 100.0 * share) }
 }
 
-/// Which of the books accepts a trace that the other one refuses.
+/// Returns which of the books accepts a trace that the other one refuses.
 pub(crate) const fn sides(cause: Cause) -> &'static str {
     if cause.original_fails() {
         "the original fails this trace, the fair rules accept it"

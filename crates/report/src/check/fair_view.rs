@@ -41,7 +41,7 @@ view! {
 #[derive(Debug, Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub(super) struct CountedView {
-    /// Their number.
+    /// The number of all.
     #[schemars(range(min = 1))]
     count: u64,
     #[serde(flatten)]
@@ -49,7 +49,7 @@ pub(super) struct CountedView {
 }
 
 impl CountedView {
-    /// The first findings of each kind by a book, each with the number of them all.
+    /// Returns the first findings of each kind by a book, each with the number of them all.
     pub(super) fn all(book: Book, firsts: &[Finding], count: impl Fn(FindingKind) -> u64) -> Vec<Self> {
         firsts.iter().map(|first| Self { count: count(first.kind()), first: FindingView::by(book, first) }).collect()
     }
@@ -59,7 +59,7 @@ impl CountedView {
 #[derive(Debug, Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 struct BorderlineView<'a> {
-    /// Their number.
+    /// The number of all.
     count: u64,
     /// The first ones.
     examples: &'a [Borderline],

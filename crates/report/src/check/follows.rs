@@ -12,19 +12,19 @@ const OF_FORMULAS: [FindingKind; 6] = [
     FindingKind::MixedForms,
 ];
 
-/// Whether a finding of this kind may be a fault of a formula.
+/// Returns whether a finding of this kind may be a fault of a formula.
 pub(crate) fn is_of_formula(kind: FindingKind) -> bool {
     OF_FORMULAS.contains(&kind)
 }
 
-/// Whether it is a formula's fault in a pass whose positions earlier passes of the step have made.
+/// Returns whether it is a formula's fault in a pass whose positions earlier passes of the step have made.
 pub(super) fn is_of_later_pass(finding: &Finding) -> bool {
     is_of_formula(finding.kind()) && finding.detail.pass().is_some_and(|pass| pass.index > 0)
 }
 
-/// How many polynomials of a trace the original's rules find wrong that only follow from wrong positions: all of them,
-/// where the fair rules, which follow the trace's own positions, charge no formula, but the positions of later passes;
-/// or where they charge states alone, and the first formulas that differ are those of later passes.
+/// Returns how many polynomials of a trace the original's rules find wrong that only follow from wrong positions: all
+/// of them, where the fair rules, which follow the trace's own positions, charge no formula, but the positions of later
+/// passes; or where they charge states alone, and the first formulas that differ are those of later passes.
 pub(crate) fn count(outcome: &Outcome) -> u64 {
     let Some(fair) = outcome.fair.as_ref().filter(|fair| fair.verdict == FairVerdict::Rejected) else { return 0 };
     let charged = |kind: FindingKind| fair.findings.counts.get(kind);
@@ -37,7 +37,7 @@ pub(crate) fn count(outcome: &Outcome) -> u64 {
     OF_FORMULAS.into_iter().map(|kind| outcome.parity.findings.counts.get(kind)).sum()
 }
 
-/// Their number with their name.
+/// Returns the number of these polynomials with their name.
 pub(super) fn words(follow: u64) -> String {
     format!("polynomials that follow from wrong positions: {}", number(follow))
 }

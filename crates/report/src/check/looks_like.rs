@@ -3,7 +3,8 @@
 /// The number of bytes that show the kind of a file.
 pub const LOOKED_AT: u64 = 512;
 
-/// The kind of a file that begins with these bytes, if it can't be a trace: a trace begins with the bits of a position.
+/// Returns the kind of a file that begins with these bytes, if it can't be a trace: a trace begins with the bits of a
+/// position.
 #[must_use]
 pub fn looks_like(start: &[u8]) -> Option<&'static str> {
     const MARKS: [(&[u8], &str); 8] = [

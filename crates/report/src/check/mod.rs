@@ -62,40 +62,40 @@ pub struct Check<'a> {
 }
 
 impl Check<'_> {
-    /// Whether the trace is accepted.
+    /// Returns whether the trace is accepted.
     #[must_use]
     pub fn accepted(&self) -> bool {
         self.outcome.ruling(self.book()) == Ruling::Accepted
     }
 
-    /// The official verdict in words, such as `wrong answer`.
+    /// Returns the official verdict in words, such as `wrong answer`.
     #[must_use]
     pub fn verdict(&self) -> &'static str {
         self.outcome.ruling(self.book()).words()
     }
 
-    /// Whether the file is no trace at all, which is all that there is to say of it.
+    /// Returns whether the file is no trace at all, which is all that there is to say of it.
     pub(crate) fn is_no_trace(&self) -> bool {
         self.looks_like.is_some() && !self.accepted()
     }
 
-    /// Where the two rule books differ: which of them accepts the trace.
+    /// Returns where the two rule books differ: which of them accepts the trace.
     #[must_use]
     pub fn difference(&self) -> Option<&'static str> {
         cause(self.outcome).map(fair::sides)
     }
 
-    /// The official book.
+    /// Returns the official book.
     const fn book(&self) -> Book {
         self.rules.official()
     }
 
-    /// The findings of the official book.
+    /// Returns the findings of the official book.
     fn account(&self) -> &BookFindings {
         self.outcome.findings_by(self.book())
     }
 
-    /// The report for people.
+    /// Renders the report for people.
     #[must_use]
     pub fn text(&self, style: Style) -> String {
         text::render(self, style)
@@ -120,14 +120,14 @@ impl Check<'_> {
         text
     }
 
-    /// The report for programs: one JSON object, indented, with a line feed at its end.
+    /// Renders the report for programs: one JSON object, indented, with a line feed at its end.
     #[must_use]
     pub fn json(&self) -> String {
         document(&CheckView::from(self))
     }
 }
 
-/// How often the original prints each of its messages, in the words that graders of its output look for.
+/// Returns how often the original prints each of its messages, in the words that graders of its output look for.
 fn messages(outcome: &Outcome) -> BTreeMap<&'static str, u64> {
     let mut messages: BTreeMap<_, _> = FindingKind::ALL
         .into_iter()
@@ -219,7 +219,7 @@ view! {
     /// The original's judgement.
     #[schemars(deny_unknown_fields)]
     struct Parity from outcome: Outcome {
-        /// Its verdict; none where grading did not come to its end.
+        /// The original's verdict; none where grading did not come to its end.
         overall: Overall = outcome.parity.overall,
         #[serde(flatten)]
         residuals: Residuals = outcome.parity.residuals,
@@ -246,11 +246,11 @@ struct StopView {
 enum StopKind {
     /// A record's state can't be read to its end.
     StateUnreadable,
-    /// Its impulses or polynomials can't.
+    /// The impulses or polynomials of a record can't be read.
     ImpulsesUnreadable,
-    /// It claims more than fits into memory.
+    /// A list claims more than fits into memory.
     ImpossibleCount,
-    /// It claims more than the limits allow.
+    /// A list claims more than the limits allow.
     BeyondLimit,
     /// The file itself can't be read on.
     ReadError,

@@ -57,7 +57,7 @@ impl WrongSteps {
         Self { shown, ..Self::default() }
     }
 
-    /// The findings of a book; those that it could tell only from the whole trace are among them.
+    /// Returns the findings of a book; those that it could tell only from the whole trace are among them.
     fn by(&self, book: Book, account: &BookFindings) -> Steps {
         let mut steps = match book {
             Book::Parity => self.parity.clone(),
@@ -114,7 +114,7 @@ impl Steps {
     }
 }
 
-/// The steps of the official book, or of the other one, where the official has nothing.
+/// Returns the steps of the official book, or of the other one, where the official has nothing.
 fn steps_of(check: &Check<'_>) -> (Book, Steps) {
     let of = |book| (book, check.steps.by(book, check.outcome.findings_by(book)));
     let official = of(check.book());
@@ -124,22 +124,22 @@ fn steps_of(check: &Check<'_>) -> (Book, Steps) {
     official
 }
 
-/// The numbers of the official book's wrong steps, the first [`LISTED`].
+/// Returns the numbers of the official book's wrong steps, the first [`LISTED`].
 pub(super) fn numbers(check: &Check<'_>) -> Vec<u32> {
     check.steps.by(check.book(), check.outcome.findings_by(check.book())).numbers
 }
 
-/// Whether only certain steps are asked for, so that the rest of the report is left out.
+/// Returns whether only certain steps are asked for, so that the rest of the report is left out.
 pub(super) fn only_these(check: &Check<'_>) -> bool {
     matches!(check.steps.shown, StepChoice::These(_))
 }
 
-/// Whether all wrong steps are asked for.
+/// Returns whether all wrong steps are asked for.
 pub(super) fn all(check: &Check<'_>) -> bool {
     check.steps.shown == StepChoice::All
 }
 
-/// The steps that were asked for, each with what is wrong in it; nothing when none was.
+/// Returns the steps that were asked for, each with what is wrong in it; nothing when none was.
 fn shown<'a>(check: &Check<'_>, steps: &'a Steps) -> Option<Vec<(u32, Option<&'a Step>)>> {
     let found = |number: u32| steps.kept.iter().find(|step| step.number == number);
     match &check.steps.shown {
@@ -149,7 +149,7 @@ fn shown<'a>(check: &Check<'_>, steps: &'a Steps) -> Option<Vec<(u32, Option<&'a
     }
 }
 
-/// The section about single steps; nothing when none was asked for, or none is wrong.
+/// Renders the section about single steps; nothing when none was asked for, or none is wrong.
 pub(super) fn render(check: &Check<'_>, style: Style) -> Option<String> {
     let (book, steps) = steps_of(check);
     let block = |(number, found): (u32, Option<&Step>)| match found {
@@ -208,7 +208,7 @@ pub(super) struct WrongStepView {
     findings: Vec<CountedView>,
 }
 
-/// The steps that were asked for; nothing when none was.
+/// Returns the steps that were asked for; nothing when none was.
 pub(super) fn views(check: &Check<'_>) -> Option<Vec<WrongStepView>> {
     let (book, steps) = steps_of(check);
     let counted = |step: &Step| CountedView::all(book, &step.firsts, |kind| 1 + step.more.get(kind));

@@ -69,14 +69,14 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     parts.join("\n")
 }
 
-/// Lines under a heading; nothing without any.
+/// Returns lines under a heading; nothing without any.
 fn section(heading: &str, mark: &str, lines: &[impl Display], style: Style) -> Option<String> {
     let heading = style.paint(Look::Strong, heading) + "\n";
     let lines: String = lines.iter().map(|line| format!("{mark}{line}\n")).collect();
     (!lines.is_empty()).then(|| heading + &lines)
 }
 
-/// The likely mistakes of the program. The likeliest ones fill no more than a screen.
+/// Returns the likely mistakes of the program. The likeliest ones fill no more than a screen.
 fn explanations(check: &Check<'_>, style: Style) -> Option<String> {
     let most = if check.tables { usize::MAX } else { EXPLANATIONS };
     let (shown, more) = check.explanations.split_at(check.explanations.len().min(most));
@@ -100,7 +100,7 @@ fn head(check: &Check<'_>, style: Style) -> String {
     format!("{verdict}: {}\n  scene {}\n  trace {}\n", headline(check), check.scene, check.trace)
 }
 
-/// The reason behind the verdict, in one line.
+/// Returns the reason behind the verdict, in one line.
 pub(crate) fn headline(check: &Check<'_>) -> String {
     let outcome = check.outcome;
     if let (Some(kind), true) = (check.looks_like, check.is_no_trace()) {
@@ -141,7 +141,7 @@ pub(crate) fn headline(check: &Check<'_>) -> String {
     }
 }
 
-/// Of a trace that is read to its end, but with damage: where that is, and what its steps before are.
+/// Describes where a trace that is read to its end is damaged, and what its steps before are.
 fn damaged(outcome: &Outcome) -> String {
     let place = match &outcome.damage {
         Some(damage) if damage.step > 0 => format!("the trace is damaged in step {} of {}", damage.step, outcome.steps),
@@ -164,7 +164,7 @@ fn damaged(outcome: &Outcome) -> String {
     }
 }
 
-/// Where judging a trace ended, and why: one line.
+/// Returns where judging a trace ended, and why: one line.
 #[must_use]
 pub fn stopped(stop: &Stop, outcome: &Outcome) -> String {
     let (place, message, _) = problem(stop, outcome);
@@ -175,12 +175,12 @@ pub fn stopped(stop: &Stop, outcome: &Outcome) -> String {
     format!("{what} {place}: {message}")
 }
 
-/// Whether judging ended at a limit of this program, which says nothing about the trace.
+/// Returns whether judging ended at a limit of this program, which says nothing about the trace.
 const fn is_limit(stop: &Stop) -> bool {
     matches!(stop, Stop::Trace { cause: Unreadable::Limit, .. } | Stop::Step(StepError::Work { .. }))
 }
 
-/// Where judging a trace ended, what is the matter, and what to look at; nothing where the matter asks.
+/// Returns where judging a trace ended, what is the matter, and what to look at; nothing where the matter asks.
 pub(crate) fn problem(stop: &Stop, outcome: &Outcome) -> (String, String, Option<&'static str>) {
     let (place, message, advice) = match stop {
         Stop::Trace { frame, step, cause, offset, what } => {
@@ -234,7 +234,7 @@ fn passed(yes: bool) -> Cell {
     if yes { Cell::looking(Look::Good, "passed") } else { Cell::looking(Look::Bad, "failed") }
 }
 
-/// Which share of its tolerance a residual uses.
+/// Returns which share of its tolerance a residual uses.
 fn used(value: f64, bound: f64) -> String {
     let share = value / bound;
     if share.is_nan() {
@@ -261,7 +261,7 @@ fn findings(account: &BookFindings, follow: u64, style: Style) -> String {
     text
 }
 
-/// Further notes.
+/// Returns further notes.
 pub(crate) fn notes(check: &Check<'_>) -> Vec<String> {
     let outcome = check.outcome;
     let mut notes = Vec::new();

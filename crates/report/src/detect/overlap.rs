@@ -28,7 +28,7 @@ pub struct Overlap<'a> {
 }
 
 impl Overlap<'_> {
-    /// For people.
+    /// Renders the report for people.
     #[must_use]
     pub fn text(&self, style: Style) -> String {
         let study = self.study;
@@ -75,7 +75,7 @@ impl Overlap<'_> {
         text
     }
 
-    /// For programs: one JSON object, indented, with a line feed at its end.
+    /// Renders the report for programs: one JSON object, indented, with a line feed at its end.
     #[must_use]
     pub fn json(&self) -> String {
         let &Self { study, scene, trace, step, pair, .. } = self;
@@ -131,7 +131,7 @@ pub(super) struct OverlapView {
     radii_together: Number,
     /// Whether the distance is below the sum of the radii.
     overlaps: bool,
-    /// Of the first object, and of the second at its nearest point.
+    /// The velocities of the first object, and of the second at its nearest point.
     velocities: [[Number; 2]; 2],
     /// The difference of the velocities times the normal.
     approach: Number,

@@ -17,7 +17,7 @@ pub(crate) struct SceneShare {
     pub(crate) run: usize,
 }
 
-/// The class, with at most this number of scenes and mistakes.
+/// Returns the class, with at most this number of scenes and mistakes.
 #[must_use]
 pub fn class(grades: &[Grade], most: usize, style: Style) -> String {
     let mut text = format!("{}: {}\n", style.paint(Look::Strong, "Class"), head(grades));
@@ -53,7 +53,7 @@ pub fn class(grades: &[Grade], most: usize, style: Style) -> String {
     text
 }
 
-/// `30 submissions, 12 accepted; mean 63.2, median 71, from 0 to 100 of 100 points; 2 without points`.
+/// Returns `30 submissions, 12 accepted; mean 63.2, median 71, from 0 to 100 of 100 points; 2 without points`.
 fn head(grades: &[Grade]) -> String {
     let accepted = grades.iter().filter(|grade| grade.verdict.is_accepted()).count();
     let mut text = format!("{}, {accepted} accepted", counted(grades.len() as u64, "submission"));
@@ -74,8 +74,8 @@ fn head(grades: &[Grade]) -> String {
     text
 }
 
-/// The scenes that are not accepted for everybody, those that fewest have right first, and how many others there are.
-/// A scene that was not run, or on which the grader failed, does not count.
+/// Returns the scenes that are not accepted for everybody, those that fewest have right first, and how many others
+/// there are. A scene that was not run, or on which the grader failed, does not count.
 pub(crate) fn hardest(grades: &[Grade]) -> (Vec<(&str, SceneShare)>, usize) {
     let mut shares: BTreeMap<&str, SceneShare> = BTreeMap::new();
     let mut order = Vec::new();
@@ -96,7 +96,7 @@ pub(crate) fn hardest(grades: &[Grade]) -> (Vec<(&str, SceneShare)>, usize) {
     (wrong, whole.len())
 }
 
-/// Likely mistakes with the number of submissions that make them, the most frequent first.
+/// Returns likely mistakes with the number of submissions that make them, the most frequent first.
 fn frequent(grades: &[Grade]) -> Vec<(String, usize)> {
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
     for (mistake, _) in grades.iter().flat_map(likely_mistakes) {

@@ -4,7 +4,7 @@ use crate::foreign::one_line;
 use crate::{view::key, words};
 use fosssim_findings::{Grade, PassedOver, speed::SpeedSource};
 
-/// One row per scene.
+/// Returns one row per scene.
 pub(crate) fn scenes(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     let head = "submission,group,scene,verdict,points,max_points,right_steps,steps,cpu_seconds,wall_seconds,summary,rules_differ,likely_mistake";
     let rows = grades.iter().flat_map(|grade| {
@@ -33,9 +33,9 @@ pub(crate) fn scenes(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     write(head, rows.chain(rest))
 }
 
-/// One row per submission, with a column per group; `rules_differ` counts scenes that the rule books judge differently.
-/// Points are empty where the grader failed or was stopped; `reason` says in one sentence why not everything is
-/// accepted. Entries that are no submissions have rows with nothing but that.
+/// Returns one row per submission, with a column per group; `rules_differ` counts scenes that the rule books judge
+/// differently. Points are empty where the grader failed or was stopped; `reason` says in one sentence why not
+/// everything is accepted. Entries that are no submissions have rows with nothing but that.
 #[must_use]
 pub fn submissions(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     let mut head: Vec<String> =
@@ -97,8 +97,8 @@ fn write(head: Vec<String>, rows: impl Iterator<Item = Vec<String>>) -> String {
     String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()
 }
 
-/// Text that no spreadsheet takes for a formula. What begins with an apostrophe and goes on like one gets another: two
-/// texts never become the same cell.
+/// Returns text that no spreadsheet takes for a formula. What begins with an apostrophe and goes on like one gets
+/// another: two texts never become the same cell.
 fn safe(text: &str) -> String {
     const FORMULAS: [char; 10] = ['=', '+', '-', '@', '|', '%', '\u{ff1d}', '\u{ff0b}', '\u{ff0d}', '\u{ff20}'];
     let text = one_line(text);

@@ -6,7 +6,7 @@ use crate::words;
 use fosssim_findings::{Grade, PassedOver, Verdict};
 use std::fmt::Write;
 
-/// Annotations; the words are escaped as workflow commands want it.
+/// Returns annotations; the words are escaped as workflow commands want it.
 pub(crate) fn annotations(grades: &[Grade]) -> String {
     let mut text = String::new();
     for grade in grades {
@@ -40,13 +40,13 @@ pub(crate) fn annotations(grades: &[Grade]) -> String {
     text
 }
 
-/// A warning per entry that is no submission.
+/// Returns a warning per entry that is no submission.
 pub(crate) fn passed_over(entries: &[PassedOver]) -> String {
     let warning = |entry: &PassedOver| annotation("warning", &format!("{}: {NOT_GRADED}", entry.name), &entry.why);
     entries.iter().map(warning).collect()
 }
 
-/// The same as a list in Markdown.
+/// Lists the entries that are no submissions in Markdown.
 pub(crate) fn list_of_passed_over(entries: &[PassedOver]) -> String {
     if entries.is_empty() {
         return String::new();
@@ -55,7 +55,7 @@ pub(crate) fn list_of_passed_over(entries: &[PassedOver]) -> String {
     format!("### Not graded\n\n{}\n", entries.iter().map(item).collect::<String>())
 }
 
-/// A Markdown table per submission.
+/// Returns a Markdown table per submission.
 pub(crate) fn summary(grades: &[Grade]) -> String {
     let mut text = String::new();
     for grade in grades {
@@ -94,13 +94,13 @@ pub(crate) fn summary(grades: &[Grade]) -> String {
     text
 }
 
-/// `12.5 of 20`, or why there are no points.
+/// Returns `12.5 of 20`, or why there are no points.
 fn score(grade: &Grade) -> String {
     let reached = grade.points.map(|reached| format!("{} of {}", points(reached), points(grade.max_points)));
     reached.or_else(|| no_points(grade)).unwrap_or_default()
 }
 
-/// Text without Markdown or HTML of its own.
+/// Returns text without Markdown or HTML of its own.
 fn cell(text: &str) -> String {
     let mut cell = String::new();
     for c in one_line(text).chars() {

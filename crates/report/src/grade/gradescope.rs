@@ -46,7 +46,7 @@ struct Extra {
     sandbox: Vec<String>,
 }
 
-/// The results of one submission.
+/// Renders the results of one submission.
 pub(crate) fn render(grade: &Grade) -> String {
     let mut tests = Vec::new();
     let tells_all = grade.shows_output || grade.is_visible();
@@ -131,7 +131,7 @@ fn overall(grade: &Grade) -> String {
     lines.join("\n")
 }
 
-/// The message to a student when the platform's time was up: it says what used the time.
+/// Returns the message to a student when the platform's time was up: it says what used the time.
 fn out_of_time(grade: &Grade) -> String {
     let missing = grade.count(Verdict::NotRun);
     let mut text = format!(
@@ -165,7 +165,7 @@ fn output(scene: &SceneGrade) -> String {
     lines.join("\n")
 }
 
-/// Points with six decimals at most, so that shares of a group add up to what is shown.
+/// Returns points with six decimals at most, so that shares of a group add up to what is shown.
 fn rounded(value: f64) -> f64 {
     (value * 1e6).round() / 1e6
 }

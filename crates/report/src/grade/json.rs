@@ -50,7 +50,7 @@ view! {
         /// The worst verdict of all scenes.
         #[schemars(extend("enum" = Verdict::ALL.map(Verdict::words)))]
         verdict: &'static str = grade.verdict.words(),
-        /// The same in short.
+        /// The verdict as one word, such as `AC`.
         #[schemars(extend("enum" = Verdict::ALL.map(Verdict::code)))]
         code: &'static str = grade.verdict.code(),
         /// Null when the grader failed or was stopped: that is nobody's zero.
@@ -90,7 +90,7 @@ view! {
         text: String = plain(&words::located(found)),
         /// Scenes in which the program fails.
         failed: usize = found.failed,
-        /// Of these, scenes that have the contents.
+        /// The number of these scenes that have the contents.
         with: usize = found.with,
         /// Scenes that have the contents, and in which it does not fail.
         without: usize = found.without,
@@ -118,7 +118,7 @@ view! {
     /// A group of scenes.
     #[schemars(deny_unknown_fields)]
     struct GroupView from group: GroupGrade {
-        /// Its name.
+        /// The group's name.
         name: String = plain(&group.name),
         /// The readers who see it.
         visibility: Visibility = group.visibility,
@@ -137,7 +137,7 @@ view! {
         /// Points for speed, which are part of the group's points; left out where the suite gives none.
         #[serde(skip_serializing_if = "Option::is_none")]
         speed: Option<SpeedView> = group.speed.as_ref().map(SpeedView::from),
-        /// Its scenes.
+        /// The group's scenes.
         scenes: Vec<SceneView> = group.scenes.iter().map(SceneView::from).collect(),
     }
 }
@@ -172,12 +172,12 @@ view! {
     /// A scene of a grade.
     #[schemars(deny_unknown_fields)]
     struct SceneView from scene: SceneGrade {
-        /// Its name.
+        /// The scene's name.
         scene: String = plain(&scene.scene),
-        /// Its verdict.
+        /// The scene's verdict.
         #[schemars(extend("enum" = Verdict::ALL.map(Verdict::words)))]
         verdict: &'static str = scene.verdict.words(),
-        /// The same in short.
+        /// The verdict as one word, such as `AC`.
         #[schemars(extend("enum" = Verdict::ALL.map(Verdict::code)))]
         code: &'static str = scene.verdict.code(),
         /// The reason for the verdict, in one line.
@@ -208,14 +208,14 @@ view! {
         memory_bytes: Option<u64> = scene.measured.memory,
         /// The program's output, cut where it is long.
         stdout: String = printed(&scene.stdout),
-        /// Its standard error, likewise.
+        /// The program's standard error, likewise.
         stderr: String = printed(&scene.stderr),
         /// Whether the result was taken from an earlier run.
         cached: bool = scene.cached,
     }
 }
 
-/// All grades in one document.
+/// Renders all grades in one document.
 pub(crate) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     let (grades, passed_over) =
         (grades.iter().map(GradeView::from).collect(), passed_over.iter().map(passed).collect());
@@ -226,7 +226,7 @@ fn passed(entry: &PassedOver) -> PassedOver {
     PassedOver { name: plain(&entry.name), why: plain(&entry.why) }
 }
 
-/// A line per grade, and one per entry that is no submission, which has no points either.
+/// Returns a line per grade, and one per entry that is no submission, which has no points either.
 #[must_use]
 pub fn lines(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     let grades = grades.iter().map(|grade| serde_json::to_string(&GradeView::from(grade)));
@@ -238,7 +238,7 @@ pub fn lines(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     grades.chain(passed_over).map(|line| line.unwrap_or_default() + "\n").collect()
 }
 
-/// The measurement of a submission that was timed.
+/// Returns the measurement of a submission that was timed.
 fn measured(speed: &SpeedGrade) -> Option<SpeedRatio> {
     match speed.source {
         SpeedSource::Measured(measured) => Some(measured),

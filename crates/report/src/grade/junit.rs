@@ -5,7 +5,7 @@ use crate::words;
 use fosssim_findings::{Grade, PassedOver, SceneGrade, Verdict};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
-/// All grades in one report.
+/// Renders all grades in one report.
 pub(crate) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     let mut report = Report::new("fosssim-oracle");
     for grade in grades {
@@ -43,7 +43,7 @@ pub(crate) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     report.to_string().unwrap_or_default()
 }
 
-/// A suite of one case: what is wrong with the submission itself, so that no scene was run.
+/// Returns a suite of one case: what is wrong with the submission itself, so that no scene was run.
 fn submission(grade: &Grade, unfit: &str) -> TestSuite {
     let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
     status.set_type(grade.verdict.words());

@@ -7,7 +7,8 @@ use crate::{
 };
 use fosssim_findings::{Grade, PassedOver};
 
-/// A grading of one submission has no list of others: its grade says what was passed over beside it.
+/// Adds to the only grade a warning of each entry that was passed over next to it: a grading of one submission has no
+/// list of others.
 pub fn warn_of(grades: &mut [Grade], passed_over: &[PassedOver]) {
     if let [grade] = grades {
         let words = |entry: &PassedOver| format!("passed over {}: {}", entry.name, entry.why);
@@ -15,7 +16,7 @@ pub fn warn_of(grades: &mut [Grade], passed_over: &[PassedOver]) {
     }
 }
 
-/// The list below a class, for people.
+/// Returns the list below a class, for people.
 #[must_use]
 pub fn not_graded(grades: &[Grade], passed_over: &[PassedOver], style: Style) -> String {
     if passed_over.is_empty() || grades.len() < 2 {

@@ -7,7 +7,7 @@ pub use fosssim_mistakes::together::likely_mistakes;
 /// The text in place of a verdict where an entry is no submission.
 pub(super) const NOT_GRADED: &str = "not graded";
 
-/// The lines above all scenes in a report for one reader: what is wrong with the submission itself, or where it
+/// Returns the lines above all scenes in a report for one reader: what is wrong with the submission itself, or where it
 /// fails and what its likely mistakes are.
 #[must_use]
 pub fn head_lines(grade: &Grade) -> Vec<String> {
@@ -27,13 +27,13 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
     located.into_iter().chain(likely_mistakes(grade).into_iter().map(line)).collect()
 }
 
-/// The number of scenes for which an explanation is looked for, with their noun.
+/// Returns the number of scenes for which an explanation is looked for, with their noun.
 pub(crate) fn wrong_scenes(grade: &Grade) -> String {
     let wrong = grade.scenes().filter(|scene| scene.verdict.is_wrong_trace());
     counted(wrong.count() as u64, "wrong scene")
 }
 
-/// The text for a scene whose reason is that of the whole submission.
+/// Returns the text for a scene whose reason is that of the whole submission.
 pub(super) const fn see_above(scene: &SceneGrade) -> &'static str {
     match scene.result.verdict {
         Verdict::Unwritten => "see above",
@@ -41,14 +41,14 @@ pub(super) const fn see_above(scene: &SceneGrade) -> &'static str {
     }
 }
 
-/// The scenes of some groups, those that are not accepted first.
+/// Returns the scenes of some groups, those that are not accepted first.
 pub(super) fn wrong_first<'a>(groups: impl Iterator<Item = &'a GroupGrade>) -> Vec<&'a SceneGrade> {
     let mut scenes: Vec<&SceneGrade> = groups.flat_map(|group| &group.scenes).collect();
     scenes.sort_by_key(|scene| scene.verdict.is_accepted());
     scenes
 }
 
-/// The sentence about a scene that the two rule books judge differently.
+/// Returns the sentence about a scene that the two rule books judge differently.
 #[must_use]
 pub fn difference(scene: &SceneGrade) -> Option<String> {
     scene.differs.map(|cause| {
@@ -61,20 +61,20 @@ pub fn difference(scene: &SceneGrade) -> Option<String> {
     })
 }
 
-/// Points without needless digits: `12.5`, `10`.
+/// Returns points without needless digits: `12.5`, `10`.
 #[must_use]
 pub fn points(value: f64) -> String {
     let text = format!("{value:.2}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// Points that may be missing: where the grader failed or was stopped nobody has a zero.
+/// Returns points that may be missing: where the grader failed or was stopped nobody has a zero.
 #[must_use]
 pub fn reached(value: Option<f64>) -> String {
     value.map_or_else(|| "-".to_owned(), points)
 }
 
-/// Why a grade has no points.
+/// Returns why a grade has no points.
 #[must_use]
 pub fn no_points(grade: &Grade) -> Option<String> {
     if grade.points.is_some() {

@@ -43,7 +43,7 @@ struct Test {
     output: String,
 }
 
-/// The results of one submission.
+/// Renders the results of one submission.
 pub(crate) fn render(grade: &Grade) -> String {
     let shown = for_students(grade);
     let mut scenes: Vec<_> =
@@ -121,7 +121,7 @@ pub(crate) fn render(grade: &Grade) -> String {
     document(&results)
 }
 
-/// Everything about a scene that its message does not say.
+/// Returns everything about a scene that its message does not say.
 fn output(scene: &SceneGrade) -> String {
     let mut lines: Vec<String> = difference(scene).into_iter().collect();
     lines.extend(words::details(scene));

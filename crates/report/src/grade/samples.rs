@@ -13,7 +13,7 @@ use fosssim_mistakes::together::settle;
 use fosssim_model::sim::{Pair, PairKind, Pass, Stage};
 use std::time::Duration;
 
-/// A reason of these words: somebody else's may stand in every report.
+/// Returns a reason of these words: somebody else's may stand in every report.
 pub(crate) fn saying(words: &str) -> Reason {
     Reason::Failed(Failure::Machine(words.to_owned()))
 }
@@ -61,7 +61,7 @@ fn grade(submission: &str, groups: Vec<GroupGrade>) -> Grade {
     }
 }
 
-/// Everything accepted.
+/// Returns a grade with everything accepted.
 pub(crate) fn good() -> Grade {
     let scenes = |names: &[&str]| {
         names.iter().map(|name| scene(name, Verdict::Accepted, "all 100 steps are right")).collect::<Vec<_>>()
@@ -75,7 +75,7 @@ pub(crate) fn good() -> Grade {
     )
 }
 
-/// Every verdict of a run, and words that try to get into the report's own syntax.
+/// Returns every verdict of a run, and words that try to get into the report's own syntax.
 pub(crate) fn bad() -> Grade {
     let mut wrong =
         scene("Detection/a", Verdict::WrongAnswer, "40 of 100 steps are wrong, first step 3: wrong coefficient");
@@ -122,7 +122,7 @@ pub(crate) fn bad() -> Grade {
     grade
 }
 
-/// No program is in the upload.
+/// Returns the grade of an upload without a program.
 pub(crate) fn unfit() -> Grade {
     let names = ["main.cpp", "fosssim-sample"].map(str::to_owned).into();
     let found = FolderContents::Others { names, more: 0, elsewhere: None };
@@ -140,7 +140,7 @@ pub(crate) fn unfit() -> Grade {
     )
 }
 
-/// Stopped while its second scene ran.
+/// Returns a grade that was stopped while its second scene ran.
 pub(crate) fn stopped() -> Grade {
     let mut running = scene("Detection/b", Verdict::NotRun, "the program was stopped by the grader");
     running.measured.wall = Duration::from_secs(14);
@@ -153,7 +153,7 @@ fn missing(name: &str) -> SceneResult {
     SceneResult::without_run(name, 100, Verdict::NotRun, Reason::Stopped)
 }
 
-/// The grader failed.
+/// Returns the grader failed.
 pub(crate) fn fault() -> Grade {
     grade(
         "bob",
@@ -165,7 +165,7 @@ pub(crate) fn fault() -> Grade {
     )
 }
 
-/// The handed-out template, in which nothing is written yet.
+/// Returns the handed-out template, in which nothing is written yet.
 pub(crate) fn unwritten() -> Grade {
     let empty = |key: &str| Explanation {
         key: key.to_owned(),

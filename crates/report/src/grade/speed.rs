@@ -3,7 +3,7 @@ use super::points;
 use crate::number::counted;
 use fosssim_findings::speed::{SpeedGrade, SpeedMarking, SpeedRatio, SpeedSource};
 
-/// The words on a group's speed: the points, and where they come from.
+/// Returns the words on a group's speed: the points, and where they come from.
 #[must_use]
 pub fn speed_words(speed: &SpeedGrade) -> String {
     let SpeedGrade { marking, points: reached, source } = speed;
@@ -20,7 +20,7 @@ pub fn speed_words(speed: &SpeedGrade) -> String {
     }
 }
 
-/// The ratio, its spread, and how much the points depend on it.
+/// Returns the ratio, its spread, and how much the points depend on it.
 fn of_ratio(marking: &SpeedMarking, measured: &SpeedRatio) -> String {
     let SpeedRatio { ratio, least, most, runs } = *measured;
     let (high, low) = (points(marking.points_at(least)), points(marking.points_at(most)));

@@ -13,7 +13,7 @@ use fosssim_render::{
 };
 use std::fmt::Write;
 
-/// A call under its name, folded unless it is to be open.
+/// Renders a call under its name, folded unless it is to be open.
 pub(super) fn html(step: u32, call: &InspectedCall, depth: usize, open: bool) -> String {
     let opened = if open { " open" } else { "" };
     let mut out = format!(
@@ -76,12 +76,12 @@ fn signs(study: &Study) -> String {
     format!("No expected polynomial changes its sign in the step. {}.", parts.join("; "))
 }
 
-/// Whether a set begins or ends within the step.
+/// Returns whether a set begins or ends within the step.
 fn is_flat(set: &[Interval]) -> bool {
     !ends(set).iter().any(|end| (0.0..=1.0).contains(end))
 }
 
-/// The curves of the trace, as the expected ones are drawn.
+/// Returns the curves of the trace, as the expected ones are drawn.
 fn yours(step: u32, call: &InspectedCall, study: &Study, logged: &[Vec<f64>]) -> String {
     let sets: Vec<Vec<Interval>> = logged.iter().map(|own| positive(own)).collect();
     let own = study.curves.iter().zip(logged).zip(&sets);
@@ -97,12 +97,12 @@ fn yours(step: u32, call: &InspectedCall, study: &Study, logged: &[Vec<f64>]) ->
     format!("<figure tabindex=\"0\">{svg}</figure>\n")
 }
 
-/// The curve of a polynomial that is positive on this set.
+/// Returns the curve of a polynomial that is positive on this set.
 fn plotted<'a>(name: String, coefficients: &'a [f64], positive: &'a [Interval]) -> PlottedPolynomial<'a> {
     PlottedPolynomial { name, coefficients, zeros: ends(positive), positive }
 }
 
-/// Where a set ends within the step the polynomial is zero.
+/// Returns the zeros of the polynomial where a set ends within the step.
 fn ends(set: &[Interval]) -> Vec<f64> {
     set.iter().flat_map(|one| [one.lo, one.hi]).collect()
 }
@@ -111,7 +111,7 @@ fn is_wrong(curve: &study::Curve, own: &[f64]) -> bool {
     !own.is_empty() && marks(curve.logged.coefficients(), own).contains(&true)
 }
 
-/// Where a polynomial of a trace is positive; nothing where its zeros can't be found.
+/// Returns where a polynomial of a trace is positive; nothing where its zeros can't be found.
 fn positive(own: &[f64]) -> Vec<Interval> {
     match own.len() <= 6 && own.iter().all(|c| c.is_finite()) {
         true => positive_set(own).map(|set| set.as_slice().to_vec()).unwrap_or_default(),
@@ -119,7 +119,7 @@ fn positive(own: &[f64]) -> Vec<Interval> {
     }
 }
 
-/// Where within the step all polynomials of a trace are positive.
+/// Returns where within the step all polynomials of a trace are positive.
 fn common(logged: &[Vec<f64>]) -> Vec<Interval> {
     let mut common = vec![Interval { lo: 0.0, hi: 1.0 }];
     for own in logged.iter().map(|own| positive(own)) {
@@ -130,7 +130,7 @@ fn common(logged: &[Vec<f64>]) -> Vec<Interval> {
     common
 }
 
-/// The decision of the trace's own polynomials.
+/// Returns the decision of the trace's own polynomials.
 fn own_decision(logged: &[Vec<f64>]) -> String {
     let says = match common(logged).iter().map(|set| set.lo).reduce(f64::min) {
         Some(time) => format!("all are positive from time {} on: a collision", number(time)),
@@ -139,7 +139,7 @@ fn own_decision(logged: &[Vec<f64>]) -> String {
     format!("<p>By your polynomials {says}.</p>\n")
 }
 
-/// Expected and actual curve of one polynomial.
+/// Draws the expected and the actual curve of one polynomial.
 fn both(step: u32, role: &str, expected: &[f64], set: &[Interval], logged: &[f64]) -> String {
     let own = positive(logged);
     if is_flat(set) && is_flat(&own) {
@@ -151,7 +151,7 @@ fn both(step: u32, role: &str, expected: &[f64], set: &[Interval], logged: &[f64
     format!("<figure tabindex=\"0\">{svg}</figure>\n")
 }
 
-/// All coefficients side by side; those that differ after the factor that fits most are marked.
+/// Returns all coefficients side by side; those that differ after the factor that fits most are marked.
 fn coefficients(study: &Study, logged: &[Vec<f64>], nothing: bool) -> String {
     let mut out = String::from(
         "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Coefficients\"><table>\
@@ -190,7 +190,8 @@ fn coefficients(study: &Study, logged: &[Vec<f64>], nothing: bool) -> String {
     out + "</tbody></table></div>\n"
 }
 
-/// For each power whether the coefficients differ once one is multiplied by the factor that makes most of them agree.
+/// Returns for each power whether the coefficients differ once one is multiplied by the factor that makes most of them
+/// agree.
 fn marks(expected: &[f64], own: &[f64]) -> Vec<bool> {
     let differing = differing(expected, own, factor(expected, own));
     (0..expected.len().max(own.len())).map(|power| differing.contains(&power)).collect()

@@ -16,7 +16,7 @@ pub struct Card {
     html: String,
     /// The motions and what the viewer tells of them; empty where there is no motion.
     data: String,
-    /// The same with rounded motions, for a page that has no room for exact ones; empty where that saves nothing.
+    /// The data with rounded motions, for a page that has no room for exact ones; empty where that saves nothing.
     #[serde(default)]
     rounded: String,
 }
@@ -25,7 +25,7 @@ pub struct Card {
 const SMALL: usize = 60_000;
 
 impl Card {
-    /// The card of a case below a heading of this depth; nothing where hints are to say nothing.
+    /// Returns the card of a case below a heading of this depth; nothing where hints are to say nothing.
     #[must_use]
     pub fn of(case: &Case<'_>, depth: usize) -> Option<Self> {
         if case.hints == Hints::None {
@@ -39,57 +39,57 @@ impl Card {
         Some(Self { html: case.trace_part(KEY, depth, CAUSE), data, rounded })
     }
 
-    /// A card that only says something.
+    /// Returns a card that only says something.
     #[must_use]
     pub fn saying(words: &str) -> Self {
         Self { html: format!("<p>{}</p>\n", super::markup::text(words)), ..Self::default() }
     }
 
-    /// The card with a remark above it.
+    /// Returns the card with a remark above it.
     #[must_use]
     pub fn noting(self, words: &str) -> Self {
         Self { html: Self::saying(words).html + &self.html, ..self }
     }
 
-    /// The card as it is kept.
+    /// Returns the card as it is kept.
     #[must_use]
     pub fn kept(&self) -> String {
         serde_json::to_string(self).unwrap_or_default()
     }
 
-    /// A card that has been kept.
+    /// Returns a card that has been kept.
     #[must_use]
     pub fn from_kept(text: &str) -> Option<Self> {
         serde_json::from_str(text).ok()
     }
 
-    /// The bytes of what is there without script, and of the motions.
+    /// Returns the bytes of what is there without script, and of the motions.
     pub(super) fn sizes(&self) -> (usize, usize) {
         (self.html.len(), self.data.len())
     }
 
-    /// Whether it shows the first difference with its values.
+    /// Returns whether it shows the first difference with its values.
     pub(super) fn has_values(&self) -> bool {
         self.html.contains(super::case::FIRST)
     }
 
-    /// The part that needs no script, under a key that no other card of the page has, with its mistakes.
+    /// Renders the part that needs no script, under a key that no other card of the page has, with its mistakes.
     pub(super) fn html(&self, key: &str, mistakes: &str) -> String {
         let html = self.html.replace(KEY, key);
         if html.contains(CAUSE) { html.replace(CAUSE, mistakes) } else { mistakes.to_owned() + &html }
     }
 
-    /// The motions.
+    /// Returns the motions.
     pub(super) fn data(&self, key: &str) -> String {
         self.data.replace(KEY, key)
     }
 
-    /// The bytes of rounded motions; `None` where they are no smaller than the others.
+    /// Returns the bytes of rounded motions; `None` where they are no smaller than the others.
     pub(super) fn rounded_size(&self) -> Option<usize> {
         (!self.rounded.is_empty()).then_some(self.rounded.len())
     }
 
-    /// The motions, rounded.
+    /// Returns the motions, rounded.
     pub(super) fn rounded(&self, key: &str) -> String {
         self.rounded.replace(KEY, key)
     }

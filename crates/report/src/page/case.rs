@@ -36,12 +36,12 @@ const CALLS: usize = 6;
 pub(super) const FIRST: &str = "First difference";
 
 impl Case<'_> {
-    /// A page about this case alone; the title is that of the window.
+    /// Renders a page about this case alone; the title is that of the window.
     pub(super) fn page(&self, title: &str) -> String {
         document(title, &self.html("0"), script())
     }
 
-    /// The case as a page's own content.
+    /// Renders the case as a page's own content.
     fn html(&self, key: &str) -> String {
         let check = &self.check;
         let look = match (check.accepted(), check.difference()) {
@@ -73,13 +73,13 @@ impl Case<'_> {
         out + "</article>\n"
     }
 
-    /// The finding that is shown first: of the book that counts, or of the other one where that has none.
+    /// Returns the finding that is shown first: of the book that counts, or of the other one where that has none.
     fn first(&self) -> Option<&Finding> {
         first(&self.check).filter(|_| self.hints == Hints::Full)
     }
 
-    /// The part about the trace, below a heading of the given depth: the motion beside its cause and the first values
-    /// that are wrong, and all that needs more room below.
+    /// Returns the part about the trace, below a heading of the given depth: the motion beside its cause and the first
+    /// values that are wrong, and all that needs more room below.
     pub(super) fn trace_part(&self, key: &str, depth: usize, mistakes: &str) -> String {
         let evidence = self.evidence.filter(|evidence| !evidence.steps.is_empty());
         let mut out = format!("<div class=\"split{}\">\n", if evidence.is_some() { " has-motion" } else { "" });
@@ -104,7 +104,7 @@ impl Case<'_> {
         out
     }
 
-    /// Where the trace can't be followed any further, why, and what to look at.
+    /// Returns where the trace can't be followed any further, why, and what to look at.
     fn stopped(&self) -> String {
         let outcome = self.check.outcome;
         let Some(stop) = outcome.stop_of(self.check.rules.official()) else { return String::new() };
@@ -118,7 +118,7 @@ impl Case<'_> {
         )
     }
 
-    /// That the likely mistake writes the same trace.
+    /// Returns the sentence that the likely mistake writes the same trace.
     fn proof(&self) -> String {
         let Some(what) = self.what_if.filter(|_| self.hints == Hints::Full) else { return String::new() };
         let words = if what.equal {
@@ -129,7 +129,7 @@ impl Case<'_> {
         format!("<p class=\"hint\">{words}</p>\n")
     }
 
-    /// Where it goes wrong first, where to look, and what the rule books say.
+    /// Returns where it goes wrong first, where to look, and what the rule books say.
     fn side(&self, depth: usize) -> String {
         let outcome = self.check.outcome;
         let heading = |words: &str| format!("<h{0}>{words}</h{0}>\n", depth + 1);
@@ -150,7 +150,7 @@ impl Case<'_> {
         out + "</div>\n"
     }
 
-    /// The detection calls that are wrong, and those that only follow from wrong positions.
+    /// Returns the detection calls that are wrong, and those that only follow from wrong positions.
     fn calls(&self, evidence: &Evidence, depth: usize) -> String {
         let first = self.first().map(|first| first.step);
         let calls = evidence.inspected.iter().flat_map(|up| up.calls.iter().map(move |one| (up.step, one)));
@@ -176,7 +176,7 @@ impl Case<'_> {
     }
 }
 
-/// A card with these lines; nothing without any.
+/// Returns a card with these lines; nothing without any.
 fn list(heading: &str, lines: &[impl AsRef<str>]) -> String {
     if lines.is_empty() {
         return String::new();
@@ -185,7 +185,7 @@ fn list(heading: &str, lines: &[impl AsRef<str>]) -> String {
     format!("<section class=\"card\">{heading}<ul>{lines}</ul></section>\n")
 }
 
-/// The motion: a strip of all steps, whose place the viewer takes where there are scripts.
+/// Returns the motion: a strip of all steps, whose place the viewer takes where there are scripts.
 fn stage(evidence: &Evidence) -> String {
     let mut out = String::from("<div class=\"card motion\"><div class=\"stage\">\n");
     out += &strip::html(&evidence.steps);
@@ -202,7 +202,7 @@ fn stage(evidence: &Evidence) -> String {
     out + "</div>\n"
 }
 
-/// The step of a finding in words.
+/// Returns the step of a finding in words.
 fn step_of(step: u32, steps: u32) -> String {
     match step {
         0 => "the first record".to_owned(),
@@ -210,7 +210,7 @@ fn step_of(step: u32, steps: u32) -> String {
     }
 }
 
-/// The subject of a finding, where a table beside it has its values.
+/// Returns the subject of a finding, where a table beside it has its values.
 fn subject(finding: &Finding) -> String {
     match &finding.detail {
         FindingDetail::Coefficient { place, .. } | FindingDetail::PolynomialDegree { place, .. } => place.to_string(),
@@ -228,7 +228,7 @@ fn subject(finding: &Finding) -> String {
     }
 }
 
-/// Values side by side: in one notation, and marked from the first digit that differs.
+/// Returns values side by side: in one notation, and marked from the first digit that differs.
 fn values(sides: &SideBySide) -> String {
     let mut out = String::new();
     if !sides.rows.is_empty() {
@@ -254,7 +254,7 @@ fn values(sides: &SideBySide) -> String {
     out
 }
 
-/// A value with nothing beside it to be compared with; the title has its last bit.
+/// Returns a value with nothing beside it to be compared with; the title has its last bit.
 fn alone(value: Value) -> String {
     match value {
         Value::Number(number) => markup::number(number),
@@ -262,7 +262,7 @@ fn alone(value: Value) -> String {
     }
 }
 
-/// The first ones of some calls, each with its step; the first one is open.
+/// Returns the first ones of some calls, each with its step; the first one is open.
 fn some(calls: &[(u32, &InspectedCall)], depth: usize, open: bool) -> String {
     let call =
         |(number, (step, one)): (usize, &(u32, &InspectedCall))| call::html(*step, one, depth + 2, open && number == 0);
@@ -273,7 +273,7 @@ fn some(calls: &[(u32, &InspectedCall)], depth: usize, open: bool) -> String {
     out
 }
 
-/// Explanations, each in a box. An example is left out where the first values that are wrong stand beside them.
+/// Renders explanations, each in a box. An example is left out where the first wrong values are shown next to them.
 pub(super) fn mistakes(explanations: &[Explanation], is_shown_beside: bool) -> String {
     let mut out = String::new();
     for one in explanations {
@@ -301,7 +301,7 @@ pub(super) fn mistakes(explanations: &[Explanation], is_shown_beside: bool) -> S
     out
 }
 
-/// The verdicts of both rule books, as the text report says them.
+/// Returns the verdicts of both rule books, as the text report says them.
 fn books(check: &Check<'_>, heading: &str) -> String {
     let Some(verdicts) = verdicts(check) else { return String::new() };
     let line = |(name, look, word, grounds): BookWords| {
@@ -317,8 +317,8 @@ fn books(check: &Check<'_>, heading: &str) -> String {
     format!("<section class=\"card\">{heading}<ul class=\"books\">{lines}</ul></section>\n")
 }
 
-/// The bound beyond which a book calls a state wrong. By the fair rules it grows with the numbers; shown is that of the
-/// largest ones.
+/// Returns the bound beyond which a book calls a state wrong. By the fair rules it grows with the numbers; shown is
+/// that of the largest ones.
 fn bound(evidence: &Evidence, book: Book) -> f64 {
     match book {
         Book::Parity => PARITY_MAXIMUM,
@@ -363,7 +363,7 @@ fn plots(evidence: &Evidence, book: Book, key: &str, first: Option<u32>) -> Stri
     if out.is_empty() { out } else { format!("<div class=\"charts\">\n{out}</div>\n") }
 }
 
-/// All kinds of findings, folded; those that only follow from wrong positions under that name.
+/// Returns all kinds of findings, folded; those that only follow from wrong positions under that name.
 fn findings(account: &BookFindings, follow: u64) -> String {
     let of_formula = |finding: &&Finding| follow > 0 && follows::is_of_formula(finding.kind());
     let total = count(account.counts.total());

@@ -40,7 +40,7 @@ pub struct ClassPage<'a> {
 }
 
 impl ClassPage<'_> {
-    /// The file.
+    /// Renders the file.
     #[must_use]
     pub fn html(&self) -> String {
         let suite = self.grades.first().map_or("", |grade| grade.suite.as_str());
@@ -163,7 +163,7 @@ impl ClassPage<'_> {
         out + "</section>\n"
     }
 
-    /// The members of a cluster: folded where they are many, and to be copied into a letter.
+    /// Returns the members of a cluster: folded where they are many, and to be copied into a letter.
     fn members(&self, members: &[usize]) -> String {
         let names: Vec<String> = members.iter().map(|&number| one_line(&self.grades[number].submission)).collect();
         format!(
@@ -206,7 +206,7 @@ impl ClassPage<'_> {
         }
     }
 
-    /// A scene, as a link to the first submission that shows what goes wrong in it.
+    /// Returns a scene, as a link to the first submission that shows what goes wrong in it.
     fn shown(&self, name: &str) -> String {
         let fails = |grade: &&Grade| grade.scenes().any(|scene| scene.scene == name && is_failed(scene));
         let words = text(&one_line(name));
@@ -248,13 +248,13 @@ impl ClassPage<'_> {
     }
 }
 
-/// The beginning of a long text.
+/// Returns the beginning of a long text.
 fn short(words: &str) -> String {
     let cut: String = words.chars().take(SHORT).collect();
     if cut.len() < words.len() { cut + "..." } else { cut }
 }
 
-/// Whether a scene counts as failed: what was not run and what the grader failed on does not.
+/// Returns whether a scene counts as failed: what was not run and what the grader failed on does not.
 fn is_failed(scene: &SceneGrade) -> bool {
     !matches!(scene.verdict, Verdict::Accepted | Verdict::NotRun | Verdict::JudgeError)
 }
@@ -265,7 +265,8 @@ struct Shared {
     members: Vec<usize>,
 }
 
-/// The scenes of a submission in a row: those that are not accepted are drawn, each kind in a colour of its own.
+/// Returns the scenes of a submission in a row: those that are not accepted are drawn, each kind in a colour of its
+/// own.
 fn heat(grade: &Grade) -> String {
     let (all, accepted) = (grade.scenes().count(), grade.count(Verdict::Accepted));
     let mut out = format!(
@@ -299,7 +300,7 @@ fn heat(grade: &Grade) -> String {
     out + "</svg>"
 }
 
-/// How a scene that is not accepted is drawn: wrong, without a trace that can be judged, or not run.
+/// Returns how a scene that is not accepted is drawn: wrong, without a trace that can be judged, or not run.
 fn kind_of(scene: &SceneGrade) -> Option<&'static str> {
     match scene.verdict {
         Verdict::Accepted => None,
@@ -309,7 +310,7 @@ fn kind_of(scene: &SceneGrade) -> Option<&'static str> {
     }
 }
 
-/// The class in a few numbers.
+/// Returns the class in a few numbers.
 fn figures(grades: &[Grade]) -> String {
     let mut shares: Vec<f64> = grades
         .iter()
@@ -337,8 +338,8 @@ fn figures(grades: &[Grade]) -> String {
     format!("<ul class=\"kpi\">{rows}</ul>\n")
 }
 
-/// Likely mistakes that several submissions make, the most frequent first, and the numbers of the submissions that fail
-/// without any that is named.
+/// Returns likely mistakes that several submissions make, the most frequent first, and the numbers of the submissions
+/// that fail without any that is named.
 fn by_mistake(grades: &[Grade]) -> (Vec<Shared>, Vec<usize>) {
     let mut found: BTreeMap<String, Shared> = BTreeMap::new();
     let mut rest = Vec::new();
@@ -369,7 +370,7 @@ fn by_signature(grades: &[Grade], among: &[usize]) -> Vec<Vec<usize>> {
     several
 }
 
-/// How many submissions reach which share of the points.
+/// Returns how many submissions reach which share of the points.
 fn histogram(grades: &[Grade]) -> String {
     let shares: Vec<f64> = grades
         .iter()

@@ -18,7 +18,7 @@ use fosssim_model::{
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// All data blocks of a case.
+/// Returns all data blocks of a case.
 pub(super) fn blocks(case: &Case<'_>, evidence: &Evidence, key: &str, precision: Precision) -> String {
     // Below full hints a page holds nothing but what the program wrote itself.
     let is_full = case.hints == Hints::Full;

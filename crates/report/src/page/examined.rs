@@ -7,8 +7,9 @@ use fosssim_mistakes::{diagnose::Explanation, student};
 use fosssim_model::scene::Scene;
 
 impl WhatIf {
-    /// The run of the reference with the mistake that is named, beside the trace. Nothing where no step was reproduced
-    /// with it, where the trace was not kept whole (`None`), or where the evidence does not hold the whole motion.
+    /// Returns the run of the reference with the mistake that is named, beside the trace. Nothing where no step was
+    /// reproduced with it, where the trace was not kept whole (`None`), or where the evidence does not hold the whole
+    /// motion.
     #[must_use]
     pub fn of(scene: &Scene, named: &Explanation, trace: Option<&[u8]>, evidence: &Evidence) -> Option<Self> {
         // A motion that is not there as a whole is not made as a whole either, and can't be compared.
@@ -23,7 +24,7 @@ impl WhatIf {
     }
 }
 
-/// The page about one trace that was judged, with all hints: its author has asked.
+/// Returns the page about one trace that was judged, with all hints: its author has asked.
 #[must_use]
 pub fn of_examined(check: Check<'_>, examined: &Examined<'_>, evidence: &Evidence) -> String {
     let scene = examined.scene;

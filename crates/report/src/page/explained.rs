@@ -17,8 +17,8 @@ use std::fmt::Write;
 /// One trace with what was drawn of it.
 type ExplainedCase<'a> = (&'a Case, Option<&'a Card>);
 
-/// How much it takes to see what is wrong: without pictures, by another mistake than the common ones, by several that
-/// can't be told apart, and how large the motion is. The least is the most telling.
+/// Returns how much it takes to see what is wrong: without pictures, by another mistake than the common ones, by
+/// several that can't be told apart, and how large the motion is. The least is the most telling.
 fn telling((case, card): ExplainedCase<'_>, common: &[Explanation]) -> (bool, usize, usize, usize) {
     let own = &case.explanations;
     (card.is_none(), rank(common, own), own.len(), card.map_or(0, |card| card.sizes().1))
@@ -34,7 +34,7 @@ pub struct Explained<'a> {
 }
 
 impl Explained<'_> {
-    /// The file.
+    /// Renders the file.
     #[must_use]
     pub fn html(&self) -> String {
         let Diagnosis { cases, common, located } = self.diagnosis;

@@ -46,7 +46,7 @@ pub struct GradePage<'a> {
 }
 
 impl GradePage<'_> {
-    /// The file.
+    /// Renders the file.
     #[must_use]
     pub fn html(&self) -> String {
         let shown = match self.reader {
@@ -62,7 +62,7 @@ impl GradePage<'_> {
         document(&format!("{}: {}", grade.submission, grade.verdict.words()), &body, script())
     }
 
-    /// The scenes that have something to tell, the most telling one first and the others in their order.
+    /// Returns the scenes that have something to tell, the most telling one first and the others in their order.
     fn told<'g>(&self, grade: &'g Grade) -> Vec<(&'g SceneGrade, Option<Card>)> {
         let scenes = grade.scenes().filter(|scene| is_told(scene));
         let mut told: Vec<_> = scenes.map(|scene| (scene, (self.card)(scene))).collect();
@@ -137,33 +137,33 @@ impl GradePage<'_> {
     }
 }
 
-/// Where a program fails.
+/// Returns where a program fails.
 pub(super) fn located(found: &Located) -> String {
     let words = text(&one_line(&words::located(found)));
     format!("<h2>Where it fails</h2>\n<div class=\"card mistake\"><p class=\"lead\">{words}</p></div>\n")
 }
 
-/// The likely mistakes of all scenes together.
+/// Returns the likely mistakes of all scenes together.
 fn likely(grade: &Grade) -> Vec<Explanation> {
     likely_mistakes(grade).into_iter().map(|(mistake, _)| mistake).collect()
 }
 
-/// The place of a scene among those to look at first; the least comes first. In this order it counts whether nothing
-/// was drawn; whether the rule books differ, so that it may be a consequence or round-off; which of the likely mistakes
-/// explains it, if any; how many other mistakes would do the same there; how large its motion is.
+/// Returns the place of a scene among those to look at first; the least comes first. In this order it counts whether
+/// nothing was drawn; whether the rule books differ, so that it may be a consequence or round-off; which of the likely
+/// mistakes explains it, if any; how many other mistakes would do the same there; how large its motion is.
 fn telling(scene: &SceneGrade, card: Option<&Card>, likely: &[Explanation]) -> (bool, bool, usize, usize, usize) {
     let own = &scene.explanations;
     (card.is_none(), scene.differs.is_some(), rank(likely, own), own.len(), card.map_or(0, |card| card.sizes().1))
 }
 
-/// Which of the likely mistakes is the first among some explanations; other explanations come behind all of them, and
-/// none at all last.
+/// Returns which of the likely mistakes is the first among some explanations; other explanations come behind all of
+/// them, and none at all last.
 pub(super) fn rank(likely: &[Explanation], own: &[Explanation]) -> usize {
     let named = likely.iter().position(|one| is_named_in(one, own));
     named.unwrap_or(likely.len() + usize::from(own.is_empty()))
 }
 
-/// A link to a scene's card.
+/// Returns a link to a scene's card.
 fn link(scene: &SceneGrade) -> String {
     format!("<a href=\"#scene-{}\">{}</a>", key(&scene.scene), text(&one_line(&scene.scene)))
 }
@@ -204,7 +204,7 @@ fn scenes(grade: &Grade, told: &[(&SceneGrade, Option<Card>)]) -> String {
     out + "</tbody></table></div></details>\n"
 }
 
-/// The book that counts.
+/// Returns the book that counts.
 fn books(grade: &Grade) -> String {
     let other = counted(grade.differing() as u64, "scene");
     match (grade.rules, grade.differing()) {
@@ -216,7 +216,7 @@ fn books(grade: &Grade) -> String {
     }
 }
 
-/// Whether a scene has something to tell.
+/// Returns whether a scene has something to tell.
 fn is_told(scene: &SceneGrade) -> bool {
     scene.verdict != Verdict::NotRun && (!scene.verdict.is_accepted() || scene.differs.is_some())
 }
@@ -309,12 +309,12 @@ fn article(scene: &SceneGrade, (card, room): (Option<&Card>, Room), open: bool, 
     out + "</article>\n"
 }
 
-/// A key that another scene's name does not have.
+/// Returns a key that another scene's name does not have.
 pub(super) fn key(name: &str) -> String {
     Sha256::digest(name.as_bytes())[..6].iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// The output of a program, as far as there is room.
+/// Returns the output of a program, as far as there is room.
 fn printed(heading: &str, output: &str, room: &mut usize) -> String {
     if output.trim().is_empty() || *room == 0 {
         return String::new();

@@ -3,7 +3,7 @@ use crate::foreign::is_unseen;
 use crate::number::{beside, general};
 use std::fmt::Write;
 
-/// Text in which what can't be seen, or turns the direction of writing, is written out as its code point.
+/// Returns text in which what can't be seen, or turns the direction of writing, is written out as its code point.
 pub(super) fn visible(raw: &str) -> String {
     let mut out = String::with_capacity(raw.len());
     for c in raw.chars() {
@@ -16,7 +16,7 @@ pub(super) fn visible(raw: &str) -> String {
     out
 }
 
-/// Visible text as it may stand in an element or in a quoted attribute.
+/// Returns visible text as it may stand in an element or in a quoted attribute.
 pub(super) fn text(raw: &str) -> String {
     let mut out = String::with_capacity(raw.len());
     for c in visible(raw).chars() {
@@ -32,12 +32,12 @@ pub(super) fn text(raw: &str) -> String {
     out
 }
 
-/// JSON as it may stand in a data block: nothing in it ends the element.
+/// Returns JSON as it may stand in a data block: nothing in it ends the element.
 pub(super) fn data(value: &serde_json::Value) -> String {
     value.to_string().replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")
 }
 
-/// The beginning of a table up to its first row, in a box that scrolls: the box's classes and name, the table's
+/// Returns the beginning of a table up to its first row, in a box that scrolls: the box's classes and name, the table's
 /// classes, and the headings of its columns. Those of numbers begin with `#`.
 pub(super) fn table(look: &str, label: &str, class: &str, headings: &[&str]) -> String {
     let class = if class.is_empty() { String::new() } else { format!(" class=\"{class}\"") };
@@ -52,13 +52,13 @@ pub(super) fn table(look: &str, label: &str, class: &str, headings: &[&str]) -> 
     )
 }
 
-/// A number in a table.
+/// Returns a number in a table.
 pub(super) fn number(value: f64) -> String {
     text(&general(value))
 }
 
-/// Two numbers as markup; the digits of the second that are not those of the first are marked. Of numbers that count as
-/// the same no digits are shown that only rounding has made.
+/// Returns two numbers as markup; the digits of the second that are not those of the first are marked. Of numbers that
+/// count as the same no digits are shown that only rounding has made.
 pub(super) fn compared(expected: f64, actual: f64, differs: bool) -> (String, String) {
     if !differs {
         return (number(expected), number(actual));

@@ -76,8 +76,8 @@ pub struct Case<'a> {
     pub has_trace: bool,
 }
 
-/// The viewer's script without what only its authors need: indentation and lines that are comments. No text in it goes
-/// over several lines.
+/// Returns the viewer's script without what only its authors need: indentation and lines that are comments. No text in
+/// it goes over several lines.
 fn script() -> &'static str {
     static SCRIPT: LazyLock<String> = LazyLock::new(|| {
         let lines = PARTS.iter().flat_map(|part| part.lines()).map(str::trim);
@@ -87,20 +87,20 @@ fn script() -> &'static str {
     &SCRIPT
 }
 
-/// The style sheet of all pages, for a page that looks like them.
+/// Returns the style sheet of all pages, for a page that looks like them.
 #[must_use]
 pub fn style() -> String {
     format!("{}{STYLE}", fosssim_render::plot::STYLE)
 }
 
-/// The sources of script and style by which the policy of a page that shows a report in a frame allows the report's: a
-/// frame inherits the policy of the page around it.
+/// Returns the sources of script and style by which the policy of a page that shows a report in a frame allows the
+/// report's: a frame inherits the policy of the page around it.
 #[must_use]
 pub fn framed() -> [String; 2] {
     [script(), &style()].map(|text| format!("'{}'", digest(text)))
 }
 
-/// A file around a body: one style sheet, at most one script, and a policy that allows these and nothing else.
+/// Renders a file around a body: one style sheet, at most one script, and a policy that allows these and nothing else.
 fn document(title: &str, body: &str, script: &str) -> String {
     let style = style();
     let allowed = if script.is_empty() { "'none'".to_owned() } else { format!("'{}'", digest(script)) };
@@ -123,7 +123,7 @@ fn document(title: &str, body: &str, script: &str) -> String {
     )
 }
 
-/// The digest by which a policy allows a script or a style sheet.
+/// Returns the digest by which a policy allows a script or a style sheet.
 #[must_use]
 pub fn digest(text: &str) -> String {
     use base64::Engine;

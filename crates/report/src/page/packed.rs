@@ -68,12 +68,12 @@ fn bytes(values: &[f64]) -> Vec<u8> {
     values.iter().flat_map(|value| value.to_le_bytes()).collect()
 }
 
-/// Deflated without a header, in base64.
+/// Deflates bytes without a header and encodes them in base64.
 fn base64(bytes: &[u8]) -> String {
     base64::engine::general_purpose::STANDARD.encode(miniz_oxide::deflate::compress_to_vec(bytes, 8))
 }
 
-/// A power of two, so that multiples are exact.
+/// Returns a power of two, so that multiples are exact.
 fn unit(tracks: &[(&str, &Track)], particles: usize) -> f64 {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for (_, track) in tracks {
@@ -87,7 +87,7 @@ fn unit(tracks: &[(&str, &Track)], particles: usize) -> f64 {
     (extent / PARTS).log2().floor().exp2()
 }
 
-/// The records around the steps that are looked at closely, those of the first wrong ones before others.
+/// Returns the records around the steps that are looked at closely, those of the first wrong ones before others.
 fn exact(evidence: &Evidence) -> Vec<usize> {
     let (layout, window) = (evidence.layout, evidence.window);
     let room = KEPT / (4 * layout.particles).max(1);

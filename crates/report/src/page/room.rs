@@ -13,7 +13,7 @@ const STILL: usize = BUDGET / 3 * 2;
 /// Which parts of a scene's card fit on the page; each has those before it, too.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Room {
-    /// Its words alone.
+    /// The card's words only.
     Words,
     /// Pictures.
     Pictures,
@@ -23,8 +23,8 @@ pub(super) enum Room {
     Exact,
 }
 
-/// Words always; then pictures in the order of the cards; then their motions as small as they get; then, again in the
-/// order of the cards, exact motions.
+/// Shares out the room: words always, then pictures in the order of the cards; then their motions as small as they get;
+/// then, again in the order of the cards, exact motions.
 pub(super) fn share_out<'a>(cards: impl Iterator<Item = Option<&'a Card>> + Clone) -> Vec<Room> {
     let count = cards.clone().count();
     let mut rooms = vec![Room::Words; count];
@@ -57,7 +57,7 @@ pub(super) fn share_out<'a>(cards: impl Iterator<Item = Option<&'a Card>> + Clon
     rooms
 }
 
-/// The text of the page about cards that have no room on it.
+/// Returns the text of the page about cards that have no room on it.
 pub(super) fn left_out<'a>(cards: impl Iterator<Item = Option<&'a Card>>, rooms: &[Room]) -> String {
     let with_motion = cards.zip(rooms).filter(|(card, _)| card.is_some_and(|card| card.sizes().1 > 0));
     let of: Vec<Room> = with_motion.map(|(_, room)| *room).collect();

@@ -8,7 +8,7 @@ const HEIGHT: f64 = 26.0;
 /// More steps than this share columns, which show the worst of theirs.
 const COLUMNS: usize = 480;
 
-/// The strip, with its counts in words.
+/// Renders the strip, with its counts in words.
 pub(super) fn html(steps: &[Step]) -> String {
     let of = |class: StepClass| steps.iter().filter(|step| step.class == class).count();
     let words = format!(

@@ -3,7 +3,7 @@ use super::super::view::SCHEMA;
 use fosssim_model::trace::{Summary, TraceError};
 use serde_json::{Value, json};
 
-/// One JSON object, indented, with a line feed at its end.
+/// Returns one JSON object, indented, with a line feed at its end.
 #[must_use]
 pub fn info_json(scene: &str, trace: &str, summary: &Summary) -> String {
     let layout = summary.layout;
@@ -32,7 +32,7 @@ pub fn info_json(scene: &str, trace: &str, summary: &Summary) -> String {
     format!("{value:#}\n")
 }
 
-/// A malformation and its place.
+/// Returns a malformation and its place.
 pub(super) fn place(error: &TraceError) -> Value {
     json!({ "offset": error.offset, "frame": error.frame, "step": error.step, "message": error.what.to_string() })
 }

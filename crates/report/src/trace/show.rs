@@ -13,15 +13,15 @@ use serde_json::{Value, json};
 /// A record of the step.
 #[derive(Debug, Clone)]
 pub struct ShownRecord {
-    /// Its number in the trace, from 0.
+    /// The record's number in the trace, from 0.
     pub number: u64,
     /// Byte offset of its beginning.
     pub offset: u64,
     /// Whether it is the step's mid record.
     pub mid: bool,
-    /// Its content.
+    /// The record's content.
     pub frame: Frame,
-    /// Its oddities, in words.
+    /// The record's oddities, in words.
     pub notes: Vec<String>,
 }
 
@@ -32,14 +32,14 @@ pub struct ShownStep<'a> {
     pub step: u32,
     /// Steps of the scene.
     pub steps: u32,
-    /// Its records.
+    /// The step's records.
     pub records: &'a [ShownRecord],
     /// Where the reference's polynomials of the step come from.
     pub labels: &'a [Label],
 }
 
 impl ShownStep<'_> {
-    /// For people: both records, the end record alone when the mid record says the same.
+    /// Renders the step for people: both records, the end record alone when the mid record says the same.
     #[must_use]
     pub fn text(&self, style: Style) -> String {
         let heading = match self.step {
@@ -110,7 +110,7 @@ impl ShownStep<'_> {
         text
     }
 
-    /// For programs: one JSON object, indented, with a line feed at its end.
+    /// Renders the step for programs: one JSON object, indented, with a line feed at its end.
     #[must_use]
     pub fn json(&self, scene: &str, trace: &str) -> String {
         let value = json!({

@@ -4,7 +4,7 @@ use fosssim_findings::located::{Content, Failing, Located};
 /// The greatest number of other contents named that the scenes can't tell from the first one.
 const NAMED: usize = 2;
 
-/// The contents that they have in common, with counts, and where the first of them ends.
+/// Returns the contents that they have in common, with counts, and where the first of them ends.
 #[must_use]
 pub fn located(found: &Located) -> String {
     let Located { failing, contents, failed, with, without, first, step } = found;
@@ -36,7 +36,7 @@ pub fn located(found: &Located) -> String {
     text
 }
 
-/// `in which the failsafe moves a zone (held by: a half-plane)`.
+/// Returns `in which the failsafe moves a zone (held by: a half-plane)`.
 fn place_of(content: &Content) -> String {
     let Content { family, value } = content;
     let value = value.as_ref().map(|[axis, value]| format!(" ({axis}: {value})"));

@@ -38,7 +38,7 @@ impl AttackNeed {
         Self { name, walls, by_processor: false }
     }
 
-    /// Whether it is met where these walls are.
+    /// Returns whether it is met where these walls are.
     pub(super) fn is_met(self, layers: &[LayerReport]) -> bool {
         self.by_processor || self.walls.iter().any(|wall| is_active(layers, *wall))
     }
@@ -52,7 +52,7 @@ pub(super) struct ExpectedEnd {
 }
 
 impl ExpectedEnd {
-    /// Whether the run ended in this way.
+    /// Returns whether the run ended in this way.
     pub(super) fn matches(&self, ended: &Ended) -> bool {
         let detail = match ended {
             Ended::Exited(code) => code.to_string(),
@@ -80,12 +80,12 @@ pub(super) struct Attack {
 }
 
 impl Attack {
-    /// Whether the run must end with a forbidden call.
+    /// Returns whether the run must end with a forbidden call.
     pub(super) fn expects_violation(&self) -> bool {
         self.expected.iter().any(|expected| expected.kind == "violation")
     }
 
-    /// Whether the run may end by itself, with an exit code.
+    /// Returns whether the run may end by itself, with an exit code.
     pub(super) fn expects_exit(&self) -> bool {
         self.expected.iter().any(|expected| expected.kind == "exited")
     }

@@ -29,7 +29,7 @@ pub(super) struct State(BTreeMap<PathBuf, (DecoyFacts, Vec<u8>)>);
 type DecoyFacts = [i64; 7];
 
 impl State {
-    /// The first path that differs, if any.
+    /// Returns the first path that differs, if any.
     pub(super) fn difference(&self, after: &Self) -> Option<String> {
         let changed = self.0.iter().find(|(path, state)| after.0.get(*path) != Some(state)).map(|(path, _)| path);
         let added = || after.0.keys().find(|path| !self.0.contains_key(*path));
@@ -77,7 +77,7 @@ impl Decoy {
         Ok(own)
     }
 
-    /// The arguments of the program: secrets, victim, scene, neighbour.
+    /// Returns the arguments of the program: secrets, victim, scene, neighbour.
     pub(super) fn arguments(&self) -> [OsString; 4] {
         [
             self.root.join("secrets").into(),
@@ -87,17 +87,17 @@ impl Decoy {
         ]
     }
 
-    /// Whether the text holds the secret.
+    /// Returns whether the text holds the secret.
     pub(super) fn is_betrayed(&self, text: &[u8]) -> bool {
         text.windows(self.secret.len()).any(|window| window == self.secret.as_bytes())
     }
 
-    /// Whether the victim lives.
+    /// Returns whether the victim lives.
     pub(super) fn is_alive(&mut self) -> bool {
         matches!(self.victim.try_wait(), Ok(None))
     }
 
-    /// The state of everything but the working folder.
+    /// Returns the state of everything but the working folder.
     pub(super) fn state(&self) -> io::Result<State> {
         let mut state = BTreeMap::new();
         for folder in ["secrets", "scenes", "neighbour"] {

@@ -54,9 +54,9 @@ const LONGEST_TRACE: u64 = 1 << 20;
 pub enum PromiseState {
     /// The attack failed and left no mark.
     Held,
-    /// It did not; the text says how.
+    /// The sandbox did not; the text says how.
     Broken(String),
-    /// It could not be tried here; the text says why.
+    /// The promise could not be tried here; the text says why.
     NotTested(String),
 }
 
@@ -79,12 +79,12 @@ pub struct PromiseTable {
 }
 
 impl PromiseTable {
-    /// The promises that do not hold here.
+    /// Returns the promises that do not hold here.
     pub fn broken(&self) -> impl Iterator<Item = &Promise> {
         self.promises.iter().filter(|promise| matches!(promise.state, PromiseState::Broken(_)))
     }
 
-    /// How many promises hold.
+    /// Returns how many promises hold.
     #[must_use]
     pub fn held(&self) -> usize {
         self.promises.iter().filter(|promise| promise.state == PromiseState::Held).count()
@@ -107,7 +107,7 @@ pub fn run(
     run_some(backend, cc, folder, |_| true, report)
 }
 
-/// As [`run`], for the attacks whose names are `chosen`.
+/// Runs the self-test as [`run`] does, for the attacks whose names are `chosen`.
 ///
 /// # Errors
 ///
@@ -156,7 +156,7 @@ pub fn run_some(
     Ok(PromiseTable { promises })
 }
 
-/// The attacks of the binary, in the order of their names.
+/// Returns the attacks of the binary, in the order of their names.
 fn attacks() -> Vec<Attack> {
     let sources = SOURCES.files().filter(|file| file.path().extension().is_some_and(|extension| extension == "c"));
     let mut attacks: Vec<Attack> = sources
@@ -234,7 +234,7 @@ impl Place<'_> {
         Ok(PromiseState::Held)
     }
 
-    /// The built program; built anew only when a source or the compiler's name has changed.
+    /// Returns the built program; built anew only when a source or the compiler's name has changed.
     fn build(&self, attack: &Attack) -> Result<PathBuf, String> {
         let source = SOURCES.get_file(format!("{}.c", attack.name)).ok_or("its source is missing")?;
         let header = SOURCES.get_file("attack.h").ok_or("attack.h is missing")?;
@@ -264,7 +264,7 @@ impl Place<'_> {
     }
 }
 
-/// A suffix that nobody else uses: other self-tests may work in the same folder at the same time.
+/// Returns a suffix that nobody else uses: other self-tests may work in the same folder at the same time.
 fn unique() -> String {
     static COUNT: AtomicUsize = AtomicUsize::new(0);
     format!("{}.{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed))
@@ -277,7 +277,7 @@ fn put(path: &Path, contents: &[u8]) -> std::io::Result<()> {
     std::fs::rename(&fresh, path)
 }
 
-/// Small limits, so that the suite is short and harms nobody even where a wall is missing.
+/// Returns small limits, so that the suite is short and harms nobody even where a wall is missing.
 fn limits(attack: &Attack) -> Limits {
     Limits {
         cpu: Duration::from_millis(300),
@@ -292,19 +292,19 @@ fn limits(attack: &Attack) -> Limits {
     }
 }
 
-/// The environment of a hostile program.
+/// Returns the environment of a hostile program.
 fn environment() -> [(&'static str, String); 3] {
     let grader = std::fs::read_link("/proc/self/exe").unwrap_or_default();
     [(PERMIT, "1".into()), (GRADER, grader.display().to_string()), (GROUP, sys::group().to_string())]
 }
 
-/// Whether a system call filter lies around this very process: a container's.
+/// Returns whether a system call filter lies around this very process: a container's.
 fn is_filtered() -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     status.lines().any(|line| line.strip_prefix("Seccomp:").is_some_and(|mode| mode.trim() == "2"))
 }
 
-/// A process that still runs the program, in whichever of its threads.
+/// Returns a process that still runs the program, in whichever of its threads.
 fn survivor(program: &Path) -> Option<i32> {
     processes::all().find(|pid| {
         processes::threads(*pid)
@@ -312,7 +312,7 @@ fn survivor(program: &Path) -> Option<i32> {
     })
 }
 
-/// The end of the program's output, for a broken promise.
+/// Returns the end of the program's output, for a broken promise.
 fn words(outcome: &RunOutcome) -> String {
     let last = |bytes: &[u8]| {
         let text = String::from_utf8_lossy(bytes);
@@ -324,7 +324,7 @@ fn words(outcome: &RunOutcome) -> String {
     }
 }
 
-/// Whether the folder holds the trace that it should hold.
+/// Checks that the folder holds the trace that it should hold.
 fn left_as_expected(attack: &Attack, work: &LeftFolder) -> Result<(), String> {
     let collected = work.regular_file(TRACE, LONGEST_TRACE).and_then(|(mut file, _)| {
         let mut bytes = Vec::new();

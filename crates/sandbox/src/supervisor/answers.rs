@@ -13,7 +13,8 @@ use crate::{
     sys::{self, Announced, CallAnswer},
 };
 
-/// The memory of the thread that waits for an answer. Where other walls keep us from it, the kernel answers itself.
+/// Returns the memory of the thread that waits for an answer. Where other walls keep us from it, the kernel answers
+/// itself.
 fn memory(announced: &Announced, user: Option<u32>) -> io::Result<File> {
     let path = format!("/proc/{}/mem", announced.thread);
     sys::with_files_of(user, || File::options().read(true).write(true).open(path))
@@ -76,7 +77,7 @@ impl SharedWaits {
         }
     }
 
-    /// The time of the next look at a word.
+    /// Returns the time of the next look at a word.
     pub(super) fn next(&self) -> Option<Instant> {
         self.0.iter().map(|wait| wait.due).min()
     }
@@ -103,7 +104,7 @@ impl SharedWaits {
 }
 
 impl SharedWait {
-    /// The answer to the wait, if it is over.
+    /// Returns the answer to the wait, if it is over.
     fn answer(&self, now: Instant) -> Option<CallAnswer> {
         let mut word = [0; 4];
         match self.memory.read_exact_at(&mut word, self.word) {
@@ -114,7 +115,7 @@ impl SharedWait {
     }
 }
 
-/// The time until which the thread waits: from now on (`FUTEX_WAIT`), or by a clock (`FUTEX_WAIT_BITSET`).
+/// Returns the time until which the thread waits: from now on (`FUTEX_WAIT`), or by a clock (`FUTEX_WAIT_BITSET`).
 fn limit(announced: &Announced, memory: &File, now: Instant) -> Result<Option<Instant>, i32> {
     let [_, operation, _, place, ..] = announced.arguments;
     if place == 0 {
@@ -139,7 +140,7 @@ fn limit(announced: &Announced, memory: &File, now: Instant) -> Result<Option<In
 mod tests {
     use super::*;
 
-    /// A wait of this very process for the word, with the limit at this place.
+    /// Returns a wait of this very process for the word, with the limit at this place.
     fn announced(operation: i32, word: &u32, value: u32, limit: Option<&[i64; 2]>) -> Announced {
         let limit = limit.map_or(0, |limit| (&raw const *limit) as u64);
         let arguments = [(&raw const *word) as u64, operation as u64, value.into(), limit, 0, 0];

@@ -60,7 +60,7 @@ pub(super) const MODES: &[Call] = calls![SYS_fchmodat SYS_fchmod; old: SYS_chmod
 
 /// Times of files, which Landlock does not know either.
 pub(super) const TIMES: &[Call] = calls![SYS_utimensat];
-/// The same by older names, which never take an open file.
+/// The calls under older names, which never take an open file.
 pub(super) const TIMES_BY_NAME: &[Call] = calls![; old: SYS_utime SYS_utimes SYS_futimesat];
 
 /// Calls that libraries try and can do without; refused with `EPERM` or `EACCES` rather than taken for an attack. The C
@@ -103,7 +103,7 @@ pub(super) const IDENTITY: &[Call] =
 pub(super) const GROUPS: [&[Call]; 10] =
     [ALLOWED, FORKING, LINKING, MODES, TIMES, TIMES_BY_NAME, LOCKS, IDENTITY, REFUSED, FORBIDDEN];
 
-/// The usual name of a call.
+/// Returns the usual name of a call.
 pub(super) fn name(number: i64) -> String {
     let known = GROUPS.into_iter().flatten().find(|(_, known)| *known == number);
     known.map_or_else(|| format!("number {number}"), |(name, _)| name.trim_start_matches("SYS_").to_string())

@@ -122,7 +122,7 @@ fn prepare(plan: &mut ChildPlan) -> Result<(Strings, Strings), Failure> {
     Ok(strings)
 }
 
-/// The resource limits; they are the second line behind the supervisor's own watch, except for file sizes.
+/// Sets the resource limits; they are the second line behind the supervisor's own watch, except for file sizes.
 fn limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
     // The default of Linux, so that a deep recursion ends alike on every grading host.
     const STACK: u64 = 8 << 20;
@@ -165,7 +165,7 @@ fn limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
 /// Filters that were compiled before there was a child, with their purpose.
 pub(super) type Filters = Rc<(Purpose, Vec<BpfProgram>)>;
 
-/// The purpose of the filters of a child with this number.
+/// Returns the purpose of the filters of a child with this number.
 pub(super) fn purpose(order: &RunOrder, own_user: bool, entrance: Option<u64>, number: i32) -> Purpose {
     let walls = order.walls;
     Purpose {
@@ -241,14 +241,14 @@ fn arguments(plan: &ChildPlan) -> io::Result<Strings> {
     order.words.iter().chain([&program]).chain(&order.arguments).map(c_string).collect()
 }
 
-/// The script, if its interpreter has to read it by a descriptor, because its path is closed to the run's user.
+/// Returns the script, if its interpreter has to read it by a descriptor, because its path is closed to the run's user.
 fn script_by_descriptor(plan: &ChildPlan) -> Option<&OpenedFile> {
     let opened = plan.opened.as_ref().filter(|_| plan.order.interpreter.is_some())?;
     let readable = c_string(&plan.order.program).is_ok_and(|path| sys::accessible(&path, Access::READ_OK));
     (!readable).then_some(opened)
 }
 
-/// The few variables that every program gets, then those of the job.
+/// Returns the few variables that every program gets, then those of the job.
 fn environment(order: &RunOrder) -> io::Result<Strings> {
     let folder = c_string(&order.folder)?;
     // A folder whose parents are closed to the sandbox's user is reached from within, as the current one.
@@ -302,7 +302,7 @@ impl OpenedFile {
         })
     }
 
-    /// A copy of the program in memory, in which holes stay holes.
+    /// Returns a copy of the program in memory, in which holes stay holes.
     fn copy(program: &File, most: u64) -> io::Result<Self> {
         let mut copy = File::from(sys::memory_file()?);
         volatile::copy_blocks(program, &mut copy, most)?;
@@ -312,7 +312,7 @@ impl OpenedFile {
         Ok(Self { file: again.into(), copied: true })
     }
 
-    /// The same file under a number from `least` on.
+    /// Returns the file under a number from `least` on.
     pub(super) fn under_number(&self, least: u32) -> io::Result<OwnedFd> {
         sys::duplicate_from(self.file.as_fd(), least)
     }

@@ -126,7 +126,7 @@ pub(super) struct Purpose {
     pub(super) own_user: bool,
 }
 
-/// The filters in the order of installation; the first is the one that announces.
+/// Returns the filters in the order of installation; the first is the one that announces.
 pub(super) fn filters(purpose: Purpose) -> io::Result<Vec<BpfProgram>> {
     let strictest = if purpose.announce { announce() } else { SeccompAction::KillProcess };
     let mut filters = vec![compile(forbidden(purpose)?, strictest, SeccompAction::Allow)?];
@@ -144,7 +144,7 @@ pub(super) fn filters(purpose: Purpose) -> io::Result<Vec<BpfProgram>> {
     Ok(filters)
 }
 
-/// The refused calls by error number; 0 is for those that succeed without having any effect.
+/// Returns the refused calls by error number; 0 is for those that succeed without having any effect.
 fn refusals(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
     let mut refusals: BTreeMap<i32, CallRules> = BTreeMap::new();
     let mut refuse = |errno: i32, call: i64, rules: Vec<SeccompRule>| {
@@ -229,7 +229,7 @@ fn on_others(purpose: Purpose) -> io::Result<Vec<(i32, i64, Vec<SeccompRule>)>> 
 
 type CallRules = BTreeMap<i64, Vec<SeccompRule>>;
 
-/// Which calls end the program, or are the supervisor's to decide.
+/// Returns which calls end the program, or are the supervisor's to decide.
 fn forbidden(purpose: Purpose) -> io::Result<CallRules> {
     let always = |group: &[Call]| group.iter().map(|(_, call)| (*call, Vec::new())).collect::<CallRules>();
     let mut rules = always(calls::FORBIDDEN);
@@ -269,7 +269,7 @@ fn announce() -> SeccompAction {
     SeccompAction::Trace(ANNOUNCE_PLACEHOLDER.into())
 }
 
-/// The filter with this answer to the calls that match, and this one to all others.
+/// Returns the filter with this answer to the calls that match, and this one to all others.
 fn compile(rules: CallRules, matched: SeccompAction, otherwise: SeccompAction) -> io::Result<BpfProgram> {
     let machine = std::env::consts::ARCH.try_into().map_err(io::Error::other)?;
     let filter = SeccompFilter::new(rules, otherwise, matched, machine);

@@ -41,7 +41,7 @@ pub(super) struct FolderUsage {
 }
 
 impl FolderUsage {
-    /// The larger numbers of both.
+    /// Returns the larger numbers of both.
     pub(super) fn at_least(self, other: Self) -> Self {
         Self {
             bytes: self.bytes.max(other.bytes),
@@ -52,8 +52,8 @@ impl FolderUsage {
     }
 }
 
-/// The contents of the file system whose root is `folder`, by the kernel's own count: removed files that are in use as
-/// well.
+/// Returns the contents of the file system whose root is `folder`, by the kernel's own count: removed files that are in
+/// use as well.
 pub(super) fn in_use(folder: BorrowedFd<'_>) -> FolderUsage {
     let (bytes, files) = mounts::file_system_usage(folder).unwrap_or_default();
     // The root itself is one.
@@ -129,14 +129,14 @@ fn open_level(root: BorrowedFd<'_>, folder: BorrowedFd<'_>, depth: u32, moved: &
     }
 }
 
-/// A name that the folder does not hold.
+/// Returns a name that the folder does not hold.
 fn free_name(folder: BorrowedFd<'_>, from: usize) -> Option<String> {
     const TRIES: usize = 100_000;
     let names = (from..from + TRIES).map(|number| format!(".too-deep-{number}"));
     { names }.find(|name| inside(folder).join(name).symlink_metadata().is_err())
 }
 
-/// The path of an open folder.
+/// Returns the path of an open folder.
 fn inside(folder: BorrowedFd<'_>) -> PathBuf {
     PathBuf::from(format!("/proc/self/fd/{}", folder.as_raw_fd()))
 }

@@ -81,19 +81,19 @@ impl Group {
         Ok(group)
     }
 
-    /// The quantities that the kernel limits.
+    /// Returns the quantities that the kernel limits.
     pub(super) fn controls(&self) -> Vec<&'static str> {
         let mut limits: Vec<&str> = self.parts.iter().flat_map(|part| part.limits.iter().copied()).collect();
         limits.sort_unstable();
         limits
     }
 
-    /// Through these files a process enters the group, by writing a zero to each.
+    /// Opens the files through which a process enters the group, by writing a zero to each.
     pub(super) fn entrances(&self) -> io::Result<Vec<File>> {
         self.parts.iter().map(Part::entrance).collect()
     }
 
-    /// Whether everybody in it can be ended at one word.
+    /// Returns whether everybody in it can be ended at one word.
     pub(super) fn can_kill(&self) -> bool {
         self.unified().is_some()
     }
@@ -103,7 +103,7 @@ impl Group {
         self.unified().map_or(Ok(()), |part| part.open(c"cgroup.kill", OFlags::WRONLY)?.write_all(b"1"))
     }
 
-    /// Whether the kernel ended somebody because the group had no memory left.
+    /// Returns whether the kernel ended somebody because the group had no memory left.
     pub(super) fn was_out_of_memory(&self) -> bool {
         self.parts.iter().any(|part| {
             let file = if part.kind == Kind::Memory { c"memory.oom_control" } else { c"memory.events" };
@@ -111,7 +111,7 @@ impl Group {
         })
     }
 
-    /// Processor time of everybody who is or was in the group.
+    /// Returns processor time of everybody who is or was in the group.
     pub(super) fn cpu(&self) -> Duration {
         Duration::from_micros(self.unified().and_then(|part| part.number(c"cpu.stat", "usage_usec")).unwrap_or(0))
     }
@@ -156,7 +156,7 @@ impl Group {
 type HeldLimit = (&'static str, &'static CStr);
 
 impl Kind {
-    /// The limits of such a group, if their controllers are there.
+    /// Returns the limits of such a group, if their controllers are there.
     fn limits(self) -> &'static [HeldLimit] {
         match self {
             Self::Unified => &[("memory", c"memory.max"), ("threads and processes", c"pids.max")],
@@ -244,7 +244,7 @@ impl Drop for Part {
     }
 }
 
-/// The number behind the key in a file of lines `key number`.
+/// Returns the number behind the key in a file of lines `key number`.
 fn value_of(text: &str, key: &str) -> Option<u64> {
     text.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix(' ')?.trim().parse().ok())
 }
@@ -278,14 +278,14 @@ fn sweep(place: &Path) {
     }
 }
 
-/// The groups that limit this process's memory, its own first.
+/// Returns the groups that limit this process's memory, its own first.
 pub(crate) fn memory_groups() -> Vec<PathBuf> {
     let read = |path| std::fs::read_to_string(path).unwrap_or_default();
     let (mounts, groups) = (read("/proc/self/mountinfo"), read("/proc/self/cgroup"));
     [Kind::Unified, Kind::Memory].into_iter().flat_map(|kind| places_in(&mounts, &groups, kind)).collect()
 }
 
-/// Where a group might be made: in our own group, then in its parents up to the root of what is mounted here.
+/// Returns where a group might be made: in our own group, then in its parents up to the root of what is mounted here.
 fn places_in(mounts: &str, groups: &str, kind: Kind) -> Vec<PathBuf> {
     let of_memory = |list: &str| list.split(',').any(|word| word == "memory");
     let own = groups.lines().find_map(|line| match kind {

@@ -70,7 +70,7 @@ struct RunRequest {
 }
 
 impl RunRequest {
-    /// The next one; `None` when the grader has no more.
+    /// Returns the next one; `None` when the grader has no more.
     fn next(socket: &UnixStream) -> io::Result<Option<Self>> {
         let mut byte = [0];
         let (length, descriptors) = sys::receive_descriptors(socket, &mut byte)?;

@@ -10,12 +10,12 @@ use std::path::Path;
 use super::filter::LOCK_COMMANDS;
 use crate::sys::Announced;
 
-/// Whether the call locks a file. Other commands for descriptors are never announced.
+/// Returns whether the call locks a file. Other commands for descriptors are never announced.
 pub(super) fn concerns(call: i64) -> bool {
     call == libc::SYS_flock || call == libc::SYS_fcntl
 }
 
-/// Whether the announced lock is of a file beneath `root`.
+/// Returns whether the announced lock is of a file beneath `root`.
 pub(super) fn is_inside(announced: &Announced, root: &Path) -> bool {
     let known = announced.call == libc::SYS_flock || LOCK_COMMANDS.contains(&(announced.arguments[1] & 0xffff_ffff));
     let entry = format!("/proc/{}/fd/{}", announced.thread, announced.arguments[0] as i32);

@@ -21,7 +21,7 @@ use crate::sys::{self, Announced, OFlags};
 /// Set-user and set-group bits are not given away.
 const MODE_BITS: u64 = 0o1777;
 
-/// Whether the call changes permission bits.
+/// Returns whether the call changes permission bits.
 pub(super) fn concerns(call: i64) -> bool {
     calls::MODES.iter().any(|(_, number)| *number == call)
 }
@@ -59,13 +59,13 @@ enum Start {
     Held(u64),
 }
 
-/// The file that the thread holds open under this number, opened by the name that it has now.
+/// Returns the file that the thread holds open under this number, opened by the name that it has now.
 fn held(thread: u32, number: u64, folder: BorrowedFd<'_>, root: &Path) -> Result<OwnedFd, i32> {
     let target = std::fs::read_link(format!("/proc/{thread}/fd/{}", number as i32)).map_err(|_| libc::EBADF)?;
     beneath(&target, folder, root).map_err(|_| libc::EPERM)
 }
 
-/// The file of that name, without following links.
+/// Returns the file of that name, without following links.
 fn named(thread: u32, start: &Start, address: u64, folder: BorrowedFd<'_>, root: &Path) -> Result<OwnedFd, i32> {
     let path = text_at(thread, address).ok_or(libc::EFAULT)?;
     let from = match start {
@@ -79,14 +79,14 @@ fn named(thread: u32, start: &Start, address: u64, folder: BorrowedFd<'_>, root:
     })
 }
 
-/// The file at the path, if that is beneath the working folder, opened without any right but to name it. No link on the
-/// way is followed.
+/// Returns the file at the path, if that is beneath the working folder, opened without any right but to name it. No
+/// link on the way is followed.
 fn beneath(path: &Path, folder: BorrowedFd<'_>, root: &Path) -> io::Result<OwnedFd> {
     let inside = path.strip_prefix(root).map_err(io::Error::other)?;
     sys::open_beneath(folder, &CString::new(inside.as_os_str().as_bytes())?, OFlags::PATH)
 }
 
-/// The text that ends with a zero byte at this address in the thread's memory.
+/// Returns the text that ends with a zero byte at this address in the thread's memory.
 fn text_at(thread: u32, address: u64) -> Option<PathBuf> {
     let mut memory = File::open(format!("/proc/{thread}/mem")).ok()?;
     memory.seek(SeekFrom::Start(address)).ok()?;

@@ -40,7 +40,7 @@ pub(super) struct Prepared {
 }
 
 impl Prepared {
-    /// For orders like this one, whose programs have this number, in a process that has one thread.
+    /// Prepares for orders like this one, whose programs have this number, in a process that has one thread.
     pub(super) fn of(order: &RunOrder, number: i32, alone: SingleThread) -> Result<Self, Failure> {
         let open = || walls::Places::of(order).out_of_the_way();
         let purpose = child::purpose(order, order.walls.own_user, None, number);
@@ -50,7 +50,7 @@ impl Prepared {
         Ok(Self { places, filters, ignored: Some(sys::ignored_signals().into()), alone: Some(alone) })
     }
 
-    /// The signals that are ignored.
+    /// Returns the signals that are ignored.
     pub(super) fn ignored(&self) -> Rc<[i32]> {
         self.ignored.clone().unwrap_or_else(|| sys::ignored_signals().into())
     }
@@ -66,7 +66,7 @@ impl Prepared {
         self.alone.as_ref().map_or_else(sys::fork, sys::fork_alone)
     }
 
-    /// The file rules of an order, if there are to be any.
+    /// Returns the file rules of an order, if there are to be any.
     pub(super) fn rules(&self, order: &RunOrder, folder: BorrowedFd<'_>) -> io::Result<Option<RulesetCreated>> {
         match &self.places {
             _ if !order.walls.landlock => Ok(None),

@@ -22,13 +22,13 @@ struct Stat {
 }
 
 impl Stat {
-    /// Whether anything of the process can still run. A process whose main thread has left looks dead (state Z) while
-    /// its other threads go on.
+    /// Returns whether anything of the process can still run. A process whose main thread has left looks dead (state Z)
+    /// while its other threads go on.
     fn is_alive(&self) -> bool {
         self.threads > 1 || !matches!(self.state, b'Z' | b'X')
     }
 
-    /// Resident memory in pages. A main thread that has left has none; its other threads share the same memory.
+    /// Returns resident memory in pages. A main thread that has left has none; its other threads share the same memory.
     fn resident(&self) -> u64 {
         if self.state != b'Z' || !self.is_alive() {
             return self.resident_pages;
@@ -49,8 +49,8 @@ pub(super) struct Usage {
     pub(super) threads: u64,
 }
 
-/// The usage of the process `pid`; with `tree`, of it and all other descendants of this process. `/proc` counts time in
-/// hundredths of a second on every Linux.
+/// Returns the usage of the process `pid`; with `tree`, of it and all other descendants of this process. `/proc` counts
+/// time in hundredths of a second on every Linux.
 pub(super) fn usage(pid: i32, tree: bool) -> Usage {
     let mut usage = Usage::default();
     let page = sys::page_size();
@@ -76,9 +76,9 @@ fn swapped(pid: i32) -> u64 {
     of(pid).or_else(|| threads(pid).find_map(of)).unwrap_or(0)
 }
 
-/// The process and, with `tree`, all other living descendants of this process, each with its threads. One thread is
-/// enough where all of a process share their descriptors and memory; a main thread that has left shares nothing any
-/// more.
+/// Returns the process and, with `tree`, all other living descendants of this process, each with its threads. One
+/// thread is enough where all of a process share their descriptors and memory; a main thread that has left shares
+/// nothing any more.
 pub(super) fn members(pid: i32, tree: bool) -> Vec<(i32, i32)> {
     let stats = if tree { descendants() } else { read(pid).into_iter().collect() };
     let living = |stat: &Stat| {
@@ -92,19 +92,19 @@ pub(super) fn members(pid: i32, tree: bool) -> Vec<(i32, i32)> {
     stats.iter().filter_map(living).collect()
 }
 
-/// The threads of a process.
+/// Returns the threads of a process.
 pub(crate) fn threads(pid: i32) -> impl Iterator<Item = i32> {
     numbers_in(format!("/proc/{pid}/task"))
 }
 
-/// The processes of a user, by the ids that `/proc` entries belong to.
+/// Returns the processes of a user, by the ids that `/proc` entries belong to.
 pub(super) fn of_user(user: u32) -> Vec<i32> {
     use std::os::unix::fs::MetadataExt;
     let owned = |pid: &i32| std::fs::metadata(format!("/proc/{pid}")).is_ok_and(|metadata| metadata.uid() == user);
     all().filter(owned).collect()
 }
 
-/// The threads of a user, as the kernel counts them for its limit.
+/// Returns the threads of a user, as the kernel counts them for its limit.
 pub(super) fn threads_of_user(user: u32) -> u64 {
     of_user(user).into_iter().filter_map(read).map(|stat| stat.threads).sum()
 }
@@ -162,7 +162,7 @@ fn reap_all(reaped: &mut impl FnMut(sys::Reaped)) -> bool {
     }
 }
 
-/// The living processes of a session.
+/// Returns the living processes of a session.
 pub(super) fn of_session(session: i32) -> Vec<i32> {
     let members = all().filter_map(read).filter(|stat| stat.session == session && stat.is_alive());
     members.map(|stat| stat.pid).collect()
@@ -190,7 +190,8 @@ pub(super) fn stop_then_kill(victims: impl Fn() -> Vec<i32>) -> Vec<i32> {
     stopped.into_iter().collect()
 }
 
-/// All living descendants of this process. As their reaper it is an ancestor even of those whose parents have died.
+/// Returns all living descendants of this process. As their reaper it is an ancestor even of those whose parents have
+/// died.
 fn descendants() -> Vec<Stat> {
     let mut stats: Vec<Stat> = all().filter_map(read).collect();
     let mut family = vec![std::process::id() as i32];
@@ -209,12 +210,12 @@ fn descendants() -> Vec<Stat> {
     found
 }
 
-/// All process ids.
+/// Returns all process ids.
 pub(crate) fn all() -> impl Iterator<Item = i32> {
     numbers_in("/proc")
 }
 
-/// The entries of a folder that are numbers.
+/// Returns the entries of a folder that are numbers.
 fn numbers_in(folder: impl AsRef<Path>) -> impl Iterator<Item = i32> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     entries.filter_map(|entry| entry.file_name().to_str()?.parse().ok())

@@ -69,7 +69,7 @@ pub(super) fn tell(finished: Result<Option<FinishedRun>, Failure>, answers: &mut
 /// A run that has begun, or the word that all is over.
 enum SettledRun {
     Here(Box<Run>),
-    /// It was another process's business, which ended with this code.
+    /// The end was another process's business, which ended with this code.
     Elsewhere(u8),
 }
 
@@ -263,7 +263,7 @@ impl Run {
         Ok(Some((report, self.stdout.bytes, self.stderr.bytes)))
     }
 
-    /// Until the main process has ended or there is a cause to end it.
+    /// Watches until the main process has ended or there is a cause to end it.
     fn watch(&mut self) -> io::Result<()> {
         let (mut next_look, mut next_folder) = (Instant::now() + TICK, Instant::now() + TICK);
         while self.main_status.is_none() && self.cause.is_none() && !self.orphaned {
@@ -318,7 +318,7 @@ impl Run {
         Ok(())
     }
 
-    /// The user that the program runs as, if it is its own.
+    /// Returns the user that the program runs as, if it is its own.
     fn user(&self) -> Option<u32> {
         self.slot.as_ref().map(|(slot, _)| slot.user)
     }
@@ -330,7 +330,7 @@ impl Run {
         }
     }
 
-    /// Commands of the grader; the end of its pipe is the end of the grader.
+    /// Obeys commands of the grader; the end of its pipe is the end of the grader.
     fn obey(&mut self) {
         let mut command = [0];
         match self.control.read(&mut command) {
@@ -352,7 +352,7 @@ impl Run {
         }
     }
 
-    /// A forbidden call waits: either it is the one that starts the program, or the program ends.
+    /// Decides about a forbidden call that waits: either it is the one that starts the program, or the program ends.
     fn decide_announcement(&mut self) -> io::Result<()> {
         let Some(listener) = self.listener.as_ref().map(|listener| listener.try_clone()).transpose()? else {
             return Ok(());
@@ -437,15 +437,15 @@ impl Run {
         self.blame_if(self.began.elapsed() > self.order.limits.wall, Ended::WallLimit);
     }
 
-    /// Whether the file at the trace's place is longer than a trace may be.
+    /// Returns whether the file at the trace's place is longer than a trace may be.
     fn is_trace_over(&self) -> bool {
         let opened = self.trace.as_ref().map(|name| sys::open_beneath(self.folder.as_fd(), name, OFlags::PATH));
         let metadata = opened.and_then(|opened| File::from(opened.ok()?).metadata().ok());
         metadata.is_some_and(|metadata| metadata.is_file() && metadata.len() > self.order.limits.trace_bytes)
     }
 
-    /// The group's processor time, where there may be processes that nobody reaps. One process's own count is whole,
-    /// and its group may have served earlier runs.
+    /// Returns the group's processor time, where there may be processes that nobody reaps. One process's own count is
+    /// whole, and its group may have served earlier runs.
     fn uncounted_cpu(&self) -> Duration {
         self.group.as_ref().filter(|_| self.has_children()).map_or(Duration::ZERO, Group::cpu)
     }
@@ -475,13 +475,13 @@ impl Run {
         self.blame_if(over, Ended::FolderLimit);
     }
 
-    /// Whether there may be memory that is resident for nobody: files that are neither in the folder nor refused by
-    /// rules.
+    /// Returns whether there may be memory that is resident for nobody: files that are neither in the folder nor
+    /// refused by rules.
     fn can_hide_memory(&self) -> bool {
         self.order.tools || self.order.sanitisers || !self.order.walls.landlock || !self.order.walls.seccomp
     }
 
-    /// Whether there may be other processes than the main one. Without the filter anybody can start some.
+    /// Returns whether there may be other processes than the main one. Without the filter anybody can start some.
     fn has_children(&self) -> bool {
         self.order.tools || !self.order.walls.seccomp
     }
@@ -491,7 +491,7 @@ impl Run {
     }
 }
 
-/// The contents of the order's folder.
+/// Returns the contents of the order's folder.
 fn contents(order: &RunOrder, folder: BorrowedFd<'_>) -> FolderUsage {
     let contents = folder::measure(folder, u64::MAX, u64::MAX);
     if order.volatile { contents.at_least(folder::in_use(folder)) } else { contents }
@@ -504,7 +504,7 @@ fn owner_before(folder: BorrowedFd<'_>, user: u32) -> io::Result<(u32, u32)> {
     Ok((owner.uid(), owner.gid()))
 }
 
-/// The number of the descriptor by which alone the program can be executed, where only the filter decides that.
+/// Returns the number of the descriptor by which alone the program can be executed, where only the filter decides that.
 fn entrance(order: &RunOrder, opened: &OpenedFile) -> Result<Option<OwnedFd>, Failure> {
     if !order.walls.seccomp || order.walls.notify || order.tools {
         return Ok(None);

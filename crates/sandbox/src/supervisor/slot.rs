@@ -36,8 +36,8 @@ pub(super) fn take() -> io::Result<Slot> {
     take_of(&folder()?, FIRST..FIRST + COUNT, PATIENCE)
 }
 
-/// The id of a run that has lost its supervisor. `None` when another run has it by now, which found nobody left under
-/// it.
+/// Returns the id of a run that has lost its supervisor. `None` when another run has it by now, which found nobody left
+/// under it.
 pub(super) fn retake(user: u32) -> Option<Slot> {
     retake_in(&folder().ok()?, user)
 }
@@ -47,7 +47,7 @@ fn retake_in(folder: &Path, user: u32) -> Option<Slot> {
     lock.try_lock().is_ok().then_some(Slot { user, _lock: lock })
 }
 
-/// The same for any folder and ids.
+/// Takes a slot in any folder, with any ids.
 fn take_of(folder: &Path, users: Range<u32>, patience: Duration) -> io::Result<Slot> {
     const PAUSE: Duration = Duration::from_millis(20);
     let (start, grader) = (Instant::now(), std::os::unix::process::parent_id());
@@ -66,7 +66,7 @@ fn take_of(folder: &Path, users: Range<u32>, patience: Duration) -> io::Result<S
     }
 }
 
-/// The folder of the locks, made on first use in the first of the usual places that can be written to.
+/// Returns the folder of the locks, made on first use in the first of the usual places that can be written to.
 fn folder() -> io::Result<PathBuf> {
     let mut problem = io::Error::other("there is neither /run nor /tmp");
     for base in ["/run", "/var/tmp", "/tmp"] {

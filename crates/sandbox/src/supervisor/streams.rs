@@ -25,7 +25,7 @@ impl CapturedStream {
         Ok(Self { pipe: Some(pipe), limit, bytes: Vec::new(), truncated: false })
     }
 
-    /// The pipe, as long as it is open.
+    /// Returns the pipe, as long as it is open.
     pub(super) fn descriptor(&self) -> Option<BorrowedFd<'_>> {
         self.pipe.as_ref().map(AsFd::as_fd)
     }

@@ -63,7 +63,7 @@ pub(super) fn build(order: &RunOrder) -> Result<(), Failure> {
     close_root()
 }
 
-/// The same without a run's own parts, its working folder and its processes: [`complete`] adds them to a copy.
+/// Builds the view without a run's own parts, its working folder and its processes: [`complete`] adds them to a copy.
 ///
 /// # Errors
 ///
@@ -99,7 +99,7 @@ pub(super) fn complete(order: &RunOrder, folder: BorrowedFd<'_>, files: &[(Raw, 
     close_root()
 }
 
-/// A new root with all that lies outside the working folder, and that folder where it does not lie in memory.
+/// Returns a new root with all that lies outside the working folder, and that folder where it does not lie in memory.
 fn begin(order: &RunOrder) -> Result<FileView, Failure> {
     sys::file_mask(0o022);
     mounts::keep_to_ourselves().map_err(stage("keep mounts to itself"))?;
@@ -217,7 +217,7 @@ fn c_string(path: &Path) -> io::Result<CString> {
     CString::new(path.as_os_str().as_bytes()).map_err(io::Error::other)
 }
 
-/// A path of the host, as it is reached while the view is made.
+/// Returns a path of the host, as it is reached while the view is made.
 fn on_host(path: &Path) -> PathBuf {
     let mut host = OsString::from(HOST);
     host.push(path);
@@ -262,13 +262,13 @@ impl FileView {
         Ok(())
     }
 
-    /// Whether the path is in sight already, with the same access.
+    /// Returns whether the path is in sight already, with the same access.
     fn shows(&self, path: &Path, access: Access) -> bool {
         self.placed.iter().any(|(shown, granted)| path.starts_with(shown) && *granted == access)
     }
 
-    /// The path without links; each link on the way is made in the new root as well. `None` when the host has nothing
-    /// there that we may see.
+    /// Returns the path without links; each link on the way is made in the new root as well. `None` when the host has
+    /// nothing there that we may see.
     fn resolve(&self, path: &Path) -> io::Result<Option<PathBuf>> {
         let mut real = PathBuf::from("/");
         let mut left: VecDeque<OsString> = names(path);
@@ -304,7 +304,7 @@ impl FileView {
     }
 }
 
-/// The parts of a path that lead somewhere.
+/// Returns the parts of a path that lead somewhere.
 fn names(path: &Path) -> VecDeque<OsString> {
     path.components()
         .filter_map(|part| match part {

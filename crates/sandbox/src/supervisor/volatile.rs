@@ -21,7 +21,7 @@ const SPARE_FILES: u64 = 64;
 /// Bytes that are copied at one go.
 const AT_ONE_GO: usize = 1 << 16;
 
-/// The options of the file system for this order's folder.
+/// Returns the options of the file system for this order's folder.
 pub(super) fn options(order: &RunOrder) -> String {
     let bytes = order.folder_bytes().saturating_add(SPARE_BYTES);
     let files = order.limits.folder_files.saturating_add(SPARE_FILES);

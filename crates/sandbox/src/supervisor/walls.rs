@@ -47,7 +47,7 @@ const OWN_FILES: [&CStr; 9] =
     [c"auxv", c"cmdline", c"comm", c"environ", c"limits", c"maps", c"stat", c"statm", c"status"];
 /// Folders there that it may list: the threads' own numbers, which some runtimes count, and its descriptors.
 const OWN_FOLDERS: [&CStr; 2] = [c"task", c"fd"];
-/// The parts of a process's own entry that are shown where no file rules guard it.
+/// Returns the parts of a process's own entry that are shown where no file rules guard it.
 pub(super) fn unguarded_entry() -> impl Iterator<Item = &'static str> {
     OWN_FILES.into_iter().chain([c"fd"]).filter_map(|name| name.to_str().ok())
 }
@@ -68,7 +68,7 @@ const SETTINGS: [&str; 8] = [
     "/etc/os-release",
 ];
 
-/// Every path outside the working folder that has to be in sight for the order's program, devices aside.
+/// Returns every path outside the working folder that has to be in sight for the order's program, devices aside.
 pub(super) fn in_sight(order: &RunOrder) -> Vec<PathBuf> {
     let named = order.readable.iter().chain(&order.executable).chain([&order.program]).map(wire::path);
     let tools = if order.tools { [&TOOLS[..], &SETTINGS[..]] } else { [&[][..], &[]] };
@@ -118,7 +118,7 @@ impl Places {
         places
     }
 
-    /// The same under numbers that no program may have, so that they do not count for the limit of a child. `None`
+    /// Moves the files to numbers that no program may have, so that they do not count for the limit of a child. `None`
     /// where this process itself may not have as many.
     pub(super) fn out_of_the_way(self) -> Option<Self> {
         const FIRST: u32 = 800;
@@ -135,7 +135,7 @@ impl Places {
         self.0.push((opened.into(), access));
     }
 
-    /// Like [`Places::add`], but without the grader's own files beneath the path.
+    /// Adds a place like [`Places::add`], but without the grader's own files beneath the path.
     fn add_around(&mut self, path: &Path, access: BitFlags<AccessFs>, own: &[PathBuf]) {
         for allowed in own::around(path, own) {
             match allowed {
@@ -146,7 +146,7 @@ impl Places {
     }
 }
 
-/// The file at the path, open for being named only.
+/// Returns the file at the path, open for being named only.
 fn at_place(path: &Path) -> io::Result<File> {
     File::options().read(true).custom_flags(libc::O_PATH).open(path)
 }
@@ -188,17 +188,17 @@ pub(super) fn enforce(ruleset: RulesetCreated) -> io::Result<()> {
     Ok(())
 }
 
-/// A ruleset that allows nothing, for the probe.
+/// Returns a ruleset that allows nothing, for the probe.
 pub(super) fn nothing(scopes: bool) -> io::Result<RulesetCreated> {
     handled(scopes, NEWEST)
 }
 
-/// The rules of an older kernel, to test them; 0 means the newest.
+/// Returns the rules of an older kernel, to test them; 0 means the newest.
 fn version(number: u8) -> ABI {
     [NEWEST, ABI::V1, ABI::V2, ABI::V3, ABI::V4, ABI::V5].get(usize::from(number)).copied().unwrap_or(NEWEST)
 }
 
-/// Everything that the running kernel can refuse is refused unless a rule allows it.
+/// Refuses everything that the running kernel can refuse unless a rule allows it.
 fn handled(scopes: bool, version: ABI) -> io::Result<RulesetCreated> {
     let mut ruleset = Ruleset::default()
         .set_compatibility(CompatLevel::BestEffort)
@@ -214,8 +214,8 @@ fn handled(scopes: bool, version: ABI) -> io::Result<RulesetCreated> {
     ruleset.create().map_err(refused)
 }
 
-/// In its folder the program may make, change and remove files and folders. Links to elsewhere, special files and
-/// executing are for build tools, if anybody.
+/// Returns the rights in the program's folder: it may make, change and remove files and folders. Links to elsewhere,
+/// special files and executing are for build tools, if anybody.
 fn in_folder(tools: bool) -> BitFlags<AccessFs> {
     let submission = AccessFs::ReadFile
         | AccessFs::ReadDir

@@ -99,7 +99,7 @@ async fn empty(stage: &mut Stage) -> Result<()> {
 
 struct LadderStudent {
     client: Client,
-    /// Of the link that signs in once.
+    /// The secret of the link that signs in once.
     secret: Option<String>,
     number: usize,
     round: usize,

@@ -69,7 +69,7 @@ impl Admin {
         Ok((accounts, has_more))
     }
 
-    /// All accounts.
+    /// Returns all accounts.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -120,7 +120,7 @@ impl Admin {
         Ok(transaction.commit().await?)
     }
 
-    /// The tokens of workers.
+    /// Returns the tokens of workers.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -157,7 +157,7 @@ impl Admin {
         Ok(transaction.commit().await?)
     }
 
-    /// The queue and the workers.
+    /// Returns the queue and the workers.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -166,7 +166,7 @@ impl Admin {
         Ok(view::queue(&mut transaction, &self.app).await?)
     }
 
-    /// Everything that happened before the event of this number, latest first.
+    /// Returns everything that happened before the event of this number, latest first.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -179,7 +179,8 @@ impl Admin {
 }
 
 impl App {
-    /// The link of a fresh server: signs its first administrator in. Nothing once there is one who has signed in.
+    /// Returns the link of a fresh server: signs its first administrator in. Nothing once there is one who has signed
+    /// in.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -202,7 +203,7 @@ impl App {
         Ok(Some(link))
     }
 
-    /// A new link for an administrator, for anybody who can run programs on the server: the way back in.
+    /// Returns a new link for an administrator, for anybody who can run programs on the server: the way back in.
     ///
     /// # Errors
     /// When there is no such administrator.

@@ -16,7 +16,7 @@ macro_rules! payload {
 }
 pub(super) use payload;
 
-/// The texts between the columns in a [`payload`]: the same for all submissions to an assignment.
+/// Returns the texts between the columns in a [`payload`]: the same for all submissions to an assignment.
 pub(super) fn pieces(assignment: &Assignment) -> Result<[String; 5], Problem> {
     let any = crate::store::Artefact { digest: crate::store::Digest::of(b""), size: 0 };
     let task = assignment.settings.task(Input { form: Form::Program, name: String::new(), artefact: any });

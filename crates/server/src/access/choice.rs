@@ -17,7 +17,7 @@ pub enum Choice {
     Course {
         /// The platform.
         platform: String,
-        /// Its name there.
+        /// The assignment's name there.
         title: String,
         /// A name for a new one.
         slug: String,
@@ -52,7 +52,7 @@ pub enum Chosen {
 }
 
 impl Person {
-    /// The choices.
+    /// Returns the choices.
     ///
     /// # Errors
     /// When there is nothing of this secret for this person.
@@ -166,7 +166,7 @@ impl Person {
     }
 }
 
-/// A name for addresses, to begin with.
+/// Returns a name for addresses, to begin with.
 fn slug_of(title: &str) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
     let text: String = title.chars().map(plain).take(60).collect();
@@ -174,7 +174,7 @@ fn slug_of(title: &str) -> String {
 }
 
 impl Member {
-    /// The platforms from which people come into this course.
+    /// Returns the platforms from which people come into this course.
     ///
     /// # Errors
     /// When the database does not answer.

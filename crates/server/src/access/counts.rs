@@ -18,7 +18,7 @@ const FRESH: Duration = Duration::from_secs(1);
 pub struct Counts(Mutex<Option<(Instant, Metrics)>>);
 
 impl Counts {
-    /// The numbers of this moment, or of a moment ago.
+    /// Returns the numbers of this moment, or of a moment ago.
     pub(super) async fn of(&self, database: &Database, policy: &QueuePolicy) -> Result<Metrics, DbError> {
         let mut last = self.0.lock().await;
         if let Some((at, metrics)) = last.as_ref()

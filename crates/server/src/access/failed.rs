@@ -22,7 +22,7 @@ pub struct AttemptChange {
 }
 
 impl AttemptChange {
-    /// The difference between two attempts.
+    /// Returns the difference between two attempts.
     pub fn between(since: i64, old: &FailedScenes, new: &FailedScenes) -> Self {
         let names = |scenes: &FailedScenes| scenes.keys().cloned().collect::<BTreeSet<_>>();
         let (old, new) = (names(old), names(new));
@@ -30,15 +30,15 @@ impl AttemptChange {
     }
 }
 
-/// The column as it is kept: `WA Group/name` in each line.
+/// Reads the column as it is kept: `WA Group/name` in each line.
 fn read(text: &str) -> FailedScenes {
     let lines = text.lines().filter_map(|line| line.split_once(' '));
     lines.map(|(code, scene)| (scene.to_owned(), code.to_owned())).collect()
 }
 
 impl Staff {
-    /// The scenes that results of the course do not accept, by the results' numbers; of results of older versions
-    /// nothing.
+    /// Returns the scenes that results of the course do not accept, by the results' numbers; of results of older
+    /// versions nothing.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -56,8 +56,8 @@ impl Staff {
 }
 
 impl Member {
-    /// The change that a submission has made since the graded one of the same person before it. Nothing where there is
-    /// none, and to students nothing where groups of one of both are withheld.
+    /// Returns the change that a submission has made since the graded one of the same person before it. Nothing where
+    /// there is none, and to students nothing where groups of one of both are withheld.
     ///
     /// # Errors
     /// When the database does not answer.

@@ -39,7 +39,7 @@ impl NewSecret {
         Self(format!("{prefix}{}{}", random_hex(), random_hex()))
     }
 
-    /// The secret itself, for the one it belongs to.
+    /// Returns the secret itself, for the one it belongs to.
     pub fn reveal(&self) -> &str {
         &self.0
     }
@@ -58,9 +58,9 @@ impl fmt::Debug for NewSecret {
 /// A token, without its secret.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct TokenInfo {
-    /// Its number.
+    /// The token's number.
     pub id: i64,
-    /// Its name.
+    /// The token's name.
     pub name: String,
     /// When it was made, in milliseconds since 1970.
     pub created_at: i64,
@@ -108,12 +108,12 @@ pub(super) struct Seen {
     pub(super) is_stale: bool,
 }
 
-/// The digest of a secret, which the database keeps. Random as the secret is, nobody finds it by trying.
+/// Returns the digest of a secret, which the database keeps. Random as the secret is, nobody finds it by trying.
 pub(super) fn digest(secret: &str) -> String {
     hex(&Sha256::digest(secret))
 }
 
-/// The owner of the token, and its number.
+/// Returns the owner of the token, and its number.
 pub(super) async fn account_of_token(transaction: &mut Transaction, token: &str) -> Result<(Account, i64), Problem> {
     let statement = "SELECT account.id, account.login, account.name, account.is_admin, token.id AS token FROM token
         JOIN account ON account.id = token.account
@@ -125,7 +125,7 @@ pub(super) async fn account_of_token(transaction: &mut Transaction, token: &str)
     }
 }
 
-/// Whose session it is. One that a token began ends with the token.
+/// Returns whose session it is. One that a token began ends with the token.
 pub(super) async fn account_of_session(
     transaction: &mut Transaction,
     session: &str,
@@ -187,7 +187,7 @@ pub(super) async fn new_link(
     further_link(transaction, account, by, way).await
 }
 
-/// The same beside earlier ones.
+/// Makes a further sign-in link next to earlier ones.
 pub(super) async fn further_link(
     transaction: &mut Transaction,
     account: i64,
@@ -201,7 +201,7 @@ pub(super) async fn further_link(
     Ok(secret)
 }
 
-/// Whether a link would sign somebody in.
+/// Returns whether a link would sign somebody in.
 pub(super) async fn is_link(transaction: &mut Transaction, link: &str) -> Result<bool, DbError> {
     let statement = "SELECT account FROM sign_in_link WHERE digest = ? AND used_at IS NULL AND expires_at > {now}";
     Ok(transaction.row(statement, values![digest(link)]).await?.is_some())
@@ -235,7 +235,7 @@ pub(super) async fn end_all(transaction: &mut Transaction, account: i64) -> Resu
     transaction.execute(statement, values![account]).await.map(drop)
 }
 
-/// The account is its person's own from now on. What was begun or made by links of a course's staff ends, who may have
+/// Makes the account its person's own. What was begun or made by links of a course's staff ends, who may have
 /// used these links themselves.
 pub(super) async fn end_vouched(transaction: &mut Transaction, account: i64) -> Result<(), DbError> {
     transaction.execute("UPDATE account SET managed_by = NULL WHERE id = ?", values![account]).await?;
@@ -246,7 +246,7 @@ pub(super) async fn end_vouched(transaction: &mut Transaction, account: i64) -> 
     transaction.execute(statement, values![account]).await.map(drop)
 }
 
-/// Whether an account is more than a student anywhere: staff can't sign in as it, and could not before.
+/// Returns whether an account is more than a student anywhere: staff can't sign in as it, and could not before.
 pub(super) async fn is_trusted(transaction: &mut Transaction, account: i64) -> Result<bool, DbError> {
     let statement = "SELECT is_admin, (SELECT count(*) FROM member
            WHERE member.account = account.id AND member.role = 'staff') AS staff
@@ -270,7 +270,7 @@ pub(super) async fn new_token(
     Ok(NewToken { info: TokenInfo::from_row(&row)?, token: secret.reveal().to_owned() })
 }
 
-/// Whether a character has no look of its own, or turns the letters around it.
+/// Returns whether a character has no look of its own, or turns the letters around it.
 pub(super) fn is_control(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{ad}' | '\u{115f}' | '\u{1160}' | '\u{180e}' | '\u{200b}'..='\u{200f}'
@@ -278,7 +278,7 @@ pub(super) fn is_control(c: char) -> bool {
             | '\u{e0000}'..='\u{e0fff}')
 }
 
-/// A name that people gave to something: shown in pages, logs and tables.
+/// Checks a name that people gave to something: shown in pages, logs and tables.
 pub(super) fn check_title(what: &str, text: &str) -> Result<(), Problem> {
     let length = text.chars().count();
     if !(1..=200).contains(&length) || text.chars().any(is_control) || text.trim() != text {
@@ -289,7 +289,7 @@ pub(super) fn check_title(what: &str, text: &str) -> Result<(), Problem> {
     Ok(())
 }
 
-/// A name that stands in addresses.
+/// Checks a name that is part of addresses.
 pub(super) fn check_slug(what: &str, text: &str) -> Result<(), Problem> {
     let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || matches!(c, '-' | '_' | '.');
     if !(1..=60).contains(&text.len()) || !text.chars().all(plain) || text.starts_with(['-', '.', '_']) {

@@ -31,13 +31,13 @@ pub struct MemberLine {
     pub(crate) link: Option<String>,
 }
 
-/// Which column a heading names: "E-mail address" is "email".
+/// Returns which column a heading names: "E-mail address" is "email".
 fn column(heading: &str) -> Option<usize> {
     let plain: String = heading.to_lowercase().chars().filter(|c| c.is_alphanumeric()).collect();
     COLUMNS.iter().position(|names| names.contains(&plain.as_str()))
 }
 
-/// The places of the columns, by the headings of the first line; nothing where these are no headings.
+/// Returns the places of the columns, by the headings of the first line; nothing where these are no headings.
 fn headings(words: &[String]) -> Result<Option<[Option<usize>; 4]>, Problem> {
     if words.iter().all(|word| column(word).is_none()) {
         return Ok(None);

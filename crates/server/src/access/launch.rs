@@ -31,7 +31,7 @@ const LOGINS: u32 = 3000;
 /// The words of a platform about somebody who wants to come (LTI 4.1, SEC 5.1.1.1).
 #[derive(Debug, Clone, Deserialize)]
 pub struct LoginRequest {
-    /// Its issuer.
+    /// The platform's issuer.
     pub iss: String,
     /// Sent back as they are.
     pub login_hint: String,
@@ -39,7 +39,7 @@ pub struct LoginRequest {
     pub target_link_uri: Option<String>,
     /// Sent back as they are, about the message.
     pub lti_message_hint: Option<String>,
-    /// Its name for this service, where it says so.
+    /// The platform's name for this service, where it says so.
     pub client_id: Option<String>,
     /// The deployment.
     pub lti_deployment_id: Option<String>,
@@ -57,7 +57,7 @@ pub struct LoginAnswer {
 /// Where somebody is to go, signed in.
 #[derive(Debug, Clone)]
 pub struct Launched {
-    /// Their session.
+    /// The person's session.
     pub session: NewSecret,
     /// A path of this service.
     pub to: String,
@@ -70,7 +70,7 @@ impl From<Refused> for Problem {
 }
 
 impl App {
-    /// Whether people may come from platforms at all: their cookies have to reach this service from another site.
+    /// Checks that people may come from platforms: their cookies have to reach this service from another site.
     fn check_launchable(&self) -> Result<(), Problem> {
         if self.is_secure() || self.lti.over_http() {
             return Ok(());
@@ -79,14 +79,14 @@ impl App {
         Err(Problem::conflict("people come from learning platforms by HTTPS only", remedy))
     }
 
-    /// The address that platforms send people to.
+    /// Returns the address that platforms send people to.
     pub fn launch_address(&self) -> String {
         format!("{}/lti/launch", self.public)
     }
 }
 
 impl Visitor {
-    /// The platform that somebody says they come from.
+    /// Returns the platform that somebody says they come from.
     ///
     /// # Errors
     /// When nobody registered it.
@@ -169,7 +169,7 @@ impl Visitor {
         Ok(launched)
     }
 
-    /// The sign-in that this browser began, and the platform that was asked.
+    /// Returns the sign-in that this browser began, and the platform that was asked.
     async fn login(&self, key: &hmac::Key, state: &str) -> Result<(PendingLogin, Platform), Problem> {
         let login = PendingLogin::read(key, state).ok_or_else(unknown_login)?;
         let mut transaction = self.app.0.database.read().await?;
@@ -202,7 +202,7 @@ struct PendingLogin {
 }
 
 impl PendingLogin {
-    /// As the platform sends it back, in words that nobody else can make.
+    /// Returns the value as the platform sends it back, in words that nobody else can make.
     fn signed(&self, key: &hmac::Key) -> String {
         let Self { platform, expires_at, browser } = self;
         let words = format!("{platform}.{expires_at}.{browser}.{}", random_hex());
@@ -218,13 +218,13 @@ impl PendingLogin {
     }
 }
 
-/// The word by which the platform's answer to a sign-in is known.
+/// Returns the word by which the platform's answer to a sign-in is known.
 fn nonce(key: &hmac::Key, state: &str) -> String {
     hex(hmac::sign(key, format!("nonce {state}").as_bytes()).as_ref())
 }
 
 impl App {
-    /// The key by which the service knows again what it signed: the same for all servers of a database.
+    /// Returns the key by which the service knows again what it signed: the same for all servers of a database.
     async fn signing_key(&self) -> Result<hmac::Key, Problem> {
         let found = self.0.signing_key.get_or_try_init(async || {
             let mut transaction = self.0.database.begin().await?;
@@ -250,7 +250,7 @@ pub(super) struct Place {
 
 from_row! { Place { id, course, slug, title } }
 
-/// The course here from which somebody comes there.
+/// Returns the course here from which somebody comes there.
 pub(super) async fn place(
     transaction: &mut Transaction,
     platform: i64,
@@ -308,7 +308,7 @@ async fn arrive(
     }
 }
 
-/// The assignment that a link names by itself: it was chosen by deep linking, or written by who made the link.
+/// Returns the assignment that a link names by itself: it was chosen by deep linking, or written by who made the link.
 async fn named(
     transaction: &mut Transaction,
     place: i64,
@@ -377,8 +377,8 @@ async fn account(transaction: &mut Transaction, platform: &Platform, person: &Lt
     Ok(account)
 }
 
-/// The account of somebody, made when they are new; their name as the platform has it. Never one that is there already
-/// under the same name or address: these are words that people choose for themselves.
+/// Finds the account of somebody, made when they are new; their name as the platform has it. Never one that is there
+/// already under the same name or address: these are words that people choose for themselves.
 pub(super) async fn find_or_make(
     transaction: &mut Transaction,
     platform: &Platform,
@@ -415,13 +415,13 @@ pub(super) async fn find_or_make(
     Err(DbError::Other("no login is free".to_owned()))
 }
 
-/// A name as this service shows names.
+/// Returns a name as this service shows names.
 fn tidy(name: &str) -> String {
     let plain: String = name.chars().map(|c| if identity::is_control(c) { ' ' } else { c }).collect();
     plain.trim().chars().take(200).collect::<String>().trim().to_owned()
 }
 
-/// A login from whatever somebody is called.
+/// Makes a login from whatever somebody is called.
 fn login_of(word: &str) -> String {
     let plain = |c: char| match c.to_ascii_lowercase() {
         c if c.is_ascii_lowercase() || c.is_ascii_digit() || matches!(c, '-' | '_' | '.') => Some(c),
@@ -472,7 +472,7 @@ pub(super) struct PendingLaunch {
     pub(super) arrival: Arrival,
 }
 
-/// The choice that an account has to make by this secret.
+/// Returns the choice that an account has to make by this secret.
 pub(super) async fn pending(
     transaction: &mut Transaction,
     account: i64,

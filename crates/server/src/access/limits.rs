@@ -31,9 +31,9 @@ pub struct TransferLimits {
     pub transfers: usize,
     /// Bytes of uploads and their reports that are kept: of one person, of one course, of all. 0 for any number.
     pub student: u64,
-    /// Of one course.
+    /// The limit of one course.
     pub course: u64,
-    /// Of the server.
+    /// The limit of the server.
     pub server: u64,
     by_account: Mutex<HashMap<i64, Arc<Semaphore>>>,
     turns: Mutex<HashMap<i64, Arc<tokio::sync::Mutex<()>>>>,
@@ -72,7 +72,7 @@ impl TransferLimits {
     }
 }
 
-/// The thing that the tasks of an account share, while one of them holds it.
+/// Returns the thing that the tasks of an account share, while one of them holds it.
 fn shared<T>(all: &Mutex<HashMap<i64, Arc<T>>>, account: i64, new: impl FnOnce() -> T) -> Arc<T> {
     let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
     all.retain(|_, one| Arc::strong_count(one) > 1);
@@ -80,7 +80,7 @@ fn shared<T>(all: &Mutex<HashMap<i64, Arc<T>>>, account: i64, new: impl FnOnce()
 }
 
 impl Member {
-    /// Leave to send or receive a file.
+    /// Returns leave to send or receive a file.
     ///
     /// # Errors
     /// When the account, or all together, have as many under way as they may.
@@ -100,12 +100,12 @@ impl Member {
         Ok(turn)
     }
 
-    /// An archive was not refused.
+    /// Notes that an archive was accepted.
     pub fn archive_was_right(&self) {
         self.app.limits.refused.put_back(self.account.id);
     }
 
-    /// The bytes that are kept of this person, their course and the server, each with the most that may be.
+    /// Returns the bytes that are kept of this person, their course and the server, each with the most that may be.
     async fn shares(&self, transaction: &mut Transaction) -> Result<[RoomShare; 3], Problem> {
         let limits = &self.app.limits;
         let statement =
@@ -133,7 +133,7 @@ impl Member {
         Ok(told.map(|(whose, kept, _)| kept.words(whose)).collect())
     }
 
-    /// Whether this many more bytes may be kept.
+    /// Checks that this many more bytes may be kept.
     pub(super) async fn check_quota(&self, transaction: &mut Transaction, size: u64) -> Result<(), Problem> {
         let [student, course, server] = self.shares(transaction).await?;
         exceeds("all that you handed in, with its reports,", student, size)?;
@@ -150,7 +150,7 @@ struct RoomShare {
 }
 
 impl RoomShare {
-    /// Whether four fifths of it are taken.
+    /// Returns whether four fifths of it are taken.
     fn is_nearly_all(self) -> bool {
         self.most > 0 && self.bytes >= self.most / 5 * 4
     }

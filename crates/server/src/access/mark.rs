@@ -19,7 +19,7 @@ const LONGEST: usize = 2000;
 pub struct Work {
     /// The name of their account.
     pub login: String,
-    /// Their name.
+    /// The student's name.
     pub name: String,
     /// All that they handed in, newest first.
     pub submissions: Vec<Submission>,
@@ -32,7 +32,7 @@ pub struct Work {
 pub struct Request {
     /// The submission.
     pub submission: i64,
-    /// Its owner.
+    /// The owner's login.
     pub login: String,
     /// The question.
     pub text: String,
@@ -124,7 +124,7 @@ impl Staff {
         self.submission(id).await
     }
 
-    /// The requests of students about an assignment that nobody has answered, oldest first.
+    /// Returns the requests of students about an assignment that nobody has answered, oldest first.
     ///
     /// # Errors
     /// When there is no such assignment.
@@ -137,7 +137,7 @@ impl Staff {
         Ok(transaction.all(statement, values![assignment.id]).await?)
     }
 
-    /// All that a student handed in to an assignment.
+    /// Returns all that a student handed in to an assignment.
     ///
     /// # Errors
     /// When they are no member and handed nothing in.
@@ -222,7 +222,7 @@ impl Member {
         Ok(transaction.commit().await?)
     }
 
-    /// How an assignment stands, for staff.
+    /// Returns how an assignment stands, for staff.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -238,7 +238,7 @@ impl Member {
         Ok(transaction.find(statement, values![assignment.id, assignment.id]).await?)
     }
 
-    /// Until when this member may hand in.
+    /// Returns until when this member may hand in.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -254,7 +254,7 @@ async fn extension(transaction: &mut Transaction, assignment: i64, account: i64)
     row.map(|row| row.int("due_at")).transpose()
 }
 
-/// Until when an account may hand in: an extension gives more time, and never less.
+/// Returns until when an account may hand in: an extension gives more time, and never less.
 pub(super) async fn due(
     transaction: &mut Transaction,
     assignment: &Assignment,

@@ -28,12 +28,12 @@ pub struct Member {
 }
 
 impl Member {
-    /// An entry of the course's audit log.
+    /// Returns an entry of the course's audit log.
     pub(super) fn entry<'a>(&self, kind: &'static str, assignment: Option<i64>, text: &'a str) -> Entry<'a> {
         Entry { course: Some(self.course), assignment, ..Entry::new(kind, self.account.id, text) }
     }
 
-    /// The assignments that they may see.
+    /// Returns the assignments that they may see.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -45,13 +45,13 @@ impl Member {
         Ok(assignments.into_iter().map(|assignment| self.shown(assignment)).collect())
     }
 
-    /// An assignment as they may see it: which suite of the course it is graded by is staff's to know.
+    /// Returns an assignment as they may see it: which suite of the course it is graded by is staff's to know.
     fn shown(&self, mut assignment: Assignment) -> Assignment {
         assignment.settings.suite_archive.take_if(|_| !self.is_staff);
         assignment
     }
 
-    /// One of them.
+    /// Returns one of the member's submissions.
     ///
     /// # Errors
     /// When there is none.
@@ -59,7 +59,7 @@ impl Member {
         Ok(self.shown(self.read_at(slug).await?.1))
     }
 
-    /// A transaction that reads, and the assignment that it found.
+    /// Begins a transaction that reads, and finds the assignment.
     pub(super) async fn read_at(&self, slug: &str) -> Result<(Transaction, Assignment), Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let assignment = self.find_assignment(&mut transaction, slug).await?;
@@ -77,7 +77,7 @@ impl Member {
         found.ok_or_else(|| Problem::not_found("assignment"))
     }
 
-    /// Their own submissions to an assignment, newest first.
+    /// Returns the member's own submissions to an assignment, newest first.
     ///
     /// # Errors
     /// When there is no such assignment.
@@ -138,7 +138,7 @@ impl Member {
         Ok(submission)
     }
 
-    /// A submission: one of their own, or any of the course for staff.
+    /// Returns a submission: one of their own, or any of the course for staff.
     ///
     /// # Errors
     /// When they may see none of this number.
@@ -147,7 +147,7 @@ impl Member {
         self.find_submission(&mut transaction, id).await
     }
 
-    /// How its grade came to be.
+    /// Returns how its grade came to be.
     ///
     /// # Errors
     /// When they may see none of this number.
@@ -157,7 +157,7 @@ impl Member {
         Ok(view::history(&mut transaction, id, submission.is_withheld, self.is_staff).await?)
     }
 
-    /// One of the reports on it, to be opened.
+    /// Returns one of the reports on it, to be opened.
     ///
     /// # Errors
     /// When there is none of this name.
@@ -169,7 +169,7 @@ impl Member {
             .ok_or_else(|| Problem::not_found("report"))
     }
 
-    /// The upload, to be opened.
+    /// Returns the upload, to be opened.
     ///
     /// # Errors
     /// When they may see none of this number.
@@ -181,7 +181,7 @@ impl Member {
         Ok((submission, Artefact { digest, size }))
     }
 
-    /// A submission whose bytes are still there.
+    /// Returns a submission whose bytes are still there.
     async fn kept(&self, id: i64) -> Result<Submission, Problem> {
         let submission = self.submission(id).await?;
         if submission.removed_at.is_some() { Err(Problem::removed()) } else { Ok(submission) }
@@ -195,7 +195,7 @@ impl Member {
         Ok(self.app.0.store.open(&artefact.digest).await?)
     }
 
-    /// The first bytes of an artefact that they may see.
+    /// Returns the first bytes of an artefact that they may see.
     ///
     /// # Errors
     /// When the store fails.

@@ -16,7 +16,7 @@ use utoipa::ToSchema;
 pub struct MemberInfo {
     /// The name of their account.
     pub login: String,
-    /// Their name.
+    /// The member's name.
     pub name: String,
     /// `student` or `staff`.
     pub role: String,
@@ -27,7 +27,7 @@ pub(super) const PEOPLE: i64 = 200;
 
 from_row! { MemberInfo { login, name, role } }
 
-/// Whether these are names and a role.
+/// Checks that these are names and a role.
 pub(super) fn check_member(login: &str, name: &str, role: &str) -> Result<(), Problem> {
     identity::check_slug("a login", login)?;
     identity::check_title("a name", name)?;
@@ -35,7 +35,7 @@ pub(super) fn check_member(login: &str, name: &str, role: &str) -> Result<(), Pr
 }
 
 impl Staff {
-    /// The course's members.
+    /// Returns the course's members.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -46,8 +46,8 @@ impl Staff {
         Ok(transaction.all(statement, values![self.course]).await?)
     }
 
-    /// Those whose login or name has these words, behind the one of this login: a page of them, and whether there are
-    /// more.
+    /// Returns those whose login or name has these words, behind the one of this login: a page of them, and whether
+    /// there are more.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -80,7 +80,7 @@ impl Staff {
         Ok(Link { link })
     }
 
-    /// The number of the course's last event: what somebody who reads the members now has seen.
+    /// Returns the number of the course's last event: what somebody who reads the members now has seen.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -152,7 +152,7 @@ impl Staff {
         }
     }
 
-    /// Whether somebody of the course's staff is left when they are something else.
+    /// Checks that somebody of the course's staff is left when this member becomes something else.
     async fn check_left(&self, transaction: &mut Transaction, login: &str, role: &str) -> Result<(), Problem> {
         let statement = "SELECT count(*) AS n FROM member WHERE course = ? AND role = 'staff' AND account <> ?";
         let goes = login == self.account.login && role != "staff" && !self.account.is_admin;
@@ -162,7 +162,7 @@ impl Staff {
         Ok(())
     }
 
-    /// How the user of a link of this person's comes in.
+    /// Returns how the user of a link of this person's comes in.
     fn way(&self) -> Way {
         if self.account.is_admin { Way::Own } else { Way::Vouched }
     }
@@ -195,9 +195,9 @@ impl Staff {
         Ok(transaction.commit().await?)
     }
 
-    /// A new link that signs a student in once. Staff makes it for accounts that are this course's alone: made here, in
-    /// no other course, without a password or a platform of their own. Anybody who could sign in as somebody else could
-    /// do what they may do.
+    /// Returns a new link that signs a student in once. Staff makes it for accounts that are this course's alone: made
+    /// here, in no other course, without a password or a platform of their own. Anybody who could sign in as somebody
+    /// else could do what they may do.
     ///
     /// # Errors
     /// When the account is more than that, or no member.

@@ -140,7 +140,7 @@ pub use throttle::Throttle;
 pub use turns::ArchiveTurn;
 
 impl App {
-    /// A app on this database and store.
+    /// Creates an app on this database and store.
     pub fn new(
         database: Database,
         store: Store,
@@ -167,22 +167,22 @@ impl App {
         }))
     }
 
-    /// The server's counts about itself.
+    /// Returns the server's counts about itself.
     pub fn instruments(&self) -> &Instruments {
         &self.0.instruments
     }
 
-    /// A link that signs in once, as people open it.
+    /// Returns a link that signs in once, as people open it.
     pub fn welcome_address(&self, secret: &NewSecret) -> String {
         format!("{}/welcome/{}", self.public, secret.reveal())
     }
 
-    /// Whether people come by HTTPS.
+    /// Returns whether people come by HTTPS.
     pub fn is_secure(&self) -> bool {
         self.public.starts_with("https://")
     }
 
-    /// Whether there is room for an upload.
+    /// Checks that there is room for an upload.
     ///
     /// # Errors
     /// When the disk is nearly full.

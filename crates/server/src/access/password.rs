@@ -45,7 +45,7 @@ pub struct Passwords {
     tries: Throttle,
 }
 
-/// The digest of a password with a salt.
+/// Returns the digest of a password with a salt.
 fn digest(password: &str, salt: &str) -> Result<String, Problem> {
     let fault = |_| Problem::fault();
     let params = Params::new(COST.0, COST.1, COST.2, Some(32)).map_err(fault)?;
@@ -56,8 +56,8 @@ fn digest(password: &str, salt: &str) -> Result<String, Problem> {
     Ok(format!("argon2id$m={},t={},p={}${salt}${}", COST.0, COST.1, COST.2, hex(&key)))
 }
 
-/// Whether a password is the one that is kept. Without one the same work is done, so that the time tells nobody who has
-/// one.
+/// Returns whether a password is the one that is kept. Without one the same work is done, so that the time tells nobody
+/// who has one.
 fn is_kept(password: &str, kept: Option<&str>) -> Result<bool, Problem> {
     let salt = kept.and_then(|kept| kept.split('$').nth(2)).unwrap_or("0123456789abcdef0123456789abcdef");
     let digest = digest(password, salt)?;
@@ -110,12 +110,12 @@ impl Try<'_> {
 }
 
 impl App {
-    /// The parts that passwords need, where passwords are allowed.
+    /// Returns the parts that passwords need, where passwords are allowed.
     fn passwords(&self) -> Result<&Passwords, Problem> {
         self.passwords.as_ref().ok_or_else(Problem::no_passwords)
     }
 
-    /// Whether people may sign in with a password.
+    /// Returns whether people may sign in with a password.
     pub fn takes_passwords(&self) -> bool {
         self.passwords.is_some()
     }

@@ -33,18 +33,18 @@ pub struct Person {
 }
 
 impl Person {
-    /// Whether they came in by a token, or by a session that one began.
+    /// Returns whether they came in by a token, or by a session that one began.
     pub fn is_by_token(&self) -> bool {
         self.session.as_ref().is_none_or(|session| session.is_by_token)
     }
 
-    /// The session, where it is the person at a browser: what a token can do, ends with the token.
+    /// Returns the session, where it is the person at a browser: what a token can do, ends with the token.
     pub(super) fn at_browser(&self) -> Result<&Seen, Problem> {
         let session = self.session.as_ref().filter(|_| !self.is_by_token());
         session.ok_or_else(|| Problem::sign_in_again("a token can't do this, nor a session that was begun by one"))
     }
 
-    /// The same, where they signed in lately: anybody who finds an open browser makes no further ways in.
+    /// Returns the session if they signed in lately: anybody who finds an open browser makes no further ways in.
     pub(super) fn lately_at_browser(&self) -> Result<&Seen, Problem> {
         let session = self.at_browser()?;
         match session.is_recent {
@@ -53,7 +53,7 @@ impl Person {
         }
     }
 
-    /// The courses that they may see.
+    /// Returns the courses that they may see.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -69,7 +69,7 @@ impl Person {
         Ok(rows.iter().map(read).collect::<Result<_, DbError>>()?)
     }
 
-    /// Their tokens.
+    /// Returns the person's tokens.
     ///
     /// # Errors
     /// When the database does not answer.

@@ -32,9 +32,9 @@ pub struct RosterRead {
 pub enum RosterWish {
     /// Nothing: who would come and go.
     Preview,
-    /// It counts, unless many would leave.
+    /// The roster counts, unless many would leave.
     Apply,
-    /// It counts, also when many leave.
+    /// The roster counts, even if many leave.
     Confirmed,
 }
 
@@ -58,7 +58,7 @@ pub struct ScoreInfo {
 }
 
 impl App {
-    /// The service's public keys.
+    /// Returns the service's public keys.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -68,7 +68,7 @@ impl App {
 }
 
 impl Admin {
-    /// All platforms.
+    /// Returns all platforms.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -239,7 +239,7 @@ impl Staff {
         Ok(read)
     }
 
-    /// The messages to platforms about an assignment's scores.
+    /// Returns the messages to platforms about an assignment's scores.
     ///
     /// # Errors
     /// When there is no such assignment.

@@ -19,16 +19,16 @@ const CHANGES: i64 = 1000;
 pub enum RegradeState {
     /// Nobody has decided yet.
     Open,
-    /// Its results count.
+    /// The regrade's results count.
     Applied,
-    /// They never did.
+    /// The results never counted.
     Discarded,
 }
 
 /// A regrade and what it would change.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Regrade {
-    /// Its number.
+    /// The regrade's number.
     pub id: i64,
     /// Where it is.
     pub state: RegradeState,
@@ -60,7 +60,7 @@ pub struct Regrade {
 pub struct Change {
     /// The submission.
     pub submission: i64,
-    /// Its owner.
+    /// The owner's login.
     pub login: String,
     /// The verdict that counts now.
     pub old_code: Option<String>,
@@ -70,9 +70,9 @@ pub struct Change {
     pub old_summary: Option<String>,
     /// The verdict of the regrade.
     pub new_code: String,
-    /// Its points.
+    /// The new points.
     pub new_points: Option<String>,
-    /// Its line.
+    /// The new result in one line.
     pub new_summary: String,
     /// The differences of the two gradings: version, suite, rules, limits.
     pub why: Vec<String>,
@@ -117,7 +117,7 @@ impl Staff {
         self.show_regrade(slug, campaign, None).await
     }
 
-    /// The regrades of an assignment, latest first, without their changes.
+    /// Returns the regrades of an assignment, latest first, without their changes.
     ///
     /// # Errors
     /// When there is no such assignment.
@@ -127,7 +127,7 @@ impl Staff {
         Ok(transaction.all(statement, values![assignment.id]).await?)
     }
 
-    /// A regrade and what it would change, or did, for submissions after one.
+    /// Returns a regrade and what it would change, or did, for submissions after one.
     ///
     /// # Errors
     /// When there is none of this number.
@@ -292,7 +292,7 @@ impl FromRow for Change {
     }
 }
 
-/// The differences of two gradings of one submission.
+/// Returns the differences of two gradings of one submission.
 fn why(row: &Row) -> Result<Vec<String>, DbError> {
     let (Some(old_version), Some(old_task)) = (row.maybe_text("old_version")?, row.maybe_text("old_task")?) else {
         return Ok(vec!["there was no grade before".to_owned()]);

@@ -55,7 +55,7 @@ impl Remote {
         .with_token(self.token)
     }
 
-    /// Whether a lease was given to this token: another's counts for nothing.
+    /// Returns whether a lease was given to this token: another's counts for nothing.
     async fn owns(&self, lease: &Lease) -> Result<bool, Problem> {
         let mut transaction = self.app.0.database.first().read().await?;
         let statement = "SELECT token FROM job WHERE id = ? AND attempt = ?";
@@ -63,7 +63,7 @@ impl Remote {
         Ok(row.map(|row| row.maybe_int("token")).transpose()?.flatten() == Some(self.token))
     }
 
-    /// The next job, if there is one.
+    /// Returns the next job, if there is one.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -165,7 +165,7 @@ impl Remote {
         Ok(outcome)
     }
 
-    /// The task of a job that the worker holds right now.
+    /// Returns the task of a job that the worker holds right now.
     async fn held(&self, lease: &Lease) -> Result<Task, Problem> {
         let mut transaction = self.app.0.database.first().read().await?;
         let statement = "SELECT payload FROM job
@@ -175,7 +175,7 @@ impl Remote {
         serde_json::from_str(&row.text("payload")?).map_err(|_| Problem::fault())
     }
 
-    /// An artefact of a job that it holds.
+    /// Returns an artefact of a job that it holds.
     ///
     /// # Errors
     /// When the job is not its own (any more), or the artefact is not the job's.
@@ -202,7 +202,7 @@ impl Remote {
         Ok(artefact)
     }
 
-    /// Whether it holds the job: before anything is received for it.
+    /// Returns whether it holds the job: before anything is received for it.
     ///
     /// # Errors
     /// When it does not.
@@ -215,7 +215,7 @@ impl Remote {
 const MOST_POINTS: f64 = 1e9;
 const MANY_SLOTS: usize = 256;
 
-/// Words of a stranger: one line, not too long, without orders to terminals.
+/// Returns words of a stranger: one line, not too long, without orders to terminals.
 fn plain(text: &str, most: usize) -> String {
     text.chars().map(|c| if c.is_control() { ' ' } else { c }).take(most).collect()
 }

@@ -214,7 +214,7 @@ impl Admin {
     }
 }
 
-/// A sentence with another name in it, where it is a word of its own.
+/// Returns a sentence with another name in it, where it is a word of its own.
 fn without_name(text: &str, name: &str, other: &str) -> String {
     let is_of_word = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
     let mut left = text;

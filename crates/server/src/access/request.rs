@@ -12,7 +12,7 @@ use crate::{
 use std::time::Instant;
 
 impl App {
-    /// The owner of these secrets.
+    /// Returns the owner of these secrets.
     async fn account(&self, secrets: &Secrets) -> Result<(Account, Option<Seen>), Problem> {
         let (account, seen) = match secrets {
             Secrets { bearer: Some(token), .. } => {
@@ -40,12 +40,12 @@ impl App {
         Ok((account, seen))
     }
 
-    /// Anybody.
+    /// Returns anybody.
     pub fn visitor(&self, secrets: Secrets) -> Visitor {
         Visitor { app: self.clone(), secrets }
     }
 
-    /// Somebody who is signed in.
+    /// Returns the person who is signed in.
     ///
     /// # Errors
     /// When nobody is, or they ask too often.
@@ -54,7 +54,7 @@ impl App {
         Ok(Person { account, session, address: secrets.address, app: self.clone() })
     }
 
-    /// A worker by its token; what it is called is its own to say.
+    /// Returns a worker by its token; what it is called is its own to say.
     ///
     /// # Errors
     /// When the token is none of a worker's, or not any more.
@@ -70,12 +70,12 @@ impl App {
 }
 
 impl Person {
-    /// Whether their session lasts longer from now on: the browser is to keep its cookie as long.
+    /// Returns whether their session lasts longer from now on: the browser is to keep its cookie as long.
     pub fn is_renewed(&self) -> bool {
         self.session.as_ref().is_some_and(|session| session.is_stale)
     }
 
-    /// The same person in a course.
+    /// Returns the person as a member of a course.
     ///
     /// # Errors
     /// When they are not in it, or there is no such course: who is not of it does not learn that it exists.
@@ -97,7 +97,7 @@ impl Person {
         }))
     }
 
-    /// The same person as an administrator.
+    /// Returns the person as an administrator.
     ///
     /// # Errors
     /// When they are none.
@@ -110,7 +110,7 @@ impl Person {
 }
 
 impl Member {
-    /// The same person as one of the course's staff.
+    /// Returns the person as one of the course's staff.
     ///
     /// # Errors
     /// When they are not.

@@ -144,7 +144,7 @@ impl Settings {
         serde_json::from_str(text).map_err(wrong)
     }
 
-    /// The settings that are others than before, in words.
+    /// Returns the settings that are others than before, in words.
     pub(super) fn changes(&self, before: &Self) -> String {
         let fields = |settings: &Self| match serde_json::to_value(settings) {
             Ok(Value::Object(fields)) => fields,
@@ -163,7 +163,7 @@ impl Settings {
         names.into_iter().filter(|name| new.get(*name) != old.get(*name)).map(words).collect::<Vec<_>>().join(", ")
     }
 
-    /// The same with other fields; those that are null are taken away.
+    /// Returns the settings with other fields; fields that are null are removed.
     ///
     /// # Errors
     /// When a field is unknown, or of another kind.
@@ -185,18 +185,18 @@ impl Settings {
         serde_json::from_value(Value::Object(fields)).map_err(|error| Problem::invalid(error.to_string()))
     }
 
-    /// The same, graded as by others.
+    /// Returns the settings, graded as by others.
     pub(super) fn graded_as(&self, other: &Self) -> Self {
         let Self { suite, suite_archive, rules, hints, program, seconds, .. } = other.clone();
         Self { suite, suite_archive, rules, hints, program, seconds, ..self.clone() }
     }
 
-    /// As the database keeps them.
+    /// Returns the settings as the database keeps them.
     pub fn text(&self) -> String {
         serde_json::to_string(self).unwrap_or_default()
     }
 
-    /// The same with the suite's name filled in, where they make sense.
+    /// Returns the settings with the suite's name filled in, where they make sense.
     ///
     /// # Errors
     /// The first setting that makes no sense.
@@ -237,29 +237,29 @@ impl Settings {
         Ok(())
     }
 
-    /// Their part about being late.
+    /// Returns the part about being late.
     pub(crate) fn late_policy(&self) -> LatePolicy {
         let Self { due_at, late_days, late_percent, time_zone, .. } = *self;
         LatePolicy { due_at, late_days, late_percent, time_zone }
     }
 
-    /// Whether a form of this name may be handed in.
+    /// Returns whether a form of this name may be handed in.
     pub fn has_form(&self, form: &str) -> bool {
         self.forms.iter().any(|name| name == form)
     }
 
-    /// The forms that are taken, in words.
+    /// Returns the forms that are taken, in words.
     pub fn taken(&self) -> String {
         let taken = Form::ALL.into_iter().filter(|form| self.takes(*form));
         taken.map(Form::words).collect::<Vec<_>>().join(" or ")
     }
 
-    /// Whether this may be handed in.
+    /// Returns whether this may be handed in.
     pub fn takes(&self, form: Form) -> bool {
         self.has_form(form.name())
     }
 
-    /// A worker's task for an input.
+    /// Returns a worker's task for an input.
     pub(super) fn task(&self, submission: Input) -> Task {
         Task {
             submission,

@@ -17,7 +17,7 @@ pub struct Staff(pub(super) Member);
 /// A change of an assignment; parts that are not named stay as they are.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct AssignmentChange<'a> {
-    /// Its title.
+    /// The assignment's title.
     pub title: Option<&'a str>,
     /// Whether students see it.
     pub visible: Option<bool>,
@@ -126,7 +126,7 @@ impl Staff {
         Ok(assignment)
     }
 
-    /// Whether settings name a suite of this course, if they name an archive: a digest opens nothing.
+    /// Checks that an archive that settings name is a suite of this course: a digest opens nothing.
     pub(super) async fn check_suite(&self, transaction: &mut Transaction, settings: &Settings) -> Result<(), Problem> {
         let Some(digest) = &settings.suite_archive else { return Ok(()) };
         let statement = "SELECT digest FROM suite WHERE course = ? AND digest = ?";
@@ -177,7 +177,7 @@ impl Staff {
         self.set_assignment(slug, change, settings).await
     }
 
-    /// Whether something that was handed in to an assignment was graded by a suite that hides groups.
+    /// Returns whether something that was handed in to an assignment was graded by a suite that hides groups.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -200,7 +200,7 @@ impl Staff {
         Ok(view::submissions_after(&mut transaction, assignment, after).await?)
     }
 
-    /// The events of the course before the one of this number, latest first; with `None` up to now.
+    /// Returns the events of the course before the one of this number, latest first; with `None` up to now.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -212,7 +212,7 @@ impl Staff {
         Ok(transaction.all(statement, values![self.course, before.unwrap_or(i64::MAX)]).await?)
     }
 
-    /// The queue and the workers.
+    /// Returns the queue and the workers.
     ///
     /// # Errors
     /// When the database does not answer.

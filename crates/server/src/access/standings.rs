@@ -23,7 +23,7 @@ use utoipa::ToSchema;
 pub struct Standing {
     /// The name of their account.
     pub login: String,
-    /// Their name.
+    /// The student's name.
     pub name: String,
     /// How often they handed in.
     pub submissions: usize,
@@ -33,12 +33,12 @@ pub struct Standing {
     pub counts: Option<Submission>,
 }
 
-/// The same in short: what a class's figures are made of.
+/// A student's standing in short: what a class's figures are made of.
 #[derive(Debug, Clone)]
 pub struct ShortStanding {
     /// The name of their account.
     pub login: String,
-    /// Their name.
+    /// The student's name.
     pub name: String,
     /// How often they handed in.
     pub submissions: usize,
@@ -49,11 +49,11 @@ pub struct ShortStanding {
 /// The submission that counts, in short.
 #[derive(Debug, Clone)]
 pub struct CountedSubmission {
-    /// Its number.
+    /// The submission's number.
     pub id: i64,
-    /// Its points, by hand or less what being late costs.
+    /// The submission's points, by hand or less what being late costs.
     pub points: Option<String>,
-    /// Its verdict, once it is graded.
+    /// The submission's verdict, once it is graded.
     pub verdict: Option<String>,
     /// The most points that could be had.
     pub max_points: Option<String>,
@@ -85,7 +85,7 @@ impl SharedStandings {
 }
 
 impl Staff {
-    /// How all students stand in an assignment, in short and by their logins.
+    /// Returns how all students stand in an assignment, in short and by their logins.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -104,7 +104,7 @@ impl Staff {
         Ok(standings)
     }
 
-    /// How all students stand in an assignment.
+    /// Returns how all students stand in an assignment.
     ///
     /// # Errors
     /// When there is no such assignment.
@@ -114,7 +114,7 @@ impl Staff {
         self.whole_standings(&short).await
     }
 
-    /// The same with the submissions that count.
+    /// Returns how all students stand, with the submissions that count.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -144,7 +144,7 @@ struct Best {
 }
 
 impl Best {
-    /// The best of attempts, oldest first: `ID MOMENT POINTS`, with commas between them.
+    /// Returns the best of attempts, oldest first: `ID MOMENT POINTS`, with commas between them.
     fn of(list: &str, by_hand: &HashMap<i64, String>, policy: &LatePolicy, own_due: Option<i64>) -> Option<Self> {
         let mut attempts: Vec<(i64, i64, &str)> = list
             .split(',')

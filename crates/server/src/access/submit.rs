@@ -21,9 +21,9 @@ const HOUR: i64 = 60 * MINUTE;
 /// The upload.
 #[derive(Debug, Clone)]
 pub struct Upload<'a> {
-    /// Its kind.
+    /// The upload's form.
     pub form: Form,
-    /// Its name: a plain file name.
+    /// The upload's name: a plain file name.
     pub name: &'a str,
     /// Where its bytes lie.
     pub file: &'a Path,
@@ -76,8 +76,8 @@ impl Member {
         Ok(Accepted { submission: self.submission(submission).await?, repeated: false })
     }
 
-    /// When an upload came whose request is known since then, by the database's clock; and whether it may be handed in,
-    /// by its key and size where it announces them: what is refused later would have come for nothing.
+    /// Returns when an upload came whose request is known since then, by the database's clock; and whether it may be
+    /// handed in, by its key and size where it announces them: what is refused later would have come for nothing.
     ///
     /// # Errors
     /// When it may not.
@@ -105,7 +105,7 @@ impl Member {
         Ok(came_at)
     }
 
-    /// The submission that this upload was before, or nothing where it may become one.
+    /// Returns the submission that this upload was before, or nothing where it may become one.
     async fn admit(
         &self,
         transaction: &mut Transaction,

@@ -27,7 +27,7 @@ struct Entry {
     default: bool,
 }
 
-/// A name that is one file in a folder, on every system, and looks the same in every message.
+/// Returns whether a name is one file in a folder, on every system, and looks the same in every message.
 pub fn is_file_name(name: &str) -> bool {
     let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
     (1..=100).contains(&name.len()) && name.chars().all(plain) && !name.starts_with(['.', '-'])
@@ -52,9 +52,9 @@ impl Suites {
         Ok(Self { names, newest, default: default.unwrap_or_default() })
     }
 
-    /// The name for settings: that of the grader's default where there is none, and with the newest version where there
-    /// is no version, so that later versions of the grader change nothing. As it is where the grader can't be asked
-    /// here, which leaves the choice to it.
+    /// Returns the name for settings: that of the grader's default where there is none, and with the newest version
+    /// where there is no version, so that later versions of the grader change nothing. As it is where the grader can't
+    /// be asked here, which leaves the choice to it.
     pub(super) fn or_default(&self, name: &str) -> String {
         let newest = self.newest.iter().find(|(suite, _)| suite == name);
         match newest {
@@ -64,7 +64,7 @@ impl Suites {
         }
     }
 
-    /// Whether there is such a suite.
+    /// Checks that there is such a suite.
     pub(super) fn check(&self, name: &str) -> Result<(), Problem> {
         // The version stands behind an `@`.
         let is_name = name.is_empty() || name.split('@').count() <= 2 && name.split('@').all(is_file_name);
@@ -75,12 +75,12 @@ impl Suites {
         }
     }
 
-    /// Their names; none where the grader can't be asked.
+    /// Returns the suites' names; none where the grader can't be asked.
     pub fn names(&self) -> &[String] {
         &self.names
     }
 
-    /// Which names there are, in words.
+    /// Returns which names there are, in words.
     pub fn words(&self) -> String {
         match self.names.as_slice() {
             [] => "a name that `fosssim-oracle suite list` shows".to_owned(),

@@ -42,7 +42,7 @@ impl Throttle {
     }
 }
 
-/// The bucket of an address for something. Of the newer addresses everybody has 2^64: the network counts.
+/// Returns the bucket of an address for something. Of the newer addresses everybody has 2^64: the network counts.
 pub(super) fn bucket(address: Option<IpAddr>, what: &str) -> i64 {
     let network = address.map(|address| match address.to_canonical() {
         IpAddr::V6(address) => Ipv6Addr::from_bits(address.to_bits() >> 64 << 64).into(),

@@ -56,7 +56,7 @@ impl TurnState {
         seconds * 0.5_f64.powf(now.saturating_duration_since(*at).as_secs_f64() / HALF_LIFE)
     }
 
-    /// The ticket that is next, if anybody may go now.
+    /// Returns the ticket that is next, if anybody may go now.
     fn first(&self, now: Instant) -> Option<u64> {
         let able = self.waiting.iter().filter(|(_, account)| !self.running.contains(account));
         let rank = |(ticket, account): &(&u64, &i64)| (self.taken(**account, now), **ticket);

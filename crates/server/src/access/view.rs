@@ -17,7 +17,7 @@ use utoipa::ToSchema;
 /// Somebody's account.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Account {
-    /// Its number.
+    /// The account's number.
     #[serde(skip)]
     pub(crate) id: i64,
     /// The name in addresses and tables.
@@ -31,9 +31,9 @@ pub struct Account {
 /// A course.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Course {
-    /// Its name in addresses.
+    /// The course's name in addresses.
     pub slug: String,
-    /// Its name.
+    /// The course's name.
     pub title: String,
 }
 
@@ -42,9 +42,9 @@ pub struct Course {
 pub struct Assignment {
     #[serde(skip)]
     pub(crate) id: i64,
-    /// Its name in addresses.
+    /// The assignment's name in addresses.
     pub slug: String,
-    /// Its name.
+    /// The assignment's name.
     pub title: String,
     /// Whether students see it.
     pub visible: bool,
@@ -60,7 +60,7 @@ pub struct Assignment {
 /// A submission, and its result.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Submission {
-    /// Its number on this server.
+    /// The submission's number on this server.
     pub id: i64,
     /// The how-manieth of its owner in this assignment.
     pub number: i64,
@@ -68,24 +68,24 @@ pub struct Submission {
     pub assignment: String,
     /// The assignment's title.
     pub title: String,
-    /// Its owner.
+    /// The owner's login.
     pub login: String,
-    /// Their name.
+    /// The owner's name.
     pub name: String,
     /// `program`, `sources` or `traces`.
     pub form: String,
     /// The file's name.
     pub file_name: String,
-    /// Its SHA-256.
+    /// The submission's SHA-256.
     pub digest: String,
-    /// Its size in bytes.
+    /// The submission's size in bytes.
     pub size: i64,
     /// When it came, in milliseconds since 1970.
     pub created_at: i64,
     /// When its bytes and reports were given up; the grade and its history stay.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub removed_at: Option<i64>,
-    /// Its state: `waiting`, `running`, `done`, `buried` (the grader failed too often) or `cancelled`.
+    /// The submission's state: `waiting`, `running`, `done`, `buried` (the grader failed too often) or `cancelled`.
     pub state: String,
     /// How many jobs are graded before it, while it waits.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -195,11 +195,11 @@ pub struct History {
 /// Something that happened.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Event {
-    /// Its number, which only grows.
+    /// The event's number, which only grows.
     pub id: i64,
     /// When, in milliseconds since 1970.
     pub happened_at: i64,
-    /// Its kind.
+    /// The event's kind.
     pub kind: String,
     /// The one who did it; nobody when the service did.
     pub actor: Option<String>,
@@ -227,9 +227,9 @@ pub struct Queue {
 /// A worker.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct QueueWorker {
-    /// Its name.
+    /// The worker's name.
     pub name: String,
-    /// Its version.
+    /// The worker's version.
     pub version: String,
     /// How many gradings it does at one time.
     pub slots: i64,
@@ -316,7 +316,7 @@ impl FromRow for Submission {
     }
 }
 
-/// How far a job is, while it runs and its worker says so.
+/// Returns how far a job is, while it runs and its worker says so.
 fn progress(row: &Row) -> Result<Option<Progress>, DbError> {
     let is_running = row.maybe_text("state")?.as_deref() == Some("running");
     let read = |column| Ok::<_, DbError>(row.maybe_int(column)?.and_then(|number| u32::try_from(number).ok()));
@@ -324,7 +324,7 @@ fn progress(row: &Row) -> Result<Option<Progress>, DbError> {
 }
 
 impl Submission {
-    /// Points that staff gave count instead of the grader's, of which being late costs some.
+    /// Lets points that staff gave count instead of the grader's, of which being late costs some.
     pub(super) fn overrule(&mut self) {
         let Some(grade) = &mut self.grade else { return };
         let given = self.mark.as_ref().and_then(|mark| mark.points.clone());
@@ -334,7 +334,7 @@ impl Submission {
     }
 }
 
-/// An account's submissions to an assignment, newest first.
+/// Returns an account's submissions to an assignment, newest first.
 pub(super) async fn submissions_of(
     transaction: &mut Transaction,
     assignment: i64,
@@ -347,7 +347,8 @@ pub(super) async fn submissions_of(
 /// How many submissions are read at a time.
 const PAGE: i64 = 500;
 
-/// The submissions to an assignment behind the one of this number, oldest first: a page of them, none behind the last.
+/// Returns the submissions to an assignment behind the one of this number, oldest first: a page of them, none behind
+/// the last.
 pub(super) async fn submissions_after(
     transaction: &mut Transaction,
     assignment: i64,
@@ -363,7 +364,7 @@ pub(super) async fn submissions_named(transaction: &mut Transaction, ids: &[i64]
     transaction.all(statement, values![serde_json::to_string(ids).unwrap_or_default()]).await
 }
 
-/// A submission of a course with its place in the queue and its reports.
+/// Returns a submission of a course with its place in the queue and its reports.
 pub(super) async fn submission(
     transaction: &mut Transaction,
     app: &App,
@@ -395,7 +396,8 @@ pub(super) async fn submission(
     Ok(Some(submission))
 }
 
-/// How a grade came to be; with `withheld` as if there were no hidden groups. Suites of the course are staff's to know.
+/// Returns how a grade came to be; with `withheld` as if there were no hidden groups. Suites of the course are staff's
+/// to know.
 pub(super) async fn history(
     transaction: &mut Transaction,
     submission: i64,
@@ -446,7 +448,7 @@ pub(super) async fn history(
     rows.iter().map(read).collect()
 }
 
-/// A task in short: what it was graded by.
+/// Returns a task in short: what it was graded by.
 fn by_what(task: &str, is_staff: bool) -> String {
     let Ok(task) = serde_json::from_str::<Task>(task) else { return String::new() };
     let suite = match task.suite {
@@ -475,7 +477,7 @@ pub(super) struct Entry<'a> {
 }
 
 impl<'a> Entry<'a> {
-    /// One about nothing but what its words say.
+    /// Creates a change about nothing but what its words say.
     pub(super) fn new(kind: &'static str, actor: i64, text: &'a str) -> Self {
         Self { kind, actor, course: None, assignment: None, submission: None, text }
     }
@@ -489,7 +491,7 @@ pub(super) async fn note(transaction: &mut Transaction, entry: &Entry<'_>) -> Re
     transaction.execute(statement, values![kind, actor, course, assignment, submission, text]).await.map(drop)
 }
 
-/// The queue as everybody of the staff may see it.
+/// Returns the queue as everybody of the staff may see it.
 pub(super) async fn queue(transaction: &mut Transaction, app: &App) -> Result<Queue, DbError> {
     // Each by its index: of all jobs few are one of these.
     let statement = "SELECT

@@ -52,7 +52,7 @@ impl Visitor {
         Ok(session)
     }
 
-    /// Whether a link would sign somebody in.
+    /// Returns whether a link would sign somebody in.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -94,7 +94,7 @@ impl Visitor {
         Ok(())
     }
 
-    /// Whether requests can be served.
+    /// Checks that requests can be served.
     ///
     /// # Errors
     /// When they can't.
@@ -102,7 +102,7 @@ impl Visitor {
         self.app.0.storage.prove().await
     }
 
-    /// Numbers for a monitor, in Prometheus' text format. Without a database that answers they are those of the
+    /// Returns numbers for a monitor, in Prometheus' text format. Without a database that answers they are those of the
     /// process.
     ///
     /// # Errors

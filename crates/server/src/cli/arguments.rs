@@ -126,7 +126,7 @@ pub(super) struct Serve {
     pub(super) work: Work,
 }
 
-/// The scheme and host of an address that people type.
+/// Returns the scheme and host of an address that people type.
 fn public_url(text: &str) -> Result<String, String> {
     let place = text.strip_prefix("https://").or_else(|| text.strip_prefix("http://"));
     let host = place.map(|place| place.trim_end_matches('/')).unwrap_or_default();

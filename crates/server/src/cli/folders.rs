@@ -27,7 +27,7 @@ pub(super) struct ServiceFolders {
 }
 
 impl ServiceFolders {
-    /// The data folder of a server that was here; makes none.
+    /// Finds the data folder of a server that was here; makes none.
     pub(super) fn find(place: &Place) -> Result<Self> {
         if !place.data.exists() {
             return Err(missing("data folder", &place.data));
@@ -35,7 +35,7 @@ impl ServiceFolders {
         Self::find_database(place)
     }
 
-    /// The same for who needs the database only, which may be elsewhere.
+    /// Finds the folder for commands that need the database only, which may be elsewhere.
     pub(super) fn find_database(place: &Place) -> Result<Self> {
         if place.database.is_none() && !place.data.exists() {
             return Err(missing("data folder", &place.data));
@@ -76,7 +76,7 @@ impl ServiceFolders {
         })
     }
 
-    /// The store that was asked for, or the one in the data folder.
+    /// Returns the store that was asked for, or the one in the data folder.
     pub(super) fn store(&self, place: &Place) -> Result<Store> {
         match &place.store {
             Some(address) => Store::bucket(address).with_context(|| format!("store {address}")),
@@ -110,7 +110,7 @@ impl ServiceFolders {
         Ok((database, address))
     }
 
-    /// The database that was asked for, or the one in the data folder.
+    /// Returns the database that was asked for, or the one in the data folder.
     pub(super) fn database(&self, place: &Place) -> Address {
         database(place, &self.data)
     }

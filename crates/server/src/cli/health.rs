@@ -6,7 +6,7 @@ use std::time::Duration;
 /// How long the server may take.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// Whether it is.
+/// Returns whether it is.
 pub(super) fn run(arguments: &Health) -> bool {
     let Some(server) = &arguments.server else {
         let alive = heartbeat::is_alive(&arguments.data);

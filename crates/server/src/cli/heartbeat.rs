@@ -54,7 +54,7 @@ pub(super) async fn beat(data: PathBuf, is_well: impl AsyncFn() -> bool) {
     }
 }
 
-/// Whether a process with this data folder has given a sign lately.
+/// Returns whether a process with this data folder has given a sign lately.
 pub(super) fn is_alive(data: &Path) -> bool {
     let touched = fs::metadata(data.join(FILE)).and_then(|data| data.modified());
     touched.is_ok_and(|touched| SystemTime::now().duration_since(touched).is_ok_and(|age| age < SILENCE))

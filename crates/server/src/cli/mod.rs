@@ -49,7 +49,7 @@ fn run(arguments: &Arguments) -> Result<u8> {
     })
 }
 
-/// Cancelled by the first SIGINT or SIGTERM; a second one ends the process at once.
+/// Returns a token that is cancelled by the first SIGINT or SIGTERM; a second one ends the process at once.
 fn until_signalled() -> Result<CancellationToken> {
     use tokio::signal::unix::{SignalKind, signal};
     let (mut interrupt, mut terminate) = (signal(SignalKind::interrupt())?, signal(SignalKind::terminate())?);

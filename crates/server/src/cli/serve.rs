@@ -166,7 +166,7 @@ async fn checker(named: Option<&Path>) -> Option<String> {
     asked.ok().filter(|page| !page.is_empty())
 }
 
-/// The grader's answer to these words.
+/// Returns the grader's answer to these words.
 async fn answer(named: Option<&Path>, words: &[&str]) -> Result<Vec<u8>> {
     let mut command = tokio::process::Command::new(grader(named)?);
     command.args(words).stdin(std::process::Stdio::null()).kill_on_drop(true);

@@ -80,24 +80,24 @@ async fn work_for(server: &str, token_file: &Path, arguments: &WorkerArguments, 
     Ok(())
 }
 
-/// Two workers of one name are two workers: what tells them apart comes from the process.
+/// Makes a worker's name unique: what tells two workers of one name apart comes from the process.
 fn unique_name(name: Option<&str>) -> String {
     let name = plain(name.map_or_else(host, str::to_owned).as_str());
     format!("{name}.{}.{}", std::process::id(), &secret::random_hex()[..6])
 }
 
-/// The slots that were asked for, or one per core.
+/// Returns the slots that were asked for, or one per core.
 fn slots(slots: Option<NonZeroUsize>) -> usize {
     slots.or(std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get)
 }
 
-/// The queue's patience as the arguments have it.
+/// Returns the queue's patience as the arguments have it.
 pub(super) fn policy(work: &Work) -> QueuePolicy {
     let lease = Duration::from_secs(work.lease);
     QueuePolicy { lease, max_failures: work.tries, first_wait: lease / 30, longest_wait: lease * 4 }
 }
 
-/// The grader that was named, or the one beside this program.
+/// Returns the grader that was named, or the one beside this program.
 pub(super) fn grader(named: Option<&Path>) -> Result<PathBuf> {
     let path = match named {
         Some(path) => path.to_owned(),
@@ -152,7 +152,7 @@ fn host() -> String {
     std::fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default().trim().to_owned()
 }
 
-/// A name as a file name.
+/// Returns a name as a file name.
 fn plain(name: &str) -> String {
     let safe = |c: char| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' };
     let plain: String = name.chars().map(safe).take(60).collect();

@@ -19,7 +19,7 @@ pub enum DbError {
 }
 
 impl DbError {
-    /// Whether the same may succeed a moment later.
+    /// Returns whether the same may succeed a moment later.
     pub fn is_transient(&self) -> bool {
         matches!(self, Self::Unavailable(_) | Self::Busy(_))
     }

@@ -57,9 +57,9 @@ pub enum MigrateError {
     /// A change is not the one that was applied.
     #[error("change {number} ({name}) was applied with other contents: this program was built from changed sources")]
     Changed {
-        /// Its place in the list.
+        /// The migration's place in the list.
         number: i64,
-        /// Its name.
+        /// The migration's name.
         name: &'static str,
     },
     /// The database failed.
@@ -67,7 +67,7 @@ pub enum MigrateError {
     Database(#[from] DbError),
 }
 
-/// The version of the tables; 0 for an empty database.
+/// Returns the version of the tables; 0 for an empty database.
 ///
 /// # Errors
 /// When the database can't be asked.

@@ -48,14 +48,14 @@ const FOR_THE_FIRST: u32 = 3;
 const BEGIN: &str = "BEGIN; SET LOCAL idle_in_transaction_session_timeout = '10s'; SET LOCAL lock_timeout = '20s'; \
                      SET LOCAL statement_timeout = '60s'";
 
-/// Whether a connection can be used again; else the pool closes it and opens a new one. One whose COMMIT and ROLLBACK
-/// both failed, as on a full disk, counts as in a transaction for ever and could begin no other. One from before the
-/// database last failed may lead to a server that is read-only now, or is none any more.
+/// Returns whether a connection can be used again; else the pool closes it and opens a new one. One whose COMMIT and
+/// ROLLBACK both failed, as on a full disk, counts as in a transaction for ever and could begin no other. One from
+/// before the database last failed may lead to a server that is read-only now, or is none any more.
 fn is_good(connection: &impl Connection, faults: &Faults, age: Duration) -> bool {
     !connection.is_in_transaction() && faults.trust(age)
 }
 
-/// How to reach a PostgreSQL. A pooler refuses start-up settings that it does not know.
+/// Returns how to reach a PostgreSQL. A pooler refuses start-up settings that it does not know.
 fn postgres_options(url: &str) -> Result<PgConnectOptions, DbError> {
     let options: PgConnectOptions = url.parse().map_err(DbError::from)?;
     Ok(options
@@ -72,7 +72,7 @@ pub struct Database {
     faults: Faults,
     /// Whether a newer program has changed the tables: then nothing is written any more.
     is_outdated: Arc<AtomicBool>,
-    /// Of those who do not go first only this many use, or wait for, the connections.
+    /// The turns of those who do not go first: only this many use, or wait for, the connections.
     turns: Arc<Semaphore>,
     goes_first: bool,
 }
@@ -152,7 +152,7 @@ impl Database {
         Ok(Self { engine, faults, is_outdated: Arc::default(), turns, goes_first: false })
     }
 
-    /// The same database, for those whom requests must not keep waiting: workers, whose leases run out. However many
+    /// Returns the database for those whom requests must not keep waiting: workers, whose leases run out. However many
     /// hand in at one time, what is graded is kept and what waits is claimed.
     #[must_use]
     pub fn first(&self) -> Self {
@@ -168,7 +168,7 @@ impl Database {
         Ok(turn.map_err(|_| sqlx::Error::PoolTimedOut)?.ok())
     }
 
-    /// Which database it is.
+    /// Returns which database it is.
     pub fn dialect(&self) -> Dialect {
         match self.engine {
             Engine::Sqlite { .. } => Dialect::Sqlite,
@@ -194,7 +194,8 @@ impl Database {
         }
     }
 
-    /// Whether the database answers; from when it has tables of a newer program on, nothing is written any more.
+    /// Returns whether the database answers; from when it has tables of a newer program on, nothing is written any
+    /// more.
     pub async fn is_well(&self) -> bool {
         let version = version(self).await;
         if version.as_ref().is_ok_and(|version| *version > LATEST) {

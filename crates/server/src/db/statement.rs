@@ -1,8 +1,8 @@
 //! One text for both engines: the few words in which they differ stand in braces.
 use super::Dialect;
 
-/// The parts of a script that are for this engine: lines between `-- only sqlite` or `-- only postgres` and `-- end`
-/// are for one.
+/// Returns the parts of a script that are for this engine: lines between `-- only sqlite` or `-- only postgres` and `--
+/// end` are for one.
 pub(super) fn parts(script: &str, dialect: Dialect) -> String {
     let other = match dialect {
         Dialect::Sqlite => "-- only postgres",
@@ -20,9 +20,9 @@ pub(super) fn parts(script: &str, dialect: Dialect) -> String {
     kept
 }
 
-/// The statement as the engine wants it: `{now}` is its clock, `{int}`, `{id}` and `{strict}` are words of table
-/// definitions, `{each}` are the rows of a JSON array that is a value, `wanted.value`, `{strpos}` tells where a text
-/// stands in another, `{quoted}` makes JSON of a text, and PostgreSQL counts its placeholders. Statements hold no
+/// Renders the statement as the engine wants it: `{now}` is its clock, `{int}`, `{id}` and `{strict}` are words of
+/// table definitions, `{each}` are the rows of a JSON array that is a value, `wanted.value`, `{strpos}` tells where a
+/// text stands in another, `{quoted}` makes JSON of a text, and PostgreSQL counts its placeholders. Statements hold no
 /// braces and no question marks of their own: values never stand in a statement's text.
 pub(super) fn text(statement: &str, dialect: Dialect) -> String {
     let words: [(&str, &str); 11] = match dialect {

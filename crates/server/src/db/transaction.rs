@@ -22,7 +22,7 @@ pub struct Transaction {
 pub(super) struct Faults(Arc<Mutex<Option<Instant>>>);
 
 impl Faults {
-    /// Whether a connection of this age may be used.
+    /// Returns whether a connection of this age may be used.
     pub(super) fn trust(&self, age: Duration) -> bool {
         let last = *self.0.lock().unwrap_or_else(PoisonError::into_inner);
         last.is_none_or(|last| last.elapsed() > age)
@@ -67,7 +67,7 @@ impl Transaction {
         Self { inner, faults, turn }
     }
 
-    /// Which database it is.
+    /// Returns which database it is.
     pub fn dialect(&self) -> Dialect {
         match self.inner {
             Inner::Sqlite(_) => Dialect::Sqlite,

@@ -53,7 +53,7 @@ pub(super) enum Inner {
 }
 
 impl Row {
-    /// An integer.
+    /// Returns an integer.
     ///
     /// # Errors
     /// When the column holds nothing, or something else.
@@ -61,7 +61,7 @@ impl Row {
         self.maybe_int(column)?.ok_or_else(|| DbError::Other(format!("{column} holds nothing")))
     }
 
-    /// An integer, or nothing.
+    /// Returns an integer, or nothing.
     ///
     /// # Errors
     /// When the column holds something else.
@@ -72,7 +72,7 @@ impl Row {
         })
     }
 
-    /// Text.
+    /// Returns text.
     ///
     /// # Errors
     /// When the column holds nothing, or something else.
@@ -80,7 +80,7 @@ impl Row {
         self.maybe_text(column)?.ok_or_else(|| DbError::Other(format!("{column} holds nothing")))
     }
 
-    /// Text, or nothing.
+    /// Returns text, or nothing.
     ///
     /// # Errors
     /// When the column holds something else.

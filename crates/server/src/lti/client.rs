@@ -41,15 +41,15 @@ const LONGEST_WAIT: Duration = Duration::from_secs(3600);
 /// Why a platform did not do what it was asked.
 #[derive(Debug, Clone, Error)]
 pub enum ServiceFault {
-    /// It is away, or has too much to do: it may be otherwise later.
+    /// The platform is away, or has too much to do; a later request may succeed.
     #[error("it does not answer as it should: {why}")]
     Away {
-        /// Its message, or what happened.
+        /// The platform's message, or what happened.
         why: String,
         /// When it wishes to be asked again.
         after: Option<Duration>,
     },
-    /// It does not want to.
+    /// The platform rejects the request.
     #[error("it refuses: {0}")]
     Refused(String),
 }
@@ -77,13 +77,13 @@ pub(super) struct ServiceAnswer {
 }
 
 impl ServiceAnswer {
-    /// Its content, which is `what` in words.
+    /// Reads the answer's content, which is `what` in words.
     pub(super) fn read<T: DeserializeOwned>(&self, what: &str) -> Result<T, ServiceFault> {
         let read = serde_json::from_slice(&self.body);
         read.map_err(|error| ServiceFault::Refused(format!("{what} can't be read: {error}")))
     }
 
-    /// The answer, if it is one of success.
+    /// Returns the answer, if it is one of success.
     pub(super) fn successful(self) -> Result<Self, ServiceFault> {
         // The beginning of what it says, for people: one line.
         let said: String = String::from_utf8_lossy(&self.body).chars().take(200).collect();
@@ -183,7 +183,7 @@ impl Client {
         self.send(platform, ask, Some(&token)).await?.successful()
     }
 
-    /// A token for a scope, by an assertion that this service signed (SEC 4.1, RFC 7523).
+    /// Returns a token for a scope, by an assertion that this service signed (SEC 4.1, RFC 7523).
     async fn token(&self, database: &Database, platform: &Platform, scope: &str) -> Result<String, ServiceFault> {
         let key = (platform.id, scope.to_owned());
         if let Some((token, ends)) = self.tokens.lock().unwrap_or_else(PoisonError::into_inner).get(&key)

@@ -92,7 +92,7 @@ pub(super) struct PublicKey {
     pub(super) e: String,
 }
 
-/// The claims of a token that this key signed, that an issuer made for this audience, and that is not too old.
+/// Returns the claims of a token that this key signed, that an issuer made for this audience, and that is not too old.
 pub(super) fn verify<T: DeserializeOwned + Clone>(
     token: &str,
     key: &PublicKey,

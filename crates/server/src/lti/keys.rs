@@ -62,7 +62,7 @@ async fn rows(transaction: &mut Transaction) -> Result<Vec<Row>, DbError> {
     transaction.rows(statement, values![FIRST_TOLD]).await
 }
 
-/// All keys, the newest first; the first is made when there is none.
+/// Returns all keys, the newest first; the first is made when there is none.
 async fn all(database: &Database) -> Result<Vec<Row>, DbError> {
     let found = rows(&mut database.read().await?).await?;
     if !found.is_empty() {
@@ -72,7 +72,7 @@ async fn all(database: &Database) -> Result<Vec<Row>, DbError> {
     rows(&mut database.read().await?).await
 }
 
-/// The key that signs: the newest that platforms had the time to read of, or the oldest.
+/// Returns the key that signs: the newest that platforms had the time to read of, or the oldest.
 pub(super) async fn signing(database: &Database) -> Result<SigningKey, DbError> {
     let rows = all(database).await?;
     let known = rows.iter().find(|row| matches!(row.flag("is_known"), Ok(true)));
@@ -83,7 +83,7 @@ pub(super) async fn signing(database: &Database) -> Result<SigningKey, DbError> 
     Ok(SigningKey { kid: row.text("kid")?, der })
 }
 
-/// The public part of the keys: a JSON Web Key Set (RFC 7517).
+/// Returns the public part of the keys: a JSON Web Key Set (RFC 7517).
 ///
 /// # Errors
 /// An error of the database.

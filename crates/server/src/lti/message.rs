@@ -20,7 +20,7 @@ const OLDEST: u64 = 3600;
 /// Why a message is not believed.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum Refused {
-    /// It is no signed message, or signed by another algorithm than RS256.
+    /// The message is no signed message, or signed by another algorithm than RS256.
     #[error("the message is not signed by RS256 with a named key")]
     Form,
     /// The platform has no key of this name.
@@ -32,13 +32,13 @@ pub enum Refused {
     /// The signature is not the platform's.
     #[error("the message was not signed by the platform")]
     Signature,
-    /// It is too old, or of the future.
+    /// The message is too old, or of the future.
     #[error("the message is too old, or a clock is wrong")]
     Time,
-    /// It is about something else than was asked for.
+    /// The message is about something else than was asked for.
     #[error("the message is not for this sign-in: {0} is another one")]
     Foreign(&'static str),
-    /// It comes from a deployment that nobody named.
+    /// The message comes from a deployment that nobody named.
     #[error("deployment {0} is not among those that an administrator named")]
     Deployment(String),
     /// Something is missing, or not understood.
@@ -56,7 +56,7 @@ pub enum LtiRole {
 }
 
 impl LtiRole {
-    /// As it stands in a course's list of members.
+    /// Returns the role's name in a course's list of members.
     pub fn name(self) -> &'static str {
         match self {
             Self::Student => "student",
@@ -70,11 +70,11 @@ impl LtiRole {
 pub struct LtiPerson {
     /// The platform's name for the person, which never changes.
     pub subject: String,
-    /// Their role in the course there; nothing for parents, guests and others, and for those who left.
+    /// The person's role in the course there; nothing for parents, guests and others, and for those who left.
     pub role: Option<LtiRole>,
-    /// Their name, where the platform tells.
+    /// The person's name, where the platform tells.
     pub name: Option<String>,
-    /// Their address, where the platform tells; used for a login's name only.
+    /// The person's address, where the platform tells; used for a login's name only.
     pub email: Option<String>,
 }
 
@@ -111,12 +111,12 @@ pub struct Arrival {
 /// A course of a platform.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Context {
-    /// Its name for programs.
+    /// The course's name for programs.
     pub id: String,
-    /// Its name for people.
+    /// The course's name for people.
     #[serde(default)]
     pub title: Option<String>,
-    /// Its short name for people.
+    /// The course's short name for people.
     #[serde(default)]
     pub label: Option<String>,
 }
@@ -124,9 +124,9 @@ pub struct Context {
 /// A link in a platform's course.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Resource {
-    /// Its name for programs.
+    /// The resource's name for programs.
     pub id: String,
-    /// Its name for people.
+    /// The resource's name for people.
     #[serde(default)]
     pub title: Option<String>,
 }
@@ -197,14 +197,14 @@ struct Claims {
     email: Option<String>,
 }
 
-/// The name of the key that a message says it is signed with.
+/// Returns the name of the key that a message says it is signed with.
 pub(super) fn key_of(token: &str) -> Result<String, Refused> {
     let header = jsonwebtoken::decode_header(token).map_err(|_| Refused::Form)?;
     ensure(header.alg == Algorithm::RS256, Refused::Form)?;
     header.kid.filter(|kid| !kid.is_empty() && kid.len() <= 500).ok_or(Refused::Form)
 }
 
-/// The content of a message that this key signed; `nonce` is the digest of the one that was sent.
+/// Reads the content of a message that this key signed; `nonce` is the digest of the one that was sent.
 pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &str) -> Result<Message, Refused> {
     let settings = &platform.settings;
     let claims: Claims =
@@ -274,14 +274,14 @@ pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &st
     })
 }
 
-/// The name of somebody, as it is or of its parts.
+/// Returns the name of somebody, as it is or of its parts.
 pub(super) fn name_of(whole: Option<String>, parts: [Option<String>; 2]) -> Option<String> {
     let spoken = parts.into_iter().flatten().collect::<Vec<_>>().join(" ");
     whole.or(Some(spoken)).filter(|name| !name.trim().is_empty())
 }
 
-/// The role of somebody in the course by the platform's roles (LTI A.2.3). Their roles in the institution or system say
-/// nothing of the course, unless they administer all of it and nothing else is said.
+/// Returns the role of somebody in the course by the platform's roles (LTI A.2.3). Their roles in the institution or
+/// system say nothing of the course, unless they administer all of it and nothing else is said.
 pub(crate) fn role_of(roles: &[String]) -> Option<LtiRole> {
     const COURSE: &str = "http://purl.imsglobal.org/vocab/lis/v2/membership";
     // The simple names are deprecated, and still sent.
@@ -309,7 +309,7 @@ pub(crate) fn role_of(roles: &[String]) -> Option<LtiRole> {
     (named.is_empty() && roles.iter().any(administers)).then_some(LtiRole::Staff)
 }
 
-/// The answer to who asked for a link to be chosen: one link to an assignment (DL 4.5), as a signed token.
+/// Returns the answer to who asked for a link to be chosen: one link to an assignment (DL 4.5), as a signed token.
 ///
 /// # Errors
 /// An error of the database.

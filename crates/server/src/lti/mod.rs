@@ -43,12 +43,12 @@ impl Default for Lti {
 }
 
 impl Lti {
-    /// With `over_http` platforms may be reached without TLS: for trials on one machine.
+    /// Creates the part for platforms; with `over_http` these may be reached without TLS: for trials on one machine.
     pub fn new(over_http: bool) -> Self {
         Self { client: Client::new(over_http), trust: Trust::default() }
     }
 
-    /// Whether platforms may be reached, and the service used by them, without TLS.
+    /// Returns whether platforms may be reached, and the service used by them, without TLS.
     pub fn over_http(&self) -> bool {
         self.client.over_http
     }

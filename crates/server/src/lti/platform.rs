@@ -15,7 +15,7 @@ pub struct PlatformWish {
     /// The issuer of its messages ("platform ID").
     #[schema(value_type = Word)]
     pub issuer: String,
-    /// Its name for this service ("client ID").
+    /// The platform's name for this service ("client ID").
     #[schema(value_type = Word)]
     pub client_id: String,
     /// Where it signs people in ("authentication request URL").
@@ -43,17 +43,17 @@ pub struct PlatformWish {
 /// A platform.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Platform {
-    /// Its number here.
+    /// The platform's number here.
     #[serde(skip)]
     pub(crate) id: i64,
-    /// Its name here.
+    /// The platform's name here.
     pub name: String,
-    /// Its words about itself.
+    /// The platform's words about itself.
     #[serde(flatten)]
     pub settings: PlatformWish,
 }
 
-/// An address that may be asked: by HTTPS, of a host, with nothing hidden in it.
+/// Returns an address that may be asked: by HTTPS, of a host, with nothing hidden in it.
 pub(super) fn address(text: &str, over_http: bool) -> Option<Url> {
     let url = Url::parse(text).ok()?;
     let secure = url.scheme() == "https" || (over_http && url.scheme() == "http");
@@ -61,7 +61,7 @@ pub(super) fn address(text: &str, over_http: bool) -> Option<Url> {
     (secure && plain && url.has_host() && text.len() <= 2000).then_some(url)
 }
 
-/// Host and port, as it stands in an origin.
+/// Returns host and port, as it stands in an origin.
 fn place(url: &Url) -> String {
     match (url.host_str(), url.port()) {
         (Some(host), Some(port)) => format!("{host}:{port}"),
@@ -70,7 +70,7 @@ fn place(url: &Url) -> String {
 }
 
 impl PlatformWish {
-    /// Whether it makes sense.
+    /// Checks that the registration makes sense.
     ///
     /// # Errors
     /// The first value that makes no sense.
@@ -110,7 +110,7 @@ impl FromRow for Platform {
 }
 
 impl Platform {
-    /// The hosts that its services may be on.
+    /// Returns the hosts that its services may be on.
     fn places(&self, over_http: bool) -> Vec<String> {
         let settings = &self.settings;
         let own = [&settings.login_url, &settings.token_url, &settings.keys_url, &settings.issuer];
@@ -118,14 +118,14 @@ impl Platform {
         own.chain(settings.hosts.iter().cloned()).collect()
     }
 
-    /// An address of one of its services. A message may name any; this service asks hosts alone that an administrator
-    /// named, so that nobody makes it ask others, or show them its token.
+    /// Returns an address of one of its services. A message may name any; this service asks hosts alone that an
+    /// administrator named, so that nobody makes it ask others, or show them its token.
     pub(crate) fn service(&self, text: &str, over_http: bool) -> Option<Url> {
         let url = address(text, over_http)?;
         self.places(over_http).contains(&place(&url)).then_some(url)
     }
 
-    /// The origins that may show a page of this service in a frame.
+    /// Returns the origins that may show a page of this service in a frame.
     pub fn origins(&self, over_http: bool) -> String {
         let scheme = if over_http { "http://" } else { "https://" };
         let mut places: Vec<String> = self.places(over_http).iter().map(|place| format!("{scheme}{place}")).collect();

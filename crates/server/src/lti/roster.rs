@@ -70,7 +70,7 @@ fn read(member: Member) -> Option<LtiPerson> {
     })
 }
 
-/// The address of the next page in a header `Link` (RFC 8288).
+/// Returns the address of the next page in a header `Link` (RFC 8288).
 fn following(header: &str) -> Option<String> {
     let mut rest = header;
     while let Some((_, after)) = rest.split_once('<') {

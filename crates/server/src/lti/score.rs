@@ -52,7 +52,7 @@ pub(crate) async fn changed(transaction: &mut Transaction, submission: i64) -> R
     enqueue(transaction, &rows, false).await.map(drop)
 }
 
-/// The same for the results of a regrade, which begin to count.
+/// Notes that the results of a regrade begin to count.
 pub(crate) async fn changed_by(transaction: &mut Transaction, campaign: i64) -> Result<(), DbError> {
     let statement = orders!("submission.id IN (SELECT submission FROM result WHERE campaign = ?)");
     let rows = transaction.rows(statement, values![campaign]).await?;
@@ -105,7 +105,8 @@ pub(super) struct Parcel {
     pub(super) stamp: i64,
 }
 
-/// The score to send for an order; nothing when there is nothing to tell (any more). Gives the content its time.
+/// Returns the score to send for an order; nothing when there is nothing to tell (any more). Gives the content its
+/// time.
 pub(super) async fn prepare(transaction: &mut Transaction, order: Order) -> Result<Option<Parcel>, DbError> {
     let statement =
         "SELECT platform.id, platform.name, platform.settings, platform_account.subject, platform_link.line_item,
@@ -149,9 +150,9 @@ pub(super) async fn prepare(transaction: &mut Transaction, order: Order) -> Resu
     })))
 }
 
-/// The worth of somebody's work on an assignment: the most points of all their submissions. While there are none the
-/// platform is told that they come, and when the grader failed, that somebody has to look: never a zero that nobody
-/// earned. Of groups that are hidden and not published platforms hear nothing: they show what they hear.
+/// Returns the worth of somebody's work on an assignment: the most points of all their submissions. While there are
+/// none the platform is told that they come, and when the grader failed, that somebody has to look: never a zero that
+/// nobody earned. Of groups that are hidden and not published platforms hear nothing: they show what they hear.
 async fn content(transaction: &mut Transaction, assignment: i64, account: i64) -> Result<Option<Value>, DbError> {
     let statement = "SELECT job.state, result.points, result.max_points, assignment.published_at, result.shown,
            mark.points AS mark, submission.created_at, assignment.settings, extension.due_at AS own_due FROM submission
@@ -218,7 +219,7 @@ pub(super) async fn refused(transaction: &mut Transaction, order: Order, fault: 
     transaction.execute(statement, values![fault, order.link, order.account]).await.map(drop)
 }
 
-/// The same for a job that was tried too often; whether it was one of these.
+/// Notes that a job was tried too often; returns whether it was one of these.
 pub(crate) async fn give_up(transaction: &mut Transaction, payload: &str, fault: &str) -> Result<bool, DbError> {
     let Ok(order) = serde_json::from_str::<Order>(payload) else { return Ok(false) };
     refused(transaction, order, fault).await?;
@@ -238,7 +239,7 @@ async fn note(transaction: &mut Transaction, order: Order, kind: &str, text: &st
 /// How far the column of a link is.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Column {
-    /// It is there.
+    /// The column is known.
     Known(String),
     /// The caller is to have it made, and nobody else for so long.
     Yours,
@@ -246,7 +247,7 @@ pub(super) enum Column {
     Theirs,
 }
 
-/// How far the column of a link is; the caller that hears [`Column::Yours`] calls [`column_made`] soon.
+/// Returns how far the column of a link is; the caller that hears [`Column::Yours`] calls [`column_made`] soon.
 pub(super) async fn column(transaction: &mut Transaction, link: i64, at_most: i64) -> Result<Column, DbError> {
     let statement = "UPDATE platform_link SET making_until = {now} + ?
         WHERE id = ? AND line_item IS NULL

@@ -80,7 +80,7 @@ pub async fn run<F: Future<Output = Result<(), DbError>>>(
     }
 }
 
-/// The next job, and a place to do it in.
+/// Returns the next job, and a place to do it in.
 async fn take<F: Future<Output = Result<(), DbError>>>(
     database: &Database,
     policy: &QueuePolicy,
@@ -171,7 +171,7 @@ async fn send(database: &Database, lti: &Lti, claim: &Claim) -> Result<Option<Pa
     }
 }
 
-/// The address of a column's scores: its own with `/scores` at the path's end (AGS 3.4).
+/// Returns the address of a column's scores: its own with `/scores` at the path's end (AGS 3.4).
 fn scores(line_item: &str) -> Result<String, ServiceFault> {
     let wrong = || ServiceFault::Refused("the address of its grade book's column is none".to_owned());
     let mut url = Url::parse(line_item).map_err(|_| wrong())?;
@@ -186,7 +186,7 @@ struct LineItem {
     link: Option<String>,
 }
 
-/// The column of a link that has none yet. One message has it found or made, and the others wait for it.
+/// Returns the column of a link that has none yet. One message has it found or made, and the others wait for it.
 async fn line_item(database: &Database, lti: &Lti, parcel: &Parcel) -> Result<String, ServiceFault> {
     let Some(container) = &parcel.line_items else {
         return Err(ServiceFault::Refused("its grade book has no column for this link".to_owned()));

@@ -44,7 +44,7 @@ struct PublishedKey {
     r#use: Option<String>,
 }
 
-/// The keys of a set that sign by RS256; others are not ours to judge.
+/// Returns the keys of a set that sign by RS256; others are not ours to judge.
 fn usable(set: KeySet) -> Vec<PublicKey> {
     let keys = set.keys.into_iter().filter_map(|key| serde_json::from_value::<PublishedKey>(key).ok());
     let usable = keys.filter(|key| {
@@ -61,7 +61,7 @@ impl Trust {
         known.get(&platform.id).filter(|known| known.address == platform.settings.keys_url).cloned()
     }
 
-    /// A platform's key of this name.
+    /// Returns a platform's key of this name.
     pub(super) async fn key(&self, client: &Client, platform: &Platform, kid: &str) -> Result<PublicKey, Refused> {
         let named = |known: &Known| known.keys.iter().find(|key| key.kid == kid).cloned();
         let known = self.known(platform);

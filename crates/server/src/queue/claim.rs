@@ -43,8 +43,8 @@ pub async fn claim(
     Ok(Some(read_row!(row => Claim { submission, payload, failures, deaths; lease })))
 }
 
-/// Whether something in a lane is to be looked at: a job whose turn has come, or one that somebody holds, and may have
-/// let go of. Costs a reader's transaction only.
+/// Returns whether something in a lane is to be looked at: a job whose turn has come, or one that somebody holds, and
+/// may have let go of. Costs a reader's transaction only.
 ///
 /// # Errors
 /// An error of the database.

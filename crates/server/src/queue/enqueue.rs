@@ -23,7 +23,7 @@ pub enum Turn {
 }
 
 impl Turn {
-    /// How much later a further job of the same owner comes, in milliseconds.
+    /// Returns how much later a further job of the same owner comes, in milliseconds.
     pub(crate) fn spacing_millis(self) -> i64 {
         match self {
             Self::Student(_) => 600_000,
@@ -32,7 +32,7 @@ impl Turn {
         }
     }
 
-    /// How much later than an upload of the same moment its first job comes, in milliseconds.
+    /// Returns how much later than an upload of the same moment its first job comes, in milliseconds.
     fn delay_millis(self) -> i64 {
         match self {
             Self::Student(_) | Self::Score(..) => 0,
@@ -40,7 +40,7 @@ impl Turn {
         }
     }
 
-    /// The rank of its next job.
+    /// Returns the rank of its next job.
     pub(crate) async fn next(self, transaction: &mut Transaction) -> Result<i64, DbError> {
         // Two uploads of one student at the same moment may get the same rank: then the number decides, and nobody is
         // hurt.
@@ -92,8 +92,8 @@ pub async fn enqueue(transaction: &mut Transaction, job: &NewJob<'_>) -> Result<
     row.int("id")
 }
 
-/// Whether a job of this turn waits, and goes on waiting until the caller's transaction ends: anybody who is about to
-/// change what it is about need not enqueue another one.
+/// Returns whether a job of this turn waits, and goes on waiting until the caller's transaction ends: anybody who is
+/// about to change what it is about need not enqueue another one.
 ///
 /// # Errors
 /// An error of the database.

@@ -14,7 +14,7 @@ use utoipa::ToSchema;
 pub enum Completion {
     /// The job is done; the caller writes its result in the same transaction.
     Done,
-    /// It was done by this very lease before: the answer got lost, not the result.
+    /// The job was done by this very lease before: the answer got lost, not the result.
     Repeated,
     /// The lease was lost: nothing may be written.
     Late,
@@ -23,7 +23,7 @@ pub enum Completion {
 /// The result of a wish to give up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Failure {
-    /// It waits again.
+    /// The job waits again.
     Retried,
     /// That was its last try; the caller writes what follows in the same transaction.
     Buried,
@@ -62,7 +62,7 @@ pub async fn renew(
     Ok(transaction.execute(statement, values).await? > 0)
 }
 
-/// The task of the holder of a lease; nothing when the lease was lost.
+/// Returns the task of the holder of a lease; nothing when the lease was lost.
 ///
 /// # Errors
 /// An error of the database.
@@ -132,7 +132,7 @@ struct Loss<'a> {
     fault: &'a str,
 }
 
-/// The worker of a job died, or may have: the row, which this transaction has locked, has the counts.
+/// Returns the worker of a job died, or may have: the row, which this transaction has locked, has the counts.
 pub(super) async fn die(
     transaction: &mut Transaction,
     policy: &QueuePolicy,

@@ -38,7 +38,7 @@ pub enum Lane {
 }
 
 impl Lane {
-    /// Its name in the table.
+    /// Returns the state's name in the table.
     pub fn name(self) -> &'static str {
         match self {
             Self::Grading => "grading",
@@ -75,39 +75,39 @@ impl Default for QueuePolicy {
 }
 
 impl QueuePolicy {
-    /// How often a worker renews its leases: two renewals may get lost.
+    /// Returns how often a worker renews its leases: two renewals may get lost.
     pub fn renew_every(&self) -> Duration {
         self.lease / 4
     }
 
-    /// How often somebody looks for leases that ran out.
+    /// Returns how often somebody looks for leases that ran out.
     pub fn tick_every(&self) -> Duration {
         self.lease / 8
     }
 
-    /// When nobody has looked for so long, nobody could renew either: the database was away.
+    /// Returns the time without a look after which the database was away: nobody could renew either.
     fn outage(&self) -> Duration {
         self.lease / 2
     }
 
-    /// So often a worker may die with a job. Far more often than a job may fail: a server in a crash loop, whatever
-    /// kills it, is no fault of what it is at.
+    /// Returns how often a worker may die with a job. Far more often than a job may fail: a server in a crash loop,
+    /// whatever kills it, is no fault of what it is at.
     fn max_deaths(&self) -> i64 {
         8 * i64::from(self.max_failures)
     }
 
-    /// How long a job waits after its worker died: not long, since workers seldom die of what they do.
+    /// Returns how long a job waits after its worker died: not long, since workers seldom die of what they do.
     fn wait_after_death(&self, deaths: i64) -> Duration {
         self.first_wait * u32::try_from(deaths).unwrap_or(0).clamp(1, 10)
     }
 
-    /// How long a job waits after its `failures`th failure, at most.
+    /// Returns how long a job waits after its `failures`th failure, at most.
     fn longest(&self, failures: i64) -> Duration {
         let steps = u32::try_from(failures.max(1) - 1).unwrap_or(u32::MAX).min(16);
         self.first_wait.saturating_mul(4_u32.saturating_pow(steps)).min(self.longest_wait)
     }
 
-    /// How long it waits this time: jobs that failed together do not come back together.
+    /// Returns how long it waits this time: jobs that failed together do not come back together.
     fn wait(&self, failures: i64) -> Duration {
         let longest = self.longest(failures);
         longest - longest / 4 * secret::random_byte().into() / 255
@@ -143,7 +143,7 @@ pub struct Claim {
     pub deaths: i64,
 }
 
-/// Milliseconds, as the database counts.
+/// Returns milliseconds, as the database counts.
 pub(crate) fn millis(duration: Duration) -> i64 {
     i64::try_from(duration.as_millis()).unwrap_or(i64::MAX)
 }

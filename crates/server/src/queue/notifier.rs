@@ -30,7 +30,7 @@ impl Notifier {
         self.changes.send_modify(|changes| *changes += 1);
     }
 
-    /// Somebody who will hear of every change from now on.
+    /// Returns a subscription that hears of every change from now on.
     pub fn subscribe(&self) -> Subscription {
         Subscription(self.changes.subscribe())
     }

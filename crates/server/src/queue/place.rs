@@ -19,7 +19,7 @@ pub struct Place {
     pub expected: Option<Duration>,
 }
 
-/// A waiting job's place; nothing when it does not wait (any more).
+/// Returns a waiting job's place; nothing when it does not wait (any more).
 ///
 /// # Errors
 /// An error of the database.

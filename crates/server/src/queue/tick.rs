@@ -25,7 +25,7 @@ pub struct Tick {
 /// A job that took its worker down too often.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Buried {
-    /// Its number.
+    /// The job's number.
     pub job: i64,
     /// The number of its last claim.
     pub attempt: i64,

@@ -12,7 +12,7 @@ use tokio::io::AsyncWriteExt;
 pub struct Opened {
     /// How large all of it is.
     pub size: u64,
-    /// Its bytes.
+    /// The artefact's bytes.
     pub pieces: BoxStream<'static, Result<Bytes, StoreError>>,
 }
 
@@ -62,7 +62,7 @@ impl Store {
     }
 }
 
-/// The pieces, of which the last one comes only if all together have this digest.
+/// Returns the pieces, of which the last one comes only if all together have this digest.
 fn verified(
     pieces: BoxStream<'static, Result<Bytes, StoreError>>,
     digest: Digest,

@@ -66,7 +66,7 @@ impl Store {
         Ok(given_up)
     }
 
-    /// Every artefact, one after the other; one that is put aside meanwhile may come twice.
+    /// Returns every artefact, one after the other; one that is put aside meanwhile may come twice.
     pub fn digests(&self) -> impl futures_util::Stream<Item = Result<Digest, StoreError>> + Unpin {
         self.list(KEPT).chain(self.list(ASIDE)).map_ok(|(digest, _)| digest)
     }
@@ -79,7 +79,7 @@ impl Store {
         }
     }
 
-    /// The artefacts below a prefix, with their ages.
+    /// Returns the artefacts below a prefix, with their ages.
     fn list(&self, prefix: &str) -> impl futures_util::Stream<Item = Result<(Digest, Duration), StoreError>> + Unpin {
         let listing = self.objects.list(Some(&Key::from(prefix))).map_err(StoreError::from);
         let found = listing.try_filter_map(async |meta| {

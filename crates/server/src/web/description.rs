@@ -67,8 +67,8 @@ pub(super) fn complete(api: &mut OpenApi) {
     }
 }
 
-/// A type that takes no other fields can't be part of a larger one, which has them: the larger one has its fields as
-/// its own then.
+/// Opens types that are extended: a type that takes no other fields can't be part of a larger one, which has them: the
+/// larger one has its fields as its own then.
 fn open_what_is_extended(schemas: &mut BTreeMap<String, RefOr<Schema>>) {
     let closed: BTreeMap<String, Object> = schemas
         .iter()
@@ -111,7 +111,7 @@ fn operations(item: &mut PathItem) -> impl Iterator<Item = &mut Operation> {
     [&mut item.get, &mut item.put, &mut item.post, &mut item.delete, &mut item.patch].into_iter().flatten()
 }
 
-/// The parts of an address are parameters, and whatever is asked may be refused.
+/// Describes the parts of an address as parameters, and that every request may be rejected.
 fn name_parts(path: &str, operation: &mut Operation) {
     let names = path.split('{').skip(1).filter_map(|part| part.split('}').next());
     let parts = names.map(|name| {
@@ -166,7 +166,7 @@ fn complete_operation(operation: &mut Operation) {
     }
 }
 
-/// The schema of a part of an address or a header, by its name.
+/// Completes the schema of a part of an address or a header, by its name.
 fn complete_parameter(parameter: &mut Parameter) {
     let named = |name: &str| -> RefOr<Schema> { Ref::from_schema_name(name).into() };
     let text = |pattern: &str| -> RefOr<Schema> {
@@ -178,7 +178,7 @@ fn complete_parameter(parameter: &mut Parameter) {
         (ParameterIn::Path, "login") => (named("Slug"), "The account's login"),
         (ParameterIn::Path, "digest") => (named("Digest"), "The SHA-256 of the file's bytes"),
         (ParameterIn::Path, "name") => (named("Slug"), "What it is called"),
-        (ParameterIn::Path, "id") => (number(1), "Its number"),
+        (ParameterIn::Path, "id") => (number(1), "The number"),
         (ParameterIn::Query, "before") => (number(0), "Only what was before this one"),
         (ParameterIn::Query, "format") => (text("^(csv|jsonl)$"), "`csv` or `jsonl`"),
         (ParameterIn::Query, "form") => (text("^(program|sources|traces)$"), "What kind of thing it is"),
@@ -192,20 +192,20 @@ fn complete_parameter(parameter: &mut Parameter) {
     parameter.description.get_or_insert(text.to_owned());
 }
 
-/// A number that JSON can hold in every language.
+/// Returns a number that JSON can hold in every language.
 fn number(least: i64) -> RefOr<Schema> {
     let format = SchemaFormat::KnownFormat(KnownFormat::Int64);
     let number = ObjectBuilder::new().schema_type(Type::Integer).format(Some(format));
     number.minimum(Some(least)).maximum(Some(MOST)).into()
 }
 
-/// The bytes of a file.
+/// Returns the bytes of a file.
 fn bytes() -> RefOr<Schema> {
     let format = SchemaFormat::KnownFormat(KnownFormat::Binary);
     ObjectBuilder::new().schema_type(Type::String).format(Some(format)).min_length(Some(1)).into()
 }
 
-/// The description of an answer that nobody describes.
+/// Returns the description of an answer that nobody describes.
 fn answer(status: &str) -> String {
     if status == "default" {
         return "Refused, or failed: what is wrong, and what to do about it".to_owned();

@@ -26,7 +26,7 @@ pub(super) async fn send(member: &Member, asked: &HeaderMap, artefact: &Artefact
     Ok(response)
 }
 
-/// All of an artefact.
+/// Returns all of an artefact.
 pub(super) fn whole(opened: Opened, transfer: Option<Transfer>) -> Response {
     let pieces = opened.pieces.inspect_err(move |error| {
         // The answer breaks off; anybody who gets it sees that bytes are missing.

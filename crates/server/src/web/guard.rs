@@ -52,7 +52,7 @@ pub(super) async fn renew(State(app): State<App>, mut request: Request, next: Ne
 /// How long a session lasts, in seconds.
 pub(super) const SESSION: u32 = 1_209_600;
 
-/// A session's cookie, for a time in seconds.
+/// Returns a session's cookie, for a time in seconds.
 pub(super) fn session_cookie(app: &App, session: &str, lasts: u32) -> String {
     let (name, secure) = (who::cookie_name(app.is_secure()), if app.is_secure() { "; Secure" } else { "" });
     format!("{name}={session}; Path=/; HttpOnly; SameSite=Lax; Max-Age={lasts}{secure}")
@@ -72,7 +72,7 @@ fn is_own(headers: &HeaderMap, app: &App) -> bool {
         || text(header::HOST).is_some_and(|host| origin.split_once("://").is_some_and(|(_, place)| place == host))
 }
 
-/// The headers of every answer.
+/// Returns the headers of every answer.
 pub(super) async fn headers(State(app): State<App>, request: Request, next: Next) -> Response {
     let mut response = next.run(request).await;
     let headers = response.headers_mut();

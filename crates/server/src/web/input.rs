@@ -41,7 +41,7 @@ pub(super) struct Before {
 }
 
 impl Before {
-    /// The number before which it ends.
+    /// Returns the number before which it ends.
     pub(super) fn number(&self) -> Option<i64> {
         self.before.map(|before| i64::try_from(before).unwrap_or(i64::MAX))
     }
@@ -66,7 +66,7 @@ pub(super) struct Arrived(pub(super) Instant);
 #[derive(Clone, Copy)]
 pub(super) struct SignedIn;
 
-/// The bytes of a body: few, while nobody knows who sends them.
+/// Returns the bytes of a body: few, while nobody knows who sends them.
 async fn bytes(request: Request, app: &App) -> Result<Vec<u8>, Problem> {
     let most = if request.extensions().get::<SignedIn>().is_some() { super::BODY } else { super::BODY_OF_NOBODY };
     let reading = async {

@@ -21,7 +21,7 @@ const MEMORY: u64 = 1 << 30;
 /// A program, in words.
 const PROGRAM: &str = "a program for Linux (ELF, or a script that begins with #!)";
 
-/// The form of a file, and whether it can be that; a refusal names what the assignment takes.
+/// Returns the form of a file, and whether it can be that; a refusal names what the assignment takes.
 pub(super) async fn examine(
     member: &Member,
     file: &Path,

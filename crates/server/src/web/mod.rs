@@ -21,8 +21,8 @@ use utoipa_axum::router::OpenApiRouter;
 /// The largest body of a request that is no upload.
 const BODY: usize = 1 << 20;
 
-/// The same of somebody who is not signed in: a password, a token, or a learning platform's word. Thousands of them may
-/// send one at the same time.
+/// The limit for somebody who is not signed in: a password, a token, or a learning platform's word. Thousands of them
+/// may send one at the same time.
 const BODY_OF_NOBODY: usize = 32 << 10;
 
 fn api_router() -> (Router<App>, utoipa::openapi::OpenApi) {
@@ -32,14 +32,14 @@ fn api_router() -> (Router<App>, utoipa::openapi::OpenApi) {
     (router, description)
 }
 
-/// The description of the API, as it is served and committed.
+/// Returns the description of the API, as it is served and committed.
 pub fn openapi() -> String {
     let mut text = api_router().1.to_pretty_json().unwrap_or_default();
     text.push('\n');
     text
 }
 
-/// Everything that is served.
+/// Returns everything that is served.
 pub fn router(app: App) -> Router {
     let (api, _) = api_router();
     let client_address = app.client_address.clone().unwrap_or(ClientIpSource::ConnectInfo);

@@ -27,8 +27,8 @@ use tokio::io::AsyncWriteExt;
 /// The longest that an upload may take beside its fair time, in pauses that a body may make.
 const PAUSES: u32 = 20;
 
-/// How long an upload of this size may take to count as come at its beginning: half a minute, and a second for each
-/// 32 KiB. So nobody begins one before the due date to write it later.
+/// Returns how long an upload of this size may take to count as come at its beginning: half a minute, and a second for
+/// each 32 KiB. So nobody begins one before the due date to write it later.
 pub(super) fn fair_time(size: u64) -> Duration {
     Duration::from_secs(30 + size / (32 << 10))
 }
@@ -57,7 +57,7 @@ pub(super) struct Received {
     pub(super) file: TempPath,
     /// The sender's name for it.
     pub(super) name: Option<String>,
-    /// Its form (a program, sources, traces), where the request said so.
+    /// The upload's form (a program, sources, traces), where the request said so.
     pub(super) form: Option<String>,
     /// The sender's name for this upload.
     pub(super) key: Option<String>,
@@ -119,13 +119,13 @@ pub async fn receive_form(
     Ok((size, [received.name, received.form, received.key]))
 }
 
-/// Whether the body of a request is a form.
+/// Returns whether the body of a request is a form.
 pub(super) fn is_form(request: &Request) -> bool {
     let kind = request.headers().get(header::CONTENT_TYPE).and_then(|value| value.to_str().ok());
     kind.is_some_and(|value| value.trim_start().to_ascii_lowercase().starts_with("multipart/form-data"))
 }
 
-/// How large a request says that its body is.
+/// Returns how large a request says that its body is.
 pub(super) fn announced(request: &Request) -> Option<u64> {
     request.headers().get(header::CONTENT_LENGTH).and_then(|value| value.to_str().ok()?.parse().ok())
 }
@@ -173,7 +173,7 @@ async fn receive_at(place: &Place<'_>, request: Request, most: u64) -> Result<Re
     Ok(Received { file, name, form: form.filter(|form| !form.is_empty()), key: key.filter(|key| !key.is_empty()) })
 }
 
-/// A short field of a form.
+/// Returns a short field of a form.
 async fn short_text(place: &Place<'_>, mut field: axum::extract::multipart::Field<'_>) -> Result<String, Problem> {
     let mut bytes = Vec::new();
     loop {
@@ -225,7 +225,7 @@ async fn to_file<E: Display>(
     Ok(path)
 }
 
-/// A name as reports and messages may show it: what a browser says it is called, made harmless.
+/// Returns a name as reports and messages may show it: what a browser says it is called, made harmless.
 pub(super) fn plain_name(name: &str) -> String {
     let last = name.rsplit(['/', '\\']).next().unwrap_or_default();
     let safe = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' };
@@ -234,13 +234,13 @@ pub(super) fn plain_name(name: &str) -> String {
     if is_file_name(plain) { plain.to_owned() } else { "submission".to_owned() }
 }
 
-/// Whether a file that begins so is a program.
+/// Returns whether a file that begins so is a program.
 pub(super) fn is_program(start: &[u8]) -> bool {
     FileKind::of(start) == FileKind::Program
 }
 
-/// The form of an archive, and whether it can be that: sources must hold the `program`, where nothing builds it. It
-/// runs in a process of its own (`web::look`).
+/// Returns the form of an archive, and whether it can be that: sources must hold the `program`, where nothing builds
+/// it. It runs in a process of its own (`web::look`).
 ///
 /// # Errors
 /// Why it is refused.

@@ -20,23 +20,23 @@ use std::{
 pub(super) struct Renewed(Arc<OnceLock<String>>);
 
 impl Renewed {
-    /// The cookie's content, if it is to be sent again.
+    /// Returns the cookie's content, if it is to be sent again.
     pub(super) fn session(&self) -> Option<&str> {
         self.0.get().map(String::as_str)
     }
 }
 
-/// The session's cookie: by HTTPS one that no other host and no script can set or read.
+/// Returns the session's cookie: by HTTPS one that no other host and no script can set or read.
 pub(super) fn cookie_name(secure: bool) -> &'static str {
     if secure { "__Host-fosssim" } else { "fosssim" }
 }
 
-/// The cookie of a browser while it comes from a learning platform.
+/// Returns the cookie of a browser while it comes from a learning platform.
 pub(super) fn browser_cookie(secure: bool) -> &'static str {
     if secure { "__Host-fosssim-lti" } else { "fosssim-lti" }
 }
 
-/// The secrets in a request's headers.
+/// Returns the secrets in a request's headers.
 pub(super) fn secrets(headers: &HeaderMap, secure: bool) -> Secrets {
     let text = |name| headers.get(name).and_then(|value: &HeaderValue| value.to_str().ok());
     let bearer = text(header::AUTHORIZATION)

@@ -12,16 +12,16 @@ use tokio_util::sync::CancellationToken;
 pub struct Graded {
     /// The result, without files.
     pub outcome: Outcome,
-    /// Its files.
+    /// The result's files.
     pub files: Vec<NewFile>,
 }
 
 /// A file that belongs to a result.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NewFile {
-    /// Its name.
+    /// The file's name.
     pub name: String,
-    /// Its content.
+    /// The file's media type.
     pub media_type: String,
     /// Where it lies.
     pub path: PathBuf,

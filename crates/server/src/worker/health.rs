@@ -37,7 +37,7 @@ pub(super) struct Health<G> {
 }
 
 impl<G: Grader> Health<G> {
-    /// The health of a worker with this grader, which may make folders in this one.
+    /// Creates the health of a worker with this grader, which may make folders in this one.
     pub(super) fn new(grader: G, folder: PathBuf) -> Self {
         Self {
             grader,
@@ -50,12 +50,12 @@ impl<G: Grader> Health<G> {
         }
     }
 
-    /// Whether the worker may claim.
+    /// Returns whether the worker may claim.
     pub(super) fn is_proven(&self) -> bool {
         self.is_proven.load(Ordering::Acquire)
     }
 
-    /// Why it may not, as far as a proof has told.
+    /// Returns why it may not, as far as a proof has told.
     pub(super) fn fault(&self) -> Option<String> {
         self.fault.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
@@ -90,7 +90,7 @@ impl<G: Grader> Health<G> {
         false
     }
 
-    /// After a fault: whether the worker can still grade, so that the fault may be the job's.
+    /// Returns after a fault whether the worker can still grade, so that the fault may be the job's.
     pub(super) async fn survives(&self, stop: &CancellationToken) -> bool {
         self.is_proven.store(false, Ordering::Release);
         self.prove(stop).await
@@ -118,7 +118,7 @@ impl<G: Grader> Health<G> {
     }
 }
 
-/// A new folder within a worker's, for a job or a proof.
+/// Returns a new folder within a worker's, for a job or a proof.
 pub(super) fn job_folder(folder: &Path) -> std::io::Result<tempfile::TempDir> {
     std::fs::create_dir_all(folder)?;
     tempfile::Builder::new().prefix("job-").tempdir_in(folder)

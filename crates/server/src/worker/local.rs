@@ -58,7 +58,7 @@ impl From<StoreError> for SourceError {
 }
 
 impl LocalSource {
-    /// A source for the worker of this name.
+    /// Creates a source for the worker of this name.
     pub fn new(database: Database, store: Store, notifier: Notifier, policy: QueuePolicy, worker: String) -> Self {
         let subscription = Mutex::new(notifier.subscribe());
         Self {
@@ -73,18 +73,18 @@ impl LocalSource {
         }
     }
 
-    /// The same for a worker that came by this token.
+    /// Sets the token by which the worker came.
     pub fn with_token(self, token: i64) -> Self {
         Self { token: Some(token), ..self }
     }
 
-    /// The same for a worker of this version.
+    /// Sets the worker's version.
     pub fn with_version(self, version: String) -> Self {
         Self { version, ..self }
     }
 }
 
-/// A job's end comes no later than its grading's and so much more, for what is fetched, stored and waited for.
+/// Returns the longest time of a job: that of its grading, and more for what is fetched, stored and waited for.
 fn longest(task: &Task, policy: &QueuePolicy) -> Duration {
     Duration::from_secs(task.seconds) + GRACE + LEAST_MARGIN.max(policy.lease * 10)
 }

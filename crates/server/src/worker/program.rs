@@ -48,12 +48,12 @@ pub struct Program {
 }
 
 impl Program {
-    /// The grader at this path, with this many scenes of a job at one time.
+    /// Creates the grader at this path, with this many scenes of a job at one time.
     pub fn new(path: PathBuf, threads: usize) -> Self {
         Self { path, threads }
     }
 
-    /// The grader's SHA-256; nothing when it can't be read.
+    /// Returns the grader's SHA-256; nothing when it can't be read.
     async fn digest(&self) -> String {
         digest_of_file(&self.path).await.map_or_else(|_| String::new(), |grader| grader.digest.to_string())
     }
@@ -165,8 +165,9 @@ pub(super) fn at_home(command: &mut Command, folder: &Path) {
 }
 
 impl Grader for Program {
-    /// There is room to work in; the reference's own trace of a scene is accepted; a program that does nothing is run
-    /// in the sandbox and is not accepted. A grader that records no traces, as those of tests, is only asked to start.
+    /// Proves that the grader works: there is room to work in; the reference's own trace of a scene is accepted; a
+    /// program that does nothing is run in the sandbox and is not accepted. A grader that records no traces, as those
+    /// of tests, is only asked to start.
     async fn prove(&self, folder: &Path, stop: CancellationToken) -> Result<(), String> {
         let room = folder.join("room");
         fs::write(&room, vec![1; ROOM]).map_err(|error| format!("no room to work in: {error}"))?;
@@ -239,7 +240,7 @@ impl Grader for Program {
     }
 }
 
-/// How a grader ended, and whether that was because its time was over.
+/// Returns how a grader ended, and whether that was because its time was over.
 async fn end_of(child: &Child, most: Duration, stop: &CancellationToken) -> Result<(End, bool), GraderFault> {
     let (mut left, mut is_late) = (most, false);
     loop {
@@ -281,7 +282,7 @@ async fn unpack(archive: &Path, folder: PathBuf) -> Result<(PathBuf, PathBuf), G
     unpacked.map_err(|error| GraderFault::Failed(format!("cannot unpack an archive: {error}")))
 }
 
-/// The submission under its own name, executable: reports and messages speak of it so.
+/// Returns the submission under its own name, executable: reports and messages speak of it so.
 fn place_program(submission: &Path, folder: &Path, name: &str) -> io::Result<PathBuf> {
     if name.is_empty() || name.starts_with('.') || name.contains(['/', '\0']) {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, "the submission's name is no plain file name"));
@@ -294,7 +295,7 @@ fn place_program(submission: &Path, folder: &Path, name: &str) -> io::Result<Pat
     Ok(program)
 }
 
-/// The end of what the grader said, on one line.
+/// Returns the end of what the grader said, on one line.
 fn last_words(file: &Path) -> String {
     let bytes = fs::read(file).unwrap_or_default();
     let from = bytes.len().saturating_sub(MESSAGE);

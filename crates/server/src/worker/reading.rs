@@ -6,7 +6,7 @@ use std::{fs, path::Path};
 /// may be older; what is read here was the same in both.
 const SCHEMAS: std::ops::RangeInclusive<u32> = 3..=4;
 
-/// Numbers keep their digits: the text that the grader wrote is what counts.
+/// Reads a grade. Numbers keep their digits: the text that the grader wrote is what counts.
 pub(super) fn read_grade(file: &Path) -> Result<Outcome, String> {
     let bytes = fs::read(file).map_err(|error| format!("the grader wrote no grade.json: {error}"))?;
     let damaged = |error: serde_json::Error| format!("grade.json can't be read: {error}");

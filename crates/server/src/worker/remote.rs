@@ -48,7 +48,7 @@ impl fmt::Debug for RemoteSource {
 }
 
 impl RemoteSource {
-    /// A source at a server's address, for a worker of this name.
+    /// Creates a source at a server's address, for a worker of this name.
     pub fn new(server: &str, token: &str, name: &str) -> Self {
         let agent = Agent::config_builder()
             // A status is looked at here, with the server's words about it.
@@ -89,7 +89,7 @@ impl RemoteSource {
     }
 }
 
-/// A lease as a header shows it.
+/// Returns a lease as a header shows it.
 fn shown(lease: &Lease) -> String {
     format!("{}:{}:{}", lease.job, lease.attempt, lease.key)
 }
@@ -111,7 +111,7 @@ impl Parts {
         serde_json::from_slice(&text).map_err(|error| SourceError::Refused(format!("the server's answer: {error}")))
     }
 
-    /// A request with what says who asks, and for which job.
+    /// Returns a request with what says who asks, and for which job.
     fn signed<B>(&self, request: RequestBuilder<B>, lease: Option<&str>) -> RequestBuilder<B> {
         let request = request.header("Authorization", &self.authorization).header("Fosssim-Worker", &self.name);
         match lease {
@@ -127,7 +127,7 @@ impl Parts {
     }
 }
 
-/// The meaning of a status: a server that is away for a moment, or one that will never agree.
+/// Returns the meaning of a status: a server that is away for a moment, or one that will never agree.
 fn checked(mut answer: Response<Body>) -> Result<Response<Body>, SourceError> {
     let status = answer.status();
     if status.is_success() {

@@ -189,7 +189,7 @@ async fn keep<D: JobSource>(source: D, lease: Lease, every: Duration, file: Opti
     }
 }
 
-/// How far the grading is that writes this file: `3/85`.
+/// Returns how far the grading is that writes this file: `3/85`.
 fn progress_in(file: &Path) -> Option<Progress> {
     let mut text = String::new();
     File::open(file).ok()?.take(64).read_to_string(&mut text).ok()?;

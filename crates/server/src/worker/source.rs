@@ -11,10 +11,10 @@ use thiserror::Error;
 /// Why a source did not answer.
 #[derive(Debug, Error)]
 pub enum SourceError {
-    /// The same may succeed a moment later.
+    /// The request may succeed a moment later.
     #[error("{0}")]
     Away(String),
-    /// It never will.
+    /// The request never succeeds.
     #[error("{0}")]
     Refused(String),
     /// The worker's token is not known, or not any more.
@@ -24,7 +24,8 @@ pub enum SourceError {
 
 /// Where workers get their jobs and bring their results.
 pub trait JobSource: Clone + Send + Sync + 'static {
-    /// The next job, if there is one. Not to be interrupted: the source might have given away a job that nobody gets.
+    /// Returns the next job, if there is one. Not to be interrupted: the source might have given away a job that nobody
+    /// gets.
     fn claim(&self) -> impl Future<Output = Result<Option<Claimed>, SourceError>> + Send;
 
     /// Waits until there may be a job, or `patience` is over. May be interrupted.
@@ -62,6 +63,6 @@ pub trait JobSource: Clone + Send + Sync + 'static {
     /// and then.
     fn tick(&self, slots: usize, fault: Option<&str>) -> impl Future<Output = Result<(), SourceError>> + Send;
 
-    /// How often [`tick`](Self::tick) is to be called.
+    /// Returns how often [`tick`](Self::tick) is to be called.
     fn tick_every(&self) -> Duration;
 }

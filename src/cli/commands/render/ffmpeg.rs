@@ -56,7 +56,7 @@ struct EncoderWatch {
 }
 
 impl Ffmpeg {
-    /// Whether there is an ffmpeg that can make an MP4, and by which encoder.
+    /// Returns whether there is an ffmpeg that can make an MP4, and by which encoder.
     ///
     /// # Errors
     /// When there is none, with advice.
@@ -173,7 +173,7 @@ impl Drop for Ffmpeg {
     }
 }
 
-/// A thread that ends the program when it is stuck, and goes away when it is over.
+/// Starts a thread that ends the program when it is stuck, and that ends with it.
 fn end_when_stuck(child: &Arc<Mutex<Child>>, watch: &Arc<EncoderWatch>) {
     let (child, watch) = (Arc::clone(child), Arc::clone(watch));
     thread::spawn(move || {

@@ -73,8 +73,8 @@ pub(super) fn run(arguments: &Render) -> Result<u8> {
     Ok(if stopped.is_empty() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }
 
-/// The form of the output, by `--format` or by its name. SVG and PNG are one picture with `--step`, else a folder with
-/// a picture per step.
+/// Returns the form of the output, by `--format` or by its name. SVG and PNG are one picture with `--step`, else a
+/// folder with a picture per step.
 fn form(arguments: &Render) -> Result<RenderFormat> {
     let (output, is_single) = (&arguments.output, arguments.step.is_some());
     let by_name = |extension: &str| has_extension(output, extension);
@@ -105,12 +105,12 @@ fn form(arguments: &Render) -> Result<RenderFormat> {
     Ok(format)
 }
 
-/// Whether pictures follow each other in time, beginning with the start of the scene.
+/// Returns whether pictures follow each other in time, beginning with the start of the scene.
 const fn is_film(form: RenderFormat) -> bool {
     matches!(form, RenderFormat::Gif | RenderFormat::Mp4)
 }
 
-/// Which steps are drawn.
+/// Returns which steps are drawn.
 fn picks(arguments: &Render, form: RenderFormat, scene: &Scene) -> Result<Picks> {
     let last = scene.steps();
     if let Some(step) = arguments.step {
@@ -295,7 +295,7 @@ impl RenderTarget {
     }
 }
 
-/// One picture as the bytes of its file.
+/// Returns one picture as the bytes of its file.
 fn picture(
     form: RenderFormat,
     raster: &mut Raster,

@@ -30,12 +30,12 @@ pub(super) struct Picks {
 }
 
 impl Picks {
-    /// How many steps these are.
+    /// Returns how many steps these are.
     pub(super) fn count(self) -> u32 {
         if self.first > self.last { 0 } else { (self.last - self.first) / self.every + 1 }
     }
 
-    /// The step of picture `number` (from 1).
+    /// Returns the step of picture `number` (from 1).
     pub(super) fn step(self, number: u32) -> u32 {
         self.first + (number - 1) * self.every
     }
@@ -113,7 +113,7 @@ impl<'a> FilmKeeper<'a> {
     }
 }
 
-/// The reference's own motion.
+/// Returns the reference's own motion.
 ///
 /// # Errors
 /// When it can't be kept.
@@ -135,7 +135,7 @@ pub(super) fn reference(scene: &Scene, picks: Picks) -> Result<Motion> {
     keeper.finish("the reference's run".to_owned(), stopped)
 }
 
-/// The motion that a trace holds.
+/// Returns the motion that a trace holds.
 ///
 /// # Errors
 /// When it can't be opened or kept, or the operating system fails while it is read. Damage ends the motion.

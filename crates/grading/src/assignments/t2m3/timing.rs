@@ -4,7 +4,7 @@ use std::{fmt::Write, sync::OnceLock};
 
 /// A scene that is made.
 pub struct MadeScene {
-    /// Its name, as that of an embedded scene.
+    /// The scene's name, as that of an embedded scene.
     pub name: &'static str,
     make: fn() -> String,
     text: OnceLock<String>,
@@ -17,7 +17,7 @@ pub static TIMING: [MadeScene; 2] = [
 ];
 
 impl MadeScene {
-    /// Its XML.
+    /// Returns the scene's XML.
     pub fn xml(&'static self) -> &'static [u8] {
         self.text.get_or_init(self.make).as_bytes()
     }
@@ -33,7 +33,7 @@ impl Drawn {
     }
 }
 
-/// A number of thousandths.
+/// Returns a number of thousandths.
 fn thousandths(number: i32) -> String {
     format!("{}{}.{:03}", if number < 0 { "-" } else { "" }, number.abs() / 1000, number.abs() % 1000)
 }
@@ -56,7 +56,7 @@ fn particle(text: &mut String, place: [i32; 2], velocity: [i32; 2], radius: i32,
     );
 }
 
-/// 15,000 balls in a box of four edges, each near its neighbours; a few of them go fast.
+/// Returns 15,000 balls in a box of four edges, each near its neighbours; a few of them go fast.
 fn box_of_balls() -> String {
     let mut text = begin("15,000 balls in a box of four edges. The time that it takes counts.", 100);
     let mut drawn = Drawn(1);
@@ -76,7 +76,7 @@ fn box_of_balls() -> String {
     text + "</scene>\n"
 }
 
-/// 120 ribbons of 40 particles on a half-plane, one above the other.
+/// Returns 120 ribbons of 40 particles on a half-plane, one above the other.
 fn pile_of_ribbons() -> String {
     let (ribbons, length) = (120, 40);
     let mut text = begin("120 ribbons fall onto each other and onto a half-plane. The time that it takes counts.", 200);

@@ -26,8 +26,8 @@ pub(super) type AtOnce = [Option<Match>; PairKind::MOST_POLYNOMIALS];
 pub(super) type Floors = ByKind<[f64; PairKind::MOST_POLYNOMIALS]>;
 
 impl Follower<'_> {
-    /// The logged polynomials of a call that are right at once: [`compare`](crate::fair::compare::compare) says the
-    /// same of them.
+    /// Returns the logged polynomials of a call that are right at once: [`compare`](crate::fair::compare::compare) says
+    /// the same of them.
     #[inline]
     pub(super) fn right_at_once(
         &mut self,
@@ -61,7 +61,7 @@ impl Follower<'_> {
     }
 }
 
-/// More than the round-off of the largest positions and displacements. Infinite, where that is not known.
+/// Returns more than the round-off of the largest positions and displacements. Infinite, where that is not known.
 fn floors(scene: &Scene, q_start: &[f64], q_end: &[f64]) -> Floors {
     let (mut size, mut shift) = (0.0_f64, 0.0_f64);
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);

@@ -14,14 +14,14 @@ use fosssim_num::vector::Vec2;
 /// The result of the reference's own polynomials for a pair whose logged ones are right, but differ from them.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Own {
-    /// Their time of impact.
+    /// The objects' time of impact.
     pub time: f64,
     /// Whether the logged ones have lost leading coefficients that these have.
     pub lost: bool,
 }
 
 impl Follower<'_> {
-    /// The decision that the step goes on with: the submission's, as far as the trace tells.
+    /// Returns the decision that the step goes on with: the submission's, as far as the trace tells.
     pub(super) fn settle(&mut self, pair: Pair, by_polynomials: Decision) -> Decision {
         let call = self.decisions.len();
         let findings = self.judged.total();
@@ -50,8 +50,8 @@ impl Follower<'_> {
         decision
     }
 
-    /// The decision about a call whose logged polynomials exclude an impact, where the reference's own, of which
-    /// nothing was lost, say this.
+    /// Returns the decision about a call whose logged polynomials exclude an impact, where the reference's own, of
+    /// which nothing was lost, say this.
     pub(super) fn dispute(&mut self, pair: Pair, by_own: Decision) -> Decision {
         let Decision::Hit { time, .. } = by_own else { return by_own };
         self.call.own = Some(Own { time, lost: false });
@@ -82,7 +82,7 @@ impl Follower<'_> {
         }
     }
 
-    /// The other of two decisions that round-off may flip.
+    /// Returns the other of two decisions that round-off may flip.
     fn turned_round(&self, decision: Decision) -> Decision {
         match decision {
             Decision::Hit { time, .. } => Decision::Miss { time: Time::Found(time) },
@@ -94,8 +94,8 @@ impl Follower<'_> {
         }
     }
 
-    /// Whether round-off may flip the decision of this call, or has flipped it: where right polynomials lead the root
-    /// finder to another decision than the reference's, the submission may have either.
+    /// Returns whether round-off may flip the decision of this call, or has flipped it: where right polynomials lead
+    /// the root finder to another decision than the reference's, the submission may have either.
     fn is_borderline(&self, call: usize) -> bool {
         if self.call.is_disputed {
             return true;
@@ -106,7 +106,7 @@ impl Follower<'_> {
         }
     }
 
-    /// The logged impulse that this decision is about.
+    /// Returns the logged impulse that this decision is about.
     fn logged(&mut self, pair: Pair) -> Option<LoggedImpulse> {
         let index = self.contacts.about(key(pair)?).find(|index| !self.used[*index])?;
         self.used[index] = true;

@@ -138,7 +138,7 @@ impl<'a> Follower<'a> {
         self
     }
 
-    /// The logged polynomials of a call, if their search is known to end.
+    /// Returns the logged polynomials of a call, if their search is known to end.
     fn searchable(&self, index: usize, count: usize) -> Option<[Polynomial; PairKind::MOST_POLYNOMIALS]> {
         let mut found = [Polynomial::default(); PairKind::MOST_POLYNOMIALS];
         for (number, polynomial) in found[..count].iter_mut().enumerate() {
@@ -148,7 +148,7 @@ impl<'a> Follower<'a> {
         Some(found)
     }
 
-    /// How the call's objects move, and what its polynomials should be.
+    /// Returns how the call's objects move, and what its polynomials should be.
     fn expected(&self) -> Option<(BoundedPairMotion, Expected)> {
         let SeenCall { motion, has_right_approach } = self.call.seen?;
         let polynomials = motion.polynomials();

@@ -7,7 +7,7 @@ use fosssim_model::{
 };
 
 impl<'a> Follower<'a> {
-    /// How many passes are logged before the mid record and after it.
+    /// Counts the passes that are logged before the mid record and after it.
     pub(super) fn count_passes(&mut self) {
         let (Some(mid), per_pass) = (self.records.mid, self.context.per_pass) else { return };
         let (before, all) = (mid.polynomials.len(), self.records.end.polynomials.len());
@@ -64,7 +64,7 @@ impl<'a> Follower<'a> {
         }
     }
 
-    /// Whether a response or the failsafe has moved an object of the pair.
+    /// Returns whether a response or the failsafe has moved an object of the pair.
     pub(super) fn is_moved(&self, pair: Pair) -> bool {
         self.context.particles(pair).into_iter().flatten().any(|particle| self.moved[particle])
     }

@@ -89,16 +89,16 @@ impl<'a> Follower<'a> {
         is_right
     }
 
-    /// Polynomial `number` of a call whose first one is at `index`.
+    /// Returns polynomial `number` of a call whose first one is at `index`.
     fn logged_polynomial(&self, pair: Pair, index: usize, number: usize) -> Logged<'a> {
         let (role, index) = (Role::of(pair.kind, number), index + number);
         let place = PolynomialPlace { pass: self.pass, pair, role, index };
         Logged { place, number, list: self.records.end.polynomials.get(index) }
     }
 
-    /// Whether another polynomial of the pair that comes from the same coordinates is right, so that the pair is where
-    /// it should be: overlap and approach tell how far the objects are apart, the other two of a particle and an edge
-    /// where along the edge.
+    /// Returns whether another polynomial of the pair that comes from the same coordinates is right, so that the pair
+    /// is where it should be: overlap and approach tell how far the objects are apart, the other two of a particle and
+    /// an edge where along the edge.
     fn is_proven(&self, expected: &Expected, results: &Results, pair: Pair, index: usize, number: usize) -> bool {
         let other = match pair.kind {
             PairKind::ParticleEdge => 3 - number,
@@ -139,7 +139,7 @@ impl<'a> Follower<'a> {
         }
     }
 
-    /// The place of the call's first polynomial.
+    /// Returns the place of the call's first polynomial.
     pub(super) fn place(&self, pair: Pair) -> PolynomialPlace {
         let index = self.next.map_or(0, |next| next - pair.kind.polynomials());
         PolynomialPlace { pass: self.pass, pair, role: Role::Overlap, index }

@@ -178,7 +178,7 @@ impl Random {
         lo + (hi - lo) * ((self.bits() >> 11) as f64 / (1_u64 << 53) as f64)
     }
 
-    /// Ten to a uniform power.
+    /// Returns ten to a uniform power.
     fn log(&mut self, lo: f64, hi: f64) -> f64 {
         10.0_f64.powf(self.uniform(lo, hi))
     }
@@ -247,8 +247,8 @@ fn draw(random: &mut Random) -> (usize, &'static str, Vec<Vec<Bounded>>) {
     (pair, name, lists)
 }
 
-/// A polynomial of degree three to five with zeros on a coarse grid, some of them multiple or nearly so, that is
-/// often negative within the step.
+/// Returns a polynomial of degree three to five with zeros on a coarse grid, some of them multiple or nearly so, that
+/// is often negative within the step.
 fn product(random: &mut Random) -> Vec<Bounded> {
     let unit = [1.0, 0.5, 0.25, 0.1][random.below(4) as usize];
     let degree = 3 + random.below(3) as usize;
@@ -274,7 +274,7 @@ fn product(random: &mut Random) -> Vec<Bounded> {
     coefficients[..=degree].iter().map(|&coefficient| Bounded::rounded(coefficient)).collect()
 }
 
-/// Every object has its own scale and speed.
+/// Makes a motion in which every object has its own scale and speed.
 fn wide(random: &mut Random) -> RandomMotion {
     let scale = random.log(-3.0, 4.0);
     let mut object = |spread: f64| {
@@ -296,7 +296,7 @@ fn grid(random: &mut Random) -> RandomMotion {
     RandomMotion { x: [a, b, c], d: [e, f, g], radius }
 }
 
-/// The second and third object move almost alike.
+/// Makes a motion in which the second and third object move almost alike.
 fn near_rigid(random: &mut Random) -> RandomMotion {
     let mut motion = wide(random);
     let relative = random.log(-17.0, -1.0);
@@ -304,7 +304,7 @@ fn near_rigid(random: &mut Random) -> RandomMotion {
     motion
 }
 
-/// The particle touches, or nearly, and moves along or hardly at all.
+/// Returns the particle touches, or nearly, and moves along or hardly at all.
 fn resting(random: &mut Random) -> RandomMotion {
     let mut motion = bulk(random);
     let along = motion.x[2] - motion.x[1];
@@ -318,7 +318,7 @@ fn resting(random: &mut Random) -> RandomMotion {
     motion
 }
 
-/// The particle passes at about the sum of the radii at some time before, within or after the step.
+/// Returns the particle passes at about the sum of the radii at some time before, within or after the step.
 fn grazing(random: &mut Random) -> RandomMotion {
     let mut motion = if random.chance(2) { wide(random) } else { turning(random) };
     let time = random.uniform(-2.0, 4.0);
@@ -336,7 +336,7 @@ fn grazing(random: &mut Random) -> RandomMotion {
     motion
 }
 
-/// Far apart compared with radii and motion.
+/// Returns far apart compared with radii and motion.
 fn far(random: &mut Random) -> RandomMotion {
     let mut motion = wide(random);
     let distance = motion.radius * random.log(0.0, 7.0);
@@ -348,7 +348,7 @@ fn far(random: &mut Random) -> RandomMotion {
     motion
 }
 
-/// An edge that turns by up to half a turn and stretches a little.
+/// Returns an edge that turns by up to half a turn and stretches a little.
 fn turning(random: &mut Random) -> RandomMotion {
     let scale = random.log(-2.0, 3.0);
     let (centre, half) = (random.point(scale), random.direction() * (scale * random.uniform(0.1, 1.0)));
@@ -364,7 +364,8 @@ fn turning(random: &mut Random) -> RandomMotion {
     }
 }
 
-/// Everything moves together, with small differences; this is what most pairs of a scene look like.
+/// Makes a motion in which everything moves together, with small differences; this is what most pairs of a scene look
+/// like.
 fn bulk(random: &mut Random) -> RandomMotion {
     let scale = random.log(-3.0, 4.0);
     let together = random.direction() * (scale * random.log(-8.0, 0.5));
@@ -374,7 +375,7 @@ fn bulk(random: &mut Random) -> RandomMotion {
     RandomMotion { x, d, radius: scale * random.log(-3.0, -0.3) }
 }
 
-/// The polynomials of collisions.md 2.
+/// Returns the polynomials of collisions.md 2.
 fn particle_particle(motion: &RandomMotion) -> Vec<Vec<Bounded>> {
     let [x1, x2, _] = motion.x.map(Bounded2::rounded);
     let [d1, d2, _] = motion.d.map(Bounded2::rounded);

@@ -89,7 +89,7 @@ impl MilestoneTally {
     }
 }
 
-/// The milestone, its results on this scene, and the right programs that are refused.
+/// Returns the milestone, its results on this scene, and the right programs that are refused.
 fn try_scene(name: &str, scene: &Scene) -> (String, MilestoneTally, Vec<String>) {
     let mut tally = MilestoneTally { scenes: 1, ..MilestoneTally::default() };
     let mut faults = Vec::new();
@@ -214,7 +214,7 @@ fn scenes(corpus: Option<&Path>) -> Vec<(String, Scene)> {
     all.into_iter().filter_map(|(name, bytes)| Some((name, original::read(&bytes).ok()?.scene))).collect()
 }
 
-/// All scenes below a folder.
+/// Returns all scenes below a folder.
 fn scene_files(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for path in std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()) {

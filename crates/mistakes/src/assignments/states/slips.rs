@@ -2,23 +2,23 @@
 /// A small change of a quantity. A row of the catalogue is one of them at one [quantity](super::Term).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Slip {
-    /// It is not there; of a whole function, that is the starter code.
+    /// The quantity is missing; where it is a whole function, that is the starter code.
     Missing,
-    /// It has the other sign.
+    /// The quantity has the other sign.
     Sign,
-    /// It replaces a sum to which it should be added.
+    /// The quantity replaces a sum to which it should be added.
     Assigned,
     /// Twice of it.
     Doubled,
     /// Half of it.
     Halved,
-    /// Its modulus.
+    /// The quantity's modulus.
     Absolute,
-    /// Its square.
+    /// The quantity's square.
     Squared,
     /// Half of its square, as an energy has it.
     SquaredHalf,
-    /// Its square with its own sign.
+    /// The quantity's square with its own sign.
     SquaredAway,
     /// Multiplied by this power of the mass.
     Mass(i8),
@@ -68,7 +68,7 @@ pub enum Slip {
     MatrixSign,
     /// The rows and columns of fixed particles stay in the matrix.
     RowsOfFixed,
-    /// Of the rows and columns of fixed particles only the diagonal is set.
+    /// Only the diagonal of the rows and columns of fixed particles is set.
     DiagonalOfFixed,
     /// The right-hand side has entries for fixed particles.
     RightOfFixed,
@@ -80,13 +80,13 @@ pub enum Slip {
     OtherVelocity,
     /// The mean of old and new velocity.
     MeanVelocity,
-    /// Of a matrix: only the blocks on the diagonal.
+    /// A matrix has only the blocks on the diagonal.
     DiagonalOnly,
-    /// Of a matrix: the blocks beside the diagonal have the other sign.
+    /// A matrix has the blocks off the diagonal with the other sign.
     OffDiagonalSign,
-    /// Of a matrix: one of the blocks beside the diagonal is missing.
+    /// A matrix lacks one of the blocks off the diagonal.
     OneHalf,
-    /// Of a matrix: it is added to the one by velocities instead of the one by positions, or the reverse.
+    /// A matrix is added to the one by velocities instead of the one by positions, or the reverse.
     OtherMatrix,
     /// Equality counts, too.
     NotStrict,
@@ -108,7 +108,7 @@ pub enum Slip {
     Undivided,
     /// The direction is that of the half-plane's normal, on both of its sides.
     OneSided,
-    /// The same, with the length of the normal.
+    /// The normal, with the length of the normal.
     OneSidedLong,
     /// The direction is the opposite of the half-plane's normal, on both of its sides.
     OneSidedBack,
@@ -162,24 +162,24 @@ pub enum Slip {
 
 /// The slips of everything that is added to a sum.
 pub(super) const SUM: &[Slip] = &[Slip::Missing, Slip::Sign, Slip::Doubled, Slip::Halved];
-/// Of a vector.
+/// Slips of a vector.
 pub(super) const VECTOR: &[Slip] = &[Slip::XOnly, Slip::YOnly, Slip::Exchanged];
-/// Of what each particle gets.
+/// Slips of what each particle gets.
 pub(super) const EACH: &[Slip] = &[Slip::FirstOut, Slip::LastOut, Slip::OnlyFirst];
-/// Of the force on each particle.
+/// Slips of the force on each particle.
 pub(super) const FORCE: &[Slip] = &[Slip::Assigned, Slip::Mass(1), Slip::Mass(-1), Slip::Step(1)];
-/// Of what two bodies get.
+/// Slips of what two bodies get.
 pub(super) const PAIR: &[Slip] = &[Slip::FirstOnly, Slip::SecondOnly, Slip::SameSign];
-/// Of the number before a direction.
+/// Slips of the number before a direction.
 pub(super) const NUMBER: &[Slip] = &[Slip::Absolute, Slip::Squared, Slip::SquaredHalf, Slip::FirstMass];
-/// Of what depends on the distance.
+/// Slips of what depends on the distance.
 pub(super) const DISTANCE: &[Slip] = &[Slip::Length(1), Slip::Length(2), Slip::Length(-1)];
-/// Of blocks of a matrix of two bodies.
+/// Slips of blocks of a matrix of two bodies.
 pub(super) const BLOCKS: &[Slip] =
     &[Slip::DiagonalOnly, Slip::OffDiagonalSign, Slip::OneHalf, Slip::FirstOnly, Slip::SecondOnly, Slip::Assigned];
 
 impl Slip {
-    /// Whether bodies at which nothing should act stay without any effect.
+    /// Returns whether bodies at which nothing should act stay without any effect.
     pub fn keeps_distance(self) -> bool {
         use Slip::{Always, EndRadius, Middle, Mirrored, Negated, ToPoint, Unclamped, Undivided};
         !matches!(self, Always | EndRadius | Middle | Mirrored | Negated | ToPoint | Unclamped | Undivided)

@@ -12,7 +12,7 @@ pub struct TermRow {
     pub id: &'static str,
     /// The beginning of its rows' sentences.
     pub subject: &'static str,
-    /// Its formula, in the letters of the assignment.
+    /// The quantity's formula, in the letters of the assignment.
     pub formula: &'static str,
     /// The part of a student's work.
     pub part: Part,
@@ -295,7 +295,7 @@ terms! {
 }
 
 impl TermRow {
-    /// The part of the assignment.
+    /// Returns the part of the assignment.
     pub const fn area(&self) -> Area {
         match self.part {
             Part::Force(_) => Area::Forces,
@@ -309,7 +309,7 @@ impl TermRow {
 }
 
 impl Term {
-    /// The quantity of which this one is a part.
+    /// Returns the quantity of which this one is a part.
     const fn whole(self) -> Option<Self> {
         Some(match self {
             Self::SpringElastic | Self::SpringDamping => Self::Spring,
@@ -320,7 +320,7 @@ impl Term {
         })
     }
 
-    /// Whether a slip in this quantity is one in the other.
+    /// Returns whether a slip in this quantity is one in the other.
     pub fn covers(self, other: Self) -> bool {
         let mut part = Some(other);
         while let Some(one) = part {
@@ -332,7 +332,7 @@ impl Term {
         false
     }
 
-    /// Its row in the catalogue.
+    /// Returns the term's row in the catalogue.
     pub const fn row(self) -> &'static TermRow {
         &TERMS[self as usize]
     }
@@ -348,13 +348,13 @@ pub struct Edit {
 }
 
 impl Edit {
-    /// The part of the assignment that it belongs to.
+    /// Returns the part of the assignment that it belongs to.
     #[must_use]
     pub const fn area(self) -> Area {
         self.term.row().area()
     }
 
-    /// Whether it leaves a function of the student's as it is in the starter code.
+    /// Returns whether it leaves a function of the student's as it is in the starter code.
     #[must_use]
     pub const fn is_empty_function(self) -> bool {
         matches!(self.slip, Slip::Missing) && self.term.row().is_function

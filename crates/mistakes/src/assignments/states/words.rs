@@ -3,7 +3,7 @@ use super::{slips::Slip, terms::TermRow};
 use crate::assignments::rows::Area;
 
 impl Slip {
-    /// Its part of a row's name.
+    /// Returns the slip's part of a row's name.
     pub(super) fn id(self) -> String {
         let power = |name: &str, power: i8| match power {
             1 => name.to_owned(),
@@ -30,7 +30,7 @@ impl Slip {
         }
     }
 
-    /// The words of a sentence about it, behind the quantity's name.
+    /// Returns the words of a sentence about it, behind the quantity's name.
     pub(super) fn predicate(self, of: &TermRow) -> String {
         let text = match self {
             Self::Missing if of.is_function => match of.area() {
@@ -65,7 +65,7 @@ impl Slip {
         text.to_owned()
     }
 
-    /// The words that fit any quantity.
+    /// Returns the words that fit any quantity.
     const fn words(self) -> &'static str {
         match self {
             Self::Missing => "is missing",
@@ -147,7 +147,7 @@ impl Slip {
         }
     }
 
-    /// The exact form of a quantity with this formula, which should be there without it.
+    /// Returns the exact form of a quantity with this formula, which should be there without it.
     pub(super) fn exact(self, of: &TermRow) -> String {
         let formula = of.formula;
         let with = |factor: &str| format!("{factor} ({formula}) is used instead of {formula}.");
@@ -175,7 +175,7 @@ impl Slip {
     }
 }
 
-/// The meaning of a further power of a factor that stands with this power already.
+/// Returns the meaning of a further power of a factor that stands with this power already.
 fn power(has: i8, by: i8, factor: &str) -> String {
     match (has.signum(), (has + by).signum()) {
         (0, 1) => format!("is multiplied by {factor}"),

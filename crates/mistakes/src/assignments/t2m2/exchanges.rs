@@ -19,7 +19,7 @@ pub struct Exchange {
 }
 
 impl Exchange {
-    /// Whether it makes sense for this kind of pair.
+    /// Returns whether it makes sense for this kind of pair.
     #[must_use]
     pub fn concerns(&self, kind: PairKind) -> bool {
         self.kinds.contains(&kind)
@@ -46,7 +46,7 @@ fn without(inputs: &mut Inputs, component: fn(&mut Bounded2) -> &mut Bounded) {
     inputs.normal_square = inputs.normal().dot(inputs.normal());
 }
 
-/// The exchange with this key.
+/// Finds the exchange with this key.
 #[must_use]
 pub fn find_exchange(key: &str) -> Option<&'static Exchange> {
     EXCHANGES.iter().find(|exchange| exchange.key == key)

@@ -10,11 +10,11 @@ use fosssim_num::bounded::Bounded;
 pub struct Letter {
     /// How a message calls it.
     pub name: &'static str,
-    /// Its meaning, in the assignment's notation; empty where the name says it.
+    /// The letter's meaning, in the assignment's notation; empty where the name says it.
     pub meaning: &'static str,
-    /// Of which degree it is in the displacements.
+    /// The letter's degree in the displacements.
     pub(crate) order: u8,
-    /// Its value.
+    /// The letter's value.
     pub(crate) value: fn(&Inputs) -> Bounded,
 }
 
@@ -32,19 +32,19 @@ pub(crate) struct Term {
 pub(crate) struct Formula {
     /// The quantities in it.
     pub letters: &'static [Letter],
-    /// Its terms.
+    /// The formula's terms.
     pub terms: &'static [Term],
     /// The degree in t.
     pub degree: usize,
 }
 
 impl Formula {
-    /// The values of the letters.
+    /// Returns the values of the letters.
     pub fn values(&self, inputs: &Inputs) -> Vec<Bounded> {
         self.letters.iter().map(|letter| (letter.value)(inputs)).collect()
     }
 
-    /// The coefficients, highest power first, untrimmed, from the values of the letters.
+    /// Returns the coefficients, highest power first, untrimmed, from the values of the letters.
     pub fn evaluate(&self, values: &[Bounded]) -> Vec<Bounded> {
         let mut coefficients = vec![Bounded::default(); self.degree + 1];
         for term in self.terms {
@@ -54,13 +54,13 @@ impl Formula {
         coefficients
     }
 
-    /// The coefficients from the inputs.
+    /// Returns the coefficients from the inputs.
     pub fn polynomial(&self, inputs: &Inputs) -> Vec<Bounded> {
         self.evaluate(&self.values(inputs))
     }
 }
 
-/// The product of the letters with these indices.
+/// Returns the product of the letters with these indices.
 pub(crate) fn product(values: &[Bounded], letters: &[usize]) -> Bounded {
     match letters {
         [] => Bounded::exact(1.0),
@@ -68,7 +68,7 @@ pub(crate) fn product(values: &[Bounded], letters: &[usize]) -> Bounded {
     }
 }
 
-/// The ways to write one polynomial down, all of them right, the assignment's first.
+/// Returns the ways to write one polynomial down, all of them right, the assignment's first.
 pub(crate) fn readings(subject: Subject) -> &'static [Formula] {
     match subject {
         Subject::ParticleOverlap => PARTICLE_OVERLAP,

@@ -7,7 +7,7 @@ use fosssim_num::bounded::Bounded2;
 pub(crate) struct Ingredient {
     /// How a message calls it.
     pub name: &'static str,
-    /// Its value.
+    /// The ingredient's value.
     pub value: fn(&Inputs) -> Bounded2,
     /// How unlikely it is there.
     pub cost: f64,
@@ -53,7 +53,7 @@ const HALF_PLANE: &[Ingredient] = &[
     ingredient("(p-x-dx)", 0.8, |inputs| inputs.x21() - inputs.d[0]),
 ];
 
-/// The vectors that a detection of this kind has at hand.
+/// Returns the vectors that a detection of this kind has at hand.
 pub(crate) const fn ingredients(kind: PairKind) -> &'static [Ingredient] {
     match kind {
         PairKind::ParticleParticle => PARTICLES,

@@ -22,7 +22,7 @@ pub(crate) struct Inputs {
 }
 
 impl Inputs {
-    /// The inputs as they are.
+    /// Creates the inputs as they are.
     pub fn new(motion: &PairMotion) -> Self {
         let way = BoundedPointMotion::from;
         let still = |point: Vec2| BoundedPointMotion { start: Bounded2::exact(point), shift: Bounded2::default() };
@@ -42,7 +42,7 @@ impl Inputs {
     }
 }
 
-/// The square root of a number that is not negative.
+/// Returns the square root of a number that is not negative.
 pub(super) fn root(square: Bounded) -> Bounded {
     let value = square.value.sqrt();
     Bounded { value, bound: value + if value > 0.0 { square.bound / value } else { 0.0 } }
@@ -80,7 +80,7 @@ impl Inputs {
     pub fn d23(&self) -> Bounded2 {
         self.d[1] - self.d[2]
     }
-    /// The normal of the half-plane.
+    /// Returns the normal of the half-plane.
     pub fn normal(&self) -> Bounded2 {
         self.x[2]
     }

@@ -5,8 +5,8 @@ use super::{
 };
 use fosssim_findings::explanation::Reading;
 
-/// The letter that a message calls so: one of the formula's own, or one that does not belong there and may stand
-/// there.
+/// Returns the letter that a message calls so: one of the formula's own, or one that does not belong there and may
+/// stand there.
 #[must_use]
 pub fn letter(reading: Reading, name: &str) -> Option<&'static Letter> {
     let own = readings(reading.subject).get(reading.number)?.letters.iter();

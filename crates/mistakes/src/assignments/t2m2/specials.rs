@@ -12,11 +12,11 @@ pub struct Special {
     pub sentence: &'static str,
     /// The exact form.
     pub detail: &'static str,
-    /// Its coefficients.
+    /// The polynomial's coefficients.
     pub(crate) polynomial: fn(&Inputs) -> Vec<Bounded>,
 }
 
-/// The misunderstanding with this key.
+/// Finds the misunderstanding with this key.
 #[must_use]
 pub fn find_special(key: &str) -> Option<&'static Special> {
     SPECIALS.iter().find(|special| special.key == key)
@@ -92,13 +92,13 @@ pub const SPECIALS: &[Special] = &[
     },
 ];
 
-/// The approach of the particle and the point of the edge that was closest at the start.
+/// Returns the approach of the particle and the point of the edge that was closest at the start.
 fn constant_alpha(inputs: &Inputs) -> Vec<Bounded> {
     let (closing, n) = closest_at_start(inputs);
     vec![-closing.dot(closing), closing.dot(n)]
 }
 
-/// Of the particle and the point of the edge that was closest at the start: how they close in on each other, and the
+/// Returns how the particle and the point of the edge that was closest at the start close in on each other, and the
 /// vector from the one to the other.
 fn closest_at_start(inputs: &Inputs) -> (Bounded2, Bounded2) {
     let along = inputs.x32();

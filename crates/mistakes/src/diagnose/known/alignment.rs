@@ -9,7 +9,7 @@ use crate::{
 };
 use fosssim_model::{scene::Scene, sim::State, trace::Layout};
 
-/// The record that this program leaves out, if the trace's beginning is right once that is taken into account.
+/// Returns the record that this program leaves out, if the trace's beginning is right once that is taken into account.
 pub(super) fn missing_record(scene: &Scene, scan: &Scan) -> Option<Explanation> {
     let layout = Layout::of(scene);
     ["log-no-initial", "log-no-mid"].into_iter().filter_map(find).find_map(|row| {
@@ -24,7 +24,7 @@ pub(super) fn missing_record(scene: &Scene, scan: &Scan) -> Option<Explanation> 
     })
 }
 
-/// How many records such a trace has.
+/// Returns how many records such a trace has.
 fn records_without(layout: Layout, row: &Row) -> u64 {
     match row.mistake {
         Mistake::LogNoInitial => layout.records() - 1,
@@ -32,8 +32,8 @@ fn records_without(layout: Layout, row: &Row) -> u64 {
     }
 }
 
-/// How many steps the opening holds when the records are read without the missing one; `None` when one of them is
-/// wrong.
+/// Returns how many steps the opening holds when the records are read without the missing one; `None` when one of them
+/// is wrong.
 fn aligned_steps(scene: &Scene, layout: Layout, opening: &[Logged], row: &Row) -> Option<u64> {
     let world = World::new(scene.clone(), Student::default());
     let initial = world.initial_state();

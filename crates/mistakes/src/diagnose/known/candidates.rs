@@ -48,14 +48,14 @@ impl<'a> Candidates<'a> {
         Self { candidates, scan, probes, others, trials }
     }
 
-    /// The rows that reproduce the most, all of them equally many wrong steps, in the order of the catalogue. Empty
-    /// when that is less than half.
+    /// Returns the rows that reproduce the most, all of them equally many wrong steps, in the order of the catalogue.
+    /// Empty when that is less than half.
     pub(super) fn best(&self) -> Vec<Score> {
         let complete = self.complete();
         if complete.is_empty() { self.partial() } else { complete }
     }
 
-    /// The rows that reproduce every step.
+    /// Returns the rows that reproduce every step.
     fn complete(&self) -> Vec<Score> {
         let mut left: Vec<&Candidate> = self.candidates.iter().collect();
         let mut samples = 0;
@@ -72,7 +72,7 @@ impl<'a> Candidates<'a> {
         left.iter().map(|(row, _)| Score { row, reproduced: samples, samples }).collect()
     }
 
-    /// The rows that reproduce the most wrong steps, half of them at least, and all right ones.
+    /// Returns the rows that reproduce the most wrong steps, half of them at least, and all right ones.
     fn partial(&self) -> Vec<Score> {
         self.trials.restart();
         let wrong = [self.probes.as_slice(), &self.others].concat();
@@ -106,7 +106,7 @@ impl<'a> Candidates<'a> {
         left.into_iter().map(|((row, _), _)| Score { row, reproduced, samples }).collect()
     }
 
-    /// Whether this program logs in this step what the submission did.
+    /// Returns whether this program logs in this step what the submission did.
     fn reproduces(&self, (row, program): &Candidate, sample: &KeptStep) -> bool {
         match row.mistake {
             Mistake::LogPolynomialsKept if sample.difference.is_some() => return sample.context.polynomials_kept,

@@ -31,7 +31,7 @@ pub(super) fn denied(scene: &Scene, scan: &Scan) -> Vec<String> {
     CATALOGUE.iter().filter(is_done).map(|row| row.id.to_owned()).collect()
 }
 
-/// The kinds of pairs whose first polynomials of the step are right.
+/// Returns the kinds of pairs whose first polynomials of the step are right.
 fn right_kinds(scene: &Scene, sample: &KeptStep) -> Vec<PairKind> {
     let logged = sample.records.end.polynomials.len();
     let right = match sample.difference {
@@ -63,7 +63,7 @@ fn has_passes(sample: &KeptStep) -> bool {
     mid.as_ref().is_some_and(|mid| end.polynomials.len() > mid.polynomials.len())
 }
 
-/// Whether the end of the step is another state than its middle.
+/// Returns whether the end of the step is another state than its middle.
 fn moves(sample: &KeptStep) -> bool {
     let end = &sample.records.end.state;
     let is_sound = end.positions.iter().chain(&end.velocities).all(|value| value.is_finite());
@@ -71,7 +71,7 @@ fn moves(sample: &KeptStep) -> bool {
     is_sound && sample.records.mid.as_ref().is_some_and(differs)
 }
 
-/// Whether the geometric part moves a particle that is not back at its start then.
+/// Returns whether the geometric part moves a particle that is not back at its start then.
 fn moves_on(sample: &KeptStep) -> bool {
     let Some(mid) = &sample.records.mid else { return false };
     let end = &sample.records.end.state.positions;

@@ -11,7 +11,7 @@ use fosssim_judge::Role;
 use fosssim_model::{scene::Scene, sim::State, trace::LoggedImpulse};
 use fosssim_num::vector::at;
 
-/// The example of a wrong step: where it differs first, what was expected there and what the submission logged.
+/// Returns the example of a wrong step: where it differs first, what was expected there and what the submission logged.
 pub(super) fn example(reference: &mut Reference<'_>, scene: &Scene, correct: Correct, kept: &KeptStep) -> Example {
     let mut capture = Capture::new(&scene.collision);
     // The step was simulated before, so it does not fail; if it did, the lists below would be empty.
@@ -48,7 +48,7 @@ pub(super) fn example(reference: &mut Reference<'_>, scene: &Scene, correct: Cor
     Example { step: kept.step, place, given: Vec::new(), expected, actual }
 }
 
-/// The first contact that differs: normal and time, three numbers.
+/// Returns the first contact that differs: normal and time, three numbers.
 fn contacts(ours: &[LoggedImpulse], theirs: &[LoggedImpulse]) -> (ExamplePlace, Vec<f64>, Vec<f64>) {
     let key = |contact: &LoggedImpulse| (contact.kind, contact.first, contact.second);
     let values = |contact: &LoggedImpulse| vec![contact.normal.x, contact.normal.y, contact.time];
@@ -72,7 +72,7 @@ fn contacts(ours: &[LoggedImpulse], theirs: &[LoggedImpulse]) -> (ExamplePlace, 
     }
 }
 
-/// Position and velocity of a particle: four numbers.
+/// Returns position and velocity of a particle: four numbers.
 fn state(particle: usize, record: StepRecord, ours: &State, theirs: &State) -> (ExamplePlace, Vec<f64>, Vec<f64>) {
     let values = |state: &State| {
         let (x, v) = (at(&state.positions, particle), at(&state.velocities, particle));

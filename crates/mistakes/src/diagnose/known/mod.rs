@@ -65,7 +65,7 @@ pub(super) struct Known {
     pub(super) denies: Vec<String>,
 }
 
-/// The catalogue's explanations of kept steps, and the steps themselves where no mistake explains all of them.
+/// Returns the catalogue's explanations of kept steps, and the steps themselves where no mistake explains all of them.
 pub(super) fn known_or_open(reference: &mut Reference<'_>, scene: &Scene, mut scan: Scan) -> Known {
     let only = |one: Explanation| Known { explanations: vec![one], ..Known::default() };
     if let Some(missing) = alignment::missing_record(scene, &scan) {
@@ -87,8 +87,8 @@ pub(super) fn known_or_open(reference: &mut Reference<'_>, scene: &Scene, mut sc
     Known { explanations: padded.into_iter().collect(), open: None, denies }
 }
 
-/// The catalogue's explanations, and whether there is nothing else to say. May leave the steps as a program with the
-/// right approach sees them.
+/// Returns the catalogue's explanations, and whether there is nothing else to say. May leave the steps as a program
+/// with the right approach sees them.
 fn of_wrong_steps(reference: &mut Reference<'_>, scene: &Scene, scan: &mut Scan) -> (Vec<Explanation>, bool) {
     if scan.wrong.is_empty() {
         return (Vec::new(), true);
@@ -135,7 +135,7 @@ fn take_right_approach(scan: &mut Scan, scene: &Scene) -> bool {
 /// How many polynomials more than were logged a step may have before it is left.
 const SPARE: usize = 10_000;
 
-/// The explanations of several mistakes, which reproduce the same steps together. Empty stages are told first.
+/// Returns the explanations of several mistakes, which reproduce the same steps together. Empty stages are told first.
 fn together(
     reference: &mut Reference<'_>,
     scene: &Scene,
@@ -155,8 +155,8 @@ fn together(
     all
 }
 
-/// The mistake that reproduces most of the kept steps, and whether a row reproduces all of them. None where no row
-/// reproduces enough, or where a correct variant does.
+/// Returns the mistake that reproduces most of the kept steps, and whether a row reproduces all of them. None where no
+/// row reproduces enough, or where a correct variant does.
 fn best(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan, correct: Correct) -> (Option<Explanation>, bool) {
     let mut scores = Candidates::new(reference, scene, scan, correct).best();
     scores.sort_by_key(|score| plausibility(score.row));
@@ -173,8 +173,9 @@ fn best(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan, correct: Corr
     (Some(explanation), complete)
 }
 
-/// Smaller is likelier, among mistakes that a trace can't tell apart: work that was not done at all comes first, and
-/// mistakes that need a special scene to show come last. Rows of the same number keep the catalogue's order.
+/// Returns a rank of which smaller is likelier, among mistakes that a trace can't tell apart: work that was not done at
+/// all comes first, and mistakes that need a special scene to show come last. Rows of the same number keep the
+/// catalogue's order.
 fn plausibility(row: &Row) -> u8 {
     match row.mistake {
         Mistake::ParticleParticleEmpty
@@ -196,7 +197,7 @@ fn plausibility(row: &Row) -> u8 {
     }
 }
 
-/// The explanation that names a row, without an example.
+/// Returns the explanation that names a row, without an example.
 fn explain(row: &Row, (reproduced, samples): (u64, u64)) -> Explanation {
     Explanation {
         details: vec![Detail::Term(row.id.into()), Detail::Look(row.area)],

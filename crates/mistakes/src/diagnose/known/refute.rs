@@ -16,16 +16,16 @@ use std::cell::Cell;
 /// Polynomials that may be computed; about a microsecond each.
 const WORK: u64 = 200_000;
 
-/// Whether a program that makes this mistake of the catalogue logs something plainly wrong on this scene, which no
-/// judge takes for round-off. False also where looking for it would take too long, and where the course's library does
-/// that part of the work: in `simple` and `continuous-time` it responds, so that a program's own impulses are seen in
-/// `hybrid` only.
+/// Returns whether a program that makes this mistake of the catalogue logs something plainly wrong on this scene, which
+/// no judge takes for round-off. False also where looking for it would take too long, and where the course's library
+/// does that part of the work: in `simple` and `continuous-time` it responds, so that a program's own impulses are seen
+/// in `hybrid` only.
 #[must_use]
 pub fn shows(scene: &Scene, key: &str) -> bool {
     shows_within(scene, key, &Cell::new(0))
 }
 
-/// The same, where all that was looked for before counts towards what may take too long.
+/// Returns whether it shows, where all searches before count towards what may take too long.
 pub(in crate::diagnose) fn shows_within(scene: &Scene, key: &str, work: &Cell<u64>) -> bool {
     let Some(row) = find(key).filter(|row| can_show(scene, row)) else { return false };
     if row.area == Area::Response

@@ -11,14 +11,14 @@ use fosssim_model::{
 /// The particle-edge approach of a submission, right in either form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Correct {
-    /// It uses the particle-edge approach that the course supplies.
+    /// The program uses the particle-edge approach that the course supplies.
     Supplied,
-    /// It has put that right.
+    /// The program has put that right.
     RightApproach,
 }
 
 impl Correct {
-    /// Such a program with a mistake.
+    /// Returns such a program with a mistake.
     pub(super) fn with(self, mistake: Option<Mistake>) -> Student {
         let student = Student::new(mistake);
         match self {
@@ -28,8 +28,8 @@ impl Correct {
     }
 }
 
-/// The cost of a step besides its polynomials, in polynomials: forces between all pairs are many times cheaper than
-/// these, and penalty forces look at near pairs only. Solves of implicit integrators are counted as they come.
+/// Returns the cost of a step besides its polynomials, in polynomials: forces between all pairs are many times cheaper
+/// than these, and penalty forces look at near pairs only. Solves of implicit integrators are counted as they come.
 pub(super) fn step_work(scene: &Scene) -> u64 {
     let of_pairs = match scene.collision {
         Collision::None => 0,
@@ -39,7 +39,8 @@ pub(super) fn step_work(scene: &Scene) -> u64 {
     10 + (of_pairs + scene.forces.len() / 16) as u64
 }
 
-/// The records that a program writes in a step from this state; `None` when it fails or writes another number of them.
+/// Returns the records that a program writes in a step from this state; `None` when it fails or writes another number
+/// of them.
 pub(super) fn resimulate(
     world: &World,
     before: &fosssim_model::sim::State,

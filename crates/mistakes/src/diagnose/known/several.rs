@@ -29,7 +29,7 @@ pub(super) struct Several {
     pub(super) samples: u64,
 }
 
-/// The set of rows that reproduces all kept steps; `None` where none is found with at least two rows.
+/// Returns the set of rows that reproduces all kept steps; `None` where none is found with at least two rows.
 pub(super) fn several(reference: &Reference<'_>, scene: &Scene, scan: &Scan, correct: Correct) -> Option<Several> {
     let search = Search::new(reference, scene, scan, correct);
     if !Layout::of(scene).polynomials {
@@ -47,7 +47,7 @@ pub(super) fn several(reference: &Reference<'_>, scene: &Scene, scan: &Scan, cor
     Some(found)
 }
 
-/// Whether a row is work that was not done at all.
+/// Returns whether a row is work that was not done at all.
 pub(in crate::diagnose) fn is_empty_stage(row: &Row) -> bool {
     plausibility(row) == 0
 }
@@ -132,7 +132,8 @@ impl<'a> Search<'a> {
         self.only(beside(1)).or_else(|| self.only(beside(2))).or_else(|| self.only(of_two))
     }
 
-    /// The one of these sets that reproduces everything, with the rows that do as well in the place of one of its own.
+    /// Returns the one of these sets that reproduces everything, with the rows that do as well in the place of one of
+    /// its own.
     fn only(&self, sets: impl Iterator<Item = Vec<&'static Row>>) -> Option<Several> {
         let mut found: Vec<Vec<&'static Row>> = Vec::new();
         for set in sets {
@@ -156,7 +157,7 @@ impl<'a> Search<'a> {
         is_told.then(|| Several { rows: first, same_as, rivals: Vec::new(), samples })
     }
 
-    /// Whether these reproduce everything, and none of them can be left out.
+    /// Returns whether these reproduce everything, and none of them can be left out.
     fn explains(&self, set: &[&'static Row]) -> bool {
         let Some(probe) = self.probes.first() else { return false };
         self.trials.reached(&self.trials.program(set), probe) >= 1.0
@@ -183,14 +184,15 @@ impl<'a> Search<'a> {
         starts
     }
 
-    /// The detections that the scene asks for when they are left empty, and how many polynomials a pass of each logs.
+    /// Returns the detections that the scene asks for when they are left empty, and how many polynomials a pass of each
+    /// logs.
     fn sizes(&self) -> Vec<(&'static Row, usize)> {
         let counts = pairs(self.scene).counts();
         let size = |row: &Row| row.kind_of_pair().map_or(0, |kind| counts[kind] * kind.polynomials());
         self.stages().into_iter().map(|row| (row, size(row))).filter(|(_, size)| *size > 0).collect()
     }
 
-    /// The smallest set of stages whose emptiness carries furthest; nothing where none does.
+    /// Returns the smallest set of stages whose emptiness carries furthest; nothing where none does.
     fn empty_stages(&self) -> Vec<&'static Row> {
         let mut sets = subsets(&self.stages());
         // Of the loop one reading is enough, and nobody sees a failsafe that is never called.
@@ -213,7 +215,8 @@ impl<'a> Search<'a> {
         best.1
     }
 
-    /// The rows of empty stages that the scene can show. A detection that is not written hands over nothing, or zeros.
+    /// Returns the rows of empty stages that the scene can show. A detection that is not written hands over nothing, or
+    /// zeros.
     fn stages(&self) -> Vec<&'static Row> {
         // The approach of bodies that do not move is zero, too, but never the overlap before it.
         let logs_zeros = self.scan.wrong.iter().any(|kept| {
@@ -229,7 +232,7 @@ impl<'a> Search<'a> {
         applicable(self.scene).filter(is_asked).collect()
     }
 
-    /// The row that carries the set furthest beyond `reached`, how far, and those that do as well.
+    /// Returns the row that carries the set furthest beyond `reached`, how far, and those that do as well.
     fn next(&self, set: &[&'static Row], reached: f64) -> Option<(&'static Row, f64, Vec<&'static Row>)> {
         let mut best: (f64, Vec<&'static Row>) = (reached + 1e-9, Vec::new());
         let rows = applicable(self.scene).filter(|row| set.iter().all(|other| other.mistake != row.mistake));
@@ -255,7 +258,7 @@ impl<'a> Search<'a> {
         (!rows.is_empty()).then(|| (rows[0], progress, rows[1..].to_vec()))
     }
 
-    /// Whether no row can be left out.
+    /// Returns whether no row can be left out.
     fn is_needed(&self, set: &[&'static Row]) -> bool {
         (0..set.len()).all(|index| {
             let without: Vec<&Row> =
@@ -264,7 +267,8 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// How many wrong steps the set reproduces, if that is all of them and all right ones, as far as there is time.
+    /// Returns how many wrong steps the set reproduces, if that is all of them and all right ones, as far as there is
+    /// time.
     fn confirmed(&self, set: &[&'static Row]) -> Option<u64> {
         let program = self.trials.program(set);
         let mut samples = 0;
@@ -281,7 +285,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// All sets of these, the smallest first.
+/// Returns all sets of these, the smallest first.
 fn subsets<T: Copy>(all: &[T]) -> Vec<Vec<T>> {
     let of_bits = |bits: u32| (0..all.len()).filter(|bit| bits >> bit & 1 == 1).map(|bit| all[bit]).collect();
     let mut sets: Vec<Vec<T>> = (0..1 << all.len()).map(of_bits).collect();

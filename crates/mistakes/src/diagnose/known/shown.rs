@@ -12,8 +12,8 @@ use fosssim_model::{
 /// Penalty forces between bodies that are apart are tried on scenes with at most this number of pairs.
 const MOST_APART: usize = 5_000;
 
-/// The rows that may explain a trace of this scene, in the order of the catalogue: mistakes in what the student of the
-/// scene's assignment writes. Records that are missing are looked for elsewhere, and so are near pairs
+/// Returns the rows that may explain a trace of this scene, in the order of the catalogue: mistakes in what the student
+/// of the scene's assignment writes. Records that are missing are looked for elsewhere, and so are near pairs
 /// ([`near`](super::super::near)).
 pub(super) fn applicable(scene: &Scene) -> impl Iterator<Item = &'static Row> {
     let is_tried = |row: &&Row| {
@@ -28,19 +28,19 @@ pub(super) fn applicable(scene: &Scene) -> impl Iterator<Item = &'static Row> {
     all_rows().filter(is_tried).filter(is_theirs).filter(is_cheap).filter(move |row| shows(scene, &counts, row))
 }
 
-/// Whether a penalty force with this mistake looks at all pairs, near or not.
+/// Returns whether a penalty force with this mistake looks at all pairs, near or not.
 fn reaches_apart(row: &Row) -> bool {
     let Mistake::Step(StepMistake::Edit(edit)) = row.mistake else { return false };
     !edit.slip.keeps_distance() && matches!(term(row).row().part, Part::Penalty(_))
 }
 
-/// Whether the mistake is one of forces, integrators, penalties or simple responses.
+/// Returns whether the mistake is one of forces, integrators, penalties or simple responses.
 pub(super) const fn is_of_states(row: &Row) -> bool {
     matches!(row.mistake, Mistake::Step(_))
 }
 
-/// Whether a program with this row may leave another trace than one without. Only what the scene does not have speaks
-/// against it: stages of a step, and kinds of pairs.
+/// Returns whether a program with this row may leave another trace than one without. Only what the scene does not have
+/// speaks against it: stages of a step, and kinds of pairs.
 #[must_use]
 pub fn can_show(scene: &Scene, row: &Row) -> bool {
     shows(scene, &pairs(scene).counts(), row)
@@ -62,7 +62,7 @@ fn shows(scene: &Scene, counts: &ByKind<usize>, row: &Row) -> bool {
     has_stage && row.kind_of_pair().is_none_or(|kind| counts[kind] > 0)
 }
 
-/// The same of mistakes of forces, integrators and what follows from them.
+/// Returns whether mistakes of forces, integrators and what follows from them show.
 fn shows_in_states(scene: &Scene, counts: &ByKind<usize>, row: &Row) -> bool {
     let term = term(row);
     let has = |kind: ForceKind| scene.forces.iter().any(|force| force.kind() == kind);

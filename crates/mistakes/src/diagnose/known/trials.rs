@@ -30,14 +30,14 @@ pub(super) struct Program {
 }
 
 impl<'a> Trials<'a> {
-    /// On a scene; `correct` is the program to which mistakes are added.
+    /// Creates the trials on a scene; `correct` is the program to which mistakes are added.
     pub(super) fn new(reference: &'a Reference<'_>, scene: &Scene, correct: Correct) -> Self {
         let world = World::new(scene.clone(), Student::default());
         let (round_off, step_work) = (Tolerance::of(scene), step_work(scene));
         Self { world, correct, round_off, step_work, work: Cell::new(0), left: &reference.trials }
     }
 
-    /// Whether more than these polynomials were computed, or nothing is left.
+    /// Returns whether more than these polynomials were computed, or nothing is left.
     pub(super) fn exceed(&self, most: u64) -> bool {
         self.work.get() > most || self.left.get() == 0
     }
@@ -47,14 +47,14 @@ impl<'a> Trials<'a> {
         self.work.set(0);
     }
 
-    /// The program with these mistakes.
+    /// Returns the program with these mistakes.
     pub(super) fn program(&self, rows: &[&'static Row]) -> Program {
         let student: Student = rows.iter().fold(self.correct.with(None), |student, row| student.and(Some(row.mistake)));
         let logs_wrongly = rows.iter().any(|row| row.area == Area::Trace);
         Program { world: self.world.of(student), logs_wrongly }
     }
 
-    /// How far the program's step is what was logged: 1 is all the way, polynomials are the first half.
+    /// Returns how far the program's step is what was logged: 1 is all the way, polynomials are the first half.
     #[expect(clippy::cast_precision_loss, reason = "a share")]
     pub(super) fn reached(&self, program: &Program, kept: &KeptStep) -> f64 {
         let logged = &kept.records.end.polynomials;

@@ -45,7 +45,7 @@ impl<'a> Moment<'a> {
 }
 
 impl<'a> PlacedPair<'a> {
-    /// The numbers of its bodies.
+    /// Returns the numbers of its bodies.
     pub const fn numbers(&self) -> [usize; 2] {
         [self.pair.first as usize, self.pair.second as usize]
     }
@@ -62,17 +62,17 @@ impl<'a> PlacedPair<'a> {
         at(&self.moment.before.positions, particle)
     }
 
-    /// The first body's centre.
+    /// Returns the first body's centre.
     pub fn centre(&self) -> Vec2 {
         self.place(self.numbers()[0])
     }
 
-    /// The radius of the first body.
+    /// Returns the radius of the first body.
     pub fn radius(&self) -> f64 {
         self.moment.scene.particles[self.numbers()[0]].radius
     }
 
-    /// The radius of the second body; half-planes have none.
+    /// Returns the radius of the second body; half-planes have none.
     pub fn other_radius(&self) -> f64 {
         match (self.pair.kind, self.edge()) {
             (PairKind::ParticleParticle, _) => self.moment.scene.particles[self.numbers()[1]].radius,
@@ -80,7 +80,7 @@ impl<'a> PlacedPair<'a> {
         }
     }
 
-    /// The numbers of its bodies in an array of particles and edges: of a half-plane, the particle's again.
+    /// Returns the numbers of its bodies in an array of particles and edges: of a half-plane, the particle's again.
     fn bodies(&self) -> [usize; 2] {
         let [first, second] = self.numbers();
         match self.pair.kind {
@@ -90,17 +90,17 @@ impl<'a> PlacedPair<'a> {
         }
     }
 
-    /// The boxes of its bodies: of a half-plane, the particle's again.
+    /// Returns the boxes of its bodies: of a half-plane, the particle's again.
     pub fn boxes(&self) -> [BoundingBox; 2] {
         self.bodies().map(|body| self.moment.boxes[body])
     }
 
-    /// The first body's centre, and the second body's nearest point.
+    /// Returns the first body's centre, and the second body's nearest point.
     pub fn points(&self) -> [Vec2; 2] {
         [self.centre(), self.nearest(&self.moment.before.positions)]
     }
 
-    /// Whether it is near at other positions, too: boxes that overlap, or a half-plane within reach.
+    /// Returns whether it is near at other positions, too: boxes that overlap, or a half-plane within reach.
     pub fn is_near(&self, x: &[f64]) -> bool {
         if self.half_plane().is_some() {
             return length(self.nearest(x) - at(x, self.numbers()[0])) < self.radius();
@@ -109,7 +109,7 @@ impl<'a> PlacedPair<'a> {
         (0..2).all(|axis| one[0][axis] <= other[1][axis] && other[0][axis] <= one[1][axis])
     }
 
-    /// Whether the bodies do not approach each other.
+    /// Returns whether the bodies do not approach each other.
     pub fn is_parting(&self) -> bool {
         let State { positions, velocities } = self.moment.before;
         let later: Vec<f64> = positions.iter().zip(velocities).map(|(x, v)| x + 1e-6 * v).collect();
@@ -117,7 +117,7 @@ impl<'a> PlacedPair<'a> {
         distance(&later) >= distance(positions)
     }
 
-    /// The boxes of all other bodies that begin between the two on an axis, as a sweep meets them.
+    /// Returns the boxes of all other bodies that begin between the two on an axis, as a sweep meets them.
     pub fn between(&self, axis: usize) -> impl Iterator<Item = BoundingBox> {
         let own = self.bodies();
         let [one, other] = self.boxes().map(|one| one[0][axis]);
@@ -125,7 +125,7 @@ impl<'a> PlacedPair<'a> {
         all.map(|(_, one)| *one).filter(move |body| (one.min(other)..=one.max(other)).contains(&body[0][axis]))
     }
 
-    /// The point of the second body that is nearest to the first one's centre.
+    /// Returns the point of the second body that is nearest to the first one's centre.
     fn nearest(&self, x: &[f64]) -> Vec2 {
         let [first, second] = self.numbers();
         let own = at(x, first);
@@ -140,7 +140,7 @@ impl<'a> PlacedPair<'a> {
     }
 }
 
-/// The box of a particle or, with higher numbers, of an edge.
+/// Returns the box of a particle or, with higher numbers, of an edge.
 fn bounds(scene: &Scene, x: &[f64], body: usize) -> BoundingBox {
     let (ends, radius) = match scene.particles.get(body) {
         Some(particle) => ([body; 2], particle.radius),

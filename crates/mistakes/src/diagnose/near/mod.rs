@@ -42,7 +42,7 @@ const MOST_TOLD: usize = 3;
 pub struct PairTrait {
     /// The trait in plain words.
     pub what: String,
-    /// Its exact form.
+    /// The trait's exact form.
     pub exact: String,
     /// The number of right pairs that have it, too.
     pub right: u64,
@@ -50,7 +50,7 @@ pub struct PairTrait {
     pub exceptions: u64,
 }
 
-/// The near pairs that wrong steps leave out or apply twice, and those that they apply once.
+/// Returns the near pairs that wrong steps leave out or apply twice, and those that they apply once.
 pub(super) fn explain(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan) -> Option<Explanation> {
     let steps = scan.wrong.iter().take(MOST_STEPS).chain(scan.right.iter().take(MOST_STEPS / 4));
     let mut left = WORK / (scene.particles.len() + scene.edges.len() + 1);
@@ -86,8 +86,8 @@ pub(super) fn explain(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan)
     })
 }
 
-/// The traits that tell pairs of a kind that are reported never (0) or twice (2) from those that are reported once. Of
-/// several, those with the fewest exceptions.
+/// Returns the traits that tell pairs of a kind that are reported never (0) or twice (2) from those that are reported
+/// once. Of several, those with the fewest exceptions.
 #[must_use]
 #[expect(clippy::cast_precision_loss, reason = "a share")]
 pub fn pair_traits(pairs: &PairCounts, times: usize) -> Vec<PairTrait> {

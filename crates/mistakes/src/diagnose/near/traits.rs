@@ -7,7 +7,7 @@ use fosssim_num::vector::{Vec2, length};
 pub(super) struct TraitRow {
     /// The trait in plain words, behind "in all of them"; `{axis}` is horizontally or vertically.
     what: &'static str,
-    /// Its exact form; `{axis}` is x or y, `{n}` a number.
+    /// The trait's exact form; `{axis}` is x or y, `{n}` a number.
     exact: &'static str,
     axes: &'static [TraitAxis],
     /// The numbers with which it is asked, the strictest last.
@@ -66,7 +66,7 @@ impl Variant {
     }
 }
 
-/// All rows with their axes and numbers.
+/// Returns all rows with their axes and numbers.
 pub(super) fn variants() -> impl Iterator<Item = Variant> {
     TRAITS.iter().flat_map(|row| {
         row.axes.iter().flat_map(move |&axis| row.numbers.iter().map(move |&n| Variant { row, axis, n }))
@@ -194,18 +194,18 @@ traits! {
     };
 }
 
-/// The particles that are bodies of the pair.
+/// Returns the particles that are bodies of the pair.
 fn particles_of(pair: &PlacedPair<'_>) -> impl Iterator<Item = usize> {
     let bodies = if pair.pair.kind == PairKind::ParticleParticle { 2 } else { 1 };
     pair.numbers().into_iter().take(bodies)
 }
 
-/// All particles that take part, ends of an edge, too.
+/// Returns all particles that take part, ends of an edge, too.
 fn particles(pair: &PlacedPair<'_>) -> impl Iterator<Item = usize> {
     particles_of(pair).chain(pair.edge().into_iter().flat_map(|edge| [edge.first, edge.second]))
 }
 
-/// The places of bodies a number of steps before, had they moved as they do now.
+/// Returns the places of bodies a number of steps before, had they moved as they do now.
 fn earlier(pair: &PlacedPair<'_>, steps: f64) -> Vec<f64> {
     let State { positions, velocities } = pair.moment.before;
     let h = pair.moment.scene.time_step;
@@ -225,7 +225,7 @@ fn apart([one, other]: [usize; 2]) -> f64 {
     one.abs_diff(other) as f64
 }
 
-/// Whether points are in different cells on an axis; with infinite cells, on two sides of the start.
+/// Returns whether points are in different cells on an axis; with infinite cells, on two sides of the start.
 fn are_split([one, other]: [Vec2; 2], axis: usize, size: f64, start: f64) -> bool {
     ((one[axis] - start) / size).floor() != ((other[axis] - start) / size).floor()
 }
@@ -241,19 +241,19 @@ fn has_gap(pair: &PlacedPair<'_>, axis: usize) -> bool {
     pair.between(axis).any(|body| body[0][across] > begins[1][across] || begins[0][across] > body[1][across])
 }
 
-/// The part of an axis that two boxes have in common.
+/// Returns the part of an axis that two boxes have in common.
 fn common([one, other]: [BoundingBox; 2], axis: usize) -> [f64; 2] {
     [one[0][axis].max(other[0][axis]), one[1][axis].min(other[1][axis])]
 }
 
-/// How much the boxes overlap on an axis, as a share of the smaller one.
+/// Returns how much the boxes overlap on an axis, as a share of the smaller one.
 fn overlap(pair: &PlacedPair<'_>, axis: usize) -> f64 {
     let [from, to] = common(pair.boxes(), axis);
     let sides = pair.boxes().map(|[low, high]| high[axis] - low[axis]);
     (to - from) / sides[0].min(sides[1])
 }
 
-/// How far the particle is from the edge's ends, in sums of the radii.
+/// Returns how far the particle is from the edge's ends, in sums of the radii.
 fn from_ends(pair: &PlacedPair<'_>) -> Option<[f64; 2]> {
     let edge = pair.edge()?;
     let reach = pair.radius() + pair.other_radius();

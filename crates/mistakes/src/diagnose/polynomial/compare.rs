@@ -14,17 +14,17 @@ fosssim_model::drops_leading!();
 /// How much of its bound a coefficient may be off; both sides round.
 const TOLERANCE: f64 = 2.0 * FAIR_UNITS * UNIT_ROUNDOFF;
 
-/// The logged coefficient of a power, `None` if it was dropped.
+/// Returns the logged coefficient of a power, `None` if it was dropped.
 pub(super) fn logged_at(logged: &[f64], power: usize) -> Option<f64> {
     logged.len().checked_sub(power + 1).map(|index| logged[index])
 }
 
-/// The expected coefficient of a power, 0 beyond the degree.
+/// Returns the expected coefficient of a power, 0 beyond the degree.
 pub(super) fn expected_at(expected: &[Bounded], power: usize) -> Bounded {
     expected.len().checked_sub(power + 1).map_or(Bounded::default(), |index| expected[index])
 }
 
-/// Whether one logged coefficient is `scale` times the expected one. NaN never is.
+/// Returns whether one logged coefficient is `scale` times the expected one. NaN never is.
 pub(super) fn coefficient_matches(expected: Bounded, logged: Option<f64>, scale: f64) -> bool {
     let room = TOLERANCE * scale.abs() * expected.bound;
     match logged {
@@ -33,8 +33,8 @@ pub(super) fn coefficient_matches(expected: Bounded, logged: Option<f64>, scale:
     }
 }
 
-/// Whether the logged polynomial is `scale` times the expected one. A program may also get its coefficients from values
-/// of the polynomial, which spreads the rounding of the largest over all.
+/// Returns whether the logged polynomial is `scale` times the expected one. A program may also get its coefficients
+/// from values of the polynomial, which spreads the rounding of the largest over all.
 pub(super) fn matches(expected: &[Bounded], logged: &[f64], scale: f64) -> bool {
     let norm: f64 = expected.iter().map(|coefficient| coefficient.bound).sum();
     let least = FAIR_NORM_UNITS * UNIT_ROUNDOFF / TOLERANCE * norm;
@@ -44,13 +44,13 @@ pub(super) fn matches(expected: &[Bounded], logged: &[f64], scale: f64) -> bool 
     })
 }
 
-/// The scale that brings the expected polynomial closest to the logged one, each coefficient weighing as much as it is
-/// sure; `None` if nothing sure is left, or if the scale is not positive.
+/// Returns the scale that brings the expected polynomial closest to the logged one, each coefficient weighing as much
+/// as it is sure; `None` if nothing sure is left, or if the scale is not positive.
 pub(super) fn fitted_scale(expected: &[Bounded], logged: &[f64]) -> Option<f64> {
     scale_fitted_to(expected, logged, |_| true)
 }
 
-/// As [`fitted_scale`], from the coefficients of some powers.
+/// Returns the scale as [`fitted_scale`] does, from the coefficients of some powers.
 pub(super) fn scale_fitted_to(expected: &[Bounded], logged: &[f64], power: impl Fn(usize) -> bool) -> Option<f64> {
     let (mut above, mut below) = (0.0, 0.0);
     for power in (0..expected.len()).filter(|&index| power(index)) {
@@ -65,12 +65,12 @@ pub(super) fn scale_fitted_to(expected: &[Bounded], logged: &[f64], power: impl 
     (scale > 0.0 && scale.is_finite()).then_some(scale)
 }
 
-/// Whether a coefficient is more than rounding.
+/// Returns whether a coefficient is more than rounding.
 pub(super) fn is_sure(coefficient: Bounded) -> bool {
     coefficient.value.abs() > FAIR_UNITS * UNIT_ROUNDOFF * coefficient.bound
 }
 
-/// Whether the logged polynomial is right: the expected one times some positive scale.
+/// Returns whether the logged polynomial is right: the expected one times some positive scale.
 pub(super) fn is_right(expected: &[Bounded], logged: &[f64]) -> bool {
     compare(expected, logged, &[1.0]).is_ok()
 }

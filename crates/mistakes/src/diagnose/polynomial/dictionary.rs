@@ -11,7 +11,7 @@ use std::borrow::Cow;
 pub(super) struct Product {
     /// Indices into the dictionary's letters, ascending.
     pub letters: Vec<usize>,
-    /// Its degree in the displacements.
+    /// The product's degree in the displacements.
     pub order: u8,
     /// Whether it takes a quantity from outside the formula.
     pub foreign: bool,
@@ -25,7 +25,7 @@ pub(super) struct Dictionary {
 }
 
 impl Dictionary {
-    /// The dictionary of a way to write a polynomial down.
+    /// Creates the dictionary of a way to write a polynomial down.
     pub fn new(subject: Subject, formula: &'static Formula) -> Self {
         let own = formula.letters.len();
         let is_new = |extra: &&'static Letter| {
@@ -55,27 +55,27 @@ impl Dictionary {
         Self { letters, products }
     }
 
-    /// The values of all products, in their order.
+    /// Returns the values of all products, in their order.
     pub fn values(&self, inputs: &Inputs) -> Vec<Bounded> {
         let letters: Vec<Bounded> = self.letters.iter().map(|letter| (letter.value)(inputs)).collect();
         self.products.iter().map(|entry| product(&letters, &entry.letters)).collect()
     }
 
-    /// The weight that the formula gives to a product in a coefficient.
+    /// Returns the weight that the formula gives to a product in a coefficient.
     pub fn weight(&self, formula: &Formula, power: usize, product: usize) -> f64 {
         let letters = &self.products[product].letters;
         let same = formula.terms.iter().filter(|term| term.power == power && term.letters == letters);
         same.fold(0.0, |sum, term| sum + term.weight)
     }
 
-    /// The two letters of a product, as products of their own; none of another one.
+    /// Returns the two letters of a product, as products of their own; none of another one.
     pub fn factors(&self, product: usize) -> Option<[usize; 2]> {
         let &[one, two] = &self.products[product].letters[..] else { return None };
         let alone = |letter: usize| self.products.iter().position(|entry| entry.letters == [letter]);
         Some([alone(one)?, alone(two)?])
     }
 
-    /// The names of a product's letters, such as `e` and `h`.
+    /// Returns the names of a product's letters, such as `e` and `h`.
     pub fn names(&self, product: usize) -> Vec<Cow<'static, str>> {
         self.products[product].letters.iter().map(|&index| self.letters[index].name.into()).collect()
     }
@@ -90,7 +90,7 @@ fn products_of_three(count: usize) -> impl Iterator<Item = Vec<usize>> {
         .flat_map(move |one| (one..count).flat_map(move |two| (two..count).map(move |three| vec![one, two, three])))
 }
 
-/// The products with letters from outside: those of the quartic and of half-planes, which stand behind the
+/// Returns the products with letters from outside: those of the quartic and of half-planes, which stand behind the
 /// formula's own `own` letters.
 fn foreign_products(subject: Subject, own: usize) -> Vec<Vec<usize>> {
     let mut lists = Vec::new();

@@ -7,7 +7,7 @@ use fosssim_num::{polynomial::Polynomial, vector::Vec2};
 
 fosssim_model::drops_leading!();
 
-/// The example of a study, with the number of characters that its inputs take.
+/// Returns the example of a study, with the number of characters that its inputs take.
 pub(super) fn smallest(study: &PolynomialStudy) -> Option<(usize, Example)> {
     let wrong = study.cases.iter().filter(|case| !case.right);
     let best = wrong.min_by_key(|case| (digits(case), case.sample.step, case.sample.pass))?;
@@ -27,7 +27,7 @@ fn example(study: &PolynomialStudy, case: &Case) -> Example {
     }
 }
 
-/// How many characters the inputs take.
+/// Returns how many characters the inputs take.
 fn digits(case: &Case) -> usize {
     given(&case.sample.motion).iter().flat_map(|input| &input.value).map(|value| value.to_string().len()).sum()
 }

@@ -109,13 +109,13 @@ struct Suspect<'a> {
 }
 
 impl Suspect<'_> {
-    /// The guesses that reproduce everything.
+    /// Returns the guesses that reproduce everything.
     fn full(&self) -> impl Iterator<Item = &Candidate> {
         self.candidates.iter().filter(|candidate| candidate.reproduced == self.study.cases.len())
     }
 
-    /// All that would make it as it is: these guesses, and known mistakes. A word without a guess, where there is
-    /// nothing.
+    /// Returns all that would make it as it is: these guesses, and known mistakes. A word without a guess, where there
+    /// is nothing.
     fn claims<'a>(&self, guesses: impl Iterator<Item = &'a Candidate>) -> Vec<String> {
         let subject = self.study.subject;
         let guesses = guesses.flat_map(|guess| claims(subject, guess)).take(MOST_CLAIMS);
@@ -123,7 +123,7 @@ impl Suspect<'_> {
         if all.is_empty() { vec![format!("{subject:?}//")] } else { all }
     }
 
-    /// The explanation of this polynomial for itself; it has a guess.
+    /// Returns the explanation of this polynomial for itself; it has a guess.
     fn alone(&self) -> Explanation {
         let (best, others) = (&self.candidates[0], self.full());
         let first = claims(self.study.subject, best).swap_remove(0);
@@ -149,8 +149,8 @@ impl Suspect<'_> {
     }
 }
 
-/// The claims of a guess about a polynomial, one word each ([`Explanation::claims`]): one for each exact form that it
-/// may have. The digest is of what the program does, without what it should do.
+/// Returns the claims of a guess about a polynomial, one word each ([`Explanation::claims`]): one for each exact form
+/// that it may have. The digest is of what the program does, without what it should do.
 fn claims(subject: Subject, candidate: &Candidate) -> Vec<String> {
     if candidate.guess.is_general() {
         return vec![format!("{subject:?}/{}/", candidate.guess.word())];
@@ -160,7 +160,7 @@ fn claims(subject: Subject, candidate: &Candidate) -> Vec<String> {
     forms.iter().map(|form| form_claim(subject, &candidate.guess, form)).collect()
 }
 
-/// The claim of one exact form. What is said of coefficients follows from it.
+/// Returns the claim of one exact form. What is said of coefficients follows from it.
 pub(super) fn form_claim(subject: Subject, guess: &Guess, form: &[PolynomialDetail]) -> String {
     let guess = match guess {
         Guess::Coefficients { .. } => Guess::Coefficients { powers: Vec::new(), wrong: CoefficientGuess::Several },
@@ -175,8 +175,8 @@ pub(super) fn form_claim(subject: Subject, guess: &Guess, form: &[PolynomialDeta
     format!("{subject:?}/{}/{:016x}", guess.word(), digest(&format!("{guess:?} {form:.5?}")))
 }
 
-/// The known mistakes of this kind's formulas, or of handing them over, that make this polynomial as it was logged, in
-/// all samples.
+/// Returns the known mistakes of this kind's formulas, or of handing them over, that make this polynomial as it was
+/// logged, in all samples.
 fn known_makers(study: &PolynomialStudy<'_>) -> Vec<String> {
     let kind = study.subject.kind();
     let Some(number) = Subject::of(kind).iter().position(|&other| other == study.subject) else { return Vec::new() };
@@ -195,7 +195,7 @@ fn known_makers(study: &PolynomialStudy<'_>) -> Vec<String> {
     CATALOGUE.iter().filter(is_formula).filter(makes).map(|row| format!("{:?}/{}/", study.subject, row.id)).collect()
 }
 
-/// A line of the exact form of a guess about these polynomials.
+/// Returns a line of the exact form of a guess about these polynomials.
 fn detail(mut detail: PolynomialDetail, subjects: &[Subject]) -> Detail {
     if let PolynomialDetail::Exchange { of_edges, .. } = &mut detail {
         *of_edges = subjects.iter().all(|subject| subject.kind() == PairKind::ParticleEdge);
@@ -203,7 +203,7 @@ fn detail(mut detail: PolynomialDetail, subjects: &[Subject]) -> Detail {
     Detail::Polynomial(detail)
 }
 
-/// All guesses about a polynomial, the one that reproduces most first, among equals the likeliest.
+/// Returns all guesses about a polynomial, the one that reproduces most first, among equals the likeliest.
 fn candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     let mut all = structure::candidates(study);
     all.extend(exchanged_inputs(study));
@@ -251,7 +251,7 @@ fn misunderstandings(study: &PolynomialStudy) -> Vec<Candidate> {
     SPECIALS.iter().filter(|special| special.subject == study.subject).filter_map(of).collect()
 }
 
-/// A polynomial that is right but for more round-off than the rules allow, and that nothing explains better.
+/// Returns a polynomial that is right but for more round-off than the rules allow, and that nothing explains better.
 fn nearly_right(suspect: &Suspect) -> Option<Explanation> {
     let study = &suspect.study;
     let (error, samples) = (study.error(), study.cases.len() as u64);
@@ -266,7 +266,7 @@ fn nearly_right(suspect: &Suspect) -> Option<Explanation> {
     })
 }
 
-/// One explanation that says for which polynomials there is none.
+/// Returns one explanation that says for which polynomials there is none.
 fn unexplained(hopeless: &[Suspect]) -> Option<Explanation> {
     let first = hopeless.first()?;
     let lines = |suspect: &Suspect| {
@@ -288,8 +288,8 @@ fn unexplained(hopeless: &[Suspect]) -> Option<Explanation> {
     })
 }
 
-/// The key of general guesses that reproduces all samples of the most polynomials, among equals the likeliest; a
-/// polynomial's own likeliest guess counts for that polynomial. `None` if nothing reproduces all samples of any.
+/// Returns the key of general guesses that reproduces all samples of the most polynomials, among equals the likeliest;
+/// a polynomial's own likeliest guess counts for that polynomial. `None` if nothing reproduces all samples of any.
 fn best_shared_key(open: &[Suspect]) -> Option<String> {
     let mut keys: BTreeMap<&str, (usize, f64)> = BTreeMap::new();
     for suspect in open {
@@ -307,7 +307,7 @@ fn best_shared_key(open: &[Suspect]) -> Option<String> {
     (best.1.0 > 1).then(|| best.0.to_owned())
 }
 
-/// One explanation for several polynomials.
+/// Returns one explanation for several polynomials.
 fn shared(covered: &[Suspect], key: &str) -> Explanation {
     let guesses: Vec<&Candidate> =
         covered.iter().filter_map(|suspect| suspect.full().find(|candidate| candidate.guess.key() == key)).collect();
@@ -331,7 +331,7 @@ fn shared(covered: &[Suspect], key: &str) -> Explanation {
     }
 }
 
-/// The first different ones, in their order, no more than `most`.
+/// Returns the first different ones, in their order, no more than `most`.
 fn distinct<T: PartialEq>(all: impl IntoIterator<Item = T>, most: usize) -> Vec<T> {
     let mut list: Vec<T> = Vec::new();
     for one in all {

@@ -91,7 +91,7 @@ impl DesignMatrix {
         pursued.into_iter().flatten().find(|support| accept(support)).into_iter().collect()
     }
 
-    /// Matching pursuit, among the first columns.
+    /// Runs matching pursuit among the first columns.
     fn pursue(&self, target: &[f64], fits: &[f64], among: usize) -> Option<Support> {
         let square = dot(target, target);
         let mut chosen: Vec<usize> = Vec::new();
@@ -114,7 +114,7 @@ impl DesignMatrix {
         None
     }
 
-    /// The weights of the original columns.
+    /// Returns the weights of the original columns.
     fn solved(&self, chosen: &[usize], fits: &[f64]) -> Option<Support> {
         let weights = self.weights(chosen, fits)?;
         let mut support: Support = chosen
@@ -233,7 +233,7 @@ fn dot(one: &[f64], two: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    /// Numbers between -1 and 1 without a pattern.
+    /// Returns numbers between -1 and 1 without a pattern.
     fn columns(count: usize, rows: usize) -> Vec<Vec<f64>> {
         let mut state = 7_u64;
         let mut next = || {

@@ -15,7 +15,7 @@ fosssim_model::drops_leading!();
 /// The relative rounding of a single-precision number.
 const SINGLE_ROUNDOFF: f64 = 1.0 / (1_u64 << 24) as f64;
 
-/// Structural guesses that reproduce at least half of the wrong samples.
+/// Returns structural guesses that reproduce at least half of the wrong samples.
 pub(super) fn candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     let mut found = Vec::new();
     properties(study, &mut found);
@@ -60,7 +60,7 @@ fn properties(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     check(ListGuess::TooLong, None, 8.0, &|case| case.right || case.logged.len() > case.expected.len());
 }
 
-/// Whether everything logged is a float and close to what it should be.
+/// Returns whether everything logged is a float and close to what it should be.
 fn is_single(case: &Case) -> bool {
     let single = |value: f64| {
         #[expect(clippy::cast_possible_truncation, reason = "whether the truncation changes it is the question")]
@@ -97,7 +97,7 @@ fn predicted(
     Some(general(guess, detail, cost + if scaled { 1.0 } else { 0.0 }, reproduced))
 }
 
-/// The polynomial's own coefficients in another order or with another sign.
+/// Adds guesses with the polynomial's own coefficients in another order or with another sign.
 fn rearrangements(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     let mut check = |guess, cost, change: &dyn Fn(&[Bounded]) -> Vec<Bounded>| {
         found.extend(predicted(study, guess, None, cost, |case| change(&case.expected)));
@@ -134,7 +134,7 @@ fn other_polynomials(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     }
 }
 
-/// The polynomial's first or last coefficients only.
+/// Adds guesses with the polynomial's first or last coefficients only.
 fn cuts(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     for length in 1..=study.subject.degree() {
         let guess = if length == 1 { ListGuess::ConstantOnly } else { ListGuess::Cut };
@@ -146,7 +146,8 @@ fn cuts(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     }
 }
 
-/// Every displacement with the same factor: velocities, for example, which shows as a power of it in each coefficient.
+/// Returns every displacement with the same factor: velocities, for example, which shows as a power of it in each
+/// coefficient.
 fn scaled_displacements(study: &PolynomialStudy) -> Option<Candidate> {
     let step = |case: &Case| Some(ratio(case, 1)? / ratio(case, 0)?);
     let factor = median(study.probes().filter_map(step).collect())?;

@@ -58,7 +58,7 @@ pub(super) struct PolynomialStudy<'a> {
 pub(super) struct Candidate {
     /// The guess itself.
     pub guess: Guess,
-    /// Its exact form.
+    /// The candidate's exact form.
     pub details: Vec<PolynomialDetail>,
     /// All exact forms that reproduce as much, the likeliest first; none where there is only one.
     pub forms: Vec<Vec<PolynomialDetail>>,
@@ -100,14 +100,14 @@ impl<'a> PolynomialStudy<'a> {
         Some(study)
     }
 
-    /// The wrong samples on which a guess is tried first.
+    /// Returns the wrong samples on which a guess is tried first.
     pub fn probes(&self) -> impl Iterator<Item = &Case<'a>> {
         self.probes.iter().map(|&index| &self.cases[index])
     }
 
-    /// How many samples a predicted polynomial reproduces, with the submission's usual scale or none, and with any
-    /// positive one; `None` if it reproduces fewer than half of the wrong samples. The flag says that it needed another
-    /// scale.
+    /// Returns how many samples a predicted polynomial reproduces, with the submission's usual scale or none, and with
+    /// any positive one; `None` if it reproduces fewer than half of the wrong samples. The flag says that it needed
+    /// another scale.
     pub fn count(&self, predict: impl Fn(&Case) -> Vec<Bounded>) -> Option<(usize, bool)> {
         let at_usual_scale = |case: &Case| {
             let predicted = predict(case);
@@ -122,8 +122,9 @@ impl<'a> PolynomialStudy<'a> {
         }
     }
 
-    /// In how many samples a property holds; `None` if it holds in fewer than half of the wrong ones, not in the first
-    /// of them, or only in some wrong ones and not in the right ones: what these speak against explains nothing.
+    /// Returns in how many samples a property holds; `None` if it holds in fewer than half of the wrong ones, not in
+    /// the first of them, or only in some wrong ones and not in the right ones: what these speak against explains
+    /// nothing.
     pub fn count_if(&self, holds: impl Fn(&Case) -> bool) -> Option<usize> {
         if self.cases.iter().find(|case| !case.right).is_some_and(|first| !holds(first)) {
             return None;
@@ -147,14 +148,14 @@ impl<'a> PolynomialStudy<'a> {
         is_enough.then_some(wrong + right)
     }
 
-    /// How many samples the right formula reproduces within the tolerance of a guess.
+    /// Returns how many samples the right formula reproduces within the tolerance of a guess.
     pub fn plainly_right(&self) -> usize {
         let holds =
             |case: &&Case| matches(&case.expected, case.logged, case.scale) || fits_at_any_scale(&case.expected, case);
         self.cases.iter().filter(holds).count()
     }
 
-    /// How far coefficients are off at most, relative to the size of their terms.
+    /// Returns how far coefficients are off at most, relative to the size of their terms.
     pub fn error(&self) -> f64 {
         let of_case = |case: &Case| {
             let scale = fitted_scale(&case.expected, case.logged).unwrap_or(case.scale);
@@ -206,7 +207,7 @@ impl<'a> PolynomialStudy<'a> {
         }
     }
 
-    /// The powers whose coefficients have the same ratio to what they should be as the given one, in nearly all
+    /// Returns the powers whose coefficients have the same ratio to what they should be as the given one, in nearly all
     /// samples.
     fn agreeing_powers(&self, ratios: &[Option<f64>]) -> Vec<usize> {
         let agrees = |case: &Case, anchor: Option<f64>, power: usize| {
@@ -227,8 +228,8 @@ impl<'a> PolynomialStudy<'a> {
             .collect()
     }
 
-    /// How many logged coefficients are as expected with these scales. Dropped ones say nothing: with a small scale all
-    /// of them could be right.
+    /// Returns how many logged coefficients are as expected with these scales. Dropped ones say nothing: with a small
+    /// scale all of them could be right.
     fn agreement(&self, scale: impl Fn(usize) -> f64) -> f64 {
         let agreeing = |(index, case): (usize, &Case)| {
             let agrees = |power: &usize| {
@@ -240,7 +241,7 @@ impl<'a> PolynomialStudy<'a> {
         self.cases.iter().enumerate().map(agreeing).sum::<usize>() as f64
     }
 
-    /// In how many samples each coefficient differs, one line per coefficient that does, with this name of the
+    /// Returns in how many samples each coefficient differs, one line per coefficient that does, with this name of the
     /// polynomial.
     pub fn differences(&self, subject: Option<Subject>) -> Vec<PolynomialDetail> {
         let differs = |case: &&Case, power: usize| {
@@ -253,33 +254,34 @@ impl<'a> PolynomialStudy<'a> {
         (0..=self.subject.degree()).rev().filter_map(line).collect()
     }
 
-    /// The ways to write this polynomial down.
+    /// Returns the ways to write this polynomial down.
     pub fn formulas(&self) -> impl Iterator<Item = (Reading, &'static Formula)> + use<> {
         let subject = self.subject;
         readings(subject).iter().enumerate().map(move |(number, formula)| (Reading { subject, number }, formula))
     }
 }
 
-/// The logged coefficient over the expected one, where that is more than rounding.
+/// Returns the logged coefficient over the expected one, where that is more than rounding.
 pub(super) fn ratio(case: &Case, power: usize) -> Option<f64> {
     let expected = expected_at(&case.expected, power);
     let ratio = logged_at(case.logged, power)? / expected.value;
     (expected.value.abs() > 1e-4 * expected.bound && ratio.is_finite()).then_some(ratio)
 }
 
-/// The middle value; `None` of nothing.
+/// Returns the middle value; `None` of nothing.
 pub(super) fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied()
 }
 
-/// `count` indices below `length`, evenly spread; all if there are fewer.
+/// Returns `count` indices below `length`, evenly spread; all if there are fewer.
 pub(super) fn spread(length: usize, count: usize) -> impl Iterator<Item = usize> {
     let count = count.min(length);
     (0..count).map(move |index| index * length / count)
 }
 
-/// A polynomial with one sure coefficient fits anything of its sign at some scale, which says nothing.
+/// Returns whether a polynomial has one sure coefficient: it fits anything of its sign at some scale, which says
+/// nothing.
 fn fits_at_any_scale(predicted: &[Bounded], case: &Case) -> bool {
     if predicted.iter().filter(|coefficient| is_sure(**coefficient)).count() < 2 {
         return matches(predicted, case.logged, case.scale);
@@ -287,8 +289,8 @@ fn fits_at_any_scale(predicted: &[Bounded], case: &Case) -> bool {
     fitted_scale(predicted, case.logged).is_some_and(|scale| matches(predicted, case.logged, scale))
 }
 
-/// With a small scale the course's library drops coefficients that matter: what is left may say too little about the
-/// scale, but the other samples know it.
+/// Forgives samples with a small scale: there the course's library drops coefficients that matter: what is left may say
+/// too little about the scale, but the other samples know it.
 fn forgive_small_scales(cases: &mut [Case]) {
     let scales = cases.iter().filter(|case| case.right).filter_map(|case| fitted_scale(&case.expected, case.logged));
     let Some(usual) = median(scales.collect()) else { return };

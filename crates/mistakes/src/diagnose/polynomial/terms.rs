@@ -35,7 +35,7 @@ const UNKNOWN: f64 = 20.0;
 
 /// A change of one coefficient.
 enum Edit {
-    /// It carries a factor.
+    /// The term carries a factor.
     Factor(Bounded),
     /// Products with their additional weights.
     Terms(Vec<(usize, f64)>),
@@ -55,7 +55,7 @@ impl FormulaGuess {
     }
 }
 
-/// The reasons for each wrong coefficient, where at least one of them can be explained.
+/// Returns the reasons for each wrong coefficient, where at least one of them can be explained.
 pub(super) fn candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     study.formulas().filter_map(|(reading, formula)| candidate(study, formula, reading)).collect()
 }
@@ -138,7 +138,7 @@ impl<'a> Fitting<'a> {
         (0..self.study.cases.len()).all(|index| self.holds(index, power, self.predicted(index, power, Some(edit))))
     }
 
-    /// The explanations of a coefficient that hold for all samples.
+    /// Returns the explanations of a coefficient that hold for all samples.
     fn explain(&self, power: usize) -> FormulaGuess {
         let terms = self.term_changes(power).into_iter().map(|(changes, cost)| (Edit::Terms(changes), cost));
         let factor = self.factor(power).map(|(factor, cost)| (Edit::Factor(factor), cost));
@@ -150,7 +150,7 @@ impl<'a> Fitting<'a> {
         FormulaGuess { power, edits }
     }
 
-    /// A constant factor of the coefficient.
+    /// Returns a constant factor of the coefficient.
     fn factor(&self, power: usize) -> Option<(Bounded, f64)> {
         let ratios = (0..self.study.cases.len()).filter_map(|index| {
             let (case, expected) = (self.case(index), self.coefficient(index, power));
@@ -171,7 +171,7 @@ impl<'a> Fitting<'a> {
         self.explains_all(power, &Edit::Factor(factor)).then_some((factor, cost))
     }
 
-    /// All smallest changes of the coefficient's terms that hold for all samples, with their costs.
+    /// Returns all smallest changes of the coefficient's terms that hold for all samples, with their costs.
     fn term_changes(&self, power: usize) -> Vec<(Vec<(usize, f64)>, f64)> {
         let rows = self.rows(power);
         let scaled = |index: usize, value: f64| value / self.coefficient(index, power).bound;
@@ -215,13 +215,13 @@ impl<'a> Fitting<'a> {
         sums.filter(|sum| self.explains_all(power, &Edit::Terms(sum.clone()))).map(|sum| (sum, 6.0)).collect()
     }
 
-    /// The degree in the displacements that the terms of a coefficient have.
+    /// Returns the degree in the displacements that the terms of a coefficient have.
     fn natural_order(&self, power: usize) -> u8 {
         let term = self.formula.terms.iter().find(|term| term.power == power);
         term.map_or(0, |term| term.letters.iter().map(|&letter| self.formula.letters[letter].order).sum())
     }
 
-    /// How unlikely an additional weight is.
+    /// Returns how unlikely an additional weight is.
     fn cost(&self, power: usize, order: u8, (product, change): (usize, f64)) -> f64 {
         let weight = self.dictionary.weight(self.formula, power, product);
         let entry = &self.dictionary.products[product];
@@ -237,7 +237,7 @@ impl<'a> Fitting<'a> {
         }
     }
 
-    /// The samples that a fit looks at: where the coefficient is wrong, and some others.
+    /// Returns the samples that a fit looks at: where the coefficient is wrong, and some others.
     fn rows(&self, power: usize) -> Vec<usize> {
         let usable = |&index: &usize| {
             let logged = logged_at(self.case(index).logged, power);
@@ -297,7 +297,7 @@ impl Fitting<'_> {
         }
     }
 
-    /// All polynomials that the guesses make, the likeliest first.
+    /// Returns all polynomials that the guesses make, the likeliest first.
     fn forms(&self, guesses: &[FormulaGuess]) -> Vec<Vec<PolynomialDetail>> {
         guesses.iter().fold(vec![Vec::new()], |forms, guess| {
             let of_edit = |(edit, _): &(Edit, f64)| self.lines(guess.power, edit);

@@ -24,14 +24,15 @@ pub struct Capture {
 }
 
 impl Capture {
-    /// For scenes of this collision type.
+    /// Creates a capture for scenes of this collision type.
     pub fn new(collision: &Collision) -> Self {
         let records = collision.handling().records;
         let logs_impulses = records.impulses != ImpulseList::Empty;
         Self { logs_impulses, has_mid: records.polynomials, ..Self::default() }
     }
 
-    /// Where a polynomial belongs: pair, pass, number within the pair; `None` when the reference has no such one.
+    /// Returns where a polynomial belongs: pair, pass, number within the pair; `None` when the reference has no such
+    /// one.
     pub fn place(&self, index: usize) -> Option<(Pair, Pass, usize)> {
         let after = self.detections.partition_point(|&(_, _, first)| first <= index);
         let &(pair, pass, first) = self.detections.get(after.checked_sub(1)?)?;

@@ -23,16 +23,17 @@ fosssim_model::drops_leading!();
 /// How far numbers may be apart.
 #[derive(Debug, Clone, Copy)]
 pub struct Tolerance {
-    /// Of a coefficient, relative to itself.
+    /// The tolerance of a coefficient, relative to itself.
     pub coefficient: f64,
-    /// Of a coefficient, relative to the largest one of its polynomial: where the terms of a coefficient cancel, its
-    /// round-off is that of the terms.
+    /// The tolerance of a coefficient, relative to the largest one of its polynomial: where the terms of a coefficient
+    /// cancel, its round-off is that of the terms.
     pub floor: f64,
-    /// Of a coordinate or a velocity, relative to the largest one of its kind plus 1.
+    /// The tolerance of a coordinate or a velocity, relative to the largest one of its kind plus 1.
     pub state: f64,
-    /// Of a contact vector, relative to its length plus 1.
+    /// The tolerance of a contact vector, relative to its length plus 1.
     pub normal: f64,
-    /// Of a time of impact (fraction of the step). A double zero is known to about the root of the unit roundoff.
+    /// The tolerance of a time of impact (fraction of the step). A double zero is known to about the root of the unit
+    /// roundoff.
     pub time: f64,
 }
 
@@ -46,7 +47,7 @@ pub const ROUND_OFF: Tolerance = Tolerance {
 };
 
 impl Tolerance {
-    /// Round-off, in steps of this scene.
+    /// Returns round-off, in steps of this scene.
     pub fn of(scene: &Scene) -> Self {
         let is_newton = scene.integrator == Integrator::ImplicitEuler && !Layout::of(scene).polynomials;
         Self { state: if is_newton { KNOWN_NEWTON_STATE } else { KNOWN_STATE }, ..ROUND_OFF }
@@ -78,7 +79,7 @@ impl Logged {
         numbers.copied().chain(self.impulses.iter().flat_map(of_impulse))
     }
 
-    /// Memory that it takes, in bytes.
+    /// Returns memory that it takes, in bytes.
     pub fn bytes(&self) -> usize {
         16 * self.state.positions.len()
             + size_of::<LoggedImpulse>() * self.impulses.len()
@@ -96,7 +97,7 @@ pub struct StepRecords {
 }
 
 impl StepRecords {
-    /// Whether all numbers are finite.
+    /// Returns whether all numbers are finite.
     pub fn is_finite(&self) -> bool {
         self.end.values().chain(self.mid.iter().flat_map(Logged::values)).all(f64::is_finite)
     }
@@ -140,7 +141,7 @@ impl From<Record> for Logged {
     }
 }
 
-/// The first difference in the order in which a step computes; `None` when all is the same but for round-off.
+/// Returns the first difference in the order in which a step computes; `None` when all is the same but for round-off.
 pub fn first_difference(expected: &StepRecords, actual: &StepRecords, by: &Tolerance) -> Option<StepDifference> {
     let (ours, theirs) = (&expected.end.polynomials, &actual.end.polynomials);
     let wrong = ours.iter().zip(theirs.iter()).position(|(ours, theirs)| !same_polynomial(ours, theirs, by));
@@ -171,12 +172,12 @@ pub fn first_difference(expected: &StepRecords, actual: &StepRecords, by: &Toler
     (!same_mid).then_some(StepDifference::MidLists)
 }
 
-/// Whether two lists hold the same polynomials in the same order.
+/// Returns whether two lists hold the same polynomials in the same order.
 pub fn same_polynomials(ours: &PolynomialLog, theirs: &PolynomialLog, by: &Tolerance) -> bool {
     ours.len() == theirs.len() && ours.iter().zip(theirs.iter()).all(|(ours, theirs)| same_polynomial(ours, theirs, by))
 }
 
-/// Whether one polynomial is a positive multiple of the other (highest power first, small leading coefficients
+/// Returns whether one polynomial is a positive multiple of the other (highest power first, small leading coefficients
 /// dropped).
 pub fn same_polynomial(expected: &[f64], actual: &[f64], by: &Tolerance) -> bool {
     if multiple(expected, actual, 1.0, by) {
@@ -188,13 +189,13 @@ pub fn same_polynomial(expected: &[f64], actual: &[f64], by: &Tolerance) -> bool
     factor > 0.0 && factor.is_finite() && multiple(expected, actual, factor, by)
 }
 
-/// The same of a polynomial as formulas yield it, nothing dropped.
+/// Returns whether both are the same, of a polynomial as formulas yield it, nothing dropped.
 pub fn same_formula(expected: &[Bounded], actual: &[f64], by: &Tolerance) -> bool {
     let values: Vec<f64> = expected.iter().map(|coefficient| coefficient.value).collect();
     same_polynomial(trim(&values), actual, by)
 }
 
-/// Whether `actual` is `factor * expected`.
+/// Returns whether `actual` is `factor * expected`.
 fn multiple(expected: &[f64], actual: &[f64], factor: f64, by: &Tolerance) -> bool {
     let largest = expected.iter().fold(0.0_f64, |largest, c| largest.max((factor * c).abs()));
     let length = expected.len().max(actual.len());
@@ -206,12 +207,12 @@ fn multiple(expected: &[f64], actual: &[f64], factor: f64, by: &Tolerance) -> bo
     })
 }
 
-/// The coefficient of `t^power`; zero where the list ends before it.
+/// Returns the coefficient of `t^power`; zero where the list ends before it.
 fn power_of(coefficients: &[f64], power: usize) -> f64 {
     coefficients.len().checked_sub(power + 1).map_or(0.0, |index| coefficients[index])
 }
 
-/// Whether two lists hold the same contacts in some order.
+/// Returns whether two lists hold the same contacts in some order.
 fn same_impulses(ours: &[LoggedImpulse], theirs: &[LoggedImpulse], by: &Tolerance) -> bool {
     if ours.len() != theirs.len() {
         return false;
@@ -228,7 +229,7 @@ fn same_impulses(ours: &[LoggedImpulse], theirs: &[LoggedImpulse], by: &Toleranc
     sorted(ours).iter().zip(&sorted(theirs)).all(same)
 }
 
-/// Whether two contacts are the same but for round-off.
+/// Returns whether two contacts are the same but for round-off.
 pub fn same_impulse(ours: &LoggedImpulse, theirs: &LoggedImpulse, by: &Tolerance) -> bool {
     let within = by.normal * (1.0 + largest(ours.normal));
     (ours.kind, ours.first, ours.second) == (theirs.kind, theirs.first, theirs.second)
@@ -241,7 +242,7 @@ fn largest(v: Vec2) -> f64 {
     v.x.abs().max(v.y.abs())
 }
 
-/// The first particle whose position or velocity differs.
+/// Returns the first particle whose position or velocity differs.
 pub fn state_difference(ours: &State, theirs: &State, by: &Tolerance) -> Option<usize> {
     let different = |ours: &[f64], theirs: &[f64]| {
         let largest = ours.iter().filter(|value| value.is_finite()).fold(0.0_f64, |largest, v| largest.max(v.abs()));

@@ -30,7 +30,7 @@ pub struct Sample {
     pub polynomials: Vec<Vec<f64>>,
 }
 
-/// The particles of a pair, in the order of the assignment; no end of an edge that the scene does not have.
+/// Returns the particles of a pair, in the order of the assignment; no end of an edge that the scene does not have.
 pub fn bodies(scene: &Scene, pair: Pair) -> Vec<usize> {
     let (first, second) = (pair.first as usize, pair.second as usize);
     match pair.kind {
@@ -61,7 +61,7 @@ struct OfKind {
 }
 
 impl<'a> Detections<'a> {
-    /// For traces of this scene.
+    /// Creates the collection for traces of this scene.
     pub fn new(scene: &'a Scene) -> Self {
         Self { scene, kinds: ByKind::default() }
     }
@@ -78,7 +78,7 @@ impl<'a> Detections<'a> {
         reference.step(step, &frames.before.state, &mut Gatherer { scene, step, mid, log, kinds, sizes, next: None });
     }
 
-    /// The samples that were gathered.
+    /// Returns the samples that were gathered.
     pub fn into_samples(self) -> Vec<Sample> {
         self.kinds.into_values().flat_map(|kind| kind.samples).collect()
     }
@@ -98,15 +98,15 @@ struct Gatherer<'a> {
 }
 
 impl Gatherer<'_> {
-    /// Whether the submission lists a contact of this pair, which only `continuous-time` does.
+    /// Returns whether the submission lists a contact of this pair, which only `continuous-time` does.
     fn is_hit(&self, pair: Pair) -> bool {
         matches!(self.scene.collision, Collision::ContinuousTime { .. })
             && self.mid.impulses.iter().any(|impulse| impulse.pair() == Some(pair))
     }
 }
 
-/// How many polynomials each detection logs so that the lists consist of whole passes: all of them if that fits, else
-/// as many as possible. `None` when nothing fits. `pairs` are those of one pass.
+/// Returns how many polynomials each detection logs so that the lists consist of whole passes: all of them if that
+/// fits, else as many as possible. `None` when nothing fits. `pairs` are those of one pass.
 fn sizes(pairs: ByKind<usize>, before: usize, all: usize) -> Option<ByKind<usize>> {
     let fits = |sizes: &ByKind<usize>| {
         let pass: usize = pairs.iter().map(|(kind, pairs)| pairs * sizes[kind]).sum();

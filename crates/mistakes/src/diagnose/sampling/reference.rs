@@ -20,13 +20,13 @@ pub struct Reference<'a> {
 const TRIALS: u64 = 5_000_000;
 
 impl<'a> Reference<'a> {
-    /// For a trace of this scene.
+    /// Creates the reference for a trace of this scene.
     pub fn new(scene: &'a Scene) -> Self {
         let simulation = Simulation::new(scene, RootSearch::WhereNeeded);
         Self { simulation, budget: Budget::new(scene, false), trials: Cell::new(TRIALS) }
     }
 
-    /// Where a step from this state ends; `None` where it has no result, or nothing is left of the budget.
+    /// Returns where a step from this state ends; `None` where it has no result, or nothing is left of the budget.
     pub fn step(&mut self, step: u32, before: &State, observer: &mut dyn Observer) -> Option<&State> {
         self.simulation.state_mut().clone_from(before);
         self.simulation.set_steps_done(step - 1);

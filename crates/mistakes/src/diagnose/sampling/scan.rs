@@ -18,7 +18,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Steps that are kept, wrong and right.
 const MOST_WRONG: usize = 200;
 const MOST_RIGHT: usize = 40;
-/// Of the steps that look alike, the first ones are kept, and then one out of this number.
+/// The first steps that look alike are kept, and then one out of this number.
 const FIRST_ALIKE: u32 = 8;
 const ALIKE: u32 = 16;
 /// Right steps that look alike.
@@ -31,7 +31,7 @@ const MEMORY: usize = 24 << 20;
 /// A step that is kept.
 #[derive(Debug)]
 pub struct KeptStep {
-    /// Its number, from 1.
+    /// The step's number, from 1.
     pub step: u32,
     /// The submission's own state before it.
     pub before: State,
@@ -75,8 +75,8 @@ impl Scan {
         self.right.truncate(MOST_RIGHT);
     }
 
-    /// Wrong steps to be tried first: one of each sort, the cheapest first. The first difference is among them, which
-    /// has to be reproduced, whatever it is.
+    /// Returns wrong steps to be tried first: one of each sort, the cheapest first. The first difference is among them,
+    /// which has to be reproduced, whatever it is.
     pub fn probes(&self) -> Vec<&KeptStep> {
         let mut signatures = BTreeSet::new();
         let is_probe = |kept: &&KeptStep| signatures.insert(kept.signature);
@@ -101,7 +101,7 @@ pub struct Scanner {
 }
 
 impl Scanner {
-    /// For traces of this scene.
+    /// Creates the scan for traces of this scene.
     pub fn new(scene: &Scene) -> Self {
         Self {
             has_mid: Layout::of(scene).polynomials,
@@ -115,8 +115,8 @@ impl Scanner {
         }
     }
 
-    /// The steps that were kept, with the outline of their trace. Those in which numbers end speak only where no other
-    /// step is wrong: several mistakes make the same NaN.
+    /// Returns the steps that were kept, with the outline of their trace. Those in which numbers end speak only where
+    /// no other step is wrong: several mistakes make the same NaN.
     pub fn into_scan(self, outline: Outline) -> Scan {
         let wrong = if self.scan.wrong.is_empty() { self.not_finite } else { self.scan.wrong };
         Scan { outline, wrong, ..self.scan }
@@ -162,7 +162,7 @@ impl Scanner {
         if difference.is_some() { self.scan.wrong.push(kept) } else { self.scan.right.push(kept) }
     }
 
-    /// Steps with the same number look alike: the same events in the reference, the same first difference.
+    /// Returns steps with the same number look alike: the same events in the reference, the same first difference.
     fn signature(&self, difference: Option<StepDifference>, actual: &StepRecords) -> u64 {
         let first = match difference {
             None => 0,
@@ -221,7 +221,7 @@ impl Scanner {
         }
     }
 
-    /// Whether the step is right once `strip` has taken the lists of the step before off its records.
+    /// Returns whether the step is right once `strip` has taken the lists of the step before off its records.
     fn right_without(
         &self,
         before: &LenientFrame,
@@ -241,7 +241,7 @@ impl KeptStep {
     }
 }
 
-/// Whether all numbers are those of single precision.
+/// Returns whether all numbers are those of single precision.
 fn single(numbers: &[f64]) -> bool {
     #[expect(clippy::cast_possible_truncation, reason = "whether it loses anything is the question")]
     let exact = |value: &f64| f64::from(*value as f32).to_bits() == value.to_bits();

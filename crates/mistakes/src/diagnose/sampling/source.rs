@@ -14,14 +14,14 @@ const OPENING_MEMORY: usize = 4 << 20;
 
 /// The records of a trace.
 pub struct Source<'a> {
-    /// Its beginning.
+    /// The trace's beginning.
     beginning: &'a [u8],
     /// Whether that is all of it.
     is_whole: bool,
 }
 
 impl<'a> Source<'a> {
-    /// All of a trace.
+    /// Returns all of a trace.
     pub fn whole(trace: &'a [u8]) -> Self {
         Self { beginning: trace, is_whole: true }
     }
@@ -59,8 +59,8 @@ pub struct Outline {
 }
 
 impl Outline {
-    /// Whether the first record belongs to another scene. Programs do not compute it, so it differs from the scene's
-    /// initial state by no more than the rounding to single precision.
+    /// Returns whether the first record belongs to another scene. Programs do not compute it, so it differs from the
+    /// scene's initial state by no more than the rounding to single precision.
     pub fn is_of_other_scene(&self, scene: &Scene) -> bool {
         let Some(first) = self.opening.first() else { return false };
         let simulation = Simulation::new(scene, RootSearch::WhereNeeded);

@@ -12,7 +12,7 @@ use crate::diagnose::{
 use fosssim_model::{sim::PairKind, trace::LoggedImpulse};
 use fosssim_num::vector::{Vec2, length};
 
-/// The pairs of the first pass in another order: all its polynomials are there.
+/// Returns the pairs of the first pass in another order: all its polynomials are there.
 pub(super) fn order(facts: &[StepFacts]) -> Option<Explanation> {
     let wrong: Vec<&StepFacts> = facts.iter().filter(|facts| facts.has_wrong_formula()).collect();
     let permuted = wrong.iter().filter(|facts| is_permuted(facts)).count();
@@ -20,8 +20,8 @@ pub(super) fn order(facts: &[StepFacts]) -> Option<Explanation> {
         .then(|| observation(StageFault::Order, vec![StageDetail::Order], permuted))
 }
 
-/// Whether nearly all pairs of the first pass are found as wholes, some of them out of their order. Pairs that a
-/// contact before them in the pass has moved are not found.
+/// Returns whether nearly all pairs of the first pass are found as wholes, some of them out of their order. Pairs that
+/// a contact before them in the pass has moved are not found.
 fn is_permuted(facts: &StepFacts) -> bool {
     let size = facts.pass_size();
     let (ours, theirs) = (&facts.expected.end.polynomials, &facts.actual.end.polynomials);
@@ -77,7 +77,7 @@ struct ContactStage {
     times: Vec<(f64, f64)>,
 }
 
-/// The fault in the contacts of `continuous-time`, whose polynomials are right.
+/// Returns the fault in the contacts of `continuous-time`, whose polynomials are right.
 pub(super) fn detection(facts: &[StepFacts]) -> Option<Explanation> {
     let mut contacts = ContactStage::default();
     facts.iter().filter(|facts| facts.is_continuous()).for_each(|facts| contacts.look(facts));
@@ -85,8 +85,8 @@ pub(super) fn detection(facts: &[StepFacts]) -> Option<Explanation> {
     contacts.times().or_else(|| contacts.decisions()).or_else(|| contacts.vectors())
 }
 
-/// The fault in the contacts at the end of steps, each with the reference's: what parts first counts, since what
-/// follows in the pass may follow from it.
+/// Returns the fault in the contacts at the end of steps, each with the reference's: what parts first counts, since
+/// what follows in the pass may follow from it.
 pub(super) fn of_overlaps(steps: &[(Vec<LoggedImpulse>, Vec<LoggedImpulse>)]) -> Option<Explanation> {
     let mut contacts = ContactStage::default();
     for (ours, theirs) in steps {
@@ -160,7 +160,7 @@ impl ContactStage {
         }
     }
 
-    /// Whether vector and time are right.
+    /// Returns whether vector and time are right.
     fn compare(&mut self, hit: &Hit, impulse: &LoggedImpulse) -> bool {
         let kind = hit.pair.kind;
         let expected = LoggedImpulse { normal: hit.normal, time: hit.time, ..*impulse };
@@ -252,7 +252,7 @@ impl ContactStage {
     }
 }
 
-/// The kind that all of these have.
+/// Returns the kind that all of these have.
 fn only_kind(listed: &[(PairKind, f64)]) -> Option<PairKind> {
     let first = listed.first()?.0;
     listed.iter().all(|(kind, _)| *kind == first).then_some(first)

@@ -19,7 +19,7 @@ pub(super) struct Hit {
     pub(super) time: f64,
     /// The pass in which it is found, from 0.
     pub(super) pass: usize,
-    /// Its place in the order of all detections of the step.
+    /// The detection's place in the order of all detections of the step.
     pub(super) place: usize,
 }
 
@@ -136,7 +136,7 @@ pub(super) struct StepFacts {
 }
 
 impl StepFacts {
-    /// The facts of a step; none where the reference has no result.
+    /// Returns the facts of a step; none where the reference has no result.
     pub(super) fn of(reference: &mut Reference<'_>, scene: &Scene, kept: &KeptStep) -> Option<Self> {
         let prediction = reference.step(kept.step, &kept.before, &mut Steering(NoCollisions))?.clone();
         let mut observers = (Capture::new(&scene.collision), StepEvents { scene, heard: Events::default() });
@@ -163,28 +163,28 @@ impl StepFacts {
         })
     }
 
-    /// Whether contacts are resolved as they are found, in the one pass of `continuous-time`.
+    /// Returns whether contacts are resolved as they are found, in the one pass of `continuous-time`.
     pub(super) fn is_continuous(&self) -> bool {
         self.passes.first().is_some_and(|pass| pass.stage == Stage::ContinuousTime)
     }
 
-    /// Whether the impulse list is the expected one.
+    /// Returns whether the impulse list is the expected one.
     pub(super) fn has_right_impulses(&self) -> bool {
         let (ours, theirs) = (&self.expected.end.impulses, &self.actual.end.impulses);
         ours.len() == theirs.len() && ours.iter().zip(theirs).all(|(one, other)| same_impulse(one, other, &ROUND_OFF))
     }
 
-    /// How many polynomials a pass logs.
+    /// Returns how many polynomials a pass logs.
     pub(super) fn pass_size(&self) -> usize {
         self.passes.get(1).map_or(self.expected.end.polynomials.len(), |pass| pass.first)
     }
 
-    /// The expected and the actual state in the middle of the step.
+    /// Returns the expected and the actual state in the middle of the step.
     pub(super) fn middles(&self) -> Option<(&Logged, &Logged)> {
         Some((self.expected.mid.as_ref()?, self.actual.mid.as_ref()?))
     }
 
-    /// Whether the middle of the step is right: the state, and how many polynomials were logged by then.
+    /// Returns whether the middle of the step is right: the state, and how many polynomials were logged by then.
     pub(super) fn has_right_middle(&self) -> bool {
         self.middles().is_some_and(|(expected, actual)| {
             expected.polynomials.len() == actual.polynomials.len()
@@ -193,8 +193,8 @@ impl StepFacts {
         })
     }
 
-    /// How many passes the submission logged before the middle of the step, and how many behind it; none where these
-    /// are no whole passes.
+    /// Returns how many passes the submission logged before the middle of the step, and how many behind it; none where
+    /// these are no whole passes.
     pub(super) fn logged_passes(&self) -> Option<(usize, usize)> {
         let (size, (_, middle)) = (self.pass_size(), self.middles()?);
         let (first, all) = (middle.polynomials.len(), self.actual.end.polynomials.len());
@@ -202,8 +202,8 @@ impl StepFacts {
         is_whole.then(|| (first / size, (all - first) / size))
     }
 
-    /// Whether a pass that the submission logged (from 0) is about the motion from the start of the step to these
-    /// positions, as far as these pairs show, named by their places in the order of a pass.
+    /// Returns whether a pass that the submission logged (from 0) is about the motion from the start of the step to
+    /// these positions, as far as these pairs show, named by their places in the order of a pass.
     pub(super) fn detects(&self, scene: &Scene, pass: usize, end: &[f64], is_asked: impl Fn(Pair) -> bool) -> bool {
         let (logged, size) = (&self.actual.end.polynomials, self.pass_size());
         if (pass + 1) * size > logged.len() {
@@ -220,13 +220,13 @@ impl StepFacts {
         })
     }
 
-    /// Whether a polynomial is wrong that depends on nothing but the state before the step.
+    /// Returns whether a polynomial is wrong that depends on nothing but the state before the step.
     pub(super) fn has_wrong_formula(&self) -> bool {
         let (ours, theirs) = (self.expected.end.polynomials.len(), self.actual.end.polynomials.len());
         self.right_polynomials < ours.min(theirs).min(self.certain_polynomials())
     }
 
-    /// How many polynomials depend on nothing but the state before the step: those of the first pass, in
+    /// Returns how many polynomials depend on nothing but the state before the step: those of the first pass, in
     /// `continuous-time` up to the first contact's own.
     fn certain_polynomials(&self) -> usize {
         let contact = self.hits.first().filter(|_| self.is_continuous());

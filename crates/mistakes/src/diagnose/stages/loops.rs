@@ -12,7 +12,7 @@ use fosssim_model::{
 };
 use std::cmp::Ordering;
 
-/// The fault in the impulse rounds, whose single contacts are right.
+/// Returns the fault in the impulse rounds, whose single contacts are right.
 pub(super) fn explain(scene: &Scene, facts: &[StepFacts], responses: &Responses) -> Option<Explanation> {
     let Collision::Hybrid { max_iterations, .. } = scene.collision else { return None };
     let wrong: Vec<&StepFacts> = facts.iter().filter(|facts| facts.is_wrong && !facts.has_right_middle()).collect();
@@ -25,7 +25,7 @@ pub(super) fn explain(scene: &Scene, facts: &[StepFacts], responses: &Responses)
         .or_else(|| later(scene, &wrong))
 }
 
-/// The fault in the decision whether the geometric part follows, where the impulse rounds are right.
+/// Returns the fault in the decision whether the geometric part follows, where the impulse rounds are right.
 pub(super) fn geometric(facts: &[StepFacts]) -> Option<Explanation> {
     let (mut left, mut superfluous, mut followed) = (0, 0, 0);
     for facts in facts.iter().filter(|facts| facts.has_right_middle()) {
@@ -45,7 +45,7 @@ pub(super) fn geometric(facts: &[StepFacts]) -> Option<Explanation> {
     Some(observation(StageFault::Geometric(wrong), Vec::new(), count))
 }
 
-/// Steps whose polynomials are right as far as they go, but of which there are too many or too few.
+/// Returns steps whose polynomials are right as far as they go, but of which there are too many or too few.
 fn rounds(wrong: &[&StepFacts], max_iterations: i32) -> Option<Explanation> {
     let mut seen: Vec<(usize, usize)> = Vec::new();
     for facts in wrong {
@@ -75,7 +75,7 @@ fn rounds(wrong: &[&StepFacts], max_iterations: i32) -> Option<Explanation> {
     Some(observation(StageFault::Rounds(number), details, seen.len()))
 }
 
-/// Steps whose later rounds look at the integrator's positions, which the first round has left.
+/// Returns steps whose later rounds look at the integrator's positions, which the first round has left.
 fn of_prediction(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let mut count = 0;
     for facts in wrong {
@@ -94,13 +94,13 @@ fn of_prediction(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     (count > 0).then(|| observation(StageFault::RoundsOfPrediction, Vec::new(), count))
 }
 
-/// The first number that is another one, but for round-off.
+/// Returns the first number that is another one, but for round-off.
 fn differs(ours: &[f64], theirs: &[f64]) -> Option<usize> {
     let within = ROUND_OFF.state.max(ALIKE * 1e-3);
     ours.iter().zip(theirs).position(|(ours, theirs)| !((ours - theirs).abs() <= within * (1.0 + ours.abs())))
 }
 
-/// Steps whose polynomials are all right, but not the state behind the loop.
+/// Returns steps whose polynomials are all right, but not the state behind the loop.
 fn handed_over(wrong: &[&StepFacts], responses: &Responses) -> Option<Explanation> {
     let (mut ran_out, mut ended, mut positions, mut velocities) = (0, 0, false, false);
     let mut or_response = false;
@@ -166,7 +166,7 @@ impl SecondPass {
     }
 }
 
-/// Steps whose later rounds are wrong though their first one is right.
+/// Returns steps whose later rounds are wrong though their first one is right.
 fn later(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let reaches = |passes: usize| {
         let is_right = |facts: &&StepFacts| facts.right_polynomials >= passes * facts.pass_size();

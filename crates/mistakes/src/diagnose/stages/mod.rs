@@ -31,8 +31,8 @@ const WORK: usize = 200_000;
 /// Ratios that are this close are the same.
 const ALIKE: f64 = 1e-6;
 
-/// The observation about the stages of these steps; none when polynomials whose inputs are known are wrong, or when
-/// nothing is.
+/// Returns the observation about the stages of these steps; none when polynomials whose inputs are known are wrong, or
+/// when nothing is.
 pub(super) fn explain<'a>(
     reference: &mut Reference<'_>,
     scene: &Scene,
@@ -67,7 +67,7 @@ pub(super) fn explain<'a>(
         .or_else(|| rigid::explain(scene, &facts))
 }
 
-/// An observation, which reproduces nothing.
+/// Returns an observation, which reproduces nothing.
 fn observation(fault: StageFault, details: Vec<StageDetail>, samples: usize) -> Explanation {
     Explanation {
         details: details.into_iter().map(Detail::Stage).collect(),
@@ -76,7 +76,7 @@ fn observation(fault: StageFault, details: Vec<StageDetail>, samples: usize) -> 
     }
 }
 
-/// The value that all have in common, to round-off.
+/// Returns the value that all have in common, to round-off.
 fn common_value(values: &[f64]) -> Option<f64> {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -85,7 +85,7 @@ fn common_value(values: &[f64]) -> Option<f64> {
     (middle.is_finite() && values.iter().all(is_alike)).then_some(middle)
 }
 
-/// The one on which they agree, else their range.
+/// Returns the one on which they agree, else their range.
 fn ratios(values: &[f64]) -> Ratios {
     let (low, high) = range(values.iter().copied());
     common_value(values).map_or(Ratios::Between(low, high), Ratios::All)

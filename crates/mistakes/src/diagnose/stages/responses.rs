@@ -62,13 +62,13 @@ impl Responses {
         all
     }
 
-    /// Whether an isolated contact of this kind was seen, all of which are right.
+    /// Returns whether an isolated contact of this kind was seen, all of which are right.
     pub(super) fn is_right(&self, kind: PairKind) -> bool {
         let of_kind = || self.changes.iter().filter(|(changed, _)| changed.kind == kind);
         of_kind().next().is_some() && of_kind().all(|(_, changes)| changes.iter().all(|change| change.is_right))
     }
 
-    /// The fault in responses; nothing when those that can be seen are right.
+    /// Returns the fault in responses; nothing when those that can be seen are right.
     pub(super) fn explain(&self, facts: &[StepFacts]) -> Option<Explanation> {
         let changes = &self.changes;
         let wrong: BTreeMap<Changed, Vec<Change>> = changes
@@ -109,7 +109,7 @@ impl Responses {
     }
 }
 
-/// The contacts of a step whose bodies have no other one, with the expected and the actual state behind them.
+/// Returns the contacts of a step whose bodies have no other one, with the expected and the actual state behind them.
 fn isolated<'a>(scene: &'a Scene, facts: &'a StepFacts) -> Vec<(&'a Hit, &'a State, &'a State)> {
     let rounds = facts.passes.iter().filter(|pass| !matches!(pass.stage, Stage::Geometric { .. })).count();
     let hits = || facts.hits.iter().filter(move |hit| hit.pass < rounds);
@@ -136,8 +136,8 @@ fn isolated<'a>(scene: &'a Scene, facts: &'a StepFacts) -> Vec<(&'a Hit, &'a Sta
     hits().filter(is_alone).map(|hit| (hit, expected, actual)).collect()
 }
 
-/// Whether nothing changes the bodies of an impulse round's contact a second time: all passes behind it are about the
-/// positions that the loop hands over.
+/// Returns whether nothing changes the bodies of an impulse round's contact a second time: all passes behind it are
+/// about the positions that the loop hands over.
 fn is_final(scene: &Scene, facts: &StepFacts, hit: &Hit) -> bool {
     let (Some((passes, _)), Some((_, middle))) = (facts.logged_passes(), facts.middles()) else { return true };
     facts.is_continuous()
@@ -145,7 +145,7 @@ fn is_final(scene: &Scene, facts: &StepFacts, hit: &Hit) -> bool {
             .all(|pass| facts.detects(scene, pass, &middle.state.positions, |pair| pair == hit.pair))
 }
 
-/// Steps with several contacts, all of which are right though the state is not.
+/// Returns steps with several contacts, all of which are right though the state is not.
 fn of_many(facts: &[StepFacts]) -> Option<Explanation> {
     let is_right = |facts: &&StepFacts| {
         facts.is_wrong

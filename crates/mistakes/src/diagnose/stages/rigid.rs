@@ -18,7 +18,7 @@ use fosssim_num::vector::{Vec2, at, length, over};
 /// A turn by less is none.
 const LITTLE_TURN: f64 = 1e-6;
 
-/// The fault in the geometric part, whose start is right.
+/// Returns the fault in the geometric part, whose start is right.
 pub(super) fn explain(scene: &Scene, facts: &[StepFacts]) -> Option<Explanation> {
     if !matches!(scene.collision, Collision::Hybrid { .. }) {
         return None;
@@ -42,8 +42,8 @@ pub(super) fn explain(scene: &Scene, facts: &[StepFacts]) -> Option<Explanation>
     moved.explain().or_else(|| before_failsafe(scene, &wrong)).or_else(|| rounds(scene, &wrong))
 }
 
-/// Whether the first geometric pass differs, and is right of where the rounds left the bodies, which is right within
-/// round-off: small coefficients hang on that.
+/// Returns whether the first geometric pass differs, and is right of where the rounds left the bodies, which is right
+/// within round-off: small coefficients hang on that.
 fn hangs_on_round_off(scene: &Scene, facts: &StepFacts) -> bool {
     let Some((_, middle)) = facts.middles().filter(|_| facts.logged_passes().is_some()) else { return false };
     let pass = behind(facts, 0) / facts.pass_size();
@@ -51,12 +51,12 @@ fn hangs_on_round_off(scene: &Scene, facts: &StepFacts) -> bool {
     differs && facts.detects(scene, pass, &middle.state.positions, |_| true)
 }
 
-/// The index of the first polynomial behind this number of passes of the geometric part.
+/// Returns the index of the first polynomial behind this number of passes of the geometric part.
 fn behind(facts: &StepFacts, passes: usize) -> usize {
     facts.middles().map_or(0, |(_, middle)| middle.polynomials.len()) + passes * facts.pass_size()
 }
 
-/// The first geometric pass, where it is not about what the impulse rounds left.
+/// Returns the first geometric pass, where it is not about what the impulse rounds left.
 fn first_positions(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let is_wrong = |facts: &&&StepFacts| facts.logged_passes().is_some() && facts.right_polynomials < behind(facts, 1);
     let seen: Vec<&&StepFacts> = wrong.iter().filter(is_wrong).collect();
@@ -71,7 +71,8 @@ fn first_positions(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     Some(observation(StageFault::ZonePositions(positions), Vec::new(), seen.len()))
 }
 
-/// The second geometric pass, where it is about what was there before the failsafe, although that moves something.
+/// Returns the second geometric pass, where it is about what was there before the failsafe, although that moves
+/// something.
 fn before_failsafe(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let is_so = |facts: &&&StepFacts| {
         let Some((_, middle)) = facts.middles() else { return false };
@@ -86,7 +87,7 @@ fn before_failsafe(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     (count == wrong.len()).then(|| observation(fault, Vec::new(), count))
 }
 
-/// The fault behind the first round of zones.
+/// Returns the fault behind the first round of zones.
 fn rounds(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let (mut fewer, mut more, mut later, mut ends) = (0, 0, 0, Vec::new());
     for facts in wrong {
@@ -113,7 +114,8 @@ fn rounds(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     Some(observation(StageFault::ZoneRounds(rounds), Vec::new(), wrong.len()))
 }
 
-/// Steps whose polynomials are all right, but not their end: the velocities of zones, where positions are right.
+/// Returns steps whose polynomials are all right, but not their end: the velocities of zones, where positions are
+/// right.
 fn velocities(scene: &Scene, ends: &[&StepFacts]) -> Explanation {
     let mut measured = MotionErrors::default();
     for facts in ends {
@@ -310,7 +312,7 @@ impl MotionErrors {
     }
 }
 
-/// How zones turn, of which some do not turn as they should.
+/// Returns how zones turn, of which some do not turn as they should.
 fn turned(ratios: &[f64]) -> WrongMotion {
     let wrong = || ratios.iter().filter(|ratio| !((*ratio - 1.0).abs() <= ALIKE));
     if wrong().all(|ratio| ratio.abs() <= ALIKE) {
@@ -330,7 +332,7 @@ fn is_one(ratios: &[f64]) -> bool {
     ratios.iter().all(|ratio| (ratio - 1.0).abs() <= ALIKE)
 }
 
-/// The angle by which the particles have turned about their centre, radians.
+/// Returns the angle by which the particles have turned about their centre, radians.
 #[expect(clippy::disallowed_methods, reason = "angles are compared with a tolerance here: no bit is a contract")]
 fn turn(zone: &Group, start: &State, from: Vec2, end: &State, to: Vec2) -> f64 {
     let (mut across, mut along) = (0.0, 0.0);

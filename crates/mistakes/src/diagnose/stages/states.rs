@@ -19,7 +19,7 @@ struct WrongEntry {
     expected: f64,
 }
 
-/// The observation about these steps.
+/// Returns the observation about these steps.
 pub(super) fn explain<'a>(
     reference: &mut Reference<'_>,
     scene: &Scene,
@@ -36,7 +36,7 @@ pub(super) fn explain<'a>(
     of_overlaps(&contacts).or_else(|| of_changes(scene, &entries, count))
 }
 
-/// The velocities that are wrong, and the positions that do not follow from the velocities as they are.
+/// Returns the velocities that are wrong, and the positions that do not follow from the velocities as they are.
 fn wrong_entries(scene: &Scene, kept: &KeptStep, capture: &Capture) -> Vec<WrongEntry> {
     let (before, actual, expected) = (&kept.before, &kept.records.end.state, &capture.records.end.state);
     let is_wrong = |actual: f64, expected: f64| (actual - expected).abs() > KNOWN_STATE * (1.0 + expected.abs());
@@ -92,7 +92,7 @@ fn of_changes(scene: &Scene, entries: &[WrongEntry], count: usize) -> Option<Exp
     Some(observation(StageFault::Change(wrong), details, count))
 }
 
-/// The code of a student of the scene's milestone that makes such changes.
+/// Returns the code of a student of the scene's milestone that makes such changes.
 fn cause(scene: &Scene, quantity: Quantity) -> Option<ChangeCause> {
     use Quantity::{Position, Velocity};
     match (scene.assignment(), &scene.collision, scene.integrator, quantity) {

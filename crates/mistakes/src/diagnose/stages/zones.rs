@@ -13,7 +13,7 @@ use fosssim_num::{
 
 /// Differences below this are round-off (relative to the size of the numbers, and 1).
 pub(super) const SMALL: f64 = 1e-9;
-/// Of a zone of more particles, or of more contacts, not every part is tried.
+/// The largest zone of which every part is tried.
 const MOST_PARTICLES: usize = 8;
 const MOST_CONTACTS: usize = 5;
 
@@ -38,7 +38,7 @@ impl Group {
         Self::of(particles, groups.iter().any(|group| group.half_plane))
     }
 
-    /// Whether it goes back to its start.
+    /// Returns whether it goes back to its start.
     pub(super) fn stops(&self, scene: &Scene) -> bool {
         self.half_plane || self.particles.iter().any(|&one| scene.particles[one].fixed)
     }
@@ -53,11 +53,11 @@ impl Group {
 pub(super) enum Fate {
     /// The expected one.
     Right,
-    /// It was not moved or stopped as it should be.
+    /// The zone was not moved or stopped as it should be.
     Wrong(WrongZones),
-    /// It moved as one rigid body, otherwise than it should.
+    /// The zone moved as one rigid body, otherwise than it should.
     Rigid,
-    /// Its particles did not keep their distances, or did not stop.
+    /// The zone's particles did not keep their distances, or did not stop.
     Bent,
 }
 
@@ -78,7 +78,7 @@ pub(super) struct FirstRound<'a> {
 }
 
 impl<'a> FirstRound<'a> {
-    /// None where the step has no first round, or where something before it is wrong.
+    /// Returns the zones of a step; none where the step has no first round, or where something before it is wrong.
     pub(super) fn of(scene: &'a Scene, facts: &'a StepFacts) -> Option<Self> {
         let (loop_passes, passes) = facts.logged_passes().filter(|_| facts.has_right_middle())?;
         let is_right = facts.right_polynomials >= (loop_passes + 1) * facts.pass_size();
@@ -99,18 +99,18 @@ impl<'a> FirstRound<'a> {
         Some(Self { scene, facts, middle, end, zones, contacts, second, rounds })
     }
 
-    /// Whether the end of the step shows where the first round left these particles.
+    /// Returns whether the end of the step shows where the first round left these particles.
     pub(super) fn is_seen(&self, group: &Group) -> bool {
         let is_own = |pair| bodies(self.scene, pair).iter().all(|one| group.particles.contains(one));
         self.rounds == 1 || self.facts.detects(self.scene, self.second, &self.end.positions, is_own)
     }
 
-    /// Whether a zone's particles end where they should, so that nothing can be told of it.
+    /// Returns whether a zone's particles end where they should, so that nothing can be told of it.
     pub(super) fn is_at_rest(&self, zone: &Group) -> bool {
         self.are_at(&self.expected(zone), &zone.particles)
     }
 
-    /// The contacts of a zone, one of those that are alike.
+    /// Returns the contacts of a zone, one of those that are alike.
     pub(super) fn contacts_of(&self, zone: &Group) -> Vec<&Group> {
         let mut own: Vec<&Group> = Vec::new();
         for contact in self.contacts.iter().filter(|contact| zone.holds(contact)) {
@@ -121,7 +121,7 @@ impl<'a> FirstRound<'a> {
         own
     }
 
-    /// The state that these groups leave, moved one after the other.
+    /// Returns the state that these groups leave, moved one after the other.
     fn moved(&self, groups: &[&Group]) -> State {
         let mut state = self.middle.clone();
         self.move_again(groups, &mut state);
@@ -134,8 +134,8 @@ impl<'a> FirstRound<'a> {
         }
     }
 
-    /// Whether the contacts of a zone, moved one after the other in every round, or not all together, lead where its
-    /// particles are.
+    /// Returns whether the contacts of a zone, moved one after the other in every round, or not all together, lead
+    /// where its particles are.
     pub(super) fn is_split(&self, zone: &Group) -> bool {
         self.partitions(zone).into_iter().any(|groups| {
             let groups: Vec<&Group> = groups.iter().collect();
@@ -154,12 +154,12 @@ impl<'a> FirstRound<'a> {
         particles.iter().all(|&one| self.is_at(state, one))
     }
 
-    /// The expected state of a zone.
+    /// Returns the expected state of a zone.
     pub(super) fn expected(&self, zone: &Group) -> State {
         self.moved(&[zone])
     }
 
-    /// The fate of a zone that is seen.
+    /// Returns the fate of a zone that is seen.
     pub(super) fn fate(&self, zone: &Group) -> Fate {
         let all = &zone.particles;
         let expected = self.expected(zone);
@@ -181,7 +181,7 @@ impl<'a> FirstRound<'a> {
         if stops { self.stop(zone, &stopped) } else { self.motion(zone) }
     }
 
-    /// Whether other zones than this one, each moved as it should be, lead where its particles are.
+    /// Returns whether other zones than this one, each moved as it should be, lead where its particles are.
     fn other_zones(&self, zone: &Group) -> Option<Fate> {
         if self.is_split(zone) {
             return Some(Fate::Wrong(WrongZones::NotMerged));
@@ -228,7 +228,7 @@ impl<'a> FirstRound<'a> {
         None
     }
 
-    /// Particles of no zone that moved all the same.
+    /// Returns particles of no zone that moved all the same.
     fn foreign(&self) -> Vec<usize> {
         if self.rounds > 1 {
             return Vec::new();
@@ -238,7 +238,7 @@ impl<'a> FirstRound<'a> {
         all.filter(|one| !is_in_zone(one) && !self.is_at(self.middle, *one)).collect()
     }
 
-    /// The ways to make several zones of a zone's contacts, in the order of the first contact of each.
+    /// Returns the ways to make several zones of a zone's contacts, in the order of the first contact of each.
     fn partitions(&self, zone: &Group) -> Vec<Vec<Group>> {
         let contacts = self.contacts_of(zone);
         if contacts.len() < 2 || contacts.len() > MOST_CONTACTS {
@@ -262,7 +262,7 @@ impl<'a> FirstRound<'a> {
         several.map(|parts| parts.iter().map(|part| Group::union(part)).collect()).collect()
     }
 
-    /// The fate of a zone that has to stop, all of whose particles belong together.
+    /// Returns the fate of a zone that has to stop, all of whose particles belong together.
     fn stop(&self, zone: &Group, stopped: &State) -> Fate {
         let mut free = self.middle.clone();
         perform(self.scene, zone, false, &self.facts.before, &mut free);
@@ -316,8 +316,8 @@ fn perform(scene: &Scene, group: &Group, stops: bool, start: &State, state: &mut
     }
 }
 
-/// The angle by which the failsafe turns a group, radians: its angular momentum over its moment of inertia, both of the
-/// motion from the start of the step to this state (collisions.md 5).
+/// Returns the angle by which the failsafe turns a group, radians: its angular momentum over its moment of inertia,
+/// both of the motion from the start of the step to this state (collisions.md 5).
 pub(super) fn spin(scene: &Scene, group: &Group, start: &State, state: &State) -> f64 {
     let (centre, to) = (centre(scene, group, start), centre(scene, group, state));
     let (mut momentum, mut inertia) = (0.0, 0.0);
@@ -330,7 +330,7 @@ pub(super) fn spin(scene: &Scene, group: &Group, start: &State, state: &State) -
     momentum / inertia
 }
 
-/// The centre of mass of a group.
+/// Returns the centre of mass of a group.
 pub(super) fn centre(scene: &Scene, group: &Group, state: &State) -> Vec2 {
     let mass = |one: usize| scene.particles[one].mass;
     let sum = group.particles.iter().map(|&one| mass(one) * at(&state.positions, one)).sum::<Vec2>();

@@ -12,10 +12,10 @@ use crate::student::encounter::MovingBody;
 pub trait Number:
     Copy + From<f64> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
-    /// `self * factor + addend`, in the way in which this program's compiler does it.
+    /// Returns `self * factor + addend`, in the way in which this program's compiler does it.
     fn multiply_add(self, factor: Self, addend: Self) -> Self;
 
-    /// The double that is handed over.
+    /// Returns the double that is handed over.
     fn rounded(self) -> f64;
 }
 
@@ -47,7 +47,7 @@ fn dot<N: Number>(a: Vector<N>, b: Vector<N>) -> N {
     a[0].multiply_add(b[0], a[1] * b[1])
 }
 
-/// `v + s * w`.
+/// Returns `v + s * w`.
 fn plus<N: Number>(v: Vector<N>, s: N, w: Vector<N>) -> Vector<N> {
     [s.multiply_add(w[0], v[0]), s.multiply_add(w[1], v[1])]
 }
@@ -56,7 +56,7 @@ fn negative<N: Number>(a: N) -> N {
     N::from(0.0) - a
 }
 
-/// The sum of products, each with a small whole factor, from left to right.
+/// Returns the sum of products, each with a small whole factor, from left to right.
 fn sum<N: Number>(terms: &[(f64, N, N)]) -> N {
     terms.iter().fold(N::from(0.0), |sum, &(factor, a, b)| (N::from(factor) * a).multiply_add(b, sum))
 }
@@ -69,12 +69,12 @@ fn rounded_vector<N: Number>(v: Vector<N>) -> Vec2 {
     Vec2::new(v[0].rounded(), v[1].rounded())
 }
 
-/// A centre at the time `t`.
+/// Returns a centre at the time `t`.
 fn at<N: Number>(body: &MovingBody, t: f64) -> Vector<N> {
     plus(vector(body.start), N::from(t), vector(body.displacement))
 }
 
-/// Overlap and approach of two particles.
+/// Returns overlap and approach of two particles.
 pub fn particle_particle<N: Number>(one: &MovingBody, two: &MovingBody) -> Vec<Vec<f64>> {
     let x: Vector<N> = minus(vector(two.start), vector(one.start));
     let d: Vector<N> = minus(vector(two.displacement), vector(one.displacement));
@@ -85,7 +85,7 @@ pub fn particle_particle<N: Number>(one: &MovingBody, two: &MovingBody) -> Vec<V
     vec![rounded(&overlap), rounded(&[negative(square), negative(along)])]
 }
 
-/// Overlap and approach of a particle and a half-plane.
+/// Returns overlap and approach of a particle and a half-plane.
 pub fn particle_half_plane<N: Number>(one: &MovingBody, point: Vec2, normal: Vec2) -> Vec<Vec<f64>> {
     let q: Vector<N> = vector(normal);
     let s = dot(vector(one.displacement), q);
@@ -96,7 +96,7 @@ pub fn particle_half_plane<N: Number>(one: &MovingBody, point: Vec2, normal: Vec
     vec![rounded(&overlap), rounded(&[negative(s) * s, w * s])]
 }
 
-/// Overlap, alpha > 0, alpha < 1 and approach of a particle and an edge.
+/// Returns overlap, alpha > 0, alpha < 1 and approach of a particle and an edge.
 pub fn particle_edge<N: Number>(bodies: &[MovingBody; 3], edge_radius: f64) -> Vec<Vec<f64>> {
     let [one, two, three] = bodies;
     let between = |a: Vec2, b: Vec2| -> Vector<N> { minus(vector(a), vector(b)) };
@@ -113,8 +113,8 @@ pub fn particle_edge<N: Number>(bodies: &[MovingBody; 3], edge_radius: f64) -> V
     vec![rounded(&overlap), rounded(&along), rounded(&back), rounded(&quintic(&x12, &x32, &d12, &d32))]
 }
 
-/// `(x12.x32)^2 - |x12|^2 |x32|^2 + S |x32|^2`, each factor as a quadratic in t (`beside` and `edge` with half of their
-/// linear coefficients).
+/// Returns `(x12.x32)^2 - |x12|^2 |x32|^2 + S |x32|^2`, each factor as a quadratic in t (`beside` and `edge` with half
+/// of their linear coefficients).
 fn quartic<N: Number>([c, b, a]: [N; 3], [f, e, d]: [N; 3], [i, h, g]: [N; 3], s: N) -> [N; 5] {
     [
         sum(&[(1.0, c, c), (-1.0, f, i)]),
@@ -125,7 +125,7 @@ fn quartic<N: Number>([c, b, a]: [N; 3], [f, e, d]: [N; 3], [i, h, g]: [N; 3], s
     ]
 }
 
-/// The course's quintic, term by term (collisions.md 2).
+/// Returns the course's quintic, term by term (collisions.md 2).
 fn quintic<N: Number>(x12: &Vector<N>, x32: &Vector<N>, d12: &Vector<N>, d32: &Vector<N>) -> [N; 6] {
     let [x21, d21] = [x12, d12].map(|v| v.map(negative));
     let (a, b, c) = (dot(*x32, *x32), dot(*x32, *d32), dot(*d32, *d32));
@@ -166,12 +166,12 @@ fn quintic<N: Number>(x12: &Vector<N>, x32: &Vector<N>, d12: &Vector<N>, d32: &V
     ]
 }
 
-/// From the first centre to the second at time `t`.
+/// Returns the vector from the first centre to the second at time `t`.
 pub fn between_particles<N: Number>(one: &MovingBody, two: &MovingBody, t: f64) -> Vec2 {
     rounded_vector::<N>(minus(at(two, t), at(one, t)))
 }
 
-/// From the particle to the closest point of the edge's line at time `t`.
+/// Returns the vector from the particle to the closest point of the edge's line at time `t`.
 pub fn to_edge<N: Number>([one, two, three]: &[MovingBody; 3], t: f64) -> Vec2 {
     let along: Vector<N> = minus(at(three, t), at(two, t));
     let beside = minus(at(one, t), at(two, t));
@@ -179,7 +179,7 @@ pub fn to_edge<N: Number>([one, two, three]: &[MovingBody; 3], t: f64) -> Vec2 {
     rounded_vector(minus(plus(at(two, t), alpha, along), at(one, t)))
 }
 
-/// From the particle to the boundary of a half-plane at time `t`.
+/// Returns the vector from the particle to the boundary of a half-plane at time `t`.
 pub fn to_half_plane<N: Number>(one: &MovingBody, point: Vec2, normal: Vec2, t: f64) -> Vec2 {
     let q: Vector<N> = vector(normal);
     let share = dot(minus(vector(point), at(one, t)), q) / dot(q, q);

@@ -3,7 +3,7 @@ use fosssim_num::vector::Vec2;
 
 use crate::student::encounter::MovingBody;
 
-/// A power basis list (highest power first) in Bernstein's basis over the step, and back.
+/// Returns a power basis list (highest power first) in Bernstein's basis over the step, and back.
 pub fn through_bernstein(list: &[f64]) -> Vec<f64> {
     let degree = list.len() - 1;
     let power = |k: usize| list[degree - k];
@@ -25,8 +25,8 @@ fn sign(exponent: usize) -> f64 {
     if exponent.is_multiple_of(2) { 1.0 } else { -1.0 }
 }
 
-/// The coefficients (highest power first) of the polynomial with the values of `value` at `degree + 1` times that
-/// divide the step evenly, by Newton's divided differences.
+/// Returns the coefficients (highest power first) of the polynomial with the values of `value` at `degree + 1` times
+/// that divide the step evenly, by Newton's divided differences.
 fn interpolated(degree: usize, value: impl Fn(f64) -> f64) -> Vec<f64> {
     #[expect(clippy::cast_precision_loss, reason = "small whole numbers")]
     let times: Vec<f64> = (0..=degree).map(|k| k as f64 / degree as f64).collect();
@@ -51,7 +51,7 @@ fn interpolated(degree: usize, value: impl Fn(f64) -> f64) -> Vec<f64> {
     p
 }
 
-/// Overlap and approach of two particles, from values.
+/// Returns overlap and approach of two particles, from values.
 pub fn particle_particle(one: &MovingBody, two: &MovingBody) -> Vec<Vec<f64>> {
     let n = |t| two.at(t) - one.at(t);
     let reach = one.radius + two.radius;
@@ -59,7 +59,7 @@ pub fn particle_particle(one: &MovingBody, two: &MovingBody) -> Vec<Vec<f64>> {
     vec![interpolated(2, |t| reach * reach - n(t).dot(&n(t))), interpolated(1, |t| closing.dot(&n(t)))]
 }
 
-/// Overlap and approach of a particle and a half-plane, from values.
+/// Returns overlap and approach of a particle and a half-plane, from values.
 pub fn particle_half_plane(one: &MovingBody, point: Vec2, normal: Vec2) -> Vec<Vec<f64>> {
     let away = |t| (point - one.at(t)).dot(&normal);
     let reach = one.radius * one.radius * normal.dot(&normal);
@@ -67,14 +67,14 @@ pub fn particle_half_plane(one: &MovingBody, point: Vec2, normal: Vec2) -> Vec<V
     vec![interpolated(2, |t| reach - away(t) * away(t)), interpolated(1, |t| speed * away(t))]
 }
 
-/// The overlap of a particle and an edge at one time.
+/// Returns the overlap of a particle and an edge at one time.
 pub fn overlap([one, two, three]: &[MovingBody; 3], square: f64, t: f64) -> f64 {
     let (along, beside) = (three.at(t) - two.at(t), one.at(t) - two.at(t));
     let cross = along.x * beside.y - along.y * beside.x;
     square * along.dot(&along) - cross * cross
 }
 
-/// Overlap, alpha > 0 and alpha < 1 of a particle and an edge, from values; the approach stays as supplied.
+/// Returns overlap, alpha > 0 and alpha < 1 of a particle and an edge, from values; the approach stays as supplied.
 pub fn particle_edge(bodies @ [one, two, three]: &[MovingBody; 3], square: f64) -> [Vec<f64>; 3] {
     [
         interpolated(4, |t| overlap(bodies, square, t)),

@@ -10,7 +10,7 @@ fn cross(a: Vec2, b: Vec2) -> f64 {
     a.x * b.y - a.y * b.x
 }
 
-/// `q` and `g`, highest power first.
+/// Returns `q` and `g`, highest power first.
 fn quadratics([one, two, three]: &[MovingBody; 3]) -> ([f64; 3], [f64; 3]) {
     let (w0, w1) = (one.start - two.start, one.displacement - two.displacement);
     let (e0, e1) = (three.start - two.start, three.displacement - two.displacement);
@@ -19,7 +19,7 @@ fn quadratics([one, two, three]: &[MovingBody; 3]) -> ([f64; 3], [f64; 3]) {
     (q, g)
 }
 
-/// The product of two polynomials.
+/// Returns the product of two polynomials.
 fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
     let mut result = vec![0.0; a.len() + b.len() - 1];
     for (i, a) in a.iter().enumerate() {
@@ -34,7 +34,7 @@ fn derivative(p: &[f64; 3]) -> [f64; 2] {
     [2.0 * p[0], p[1]]
 }
 
-/// The overlap with the line, `square` being the squared sum of the radii.
+/// Returns the overlap with the line, `square` being the squared sum of the radii.
 pub fn quartic(bodies: &[MovingBody; 3], square: f64) -> Vec<f64> {
     let (q, g) = quadratics(bodies);
     let mut result: Vec<f64> = product(&q, &q).iter().map(|coefficient| -coefficient).collect();
@@ -44,7 +44,7 @@ pub fn quartic(bodies: &[MovingBody; 3], square: f64) -> Vec<f64> {
     result
 }
 
-/// The approach, mathematically right in every coefficient.
+/// Returns the approach, mathematically right in every coefficient.
 pub fn quintic(bodies: &[MovingBody; 3]) -> Vec<f64> {
     let (q, g) = quadratics(bodies);
     let first = product(&derivative(&q), &g);

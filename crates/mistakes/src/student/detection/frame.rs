@@ -27,7 +27,7 @@ pub enum Axes {
 }
 
 impl Axes {
-    /// The coordinates that this student computes in.
+    /// Returns the coordinates that this student computes in.
     pub fn of(student: Student) -> Self {
         match student.mistake_in(HERE) {
             Some(Mistake::FrameShifted) => Self::Shifted,
@@ -37,7 +37,8 @@ impl Axes {
         }
     }
 
-    /// A point of the scene in these coordinates; `particle` is where the pair's first particle is at the same time.
+    /// Returns a point of the scene in these coordinates; `particle` is where the pair's first particle is at the same
+    /// time.
     pub fn point(self, point: Vec2, particle: Vec2) -> Vec2 {
         match self {
             Self::Scene => point,
@@ -47,7 +48,7 @@ impl Axes {
         }
     }
 
-    /// A difference of points in these coordinates.
+    /// Returns a difference of points in these coordinates.
     pub fn direction(self, v: Vec2) -> Vec2 {
         let (cosine, sine) = TURN;
         match self {
@@ -56,7 +57,7 @@ impl Axes {
         }
     }
 
-    /// The same difference of points in the scene's coordinates.
+    /// Returns the difference of points in the scene's coordinates.
     pub fn back(self, v: Vec2) -> Vec2 {
         let (cosine, sine) = TURN;
         match self {

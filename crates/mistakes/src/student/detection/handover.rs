@@ -40,7 +40,7 @@ pub fn hand_over(student: Student, object: Object, mut lists: Vec<Vec<f64>>) -> 
     lists.iter().map(|list| Polynomial::trimmed(list)).collect()
 }
 
-/// The positive factor of the correct variants that rescale their polynomials.
+/// Returns the positive factor of the correct variants that rescale their polynomials.
 fn factor(student: Student, object: Object) -> Option<f64> {
     let factor = match (student.mistake_in(HERE)?, object) {
         (Mistake::ScaleTwo, _) | (Mistake::ScaleParticleParticleTwo, Object::Particle(_)) => 2.0,

@@ -98,7 +98,7 @@ impl Encounter {
         }
     }
 
-    /// The coefficients that have to be positive together, highest power first.
+    /// Returns the coefficients that have to be positive together, highest power first.
     fn polynomials(&self, student: Student) -> Vec<Vec<f64>> {
         match self {
             Self::Particles(one, two) => particle_particle::polynomials(student, one, two),
@@ -107,7 +107,7 @@ impl Encounter {
         }
     }
 
-    /// The shortest vector from the particle to the object at time `t`.
+    /// Returns the shortest vector from the particle to the object at time `t`.
     fn contact_vector(&self, student: Student, t: f64) -> Vec2 {
         match self {
             Self::Particles(one, two) => particle_particle::contact_vector(student, one, two, t),
@@ -118,7 +118,8 @@ impl Encounter {
         }
     }
 
-    /// How fast the objects approach each other at time `t`: their relative displacement along the contact vector.
+    /// Returns how fast the objects approach each other at time `t`: their relative displacement along the contact
+    /// vector.
     fn closing(&self, t: f64) -> f64 {
         let relative = match self {
             Self::Particles(one, two) => one.displacement - two.displacement,
@@ -131,7 +132,7 @@ impl Encounter {
         relative.dot(&self.contact_vector(Student::default(), t))
     }
 
-    /// How close the centres may come.
+    /// Returns how close the centres may come.
     fn reach(&self) -> f64 {
         match self {
             Self::Particles(one, two) => one.radius + two.radius,
@@ -175,13 +176,14 @@ impl IndexSlip {
     }
 }
 
-/// Whether pairs of this kind are looked at on the integrator's prediction.
+/// Returns whether pairs of this kind are looked at on the integrator's prediction.
 fn is_on_prediction(student: Student, kind: usize) -> bool {
     let all = [Mistake::ParticleParticlePrediction, Mistake::ParticleEdgePrediction, Mistake::HalfPlanePrediction];
     student.makes(all[kind])
 }
 
-/// The coordinates for this pair. A half-plane that moves has no formulas, so nobody moves along with its particle.
+/// Returns the coordinates for this pair. A half-plane that moves has no formulas, so nobody moves along with its
+/// particle.
 fn axes_of(student: Student, pair: Pair) -> Axes {
     match (Axes::of(student), pair.object) {
         (Axes::Comoving, Object::HalfPlane(_)) => Axes::Scene,
@@ -189,7 +191,8 @@ fn axes_of(student: Student, pair: Pair) -> Axes {
     }
 }
 
-/// The polynomials that this student's formulas give for a pair of bodies, as they are handed to the root finder.
+/// Returns the polynomials that this student's formulas give for a pair of bodies, as they are handed to the root
+/// finder.
 #[must_use]
 pub fn polynomials_of(student: Student, motion: &PairMotion) -> Vec<Vec<f64>> {
     let body = |point: &PointMotion, radius: f64| MovingBody { start: point.start, displacement: point.shift, radius };
@@ -264,7 +267,7 @@ pub fn detect(
     Ok(Some(Contact { pair, n, time }))
 }
 
-/// The time of impact; the log counts what its search takes beyond the usual.
+/// Returns the time of impact; the log counts what its search takes beyond the usual.
 fn searched_time(polynomials: &[Polynomial], log: &mut StepLog) -> Result<f64, StepFailure> {
     let mut steps = 0;
     let found = first_time_counted(polynomials, &mut steps);
@@ -272,7 +275,7 @@ fn searched_time(polynomials: &[Polynomial], log: &mut StepLog) -> Result<f64, S
     Ok(found?)
 }
 
-/// One pass over all pairs, with no response in between.
+/// Returns one pass over all pairs, with no response in between.
 pub fn pass(world: &World, q_start: &[f64], q_end: &[f64], log: &mut StepLog) -> Result<Vec<Contact>, StepFailure> {
     let mut contacts = Vec::new();
     for pair in world.pairs() {
@@ -281,7 +284,7 @@ pub fn pass(world: &World, q_start: &[f64], q_end: &[f64], log: &mut StepLog) ->
     Ok(contacts)
 }
 
-/// Whether a time of impact lies within the step.
+/// Returns whether a time of impact lies within the step.
 fn within_step(student: Student, time: f64, time_step: f64) -> bool {
     let is_of_time =
         |mistake: &Mistake| [Area::Decision, Area::Process].contains(&mistake.area()) && !REJECTIONS.contains(mistake);
@@ -299,7 +302,7 @@ fn within_step(student: Student, time: f64, time_step: f64) -> bool {
     }
 }
 
-/// The further tests that some programs make, and should not.
+/// Returns whether one of the further tests rejects the impact that some programs make, and should not.
 fn rejected(student: Student, encounter: &Encounter, time: f64) -> bool {
     match (student.mistake_among(REJECTIONS), encounter) {
         (Some(Mistake::DecisionOverlapAtEnd), _) => length(encounter.contact_vector(student, 1.0)) >= encounter.reach(),
@@ -319,14 +322,14 @@ fn rejected(student: Student, encounter: &Encounter, time: f64) -> bool {
     }
 }
 
-/// Whether the pair's edge has two fixed ends.
+/// Returns whether the pair's edge has two fixed ends.
 fn is_held(world: &World, pair: Pair) -> bool {
     let Object::Edge(index) = pair.object else { return false };
     let edge = world.scene.edges[index];
     world.fixed(edge.first) && world.fixed(edge.second)
 }
 
-/// Whether the particles' paths stay far apart, judged by bounding circles. Nobody asked for this.
+/// Returns whether the particles' paths stay far apart, judged by bounding circles. Nobody asked for this.
 fn out_of_reach(encounter: &Encounter) -> bool {
     let Encounter::Particles(one, two) = encounter else { return false };
     length(two.start - one.start) > one.radius + two.radius + length(one.displacement) + length(two.displacement)

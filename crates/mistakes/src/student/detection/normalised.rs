@@ -25,8 +25,8 @@ pub fn normalise(student: Student, encounter: &Encounter, lists: &mut [Vec<f64>]
     }
 }
 
-/// A number that makes quotients of one pair's formulas handy: the square of the relative motion, along the normal
-/// where there is one; for edges that of the length.
+/// Returns a number that makes quotients of one pair's formulas handy: the square of the relative motion, along the
+/// normal where there is one; for edges that of the length.
 fn of_pair(encounter: &Encounter) -> f64 {
     let square = |v: Vec2| v.dot(&v);
     match encounter {

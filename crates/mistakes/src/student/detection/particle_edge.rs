@@ -16,7 +16,7 @@ use crate::student::{
 /// The parts of the assignment whose mistakes are made in the polynomials.
 const FORMULAS: &[Area] = &[Area::ParticleEdge, Area::Handover, Area::ContactVector];
 
-/// Overlap (quartic), alpha > 0 (quadratic), alpha < 1 (quadratic), approach (quintic).
+/// Returns overlap (quartic), alpha > 0 (quadratic), alpha < 1 (quadratic), approach (quintic).
 pub fn polynomials(student: Student, bodies: &[MovingBody; 3], edge_radius: f64) -> Vec<Vec<f64>> {
     let mistake = student.mistake_in(FORMULAS);
     match mistake {
@@ -52,7 +52,7 @@ pub fn polynomials(student: Student, bodies: &[MovingBody; 3], edge_radius: f64)
     ]
 }
 
-/// The moving points as this student puts them into the formulas.
+/// Returns the moving points as this student puts them into the formulas.
 fn seen(student: Student, bodies: &[MovingBody; 3]) -> [MovingBody; 3] {
     let [mut one, mut two, mut three] = *bodies;
     match student.mistake_in(FORMULAS) {
@@ -108,7 +108,7 @@ fn dot_products([one, two, three]: &[MovingBody; 3]) -> DotProducts {
     [a, b, c, d, e, f, g, h, i]
 }
 
-/// The overlap with the line: `(r1 + re)^2 |x32|^2 - |x21|^2 |x32|^2 + (x12.x32)^2` along the motion.
+/// Returns the overlap with the line: `(r1 + re)^2 |x32|^2 - |x21|^2 |x32|^2 + (x12.x32)^2` along the motion.
 fn quartic(student: Student, [a, b, c, d, e, f, g, h, i]: DotProducts, s: f64) -> Vec<f64> {
     let mistake = student.mistake_in(FORMULAS);
     let t4 = match mistake {
@@ -157,7 +157,7 @@ fn quartic(student: Student, [a, b, c, d, e, f, g, h, i]: DotProducts, s: f64) -
     }
 }
 
-/// The same quartic with other parentheses.
+/// Returns the quartic with other parentheses.
 fn rearranged([a, b, c, d, e, f, g, h, i]: DotProducts, s: f64) -> Vec<f64> {
     vec![
         c * c - i * f,
@@ -168,7 +168,7 @@ fn rearranged([a, b, c, d, e, f, g, h, i]: DotProducts, s: f64) -> Vec<f64> {
     ]
 }
 
-/// The same quartic from its values at five times.
+/// Returns the quartic from its values at five times.
 fn interpolated(bodies: &[MovingBody; 3], s: f64) -> Vec<f64> {
     let value = |t: f64| basis::overlap(bodies, s, t);
     let (low2, low1, middle, high1, high2) = (value(-2.0), value(-1.0), value(0.0), value(1.0), value(2.0));
@@ -218,7 +218,7 @@ fn alpha_below_one(student: Student, bodies: &[MovingBody; 3], dots: DotProducts
     }
 }
 
-/// From the particle to the closest point of the line at time `t`.
+/// Returns the vector from the particle to the closest point of the line at time `t`.
 pub fn contact_vector(student: Student, bodies: &[MovingBody; 3], t: f64) -> Vec2 {
     let mistake = student.mistake_in(VECTORS);
     let held = |body: MovingBody| MovingBody { start: body.end(), displacement: Vec2::zeros(), ..body };
@@ -270,7 +270,7 @@ mod tests {
         MovingBody { start: start.into(), displacement: displacement.into(), radius }
     }
 
-    /// Integers, so that every order of evaluation is exact: an edge that turns and stretches.
+    /// Returns integers, so that every order of evaluation is exact: an edge that turns and stretches.
     fn turning() -> [MovingBody; 3] {
         [body([2.0, 5.0], [3.0, -7.0], 1.0), body([0.0, 1.0], [2.0, 4.0], 2.0), body([6.0, 3.0], [-1.0, 2.0], 2.0)]
     }

@@ -12,7 +12,7 @@ use crate::student::{Area, Mistake, author::Student};
 /// The parts of the assignment whose mistakes are made in the polynomials.
 const FORMULAS: &[Area] = &[Area::ParticleHalfPlane, Area::Handover, Area::ContactVector];
 
-/// Overlap (quadratic) and approach (linear).
+/// Returns overlap (quadratic) and approach (linear).
 pub fn polynomials(student: Student, one: &MovingBody, point: Vec2, normal: Vec2) -> Vec<Vec<f64>> {
     let mistake = student.mistake_in(FORMULAS);
     let q = if mistake == Some(Mistake::HalfPlaneUnitNormal) { unit(normal) } else { normal };
@@ -74,7 +74,7 @@ fn overlap(student: Student, radius: f64, s: f64, w: f64, q: Vec2) -> Vec<f64> {
     vec![t2, t1, t0]
 }
 
-/// The same quadratic as a difference of squares.
+/// Returns the quadratic as a difference of squares.
 fn rearranged_overlap(one: &MovingBody, s: f64, w: f64, q: Vec2) -> Vec<f64> {
     let length = q.dot(&q).sqrt();
     let reach = one.radius * length;
@@ -96,7 +96,7 @@ fn approach(student: Student, s: f64, w: f64) -> Vec<f64> {
     }
 }
 
-/// From the centre to the boundary at time `t`.
+/// Returns the vector from the centre to the boundary at time `t`.
 pub fn contact_vector(student: Student, one: &MovingBody, point: Vec2, normal: Vec2, t: f64) -> Vec2 {
     let offset = point - one.start - t * one.displacement;
     let square = normal.dot(&normal);

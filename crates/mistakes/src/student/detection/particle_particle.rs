@@ -12,7 +12,7 @@ use crate::student::{Area, Mistake, author::Student};
 /// The parts of the assignment whose mistakes are made in the polynomials.
 const FORMULAS: &[Area] = &[Area::ParticleParticle, Area::Handover, Area::ContactVector];
 
-/// Overlap (quadratic) and approach (linear).
+/// Returns overlap (quadratic) and approach (linear).
 pub fn polynomials(student: Student, one: &MovingBody, two: &MovingBody) -> Vec<Vec<f64>> {
     let mistake = student.mistake_in(FORMULAS);
     match mistake {
@@ -92,7 +92,7 @@ fn overlap(student: Student, x: Vec2, d: Vec2, r1: f64, r2: f64) -> Vec<f64> {
     vec![t2, t1, t0]
 }
 
-/// The same quadratic, each dot product multiplied out into coordinates and added up in another order.
+/// Returns the quadratic, each dot product multiplied out into coordinates and added up in another order.
 fn rearranged_overlap(one: &MovingBody, two: &MovingBody) -> Vec<f64> {
     let (x1, x2, d1, d2) = (one.start, two.start, one.displacement, two.displacement);
     let (dx, dy) = (d2.x - d1.x, d2.y - d1.y);
@@ -113,7 +113,7 @@ fn approach(student: Student, x: Vec2, d: Vec2, e: Vec2) -> Vec<f64> {
     }
 }
 
-/// From the first centre to the second at time `t`.
+/// Returns the vector from the first centre to the second at time `t`.
 pub fn contact_vector(student: Student, one: &MovingBody, two: &MovingBody, t: f64) -> Vec2 {
     match student.mistake_in(VECTORS) {
         Some(Mistake::ParticleParticleContactAtStart) => two.start - one.start,

@@ -5,7 +5,7 @@ use crate::student::{Area, Mistake, author::Student};
 /// The parts of the assignment whose mistakes are made here.
 const HERE: &[Area] = &[Area::ParticleEdge];
 
-/// The quintic, or what this student puts in its place.
+/// Returns the quintic, or what this student puts in its place.
 pub fn approach(student: Student, bodies: &[MovingBody; 3]) -> Vec<f64> {
     let supplied = || supplied(student, bodies);
     match student.mistake_in(HERE) {
@@ -24,7 +24,8 @@ pub fn approach(student: Student, bodies: &[MovingBody; 3]) -> Vec<f64> {
     }
 }
 
-/// The course's formula, term by term and in its order, its wrong cubic coefficient included unless that was put right.
+/// Returns the course's formula, term by term and in its order, its wrong cubic coefficient included unless that was
+/// put right.
 fn supplied(student: Student, [one, two, three]: &[MovingBody; 3]) -> Vec<f64> {
     let (x12, x32, x21) = (one.start - two.start, three.start - two.start, two.start - one.start);
     let d12 = one.displacement - two.displacement;
@@ -71,7 +72,7 @@ fn supplied(student: Student, [one, two, three]: &[MovingBody; 3]) -> Vec<f64> {
     ]
 }
 
-/// The simplification that the assignment warns of: alpha stays as it is at the start of the step.
+/// Returns the simplification that the assignment warns of: alpha stays as it is at the start of the step.
 fn constant_alpha([one, two, three]: &[MovingBody; 3]) -> Vec<f64> {
     let along = three.start - two.start;
     let alpha = (one.start - two.start).dot(&along) / along.dot(&along);

@@ -19,14 +19,14 @@ impl From<f64> for Wide {
     }
 }
 
-/// `a + b` exactly.
+/// Returns `a + b` exactly.
 fn two_sum(a: f64, b: f64) -> Wide {
     let high = a + b;
     let part = high - a;
     Wide { high, low: (a - (high - part)) + (b - part) }
 }
 
-/// `a + b` exactly, `a` being the larger in size.
+/// Returns `a + b` exactly, `a` being the larger in size.
 fn quick_two_sum(a: f64, b: f64) -> Wide {
     let high = a + b;
     Wide { high, low: b - (high - a) }
@@ -39,7 +39,7 @@ fn split(a: f64) -> (f64, f64) {
     (high, a - high)
 }
 
-/// `a * b` exactly.
+/// Returns `a * b` exactly.
 fn two_product(a: f64, b: f64) -> Wide {
     let high = a * b;
     let ((a1, a2), (b1, b2)) = (split(a), split(b));

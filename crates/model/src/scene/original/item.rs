@@ -12,7 +12,7 @@ pub(super) struct Item<'e> {
 }
 
 impl<'e> Item<'e> {
-    /// All elements of one name; messages call them `kind`.
+    /// Returns all elements of one name; messages call them `kind`.
     pub(super) fn all(
         elements: &'e [Element<'e>],
         name: &'static str,
@@ -27,12 +27,12 @@ impl<'e> Item<'e> {
             .map(move |(number, element)| Self { element, kind, number: Some(number), exit_code })
     }
 
-    /// An element of which only the first counts.
+    /// Returns an element of which only the first counts.
     pub(super) fn single(element: &'e Element<'e>, kind: &'static str) -> Self {
         Self { element, kind, number: None, exit_code: 1 }
     }
 
-    /// `particle 3`, or `backgroundcolor`.
+    /// Returns `particle 3`, or `backgroundcolor`.
     pub(super) fn who(&self) -> String {
         self.number.map_or_else(|| self.kind.to_owned(), |number| format!("{} {number}", self.kind))
     }
@@ -41,22 +41,22 @@ impl<'e> Item<'e> {
         self.element.attribute(name)
     }
 
-    /// An integer; `value of` stands in both messages.
+    /// Returns an integer; `value of` stands in both messages.
     pub(super) fn index(&self, name: &str) -> Result<i32, Refusal> {
         self.required(name, "value of ", "integer", values::integer)
     }
 
-    /// A scalar; `value of` stands only in the message about a bad one.
+    /// Returns a scalar; `value of` stands only in the message about a bad one.
     pub(super) fn numeric(&self, name: &str) -> Result<f64, Refusal> {
         self.required(name, "", "numeric", values::scalar)
     }
 
-    /// Two scalars of the sort of [`Item::numeric`].
+    /// Returns two scalars of the sort of [`Item::numeric`].
     pub(super) fn numerics(&self, x: &str, y: &str) -> Result<Vec2, Refusal> {
         Ok(Vec2::new(self.numeric(x)?, self.numeric(y)?))
     }
 
-    /// Two scalars called real numbers; `value of` stands in both messages.
+    /// Returns two scalars called real numbers; `value of` stands in both messages.
     pub(super) fn reals(&self, x: &str, y: &str) -> Result<Vec2, Refusal> {
         let real = |name| self.required(name, "value of ", "real number", values::scalar);
         Ok(Vec2::new(real(x)?, real(y)?))
@@ -66,7 +66,7 @@ impl<'e> Item<'e> {
         self.required(name, "", "boolean", values::boolean)
     }
 
-    /// An optional scalar whose message lacks `value of`.
+    /// Returns an optional scalar whose message lacks `value of`.
     pub(super) fn radius(&self, default: f64) -> Result<f64, Refusal> {
         self.optional("radius", default, "", "scalar")
     }
@@ -76,7 +76,7 @@ impl<'e> Item<'e> {
         values::scalar(text).ok_or_else(|| self.refusal(of, name, &format!("Value must be {what}. Exiting.")))
     }
 
-    /// The colour in `r`, `g`, `b`, each checked before the next is read.
+    /// Returns the colour in `r`, `g`, `b`, each checked before the next is read.
     pub(super) fn color(&self) -> Result<Color, Refusal> {
         let component = |name: &str| {
             let value = self.required(name, "value of ", "scalar", values::scalar)?;
@@ -89,7 +89,7 @@ impl<'e> Item<'e> {
         Ok(Color { red: component("r")?, green: component("g")?, blue: component("b")? })
     }
 
-    /// `Failed to parse [value of ]NAME attribute for WHO. END`
+    /// Returns `Failed to parse [value of ]NAME attribute for WHO. END`
     pub(super) fn refusal(&self, of: &str, name: &str, end: &str) -> Refusal {
         let text = format!("Failed to parse {of}{name} attribute for {}. {end}", self.who());
         Refusal::message(text.as_bytes(), self.exit_code)

@@ -13,7 +13,7 @@ pub(super) struct Element<'t> {
 }
 
 impl Element<'_> {
-    /// The text of an attribute; of several with one name the first counts. A NUL (from `&#0;`) ends the text.
+    /// Returns the text of an attribute; of several with one name the first counts. A NUL (from `&#0;`) ends the text.
     pub(super) fn attribute(&self, name: &str) -> Option<&[u8]> {
         let (_, value) = self.attributes.iter().find(|(found, _)| *found == name.as_bytes())?;
         Some(value.split(|&byte| byte == 0).next().unwrap_or_default())
@@ -26,8 +26,8 @@ pub(super) fn join(bytes: &[u8]) -> Vec<u8> {
     bytes.iter().copied().take_while(|&byte| byte != 0).filter(|&byte| byte != b'\n').collect()
 }
 
-/// The children of the first root named `scene`, or nothing when there is no such root. The error is the text of the
-/// original's exception.
+/// Reads the children of the first root named `scene`, or nothing when there is no such root. The error is the text of
+/// the original's exception.
 pub(super) fn parse(text: &[u8]) -> Result<Option<Vec<Element<'_>>>, &'static str> {
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
     let mut cursor = Cursor { text, at: 0 };
@@ -82,12 +82,12 @@ struct Cursor<'t> {
 }
 
 impl<'t> Cursor<'t> {
-    /// The byte `ahead` of the place; 0 from the end on (the text itself holds no NUL).
+    /// Returns the byte `ahead` of the place; 0 from the end on (the text itself holds no NUL).
     fn peek(&self, ahead: usize) -> u8 {
         self.text.get(self.at + ahead).copied().unwrap_or(0)
     }
 
-    /// The rest of the text, never past the end.
+    /// Returns the rest of the text, never past the end.
     fn rest(&self) -> &'t [u8] {
         self.text.get(self.at..).unwrap_or_default()
     }
@@ -122,7 +122,8 @@ impl<'t> Cursor<'t> {
         Ok(())
     }
 
-    /// The node behind a `<` that does not close: an element and whether it has contents, or something to ignore.
+    /// Returns the node behind a `<` that does not close: an element and whether it has contents, or something to
+    /// ignore.
     fn node(&mut self) -> Result<Option<(Element<'t>, bool)>, &'static str> {
         match self.peek(0) {
             b'?' => {
@@ -150,7 +151,7 @@ impl<'t> Cursor<'t> {
         }
     }
 
-    /// Behind the `>` that is not in brackets.
+    /// Reads to behind the `>` that is not in brackets.
     fn document_type(&mut self) -> Result<(), &'static str> {
         let mut depth = 0_usize;
         loop {
@@ -194,7 +195,7 @@ impl<'t> Cursor<'t> {
         Ok((Element { name, attributes }, opens))
     }
 
-    /// Text up to `end` (not included) or to the end of everything, with its references translated.
+    /// Reads text up to `end` (not included) or to the end of everything, with its references translated.
     fn value(&mut self, end: u8) -> Result<Cow<'t, [u8]>, &'static str> {
         let plain = self.skip(|byte| byte != end && byte != b'&');
         if self.peek(0) != b'&' {
@@ -213,7 +214,7 @@ impl<'t> Cursor<'t> {
         }
     }
 
-    /// One `&...;`; an unknown name is copied as it stands.
+    /// Translates one `&...;`; an unknown name is copied as it stands.
     fn reference(&mut self, value: &mut Vec<u8>) -> Result<(), &'static str> {
         const NAMED: [(&[u8], u8); 5] =
             [(b"&amp;", b'&'), (b"&apos;", b'\''), (b"&quot;", b'"'), (b"&gt;", b'>'), (b"&lt;", b'<')];
@@ -244,7 +245,7 @@ impl<'t> Cursor<'t> {
     }
 }
 
-/// The UTF-8 form of a code, surrogates included.
+/// Writes the UTF-8 form of a code, surrogates included.
 fn encode(code: u64, value: &mut Vec<u8>) -> Result<(), &'static str> {
     let code = u32::try_from(code).ok().filter(|&code| code < 0x11_0000).ok_or("invalid numeric character entity")?;
     let six = |shift: u32| ((code >> shift) & 0x3f) as u8 | 0x80;

@@ -45,24 +45,24 @@ pub struct Refusal {
     pub stderr: Vec<u8>,
     /// The exit code as a shell shows it: 1, 0 for half-planes, 134 for broken XML.
     pub exit_code: u8,
-    /// The same in plain words, without escape sequences.
+    /// The message in plain words, without escape sequences.
     pub explanation: String,
 }
 
 /// The ways in which the original refuses a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RefusalKind {
-    /// It prints a message and exits.
+    /// The original prints a message and exits.
     Message,
-    /// It dies of an uncaught exception (broken XML).
+    /// The original dies of an uncaught exception (broken XML).
     Crash,
-    /// It would read memory that is not its own; we refuse instead.
+    /// The original would read memory that is not its own; this program rejects the scene.
     Undefined,
 }
 
 impl Refusal {
-    /// The original's message about a scene file that cannot be opened (scene-format.md 1). The name may hold any
-    /// bytes.
+    /// Returns the original's message about a scene file that cannot be opened (scene-format.md 1). The name may hold
+    /// any bytes.
     #[must_use]
     pub fn unreadable(name: &[u8]) -> Self {
         let stderr =
@@ -72,7 +72,7 @@ impl Refusal {
         Self { kind: RefusalKind::Message, stderr, exit_code: 1, explanation }
     }
 
-    /// A message of the scene parser. `text` may hold bytes of the scene that are not UTF-8.
+    /// Returns a message of the scene parser. `text` may hold bytes of the scene that are not UTF-8.
     fn message(text: &[u8], exit_code: u8) -> Self {
         let mut stderr = b"\x1b[31;1mERROR IN XMLSCENEPARSER:\x1b[m ".to_vec();
         stderr.extend_from_slice(text);
@@ -81,7 +81,7 @@ impl Refusal {
         Self { kind: RefusalKind::Message, stderr, exit_code, explanation }
     }
 
-    /// The end by an uncaught exception of the XML parser.
+    /// Returns the end by an uncaught exception of the XML parser.
     fn crash(what: &str) -> Self {
         let stderr =
             format!("terminate called after throwing an instance of 'rapidxml::parse_error'\n  what():  {what}\n");
@@ -89,7 +89,7 @@ impl Refusal {
         Self { kind: RefusalKind::Crash, stderr: stderr.into_bytes(), exit_code: 134, explanation }
     }
 
-    /// An input without a defined outcome in the original.
+    /// Returns an input without a defined outcome in the original.
     fn undefined(explanation: String) -> Self {
         let stderr = format!("{explanation}\n").into_bytes();
         Self { kind: RefusalKind::Undefined, stderr, exit_code: 1, explanation }

@@ -91,7 +91,7 @@ impl<'e> Repeated<'e> {
         Item::all(self.elements, name, name)
     }
 
-    /// `index` when it is below `count`; otherwise 0, and the scene will be refused.
+    /// Returns `index` when it is below `count`; otherwise 0, and the scene will be refused.
     fn within(&mut self, item: &Item<'_>, what: &str, index: i32, count: usize) -> usize {
         match usize::try_from(index) {
             Ok(index) if index < count => index,
@@ -138,7 +138,7 @@ impl<'e> Repeated<'e> {
         self.all("halfplane").map(read).collect()
     }
 
-    /// All forces, in the order in which they act.
+    /// Returns all forces, in the order in which they act.
     fn forces(&mut self, particles: usize, edges: usize) -> Result<Vec<Force>, Refusal> {
         let mut forces = Vec::new();
         for kind in ForceKind::ALL {
@@ -169,7 +169,7 @@ impl<'e> Repeated<'e> {
         Ok(colors)
     }
 
-    /// The trails; one of a particle that does not exist has no effect in the original and is left out.
+    /// Returns the trails; one of a particle that does not exist has no effect in the original and is left out.
     fn paths(&self, particles: usize) -> Result<Vec<ParticlePath>, Refusal> {
         let mut paths = Vec::new();
         for item in self.all("particlepath") {

@@ -13,13 +13,13 @@ fn refuse<T>(text: &str) -> Result<T, Refusal> {
     Err(Refusal::message(text.as_bytes(), 1))
 }
 
-/// A scalar of a single element, which messages call `kind`; the value is to be `what`.
+/// Returns a scalar of a single element, which messages call `kind`; the value is to be `what`.
 fn scalar(element: &Element<'_>, kind: &str, name: &str, what: &str) -> Result<f64, Refusal> {
     let missing = || refuse(&format!("No {kind} '{name}' attribute specified. Exiting."));
     optional(element, kind, name, what)?.map_or_else(missing, Ok)
 }
 
-/// The same, where it may be absent.
+/// Reads a number that may be absent.
 fn optional(element: &Element<'_>, kind: &str, name: &str, what: &str) -> Result<Option<f64>, Refusal> {
     let Some(text) = element.attribute(name) else { return Ok(None) };
     let bad = || refuse(&format!("Failed to parse '{name}' attribute for {kind}. Value must be {what}. Exiting."));
@@ -31,7 +31,7 @@ impl<'e> Singles<'e> {
         self.0.iter().find(|element| element.name == name.as_bytes())
     }
 
-    /// The type of simulation as written; absent means the particle system.
+    /// Returns the type of simulation as written; absent means the particle system.
     pub(super) fn simulation_type(&self) -> &'e [u8] {
         self.first("simtype").and_then(|element| element.attribute("type")).unwrap_or_default()
     }
@@ -69,7 +69,7 @@ impl<'e> Singles<'e> {
         element.attribute("tag").map_or_else(|| refuse(missing), |text| Ok(Some(text)))
     }
 
-    /// The integrator and the time step.
+    /// Returns the integrator and the time step.
     pub(super) fn integrator(&self) -> Result<(Integrator, f64), Refusal> {
         let Some(element) = self.first("integrator") else { return refuse("No integrator specified. Exiting.") };
         let Some(written) = element.attribute("type") else {
@@ -81,7 +81,7 @@ impl<'e> Singles<'e> {
         Ok((integrator, scalar(element, "integrator", "dt", "numeric")?))
     }
 
-    /// Every word but the contest's detection has no effect.
+    /// Reads the detection: every word but the contest's has no effect.
     fn detection(&self) -> CollisionDetection {
         match self.first("collisiondetection").and_then(|element| element.attribute("type")) {
             Some(b"contest") => CollisionDetection::Contest,

@@ -1,8 +1,8 @@
 //! Numbers as a C++ stream extracts them: the longest prefix counts, the rest is ignored (scene-format.md 2).
 use crate::scene::numbers::{digits, mantissa};
 
-/// A 64-bit float, correctly rounded. Fails without digits, with an exponent sign or letter without digits behind it,
-/// and on overflow; underflow gives zero.
+/// Returns a 64-bit float, correctly rounded. Fails without digits, with an exponent sign or letter without digits
+/// behind it, and on overflow; underflow gives zero.
 pub(super) fn scalar(text: &[u8]) -> Option<f64> {
     let text = trim(text);
     let mut end = mantissa(text)?;
@@ -20,12 +20,12 @@ pub(super) fn scalar(text: &[u8]) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-/// A 32-bit integer.
+/// Returns a 32-bit integer.
 pub(super) fn integer(text: &[u8]) -> Option<i32> {
     i32::try_from(long(text)?).ok()
 }
 
-/// A truth value: an integer that is 0 or 1.
+/// Returns a truth value: an integer that is 0 or 1.
 pub(super) fn boolean(text: &[u8]) -> Option<bool> {
     match long(text)? {
         0 => Some(false),
@@ -34,7 +34,7 @@ pub(super) fn boolean(text: &[u8]) -> Option<bool> {
     }
 }
 
-/// A scalar's conversion to a 32-bit integer: toward zero, and the smallest integer when it does not fit.
+/// Returns a scalar's conversion to a 32-bit integer: toward zero, and the smallest integer when it does not fit.
 pub(super) fn truncated(value: f64) -> i32 {
     let whole = value.trunc();
     if whole >= f64::from(i32::MIN) && whole <= f64::from(i32::MAX) {
@@ -53,7 +53,7 @@ fn long(text: &[u8]) -> Option<i64> {
     std::str::from_utf8(&text[..end]).ok()?.parse().ok()
 }
 
-/// Without the white space of the C locale at the start.
+/// Removes the white space of the C locale at the start.
 fn trim(text: &[u8]) -> &[u8] {
     let start = text.iter().position(|byte| !matches!(byte, b' ' | b'\t'..=b'\r')).unwrap_or(text.len());
     &text[start..]

@@ -38,7 +38,7 @@ pub(super) fn handle<O: Observer>(
     Ok(())
 }
 
-/// The response to an impact (collisions.md 3).
+/// Returns the response to an impact (collisions.md 3).
 pub(super) fn respond(setting: &Setting<'_>, impulse: &Impulse) -> Response {
     let Impulse { pair, normal, time } = *impulse;
     let (first, second) = (pair.first as usize, pair.second as usize);

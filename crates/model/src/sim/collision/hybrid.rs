@@ -117,7 +117,7 @@ fn geometric<O: Observer>(
     }
 }
 
-/// One pass that collects its hits and answers none of them.
+/// Makes one pass that collects its hits and answers none of them.
 fn detect<O: Observer>(
     bodies: &Bodies,
     detector: &mut Detector,

@@ -7,7 +7,7 @@ use super::super::{
 };
 use fosssim_num::{certificate::excludes_unit_interval, first_time::first_time_counted, polynomial::Polynomial};
 
-/// The time of impact as far as it has to be known.
+/// Returns the time of impact as far as it has to be known.
 ///
 /// # Errors
 /// [`StepError::RootSearch`]

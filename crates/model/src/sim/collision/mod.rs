@@ -50,7 +50,7 @@ pub(super) struct Handler {
     kind: Collision,
     law: Law,
     detector: Detector,
-    /// Of `simple`, which logs nothing of pairs that are apart.
+    /// The search of `simple`, which logs nothing of pairs that are apart.
     nearby: Option<Nearby>,
     hybrid: HybridScratch,
 }
@@ -104,7 +104,7 @@ impl Handler {
         }
     }
 
-    /// Most work, over all steps.
+    /// Sets the most work over all steps.
     pub fn limit_work(&mut self, most: u64) {
         self.detector.limit_work(most);
     }

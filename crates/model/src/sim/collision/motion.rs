@@ -21,19 +21,19 @@ use fosssim_num::{
 pub struct PointMotion {
     /// Where it is at the start of the step.
     pub start: Vec2,
-    /// Its displacement in the step.
+    /// The point's displacement in the step.
     pub shift: Vec2,
 }
 
 impl PointMotion {
-    /// The motion of particle `index` between two arrays of positions in trace order.
+    /// Returns the motion of particle `index` between two arrays of positions in trace order.
     #[must_use]
     pub fn between(q_start: &[f64], q_end: &[f64], index: usize) -> Self {
         let start = at(q_start, index);
         Self { start, shift: at(q_end, index) - start }
     }
 
-    /// Where it is at `time`, a fraction of the step.
+    /// Returns where it is at `time`, a fraction of the step.
     #[must_use]
     pub fn at(&self, time: f64) -> Vec2 {
         self.start + time * self.shift
@@ -45,9 +45,9 @@ impl PointMotion {
 pub enum PairMotion {
     /// Two discs.
     Particles {
-        /// Their centres.
+        /// The particles' centres.
         centres: [PointMotion; 2],
-        /// Their radii.
+        /// The particles' radii.
         radii: [f64; 2],
     },
     /// A disc and an edge.
@@ -67,13 +67,13 @@ pub enum PairMotion {
         radius: f64,
         /// A point on the half-plane's boundary.
         point: Vec2,
-        /// Its normal as written, of any length.
+        /// The half-plane's normal as written, of any length.
         normal: Vec2,
     },
 }
 
 impl PairMotion {
-    /// The motion of a scene's pair between two arrays of positions in trace order.
+    /// Returns the motion of a scene's pair between two arrays of positions in trace order.
     ///
     /// # Panics
     /// When the scene or an array has no such object.
@@ -99,7 +99,7 @@ impl PairMotion {
         }
     }
 
-    /// The kind of the second object.
+    /// Returns the kind of the second object.
     #[must_use]
     pub const fn kind(&self) -> PairKind {
         match self {
@@ -109,7 +109,7 @@ impl PairMotion {
         }
     }
 
-    /// The motion of a pair whose particles move by these displacements.
+    /// Returns the motion of a pair whose particles move by these displacements.
     #[inline]
     pub(super) fn of_bodies(bodies: &Bodies, pair: Pair, q_start: &[f64], displacements: &[f64]) -> Self {
         let (first, second) = (pair.first as usize, pair.second as usize);
@@ -131,13 +131,13 @@ impl PairMotion {
         }
     }
 
-    /// The detection polynomials in the order of the trace, nothing dropped (collisions.md 2).
+    /// Returns the detection polynomials in the order of the trace, nothing dropped (collisions.md 2).
     #[must_use]
     pub fn polynomials(&self) -> Vec<Polynomial> {
         self.list()[..self.kind().polynomials()].to_vec()
     }
 
-    /// The same, and behind them empty ones.
+    /// Returns the polynomials, and after them empty ones.
     #[inline]
     pub(super) fn list(&self) -> [Polynomial; PairKind::MOST_POLYNOMIALS] {
         let two = |(overlap, approach): ([f64; 3], [f64; 2])| {
@@ -167,8 +167,8 @@ impl PairMotion {
         }
     }
 
-    /// The contact normal at `time`, from the first object to the second, not normalised. `None` where it is zero
-    /// between a particle and an edge, which is no hit.
+    /// Returns the contact normal at `time`, from the first object to the second, not normalised. `None` where it is
+    /// zero between a particle and an edge, which is no hit.
     #[must_use]
     pub fn normal(&self, time: f64) -> Option<Vec2> {
         match *self {

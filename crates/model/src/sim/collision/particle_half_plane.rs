@@ -9,8 +9,9 @@ use fosssim_num::{
 };
 use std::ops::Mul;
 
-/// The coefficients of the two polynomials of a disc that starts at `x` and moves by `d` in the step: "closer than
-/// `radius`" and "approaching". Highest power first, of one pair or of several. `squared` is `dot(normal, normal)`.
+/// Returns the coefficients of the two polynomials of a disc that starts at `x` and moves by `d` in the step: "closer
+/// than `radius`" and "approaching". Highest power first, of one pair or of several. `squared` is `dot(normal,
+/// normal)`.
 #[inline(always)]
 pub fn coefficients<N: Number>(
     x: Plane<N>,
@@ -28,13 +29,13 @@ where
     ([-s * s, 2.0 * w * s, -w * w + (radius * radius) * squared], [-s * s, w * s])
 }
 
-/// The contact normal at time `t`: from the centre to its foot on the boundary.
+/// Returns the contact normal at time `t`: from the centre to its foot on the boundary.
 #[inline]
 pub(super) fn normal(x: Vec2, d: Vec2, point: Vec2, normal: Vec2, squared: f64, t: f64) -> Vec2 {
     (((point - x) - t * d).dot(&normal) / squared) * normal
 }
 
-/// The response along normal `n`, from the mean velocity of the step.
+/// Returns the response along normal `n`, from the mean velocity of the step.
 pub(super) fn response(setting: &Setting<'_>, i: usize, n: Vec2) -> Response {
     let Setting { law, q_start, q_end, .. } = *setting;
     let u = unit(n);
@@ -47,7 +48,7 @@ pub(super) fn response(setting: &Setting<'_>, i: usize, n: Vec2) -> Response {
     Response { gain: None, loss: [Some(change), None] }
 }
 
-/// The simple detection: the vector to the boundary when the disc overlaps it and approaches.
+/// Returns the simple detection: the vector to the boundary when the disc overlaps it and approaches.
 #[inline]
 pub(super) fn overlap(bodies: &Bodies, x: &[f64], v: &[f64], i: usize, half_plane: usize) -> Option<Vec2> {
     let q = unit(bodies.normals[half_plane]);
@@ -55,7 +56,7 @@ pub(super) fn overlap(bodies: &Bodies, x: &[f64], v: &[f64], i: usize, half_plan
     (length(n) < bodies.radii[i] && at(v, i).dot(&n) > 0.0).then_some(n)
 }
 
-/// The simple response along normal `n`, from the velocities `v`; positions stay.
+/// Returns the simple response along normal `n`, from the velocities `v`; positions stay.
 pub(super) fn simple_response(factor: f64, v: &[f64], i: usize, n: Vec2) -> Response {
     let u = unit(n);
     let velocity = ((2.0 * factor) * at(v, i).dot(&u)) * u;

@@ -7,9 +7,9 @@ use fosssim_num::{
 };
 use std::ops::Mul;
 
-/// The coefficients of the two polynomials of discs that start at `x1` and `x2` and move by `d1` and `d2` in the step:
-/// "closer than `radii`" and "approaching". Highest power first, of one pair or of several. Time is a fraction of the
-/// step.
+/// Returns the coefficients of the two polynomials of discs that start at `x1` and `x2` and move by `d1` and `d2` in
+/// the step: "closer than `radii`" and "approaching". Highest power first, of one pair or of several. Time is a
+/// fraction of the step.
 #[inline(always)]
 pub fn coefficients<N: Number>(x1: Plane<N>, d1: Plane<N>, x2: Plane<N>, d2: Plane<N>, radii: N) -> ([N; 3], [N; 2])
 where
@@ -23,13 +23,13 @@ where
     ([-squared, -2.0 * x.dot(d), radii * radii - x.dot(x)], [-squared, e.dot(x)])
 }
 
-/// The contact normal at time `t`, from the first to the second centre.
+/// Returns the contact normal at time `t`, from the first to the second centre.
 #[inline]
 pub(super) fn normal(x1: Vec2, d1: Vec2, x2: Vec2, d2: Vec2, t: f64) -> Vec2 {
     (x2 + t * d2) - (x1 + t * d1)
 }
 
-/// The response along normal `n`, from the mean velocities of the step.
+/// Returns the response along normal `n`, from the mean velocities of the step.
 pub(super) fn response(setting: &Setting<'_>, i: usize, j: usize, n: Vec2) -> Response {
     let Setting { bodies, law, q_start, q_end } = *setting;
     let v1 = law.mean_velocity(q_start, q_end, i);
@@ -37,19 +37,19 @@ pub(super) fn response(setting: &Setting<'_>, i: usize, j: usize, n: Vec2) -> Re
     exchange(bodies, law.factor, law.time_step, i, j, v2 - v1, unit(n))
 }
 
-/// The simple detection: the vector between the centres when they overlap and approach.
+/// Returns the simple detection: the vector between the centres when they overlap and approach.
 #[inline]
 pub(super) fn overlap(bodies: &Bodies, x: &[f64], v: &[f64], i: usize, j: usize) -> Option<Vec2> {
     let n = at(x, j) - at(x, i);
     (length(n) < bodies.radii[i] + bodies.radii[j] && (at(v, i) - at(v, j)).dot(&n) > 0.0).then_some(n)
 }
 
-/// The simple response along normal `n`, from the velocities `v`; positions stay.
+/// Returns the simple response along normal `n`, from the velocities `v`; positions stay.
 pub(super) fn simple_response(bodies: &Bodies, factor: f64, v: &[f64], i: usize, j: usize, n: Vec2) -> Response {
     exchange(bodies, factor, 0.0, i, j, at(v, j) - at(v, i), unit(n))
 }
 
-/// The exchange of momentum along the unit vector `u` for relative velocity `relative` (second minus first).
+/// Returns the exchange of momentum along the unit vector `u` for relative velocity `relative` (second minus first).
 fn exchange(bodies: &Bodies, factor: f64, dt: f64, i: usize, j: usize, relative: Vec2, u: Vec2) -> Response {
     let (m1, m2) = (bodies.response_masses[i], bodies.response_masses[j]);
     let numerator = (2.0 * factor) * relative.dot(&u);

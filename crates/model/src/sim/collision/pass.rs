@@ -48,7 +48,7 @@ pub(super) struct Detector {
 }
 
 impl Detector {
-    /// A detector that has done nothing yet, for a scene with this many steps.
+    /// Creates a detector that has done nothing yet, for a scene with this many steps.
     pub fn new(search: RootSearch, steps: u32) -> Self {
         Self {
             search,
@@ -74,7 +74,7 @@ impl Detector {
         self.passes = 0;
     }
 
-    /// Number of passes in this step so far, hence the index of the next one.
+    /// Returns number of passes in this step so far, hence the index of the next one.
     pub fn passes(&self) -> u32 {
         self.passes
     }

@@ -14,12 +14,12 @@ pub(super) struct Law {
 }
 
 impl Law {
-    /// The law for a coefficient of restitution and a time step.
+    /// Creates the law for a coefficient of restitution and a time step.
     pub fn new(restitution: f64, time_step: f64) -> Self {
         Self { time_step, rate: 1.0 / time_step, factor: (1.0 + restitution) / 2.0 }
     }
 
-    /// The mean velocity of a particle over the step, `(1/dt) (q_end - q_start)`. Responses of continuous-time
+    /// Returns the mean velocity of a particle over the step, `(1/dt) (q_end - q_start)`. Responses of continuous-time
     /// detection use this and not the velocity of the state.
     #[inline]
     pub fn mean_velocity(&self, q_start: &[f64], q_end: &[f64], particle: usize) -> Vec2 {
@@ -45,9 +45,9 @@ pub(super) struct Setting<'a> {
 pub(super) struct Change {
     /// The particle.
     pub particle: usize,
-    /// Of the velocity.
+    /// The change of the velocity.
     pub velocity: Vec2,
-    /// Of the position at the end of the step; `simple` leaves it out.
+    /// The change of the position at the end of the step; `simple` leaves it out.
     pub position: Vec2,
 }
 
@@ -84,7 +84,7 @@ impl Response {
     }
 }
 
-/// `alpha` clamped to [0, 1] by the original's comparisons: NaN becomes 0, and so does -0.
+/// Returns `alpha` clamped to [0, 1] by the original's comparisons: NaN becomes 0, and so does -0.
 #[inline]
 pub(super) fn clamp(alpha: f64) -> f64 {
     let alpha = if 0.0 < alpha { alpha } else { 0.0 };

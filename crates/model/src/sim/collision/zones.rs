@@ -22,18 +22,18 @@ pub(super) struct Zones {
 const NONE: u32 = u32::MAX;
 
 impl Zones {
-    /// Number of zones.
+    /// Returns number of zones.
     pub fn len(&self) -> usize {
         self.ends.len()
     }
 
-    /// Zone number `index`.
+    /// Returns zone number `index`.
     pub fn get(&self, index: usize) -> Zone<'_> {
         let start = if index == 0 { 0 } else { self.ends[index - 1] };
         Zone { particles: &self.particles[start..self.ends[index]], half_plane: self.half_planes[index] }
     }
 
-    /// All zones in order.
+    /// Returns all zones in order.
     pub fn iter(&self) -> impl Iterator<Item = Zone<'_>> {
         (0..self.len()).map(|index| self.get(index))
     }
@@ -49,7 +49,7 @@ impl Zones {
     }
 }
 
-/// The same zones, in whatever order: as many, and each of the one list occurs in the other.
+/// Equal zones, in whatever order: as many, and each of the one list occurs in the other.
 impl PartialEq for Zones {
     fn eq(&self, other: &Self) -> bool {
         self.len() == other.len()
@@ -194,7 +194,7 @@ mod tests {
         zones
     }
 
-    /// The merge of collisions.md 5, as written.
+    /// Returns the merge of collisions.md 5, as written.
     fn merged_literally(mut zones: Vec<(Vec<u32>, bool)>) -> Vec<(Vec<u32>, bool)> {
         loop {
             let mut new: Vec<(Vec<u32>, bool)> = Vec::new();

@@ -41,12 +41,12 @@ impl Forces {
         Self { list: scene.forces.clone(), penalty }
     }
 
-    /// The pairs of the penalty force, if there is one.
+    /// Returns the pairs of the penalty force, if there is one.
     pub fn pairs(&mut self) -> Option<&mut PenaltyPairs> {
         self.penalty.as_mut().map(Penalty::pairs)
     }
 
-    /// Whether every force has the Hessians that implicit integrators need; a vortex force has none.
+    /// Returns whether every force has the Hessians that implicit integrators need; a vortex force has none.
     pub fn have_hessians(&self) -> bool {
         !self.list.iter().any(|force| matches!(force, Force::Vortex { .. }))
     }
@@ -107,13 +107,13 @@ impl Forces {
     }
 }
 
-/// `array[index] += v`.
+/// Computes `array[index] += v`.
 #[inline]
 fn add(array: &mut [f64], index: usize, v: Vec2) {
     put(array, index, at(array, index) + v);
 }
 
-/// `array[index] -= v`.
+/// Computes `array[index] -= v`.
 #[inline]
 fn subtract(array: &mut [f64], index: usize, v: Vec2) {
     put(array, index, at(array, index) - v);

@@ -4,7 +4,7 @@ use crate::sim::matrix::{couple, decouple};
 use fosssim_num::vector::{Vec2, at, length, over};
 use nalgebra::{DMatrix, Matrix2};
 
-/// The spring's length and its direction from the first to the second endpoint (NaN when they coincide).
+/// Returns the spring's length and its direction from the first to the second endpoint (NaN when they coincide).
 fn direction([a, b]: [usize; 2], x: &[f64]) -> (f64, Vec2) {
     let d = at(x, b) - at(x, a);
     let l = length(d);

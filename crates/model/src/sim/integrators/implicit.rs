@@ -70,7 +70,7 @@ pub(super) fn advance(
     Ok(())
 }
 
-/// The Euclidean norm, with the squares of even and of odd entries summed apart.
+/// Returns the Euclidean norm, with the squares of even and of odd entries summed apart.
 fn norm_by_halves(d: &[f64]) -> f64 {
     let mut pairs = d.chunks_exact(2);
     let Some(first) = pairs.next() else { return 0.0 };

@@ -82,17 +82,17 @@ impl Stepper {
         }
     }
 
-    /// The work of all steps so far.
+    /// Returns the work of all steps so far.
     pub fn work(&self) -> u64 {
         self.effort.done
     }
 
-    /// Most work, over all steps.
+    /// Sets the most work over all steps.
     pub fn limit_work(&mut self, most: u64) {
         self.effort.most = most;
     }
 
-    /// Whether the method needs the Hessians of the forces.
+    /// Returns whether the method needs the Hessians of the forces.
     pub fn is_implicit(&self) -> bool {
         self.implicit.is_some()
     }
@@ -147,14 +147,14 @@ impl Stepper {
     }
 }
 
-/// `target += scale * source`, entry by entry.
+/// Computes `target += scale * source`, entry by entry.
 fn add_scaled(target: &mut [f64], scale: f64, source: &[f64]) {
     for (target, source) in target.iter_mut().zip(source) {
         *target += scale * source;
     }
 }
 
-/// `target += scale * (force / mass)`, entry by entry; the quotient is rounded first.
+/// Computes `target += scale * (force / mass)`, entry by entry; the quotient is rounded first.
 fn add_scaled_accelerations(target: &mut [f64], scale: f64, force: &[f64], masses: &[f64]) {
     for ((target, force), &mass) in target.chunks_exact_mut(2).zip(force.chunks_exact(2)).zip(masses) {
         target[0] += scale * (force[0] / mass);
@@ -171,7 +171,7 @@ mod tests {
     };
     use fosssim_num::vector::Vec2;
 
-    /// The state after a step of half a second, in which a force of 4 to the right acts on all particles.
+    /// Returns the state after a step of half a second, in which a force of 4 to the right acts on all particles.
     fn advanced(integrator: Integrator, particles: Vec<Particle>) -> State {
         let force = Force::Constant { force: Vec2::new(4.0, 0.0) };
         let scene = Scene { integrator, forces: vec![force], ..scene(particles) };

@@ -44,7 +44,7 @@ const fn numbers(first: u32, second: u32) -> Numbers {
     (first as u64) << 32 | second as u64
 }
 
-/// Both numbers.
+/// Returns both numbers.
 fn apart(numbers: Numbers) -> [usize; 2] {
     [(numbers >> 32) as usize, (numbers & u64::from(u32::MAX)) as usize]
 }
@@ -57,7 +57,7 @@ pub(super) struct NearRows<'a> {
 }
 
 impl<'a> NearRows<'a> {
-    /// The later particles, and the edges, that are near a particle. To be asked for particles in their order.
+    /// Returns the later particles, and the edges, that are near a particle. To be asked for particles in their order.
     pub fn next(&mut self, particle: usize) -> [impl Iterator<Item = usize> + use<'a>; 2] {
         [&mut self.particles, &mut self.edges].map(|list| {
             let (own, later) = list.split_at(list.iter().take_while(|&&pair| apart(pair)[0] <= particle).count());
@@ -68,13 +68,13 @@ impl<'a> NearRows<'a> {
 }
 
 impl Nearby {
-    /// For the particles and edges of a scene, when looking for pairs is cheaper than going through all of them.
+    /// Creates the search for the particles and edges of a scene, when it is cheaper than going through all of them.
     pub fn of_many(scene: &Scene, margin: f64) -> Option<Self> {
         let particles = scene.particles.len();
         (particles * (particles / 2 + scene.edges.len()) >= FEWEST_PAIRS).then(|| Self::new(scene, margin))
     }
 
-    /// For the particles and edges of a scene.
+    /// Creates the search for the particles and edges of a scene.
     pub fn new(scene: &Scene, margin: f64) -> Self {
         let radii: Vec<f64> = scene.particles.iter().map(|particle| particle.radius).collect();
         // A particle without a radius reaches nothing.
@@ -136,14 +136,14 @@ impl Nearby {
         Some(NearRows { particles, edges: edge_pairs })
     }
 
-    /// How many pairs were tested so far: the work of all searches.
+    /// Returns how many pairs were tested so far: the work of all searches.
     #[cfg(test)]
     pub fn tested(&self) -> u64 {
         self.tested
     }
 }
 
-/// Whether the vector is certainly not shorter than `reach`, without a square root.
+/// Returns whether the vector is certainly not shorter than `reach`, without a square root.
 ///
 /// With `s` the rounded `reach * reach`, a rounded squared length above `s` is at least the next number after `s`,
 /// hence above the exact square of `reach`; its root is then at least `reach` after rounding too. A negative `reach`
@@ -153,12 +153,12 @@ pub(super) fn is_beyond(n: Vec2, reach: f64) -> bool {
     n.x * n.x + n.y * n.y > reach * reach
 }
 
-/// No part of a row is left out.
+/// Returns the range that leaves no part of a row out.
 fn everywhere(_: [f64; 2]) -> [f64; 2] {
     [f64::NEG_INFINITY, f64::INFINITY]
 }
 
-/// A little more than a distance at these places, for all roundings on the way to a vector between them.
+/// Returns a little more than a distance at these places, for all roundings on the way to a vector between them.
 fn widened(reach: f64, places: [Vec2; 2]) -> f64 {
     let most = places.iter().fold(0.0_f64, |most, place| most.max(place.x.abs()).max(place.y.abs()));
     reach * (1.0 + 1e-9) + most * 1e-12 + LEAST_REACH
@@ -167,7 +167,7 @@ fn widened(reach: f64, places: [Vec2; 2]) -> f64 {
 /// The squares of smaller lengths may be zero when rounded.
 const LEAST_REACH: f64 = 1e-150;
 
-/// All that is not further than `reach` from what lies between two places. None if nothing is.
+/// Returns all that is not further than `reach` from what lies between two places. None if nothing is.
 fn around(places: [Vec2; 2], reach: f64) -> Option<Rectangle> {
     if !(reach > 0.0) {
         return None;

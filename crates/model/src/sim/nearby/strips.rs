@@ -43,7 +43,7 @@ pub(super) struct Strips {
     radius: f64,
     /// No two of these reach further than this.
     reach: f64,
-    /// Nor do they, as far as squares tell.
+    /// The width in which squares tell nothing either.
     width: f64,
     /// Rows per length.
     density: f64,
@@ -74,12 +74,12 @@ impl Strips {
         }
     }
 
-    /// The largest radius.
+    /// Returns the largest radius.
     pub fn radius(&self) -> f64 {
         self.radius
     }
 
-    /// All particles that have a place.
+    /// Returns all particles that have a place.
     pub fn entries(&self) -> &[Placed] {
         let end = self.rows.last().map_or(0, |row| row.end);
         &self.entries[..end]
@@ -152,7 +152,7 @@ impl Strips {
         tested
     }
 
-    /// The lowest and the highest y of a row, and a little more.
+    /// Returns the lowest and the highest y of a row, and a little more.
     fn heights(&self, row: i64) -> [f64; 2] {
         let height = |row: i64| match row {
             ..=FIRST_ROW => f64::NEG_INFINITY,
@@ -193,7 +193,7 @@ impl Strips {
     }
 }
 
-/// The row of a height. It never falls as the height rises.
+/// Returns the row of a height. It never falls as the height rises.
 fn row_of(y: f64, density: f64) -> i64 {
     #[expect(clippy::cast_possible_truncation, reason = "what is too large is in the last row, which has room")]
     let row = (y * density) as i64;

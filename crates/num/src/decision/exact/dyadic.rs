@@ -14,28 +14,28 @@ impl Dyadic {
     /// 0.
     pub(super) const ZERO: Self = Self { numerator: BigInt::ZERO, exponent: 0 };
 
-    /// 1.
+    /// Returns 1.
     pub(super) fn one() -> Self {
         Self { numerator: BigInt::from(1), exponent: 0 }
     }
 
-    /// The numerator over `2^exponent`, for an exponent that is not smaller than its own.
+    /// Returns the numerator over `2^exponent`, for an exponent that is not smaller than its own.
     fn numerator_over(&self, exponent: u64) -> BigInt {
         &self.numerator << (exponent - self.exponent)
     }
 
-    /// The midpoint.
+    /// Returns the midpoint.
     pub(super) fn between(&self, other: &Self) -> Self {
         let exponent = self.exponent.max(other.exponent);
         Self { numerator: self.numerator_over(exponent) + other.numerator_over(exponent), exponent: exponent + 1 }
     }
 
-    /// Whether it is 1.
+    /// Returns whether it is 1.
     pub(super) fn is_one(&self) -> bool {
         self.numerator == BigInt::from(1) << self.exponent
     }
 
-    /// The greatest double that is not above, and the least that is not below.
+    /// Returns the greatest double that is not above, and the least that is not below.
     pub(super) fn enclosure(&self) -> [f64; 2] {
         let bits = self.numerator.bits();
         let dropped = bits.saturating_sub(53);
@@ -52,7 +52,8 @@ impl Dyadic {
     }
 }
 
-/// `integer * 2^exponent` for an integer up to `2^53`, exact for exponents in `-1074..=0` with a result of at most 1.
+/// Returns `integer * 2^exponent` for an integer up to `2^53`, exact for exponents in `-1074..=0` with a result of at
+/// most 1.
 fn scaled(integer: u64, exponent: i32) -> f64 {
     let power = |exponent: i32| f64::from_bits(u64::try_from(exponent + 1023).unwrap_or(0) << 52);
     let half = exponent / 2;

@@ -12,7 +12,7 @@ const PRIME: u64 = (1 << 61) - 1;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Integer(Vec<BigInt>);
 
-/// -1, 0 or 1.
+/// Returns -1, 0 or 1.
 fn sign(value: &BigInt) -> i8 {
     match value.sign() {
         Sign::Minus => -1,
@@ -22,7 +22,7 @@ fn sign(value: &BigInt) -> i8 {
 }
 
 impl Integer {
-    /// The polynomial with these coefficients.
+    /// Creates the polynomial with these coefficients.
     pub(super) fn new(mut coefficients: Vec<BigInt>) -> Self {
         while coefficients.last().is_some_and(|last| last.sign() == Sign::NoSign) {
             coefficients.pop();
@@ -30,12 +30,12 @@ impl Integer {
         Self(coefficients)
     }
 
-    /// The constant 1.
+    /// Returns the constant 1.
     pub(super) fn one() -> Self {
         Self(vec![BigInt::from(1)])
     }
 
-    /// A positive multiple of the polynomial with these finite coefficients, highest power first.
+    /// Returns a positive multiple of the polynomial with these finite coefficients, highest power first.
     pub(super) fn from_doubles(list: &[f64]) -> Self {
         let lowest = |&value: &f64| {
             let (mantissa, exponent) = split(value);
@@ -57,27 +57,27 @@ impl Integer {
         Self::new(list.iter().rev().map(integer).collect())
     }
 
-    /// The coefficients, lowest power first.
+    /// Returns the coefficients, lowest power first.
     pub(super) fn coefficients(&self) -> &[BigInt] {
         &self.0
     }
 
-    /// The degree; 0 for the zero polynomial.
+    /// Returns the degree; 0 for the zero polynomial.
     pub(super) fn degree(&self) -> usize {
         self.0.len().saturating_sub(1)
     }
 
-    /// Whether no coefficient is positive.
+    /// Returns whether no coefficient is positive.
     pub(super) fn never_positive_after_zero(&self) -> bool {
         self.0.iter().all(|value| sign(value) <= 0)
     }
 
-    /// Whether no coefficient is negative, and one is positive.
+    /// Returns whether no coefficient is negative, and one is positive.
     pub(super) fn always_positive_after_zero(&self) -> bool {
         !self.0.is_empty() && self.0.iter().all(|value| sign(value) >= 0)
     }
 
-    /// The sign at a time.
+    /// Returns the sign at a time.
     pub(super) fn sign_at(&self, time: &Dyadic) -> i8 {
         // Horner's rule, with everything multiplied by 2^(exponent * degree).
         let mut value = BigInt::ZERO;
@@ -87,7 +87,7 @@ impl Integer {
         sign(&value)
     }
 
-    /// The sign right after a time: that of the first derivative that is not zero there.
+    /// Returns the sign right after a time: that of the first derivative that is not zero there.
     pub(super) fn sign_after(&self, time: &Dyadic) -> i8 {
         let mut derivative = self.clone();
         while !derivative.0.is_empty() {
@@ -100,12 +100,12 @@ impl Integer {
         0
     }
 
-    /// Whether it is positive right after 1.
+    /// Returns whether it is positive right after 1.
     pub(super) fn positive_right_of_one(&self) -> bool {
         self.sign_after(&Dyadic::one()) > 0
     }
 
-    /// The polynomial in `t + 1`.
+    /// Returns the polynomial in `t + 1`.
     pub(super) fn shifted(&self) -> Self {
         let mut coefficients = self.0.clone();
         for row in 1..coefficients.len() {
@@ -117,7 +117,7 @@ impl Integer {
         Self::new(coefficients)
     }
 
-    /// The polynomial in `t / 2`, times `2^degree`.
+    /// Returns the polynomial in `t / 2`, times `2^degree`.
     pub(super) fn halved(&self) -> Self {
         let degree = self.degree();
         Self(self.0.iter().enumerate().map(|(i, value)| value << (degree - i)).collect())
@@ -127,7 +127,7 @@ impl Integer {
         Self::new(self.0.iter().enumerate().skip(1).map(|(i, value)| value * BigInt::from(i)).collect())
     }
 
-    /// The product.
+    /// Returns the product.
     fn times(&self, other: &Self) -> Self {
         let mut product = vec![BigInt::ZERO; (self.0.len() + other.0.len()).saturating_sub(1)];
         for (i, a) in self.0.iter().enumerate() {
@@ -138,7 +138,7 @@ impl Integer {
         Self::new(product)
     }
 
-    /// Divided by the greatest common divisor of the coefficients.
+    /// Divides by the greatest common divisor of the coefficients.
     fn primitive(self) -> Self {
         let content = self.0.iter().fold(BigInt::ZERO, |divisor, value| common_divisor(divisor, value.clone()));
         if content.sign() == Sign::NoSign || content == BigInt::from(1) {
@@ -147,7 +147,7 @@ impl Integer {
         Self(self.0.iter().map(|value| value / &content).collect())
     }
 
-    /// The remainder of a positive multiple of `self`, for a divisor that is not zero.
+    /// Returns the remainder of a positive multiple of `self`, for a divisor that is not zero.
     fn pseudo_remainder(&self, divisor: &Self) -> Self {
         let mut rest = self.clone();
         let leading = &divisor.0[divisor.degree()];
@@ -165,7 +165,7 @@ impl Integer {
         rest
     }
 
-    /// The primitive greatest common divisor; neither is zero.
+    /// Returns the primitive greatest common divisor; neither is zero.
     fn common_factor(&self, other: &Self) -> Self {
         if self.coprime_modulo_prime(other) {
             return Self::one();
@@ -178,8 +178,8 @@ impl Integer {
         if a.degree() == 0 { Self::one() } else { a }
     }
 
-    /// Whether the two have no common zero modulo [`PRIME`], which proves that they have none at all: reduction keeps a
-    /// common factor's degree if it keeps a leading coefficient.
+    /// Returns whether the two have no common zero modulo [`PRIME`], which proves that they have none at all: reduction
+    /// keeps a common factor's degree if it keeps a leading coefficient.
     fn coprime_modulo_prime(&self, other: &Self) -> bool {
         let reduced = |polynomial: &Self| -> Vec<u64> { polynomial.0.iter().map(modulo_prime).collect() };
         let (mut a, mut b) = (reduced(self), reduced(other));
@@ -193,7 +193,7 @@ impl Integer {
         a.len() == 1
     }
 
-    /// The quotient by a primitive divisor that divides.
+    /// Returns the quotient by a primitive divisor that divides.
     fn divided_by(&self, divisor: &Self) -> Self {
         if divisor.degree() == 0 {
             return self.clone();
@@ -212,19 +212,19 @@ impl Integer {
         Self::new(quotient)
     }
 
-    /// A polynomial with the same zeros, each simple; `self` is not zero.
+    /// Returns a polynomial with the same zeros, each simple; `self` is not zero.
     pub(super) fn square_free(&self) -> Self {
         let derivative = self.derivative();
         if derivative.0.is_empty() { self.clone() } else { self.divided_by(&self.common_factor(&derivative)) }
     }
 
-    /// A square-free polynomial with the zeros of both, which are square-free and not zero.
+    /// Returns a square-free polynomial with the zeros of both, which are square-free and not zero.
     pub(super) fn united(&self, other: &Self) -> Self {
         self.times(&other.divided_by(&self.common_factor(other)))
     }
 }
 
-/// Euclid's algorithm, not negative.
+/// Returns euclid's algorithm, not negative.
 fn common_divisor(mut a: BigInt, mut b: BigInt) -> BigInt {
     while b.sign() != Sign::NoSign {
         let rest = &a % &b;
@@ -242,7 +242,7 @@ fn product(a: u64, b: u64) -> u64 {
     u64::try_from(u128::from(a) * u128::from(b) % u128::from(PRIME)).unwrap_or(0)
 }
 
-/// The remainder of `a` by `b` (last entry not 0) up to a factor, modulo [`PRIME`].
+/// Computes the remainder of `a` by `b` (last entry not 0) up to a factor, modulo [`PRIME`].
 fn reduce(a: &mut Vec<u64>, b: &[u64]) {
     while a.len() >= b.len() {
         let (top, leading, shift) = (a[a.len() - 1], b[b.len() - 1], a.len() - b.len());

@@ -18,22 +18,23 @@ pub(super) struct Root {
 }
 
 impl Root {
-    /// A zero that is known exactly.
+    /// Returns a zero that is known exactly.
     pub(super) fn point(time: Dyadic) -> Self {
         Self { lo: time.clone(), hi: time }
     }
 
-    /// Whether it is known exactly.
+    /// Returns whether it is known exactly.
     pub(super) fn is_point(&self) -> bool {
         self.lo == self.hi
     }
 
-    /// Whether it is exactly 1.
+    /// Returns whether it is exactly 1.
     pub(super) fn is_one(&self) -> bool {
         self.is_point() && self.hi.is_one()
     }
 
-    /// Two doubles around it: equal if it was met exactly, else a few units of `2^-60` of the step or the neighbours.
+    /// Returns two doubles around it: equal if it was met exactly, else a few units of `2^-60` of the step or the
+    /// neighbours.
     pub(super) fn enclosure(&self, polynomial: &Integer) -> [f64; 2] {
         let mut root = self.clone();
         let before = polynomial.sign_at(&root.lo);
@@ -60,8 +61,8 @@ impl Root {
     }
 }
 
-/// The zeros in the open interval `(0, 1)` of a square-free polynomial that is not zero, ascending and apart: intervals
-/// may share an end, but no end of an interval is a zero.
+/// Returns the zeros in the open interval `(0, 1)` of a square-free polynomial that is not zero, ascending and apart:
+/// intervals may share an end, but no end of an interval is a zero.
 pub(super) fn roots_within_step(polynomial: &Integer) -> Vec<Root> {
     let mut roots = Vec::new();
     // Intervals to look at, the leftmost last: the polynomial stretched so that the interval becomes (0, 1), and the
@@ -102,14 +103,14 @@ enum PendingPart {
     Point(Dyadic),
 }
 
-/// Sign changes among the coefficients of `(1+t)^n P(1/(1+t))`.
+/// Counts the sign changes among the coefficients of `(1+t)^n P(1/(1+t))`.
 fn variations(polynomial: &Integer) -> usize {
     let reversed = Integer::new(polynomial.coefficients().iter().rev().cloned().collect()).shifted();
     let signs = reversed.coefficients().iter().map(BigInt::sign).filter(|&sign| sign != Sign::NoSign);
     signs.clone().zip(signs.skip(1)).filter(|(one, next)| one != next).count()
 }
 
-/// The only zero in an open interval whose ends may be zeros, too: narrowed until they are none.
+/// Returns the only zero in an open interval whose ends may be zeros, too: narrowed until they are none.
 fn isolated(polynomial: &Integer, start: BigInt, exponent: u64) -> Root {
     let end: BigInt = &start + 1;
     let (lo, hi) = (Dyadic { numerator: start, exponent }, Dyadic { numerator: end, exponent });

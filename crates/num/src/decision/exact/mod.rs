@@ -89,12 +89,12 @@ fn first_time(polynomials: &[Integer], zeros: &Integer, roots: &mut [Root]) -> E
     found.map_or(ExactAnswer::Never, |index| ExactAnswer::First { time: roots[index].enclosure(zeros), touching })
 }
 
-/// Whether each is positive at a time.
+/// Returns whether each is positive at a time.
 fn signs_at(polynomials: &[Integer], time: &Dyadic) -> Vec<bool> {
     polynomials.iter().map(|polynomial| polynomial.sign_at(time) > 0).collect()
 }
 
-/// A time between 0 and the first root; no polynomial is zero there.
+/// Returns a time between 0 and the first root; no polynomial is zero there.
 fn first_sample(roots: &[Root]) -> Dyadic {
     match roots.first() {
         None => Dyadic::one(),
@@ -103,7 +103,7 @@ fn first_sample(roots: &[Root]) -> Dyadic {
     }
 }
 
-/// A time between this root and the next, or 1; no polynomial is zero there. `None` after a root at 1.
+/// Returns a time between this root and the next, or 1; no polynomial is zero there. `None` after a root at 1.
 fn sample_after(roots: &[Root], index: usize) -> Option<Dyadic> {
     let root = &roots[index];
     if root.is_one() {

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 /// The greatest number of scenes that are named.
 const NAMED: usize = 5;
 
-/// The lines about what changed since `before`; scenes that were not run, now or then, say nothing.
+/// Returns the lines about what changed since `before`; scenes that were not run, now or then, say nothing.
 #[must_use]
 pub fn changes(before: &[Grade], after: &[Grade], style: Style) -> String {
     let verdicts: BTreeMap<(&str, &str), Verdict> = run(before).map(|(key, scene)| (key, scene.verdict)).collect();
@@ -40,7 +40,7 @@ pub fn changes(before: &[Grade], after: &[Grade], style: Style) -> String {
     text
 }
 
-/// The scenes that were run.
+/// Returns the scenes that were run.
 fn run(grades: &[Grade]) -> impl Iterator<Item = ((&str, &str), &SceneGrade)> {
     let scenes = grades.iter().flat_map(|grade| grade.scenes().map(|scene| (grade.submission.as_str(), scene)));
     let ran = scenes.filter(|(_, scene)| scene.verdict != Verdict::NotRun);

@@ -14,7 +14,7 @@ use std::fmt::Write;
 /// The number of groups that are listed where there are at least two more; those that are not accepted come first.
 const GROUPS: usize = 8;
 
-/// The closing lines below the verdict. `alone` says that nothing else stands above them.
+/// Renders the closing lines below the verdict. `alone` says that nothing else stands above them.
 pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
     let style = options.style;
     let mut text = String::new();
@@ -56,7 +56,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
     text
 }
 
-/// A row per group: points, and how many scenes are accepted.
+/// Returns a row per group: points, and how many scenes are accepted.
 fn groups(options: &Text<'_>, grade: &Grade) -> String {
     let mut table = Table::new([Align::Left, Align::Right, Align::Left, Align::Left]);
     let mut listed: Vec<&GroupGrade> = grade.groups.iter().collect();
@@ -85,7 +85,7 @@ fn groups(options: &Text<'_>, grade: &Grade) -> String {
     text
 }
 
-/// `all 12 scenes`, `8 of 12 scenes, 2 not run`.
+/// Returns `all 12 scenes`, `8 of 12 scenes, 2 not run`.
 fn share(group: &GroupGrade) -> String {
     let all = group.scenes.len();
     let of = |verdict: Verdict| group.scenes.iter().filter(|scene| scene.verdict == verdict).count();

@@ -23,7 +23,7 @@ const SHOWN_LINES: usize = 10;
 pub enum TextDetail {
     /// A line per submission.
     Line,
-    /// Of several submissions a table with a row for each; of one, what its grading comes to.
+    /// A table with a row for each of several submissions, or what the grading of one comes to.
     Table,
     /// Also every scene that is not accepted.
     #[default]
@@ -49,7 +49,7 @@ pub struct Text<'a> {
 }
 
 impl Text<'_> {
-    /// The whole report.
+    /// Renders the whole report.
     #[must_use]
     pub fn render(&self, grades: &[Grade]) -> String {
         let mut text = String::new();
@@ -74,7 +74,7 @@ impl Text<'_> {
         text
     }
 
-    /// One submission. Its verdict stands above its scenes and, unless others follow, below them, where it stays in
+    /// Writes one submission. Its verdict is above its scenes and, unless others follow, below them, where it stays in
     /// sight.
     fn submission(&self, text: &mut String, grade: &Grade, is_one_of_several: bool) {
         let details = scenes::render(self, grade);
@@ -91,7 +91,7 @@ impl Text<'_> {
         text.push('\n');
     }
 
-    /// The submission, its verdict and its points.
+    /// Returns the submission, its verdict and its points.
     fn verdict(&self, grade: &Grade) -> String {
         let look = if grade.verdict.is_accepted() { Look::Good } else { Look::Bad };
         let (name, verdict) = (one_line(&grade.submission), grade.verdict.words());
@@ -102,7 +102,7 @@ impl Text<'_> {
         format!("{}: {}, {reached}", self.style.paint(Look::Strong, &name), self.style.paint(look, verdict))
     }
 
-    /// The suite, what weakened the sandbox, and a build that failed.
+    /// Returns the suite, what weakened the sandbox, and a build that failed.
     fn circumstances(&self, grade: &Grade) -> String {
         let mut text = format!("suite {}{}\n", one_line(&grade.suite), rules(grade));
         for warning in &grade.warnings {
@@ -120,14 +120,14 @@ impl Text<'_> {
     }
 }
 
-/// `12.5 of 20 points`.
+/// Returns `12.5 of 20 points`.
 #[must_use]
 pub fn score(reached: f64, most: f64) -> String {
     let plural = if points(most) == "1" { "" } else { "s" };
     format!("{} of {} point{plural}", points(reached), points(most))
 }
 
-/// `, 15 of 20 extra points`; nothing where the suite gives none.
+/// Returns `, 15 of 20 extra points`; nothing where the suite gives none.
 #[must_use]
 pub fn extra(grade: &Grade) -> String {
     grade.extra().map_or_else(String::new, |(reached, most)| {
@@ -135,7 +135,7 @@ pub fn extra(grade: &Grade) -> String {
     })
 }
 
-/// The book that counts, where a reader might take it for the other: nothing where both agree.
+/// Returns the book that counts, where a reader might take it for the other: nothing where both agree.
 fn rules(grade: &Grade) -> String {
     match (grade.rules, grade.differing() as u64) {
         (Rules::Parity, _) => ", by the original's rules".to_owned(),
@@ -149,14 +149,14 @@ fn rules(grade: &Grade) -> String {
     }
 }
 
-/// The first of some names: `a, b, c and 2 more`.
+/// Returns the first of some names: `a, b, c and 2 more`.
 fn some(names: &[impl AsRef<str>], most: usize) -> String {
     let shown: Vec<_> = names.iter().take(most).map(|name| one_line(name.as_ref())).collect();
     let more = if names.len() > most { format!(" and {} more", names.len() - most) } else { String::new() };
     shown.join(", ") + &more
 }
 
-/// The look of a scene's verdict.
+/// Returns the look of a scene's verdict.
 const fn look(verdict: Verdict) -> Look {
     match verdict {
         Verdict::Accepted => Look::Good,
@@ -165,7 +165,7 @@ const fn look(verdict: Verdict) -> Look {
     }
 }
 
-/// Lines of program output, marked so that they can't be taken for ours.
+/// Returns lines of program output, marked so that they can't be taken for ours.
 fn output(output: &str, most: usize) -> String {
     let output = printed(output);
     let mut lines: Vec<String> = output.lines().take(most).map(|line| format!("      | {line}")).collect();

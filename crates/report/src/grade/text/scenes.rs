@@ -16,7 +16,7 @@ use std::{collections::BTreeMap, fmt::Write};
 /// The greatest number of scenes named that end the same way.
 const NAMED: usize = 3;
 
-/// The groups that have something to show.
+/// Renders the groups that have something to show.
 pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
     // A fault of the submission itself is not said of each scene.
     if options.shown < TextDetail::Wrong || grade.unfit().is_some() {

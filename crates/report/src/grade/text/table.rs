@@ -13,8 +13,8 @@ struct TextColumn {
     right: bool,
 }
 
-/// One row per submission: points, worst verdict, scenes per group, time. Columns that the width has no room for are
-/// left out: first the time, then the groups, in whose place all scenes are counted together.
+/// Returns one row per submission: points, worst verdict, scenes per group, time. Columns that the width has no room
+/// for are left out: first the time, then the groups, in whose place all scenes are counted together.
 #[must_use]
 pub fn table(grades: &[Grade], width: Option<usize>, style: Style) -> String {
     let of = |heading: &str, right: bool, cell: &dyn Fn(&Grade) -> String| {
@@ -48,7 +48,7 @@ pub fn table(grades: &[Grade], width: Option<usize>, style: Style) -> String {
 /// The greatest width of a name, in columns; of a longer one its two ends are shown.
 const NAME: usize = 40;
 
-/// A name that widens no table.
+/// Returns a name that widens no table.
 #[must_use]
 pub fn shortened(name: &str) -> String {
     const ENDS: usize = NAME / 2 - 2;
@@ -104,7 +104,7 @@ fn rows(columns_of: &[&TextColumn], grades: &[Grade], style: Style) -> String {
     text
 }
 
-/// `AC`, or the worst verdict and how many scenes are accepted.
+/// Returns `AC`, or the worst verdict and how many scenes are accepted.
 fn cell(group: &GroupGrade) -> String {
     let accepted = group.scenes.iter().filter(|scene| scene.verdict.is_accepted()).count();
     if accepted == group.scenes.len() {

@@ -1,9 +1,9 @@
 //! The meanings of a formula's letters, said where the formula stands.
 use fosssim_model::sim::PairKind;
 
-/// The sentence that explains the short names of differences, of the sum of the radii, and of a zone's motion, that
-/// occur in these lines; `None` where none does. `R` is the sum of the radii in polynomials, and the rotation where
-/// zones move. The kinds are those of the pairs that the lines speak of, as far as they are known.
+/// Returns the sentence that explains the short names of differences, of the sum of the radii, and of a zone's motion,
+/// that occur in these lines; `None` where none does. `R` is the sum of the radii in polynomials, and the rotation
+/// where zones move. The kinds are those of the pairs that the lines speak of, as far as they are known.
 pub(super) fn of(lines: &[String], kinds: &[PairKind]) -> Option<String> {
     let example = lines.iter().find_map(|line| difference(line, |_| true));
     let all = |kind| !kinds.is_empty() && kinds.iter().all(|one| *one == kind);
@@ -49,17 +49,17 @@ pub(super) fn of(lines: &[String], kinds: &[PairKind]) -> Option<String> {
     (!parts.is_empty()).then(|| format!("Here {}.", parts.join("; ")))
 }
 
-/// A line that speaks of two radii, with the names that such pairs have for them: an edge's is `re`.
+/// Returns a line that speaks of two radii, with the names that such pairs have for them: an edge's is `re`.
 pub(super) fn radii(line: &str, of_edges: bool) -> String {
     if of_edges { line.replace("r2", "re") } else { line.to_owned() }
 }
 
-/// The words of a line: what is no letter and no digit parts them.
+/// Returns the words of a line: what is no letter and no digit parts them.
 fn words(line: &str) -> impl Iterator<Item = &str> {
     line.split(|letter: char| !letter.is_alphanumeric())
 }
 
-/// The first name such as `x21` or `d32` in a line with such a number: its letter and its two numbers.
+/// Returns the first name such as `x21` or `d32` in a line with such a number: its letter and its two numbers.
 fn difference(line: &str, has: impl Fn(char) -> bool) -> Option<(char, char, char)> {
     words(line).find_map(|word| {
         let mut letters = word.chars();

@@ -16,7 +16,7 @@ use fosssim_mistakes::{
 
 pub(crate) use places::place;
 
-/// The mistake, in one sentence to the student that gives no formula away.
+/// Returns the mistake, in one sentence to the student that gives no formula away.
 #[must_use]
 pub fn what(explanation: &Explanation) -> String {
     let sentence = match &explanation.about {
@@ -35,7 +35,7 @@ pub fn what(explanation: &Explanation) -> String {
     sentence
 }
 
-/// The sentence in a list of a program's mistakes: with the others that its traces can't tell from this one.
+/// Returns the sentence in a list of a program's mistakes: with the others that its traces can't tell from this one.
 #[must_use]
 pub fn what_or(explanation: &Explanation) -> String {
     let rivals = explanation.same_as.iter().filter(|_| explanation.about == About::Mistake);
@@ -51,8 +51,8 @@ pub fn what_or(explanation: &Explanation) -> String {
     }
 }
 
-/// The exact form, a line each: which term of which coefficient has which weight. May give the right formula away. Of a
-/// known mistake, which the reference has made, it says nothing of other weights that fit as well.
+/// Returns the exact form, a line each: which term of which coefficient has which weight. May give the right formula
+/// away. Of a known mistake, which the reference has made, it says nothing of other weights that fit as well.
 #[must_use]
 pub fn details(explanation: &Explanation) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
@@ -75,7 +75,7 @@ pub fn details(explanation: &Explanation) -> Vec<String> {
     lines
 }
 
-/// The exact form alone of polynomials that no known mistake makes, a line for each term.
+/// Returns the exact form alone of polynomials that no known mistake makes, a line for each term.
 pub(crate) fn forms(explanation: &Explanation) -> Vec<String> {
     let is_form = |detail: &&Detail| matches!(detail, Detail::Polynomial(_)) && !explanation.is_unexplained();
     let details = explanation.details.iter().filter(is_form).cloned().collect();
@@ -85,7 +85,7 @@ pub(crate) fn forms(explanation: &Explanation) -> Vec<String> {
     }
 }
 
-/// Where in the program to look for what is wrong with a stage of a step.
+/// Returns where in the program to look for what is wrong with a stage of a step.
 pub(crate) fn where_to_look(explanation: &Explanation) -> Option<&'static str> {
     match &explanation.about {
         About::Stage(fault) => fault.areas().first().map(|area| look(*area)),
@@ -93,23 +93,23 @@ pub(crate) fn where_to_look(explanation: &Explanation) -> Option<&'static str> {
     }
 }
 
-/// Whether an explanation says more than that nothing is known.
+/// Returns whether an explanation says more than that nothing is known.
 pub(crate) fn is_known(explanation: &Explanation) -> bool {
     !matches!(explanation.about, About::Polynomials { found: OfPolynomials::Nothing, .. })
 }
 
-/// The sentence about a known mistake.
+/// Returns the sentence about a known mistake.
 pub(crate) fn known(key: &str) -> Option<String> {
     find(key).map(Row::sentence)
 }
 
-/// The stages that are not written yet, in a few words each.
+/// Returns the stages that are not written yet, in a few words each.
 fn unfinished(keys: &[String]) -> String {
     let stages: Vec<String> = keys.iter().filter_map(|key| find(key)).map(empty_stage).collect();
     stages.join(", ")
 }
 
-/// A stage of which nothing is there.
+/// Returns a stage of which nothing is there.
 fn empty_stage(row: &Row) -> String {
     let name = match row.mistake {
         Mistake::Step(StepMistake::Edit(edit)) => {
@@ -128,7 +128,7 @@ fn empty_stage(row: &Row) -> String {
     name.to_owned()
 }
 
-/// The same of a mistake in a step without collisions: the row's name says what it is about.
+/// Returns the sentence for a mistake in a step without collisions: the row's name says what it is about.
 fn look_at_step(key: &str) -> &'static str {
     let has = |words: &[&str]| words.iter().any(|word| key.contains(word));
     match () {
@@ -148,7 +148,7 @@ fn look_at_step(key: &str) -> &'static str {
     }
 }
 
-/// One sentence that says where in the program the mistake is made, without the right formula.
+/// Returns one sentence that says where in the program the mistake is made, without the right formula.
 const fn look(area: Area) -> &'static str {
     match area {
         Area::Forces => "Look at what each force adds to the gradient, for each of its particles.",
@@ -179,7 +179,7 @@ const fn look(area: Area) -> &'static str {
     }
 }
 
-/// The first letter in upper case.
+/// Returns the first letter in upper case.
 fn capitalised(text: &str) -> String {
     let mut letters = text.chars();
     let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();

@@ -33,7 +33,7 @@ fn faults(wrong: &WrongPairs) -> Vec<PairFault<'_>> {
     all
 }
 
-/// The pairs, what happens to them, and what they have in common.
+/// Returns the pairs, what happens to them, and what they have in common.
 pub(super) fn what(wrong: &WrongPairs) -> String {
     let faults = faults(wrong);
     let [missing, once, twice] = [0, 1, 2].map(|times| wrong.kinds.iter().map(|pairs| pairs.times[times]).sum::<u64>());
@@ -55,7 +55,7 @@ pub(super) fn what(wrong: &WrongPairs) -> String {
     format!("Near pairs: {}.", told.join(". Besides, "))
 }
 
-/// The first pair, how many there are, and the exact form of what they have in common.
+/// Returns the first pair, how many there are, and the exact form of what they have in common.
 pub(super) fn details(wrong: &WrongPairs) -> Vec<String> {
     let first = wrong.first.map(|(pair, step)| format!("The first one is in step {step}: {}.", PairWords(pair)));
     let of_fault = |fault: &PairFault<'_>| {

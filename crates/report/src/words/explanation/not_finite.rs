@@ -1,7 +1,7 @@
 //! Sentences about traces that hold values which are no finite numbers.
 use fosssim_mistakes::diagnose::{NanStage, NotFinite};
 
-/// From which step on, which stage makes it, and what usually does.
+/// Says from which step on there is such a value, which stage makes it, and what usually does.
 pub(super) fn what(found: &NotFinite) -> String {
     let what = if found.is_nan { "NaN (not a number)" } else { "an infinite number" };
     let where_from = match (found.step, found.stage) {

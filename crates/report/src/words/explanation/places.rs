@@ -3,7 +3,7 @@ use fosssim_judge::PairWords;
 use fosssim_mistakes::diagnose::{ExamplePlace, StepRecord};
 use fosssim_model::sim::{Pair, PairKind};
 
-/// Where in its step an example lies, and what its numbers are.
+/// Returns where in its step an example lies, and what its numbers are.
 pub(crate) fn place(place: &ExamplePlace) -> String {
     match place {
         ExamplePlace::Given { pair, pass, subject } => {

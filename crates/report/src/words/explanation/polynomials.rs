@@ -5,7 +5,7 @@ use fosssim_mistakes::{
     diagnose::{CoefficientGuess, Guess, ListGuess, OfPolynomials, PolynomialDetail, QuantityGuess, Stand, Weight},
 };
 
-/// The fault of these polynomials.
+/// Returns the fault of these polynomials.
 pub(super) fn what(subjects: &[Subject], found: &OfPolynomials) -> String {
     let names: Vec<&str> = subjects.iter().map(|subject| subject.name()).collect();
     let names = names.join(", ");
@@ -73,7 +73,7 @@ const fn of_quantity(guess: QuantityGuess) -> &'static str {
     }
 }
 
-/// The fault of coefficients, whose names are to be put in.
+/// Returns the fault of coefficients, whose names are to be put in.
 const fn of_coefficients(guess: CoefficientGuess) -> &'static str {
     match guess {
         CoefficientGuess::Several => "Several coefficients are wrong ({})",
@@ -88,7 +88,7 @@ const fn of_coefficients(guess: CoefficientGuess) -> &'static str {
     }
 }
 
-/// The coefficient of a power, in a word.
+/// Returns the coefficient of a power, in a word.
 const fn power_name(power: usize) -> &'static str {
     match power {
         0 => "constant",
@@ -100,7 +100,7 @@ const fn power_name(power: usize) -> &'static str {
     }
 }
 
-/// A line of the exact form.
+/// Returns a line of the exact form.
 pub(super) fn detail(detail: &PolynomialDetail) -> String {
     match detail {
         PolynomialDetail::Logged { logged, of } => format!("{logged} of {of} polynomials per detection"),
@@ -138,12 +138,12 @@ pub(super) fn detail(detail: &PolynomialDetail) -> String {
     }
 }
 
-/// The meaning of a letter; nothing where its name says it.
+/// Returns the meaning of a letter; nothing where its name says it.
 fn meaning(reading: Reading, name: &str) -> Option<&'static str> {
     letter(reading, name).map(|Letter { meaning, .. }| *meaning).filter(|meaning| !meaning.is_empty())
 }
 
-/// A letter with what it means.
+/// Returns a letter with what it means.
 fn described(reading: Reading, name: &str) -> String {
     meaning(reading, name).map_or_else(|| name.to_owned(), |meaning| format!("{name} = {meaning}"))
 }

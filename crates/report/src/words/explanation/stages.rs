@@ -11,12 +11,12 @@ use fosssim_mistakes::{
 };
 use fosssim_model::sim::PairKind;
 
-/// The fault of a stage, with its place in front.
+/// Returns the fault of a stage, with its place in front.
 pub(super) fn what(fault: &StageFault) -> String {
     format!("{}: {}.", place(fault), capitalised(&of_fault(fault)))
 }
 
-/// The parts of the assignment in which it may lie, with the kind of pair that alone it concerns.
+/// Returns the parts of the assignment in which it may lie, with the kind of pair that alone it concerns.
 fn place(fault: &StageFault) -> String {
     let areas: Vec<String> = fault.areas().iter().map(|area| area_name(*area)).collect();
     let areas = match areas.split_last() {
@@ -127,7 +127,7 @@ fn of_fault(fault: &StageFault) -> String {
     fixed.to_owned()
 }
 
-/// The features of wrong changes of states.
+/// Returns the features of wrong changes of states.
 fn of_change(wrong: &WrongChange) -> String {
     let (quantity, other) = match wrong.quantity {
         Quantity::Position => ("positions", "velocities are right, but "),
@@ -221,7 +221,7 @@ fn of_responses(wrong: &WrongResponses) -> String {
     }
 }
 
-/// The subject that changes wrongly.
+/// Returns the subject that changes wrongly.
 fn who_changes(all: &[Changed]) -> String {
     let quantities = distinct(all.iter().map(|one| one.quantity));
     let bodies = distinct(all.iter().map(body));
@@ -257,7 +257,7 @@ const fn plural(quantity: Quantity) -> &'static str {
     }
 }
 
-/// A line of the exact form; nothing where a number would say nothing.
+/// Returns a line of the exact form; nothing where a number would say nothing.
 pub(super) fn detail(detail: &StageDetail) -> Option<String> {
     Some(match detail {
         StageDetail::Factor(ratio) => format!("each change is {} what it should be", times(Ratios::All(*ratio))),
@@ -311,7 +311,7 @@ pub(super) fn detail(detail: &StageDetail) -> Option<String> {
     })
 }
 
-/// Whether a measured ratio is this one.
+/// Returns whether a measured ratio is this one.
 fn is(ratio: f64, value: f64) -> bool {
     (ratio - value).abs() < 1e-9
 }

@@ -26,7 +26,7 @@ pub(super) struct Manifest {
 /// The copy of the database.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Copy {
-    /// Its name in the folder.
+    /// The copy's name in the folder.
     pub(super) file: String,
     pub(super) sha256: Digest,
     pub(super) bytes: u64,

@@ -5,7 +5,7 @@ use std::{path::Path, process::Stdio};
 use tokio::process::Command;
 use url::{Url, form_urlencoded};
 
-/// An address without its password, and the password.
+/// Returns an address without its password, and the password.
 fn without_password(address: &str) -> Result<(Url, String)> {
     // The text may hold a password: it is not repeated.
     let mut url = Url::parse(address).ok().context("the database's address is not understood")?;

@@ -87,7 +87,7 @@ async fn fill(arguments: &Restore, manifest: &Manifest, copy: &Path) -> Result<(
     Ok(())
 }
 
-/// A file that appears whole under its name, for nobody else's eyes.
+/// Copies the database to `file`, mode 600, by rename.
 fn copy_database(copy: &Path, file: &Path) -> Result<()> {
     let partial = PathBuf::from(format!("{}.partial", file.display()));
     fs::copy(copy, &partial).with_context(|| format!("cannot write {}", partial.display()))?;

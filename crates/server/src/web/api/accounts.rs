@@ -47,7 +47,7 @@ pub(super) struct AccountWish {
     is_admin: bool,
 }
 
-/// The one who asks.
+/// Returns the account of the person who is signed in.
 #[utoipa::path(get, path = "/api/v1/me", tag = "accounts",
     responses((status = 200, body = Account)))]
 pub(super) async fn me(person: Person) -> Json<Account> {
@@ -72,7 +72,7 @@ pub(super) async fn new_token(
     Ok((StatusCode::CREATED, Json(person.new_token(&wish.name).await?)))
 }
 
-/// Everything that happened, latest first, 200 at a time.
+/// Returns everything that happened, latest first, 200 at a time.
 #[utoipa::path(get, path = "/api/v1/audit", tag = "administration",
     params(("before" = Option<i64>, Query, description = "Only events before this one")),
     responses((status = 200, body = Vec<Event>)))]

@@ -131,7 +131,7 @@ fn check_scenes(folder: &Path) -> Result<bool, Problem> {
     Ok(hides)
 }
 
-/// The class's grades as a table (`csv`, one line per student) or all submissions as JSON lines (`jsonl`).
+/// Returns the class's grades as a table (`csv`, one line per student) or all submissions as JSON lines (`jsonl`).
 #[utoipa::path(get, path = "/api/v1/courses/{course}/assignments/{assignment}/export", tag = "assignments",
     params(("format" = Option<String>, Query, description = "csv (the default) or jsonl")),
     responses((status = 200, description = "The grades")))]
@@ -150,7 +150,7 @@ pub(super) async fn export(
     Ok(([(header::CONTENT_TYPE, kind), (header::CONTENT_DISPOSITION, disposition.as_str())], body).into_response())
 }
 
-/// All submissions, a line for each, read as they are sent.
+/// Returns all submissions, a line for each, read as they are sent.
 async fn lines(staff: Staff, assignment: &str) -> Result<HttpBody, Problem> {
     let transfer = staff.transfer()?;
     let assignment = staff.assignment(assignment).await?;

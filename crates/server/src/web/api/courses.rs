@@ -81,7 +81,7 @@ pub(super) async fn import(
     Ok(Json(staff.import(&table, asked.preview).await?))
 }
 
-/// The events of the course, latest first, 200 at a time.
+/// Returns the events of the course, latest first, 200 at a time.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/audit", operation_id = "course_audit", tag = "courses",
     params(("before" = Option<i64>, Query, description = "Only events before this one")),
     responses((status = 200, body = Vec<Event>)))]
@@ -113,5 +113,5 @@ answers! { OK:
 deeds! { NO_CONTENT:
     /// Takes somebody out of the course; what they handed in stays.
     delete "/api/v1/courses/{course}/members/{login}" "courses"
-        remove_member(staff: Staff, { login }) -> "They are out": staff.remove_member(&login, None);
+        remove_member(staff: Staff, { login }) -> "The member is removed": staff.remove_member(&login, None);
 }

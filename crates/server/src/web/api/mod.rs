@@ -17,7 +17,7 @@ macro_rules! answers {
     };
 }
 
-/// The same for those that only do something: then it is said in words what was done.
+/// The routes of handlers that only do something: the answer says in words what was done.
 macro_rules! deeds {
     ($status:ident: $($(#[doc = $doc:literal])* $method:ident $path:tt $tag:tt
         $name:ident($who:ident: $role:ty $(, { $($at:ident),* })? $(, $wish:ident: $body:ty)?)

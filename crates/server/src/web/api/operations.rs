@@ -5,29 +5,30 @@ use axum::{
     response::{IntoResponse, Response},
 };
 
-/// Whether the process is alive.
+/// Returns whether the process is alive.
 #[utoipa::path(get, path = "/health", tag = "operations",
-    responses((status = 200, body = String, content_type = "text/plain", description = "It is")))]
+    responses((status = 200, body = String, content_type = "text/plain", description = "The process is alive")))]
 pub(super) async fn health() -> &'static str {
     "alive\n"
 }
 
-/// Whether requests can be served: the database answers, and its tables are of this version.
+/// Returns whether requests can be served: the database answers, and its tables are of this version.
 #[utoipa::path(get, path = "/ready", tag = "operations",
-    responses((status = 200, body = String, content_type = "text/plain", description = "They can")))]
+    responses((status = 200, body = String, content_type = "text/plain", description = "Requests can be served")))]
 pub(super) async fn ready(visitor: Visitor) -> Result<&'static str, Problem> {
     visitor.ready().await?;
     Ok("ready\n")
 }
 
-/// This description.
+/// Returns this description.
 #[utoipa::path(get, path = "/api/openapi.json", tag = "operations",
     responses((status = 200, body = Object, description = "OpenAPI 3.1")))]
 pub(super) async fn openapi() -> Response {
     ([(header::CONTENT_TYPE, "application/json")], crate::web::openapi()).into_response()
 }
 
-/// Numbers for Prometheus. They tell of nobody. Without a database that answers they are those of the process alone.
+/// Returns numbers for Prometheus. They tell of nobody. Without a database that answers they are those of the process
+/// alone.
 #[utoipa::path(get, path = "/metrics", tag = "operations",
     responses((status = 200, body = String, content_type = "text/plain", description = "Prometheus' text format")))]
 pub(super) async fn metrics(visitor: Visitor) -> Result<Response, Problem> {

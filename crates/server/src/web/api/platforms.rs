@@ -45,7 +45,7 @@ answers! { OK:
 deeds! { ACCEPTED:
     /// Sends all scores of an assignment once more, also those that platforms took.
     post "/api/v1/courses/{course}/assignments/{assignment}/scores" "assignments"
-        send_scores(staff: Staff, { assignment }) -> "They are on their way": staff.send_scores(&assignment);
+        send_scores(staff: Staff, { assignment }) -> "The scores are being sent": staff.send_scores(&assignment);
 }
 
 deeds! { NO_CONTENT:

@@ -23,7 +23,7 @@ pub(super) struct RegradeWish {
     settings: Map<String, Value>,
 }
 
-/// The changes that a regrade would make, or made, and why.
+/// Returns the changes that a regrade would make, or made, and why.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}", tag = "regrades",
     params(("after" = Option<i64>, Query,
         description = "Only changes of submissions after this one: `next` of the answer before")),

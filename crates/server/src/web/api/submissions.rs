@@ -114,7 +114,7 @@ pub(in crate::web) struct RequestWish {
     pub(in crate::web) text: String,
 }
 
-/// A report on it, as the grader wrote it: `grade.json`, `report.txt`, ...
+/// Returns a report on it, as the grader wrote it: `grade.json`, `report.txt`, ...
 #[utoipa::path(get, path = "/api/v1/courses/{course}/submissions/{id}/files/{name}", tag = "submissions",
     responses((status = 200, description = "The report")))]
 pub(super) async fn report(member: Member, At { id, name, .. }: At, asked: HeaderMap) -> Result<Response, Problem> {
@@ -131,7 +131,7 @@ pub(super) async fn report(member: Member, At { id, name, .. }: At, asked: Heade
     Ok((headers, download::send(&member, &asked, &file.artefact).await?).into_response())
 }
 
-/// The upload.
+/// Returns the upload.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/submissions/{id}/upload", tag = "submissions",
     responses((status = 200, description = "The file")))]
 pub(super) async fn upload(member: Member, At { id, .. }: At, asked: HeaderMap) -> Result<Response, Problem> {
@@ -149,7 +149,7 @@ pub(super) async fn upload(member: Member, At { id, .. }: At, asked: HeaderMap) 
     Ok((headers, download::send(&member, &asked, &artefact).await?).into_response())
 }
 
-/// A class's grades as a table. What spreadsheets would take for a formula is marked as text.
+/// Returns a class's grades as a table. What spreadsheets would take for a formula is marked as text.
 ///
 /// # Errors
 /// Never, in memory.
@@ -180,7 +180,7 @@ pub fn export_csv(standings: &[Standing]) -> Result<String, Problem> {
     String::from_utf8(bytes).map_err(|_| Problem::fault())
 }
 
-/// A cell that no spreadsheet takes for a formula.
+/// Returns a cell that no spreadsheet takes for a formula.
 pub(in crate::web) fn cell(text: &str) -> String {
     if text.starts_with(['=', '+', '-', '@', '\t']) { format!("'{text}") } else { text.to_owned() }
 }
@@ -192,7 +192,7 @@ answers! { ACCEPTED:
     /// Grades all submissions to an assignment on which the grader failed once more.
     post "/api/v1/courses/{course}/assignments/{assignment}/judge-errors/again" "submissions"
         grade_errors_again(staff: Staff, { assignment }) -> Again: staff.grade_errors_again(Some(&assignment));
-    /// The same for all assignments of a course.
+    /// Grades again all judge errors of a course's assignments.
     post "/api/v1/courses/{course}/judge-errors/again" "submissions"
         grade_all_errors_again(staff: Staff) -> Again: staff.grade_errors_again(None);
 }

@@ -57,10 +57,10 @@ fn lease(headers: &HeaderMap) -> Result<Lease, Problem> {
     }
 }
 
-/// A file of a job that the worker holds.
+/// Returns a file of a job that the worker holds.
 #[utoipa::path(get, path = "/api/v1/worker/files/{digest}", tag = "workers",
     params(("Fosssim-Lease" = String, Header)),
-    responses((status = 200, description = "Its bytes")))]
+    responses((status = 200, description = "The file's bytes")))]
 pub(super) async fn artefact(remote: Remote, At { digest, .. }: At, headers: HeaderMap) -> Result<Response, Problem> {
     let digest: Digest = digest.parse().map_err(Problem::invalid)?;
     let opened = remote.artefact(&lease(&headers)?, &digest).await?;

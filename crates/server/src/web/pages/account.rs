@@ -44,7 +44,7 @@ pub(super) async fn account(person: Person) -> Page {
     page(&person, None).await
 }
 
-/// The secret is shown in the answer itself, and nowhere again.
+/// Makes a token, whose secret is shown in the answer itself, and nowhere again.
 pub(super) async fn new_token(person: Person, Fields(form): Fields<TokenName>) -> Page {
     let token = person.new_token(form.name.trim()).await?.token;
     page(&person, Some(token)).await

@@ -7,7 +7,7 @@ use axum::{
     response::{Html, IntoResponse, Response},
 };
 
-/// The page under the policy that it brings along: it may do less than other pages in all, but run its module.
+/// Returns the page under the policy that it brings along: it may do less than other pages in all, but run its module.
 pub(super) async fn page(State(app): State<App>) -> Result<Response, Problem> {
     let page = app.checker.clone().ok_or_else(|| Problem::not_found("page that checks traces: the grader has none"))?;
     let policy = policy(&page).and_then(|policy| HeaderValue::from_str(policy).ok());
@@ -19,7 +19,7 @@ pub(super) async fn page(State(app): State<App>) -> Result<Response, Problem> {
     Ok(answer)
 }
 
-/// The policy in the head of a page.
+/// Returns the policy in the head of a page.
 fn policy(page: &str) -> Option<&str> {
     let (_, rest) = page.split_once("http-equiv=\"Content-Security-Policy\" content=\"")?;
     Some(rest.split_once('"')?.0)

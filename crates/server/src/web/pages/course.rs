@@ -67,7 +67,7 @@ impl OwnWork {
         })
     }
 
-    /// Whether they may hand in now.
+    /// Returns whether they may hand in now.
     pub(super) fn is_open(&self) -> bool {
         !self.is_over && self.left != Some(0)
     }
@@ -154,7 +154,7 @@ pub(super) struct People {
 }
 
 impl People {
-    /// The address of the page behind the last of these logins, where there are more.
+    /// Returns the address of the page behind the last of these logins, where there are more.
     pub(super) fn next(&self, last: Option<&str>) -> Option<String> {
         let mut query = url::form_urlencoded::Serializer::for_suffix("?".to_owned(), 1);
         Some(query.append_pair("q", &self.q).append_pair("after", last?).finish())

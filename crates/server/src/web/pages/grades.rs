@@ -61,7 +61,8 @@ pub(super) struct Look {
 }
 
 impl Look {
-    /// Those who are to be shown, how many there are on all pages, and the addresses of the pages before and after.
+    /// Returns those who are to be shown, how many there are on all pages, and the addresses of the pages before and
+    /// after.
     fn at(&self, standings: &[ShortStanding]) -> (Vec<ShortStanding>, usize, [Option<String>; 2]) {
         let words = self.q.trim().to_lowercase();
         let is_wanted = |one: &&ShortStanding| one.login.contains(&words) || one.name.to_lowercase().contains(&words);
@@ -97,7 +98,7 @@ pub(super) struct NewRegrade {
     grading: Grading,
 }
 
-/// The frame of the class, and of what lies behind it.
+/// Returns the frame of the class, and of what lies behind it.
 pub(super) fn frame(staff: &Staff, assignment: &Assignment) -> PageFrame {
     let frame = PageFrame::assignment(staff, assignment);
     frame.then(format!("/c/{}/a/{}/class", staff.slug, assignment.slug), "Class")

@@ -163,7 +163,7 @@ impl PageFrame {
         Self::of(&member.account).then(format!("/c/{}", member.slug), &member.title)
     }
 
-    /// At an assignment of a course.
+    /// Returns the place at an assignment of a course.
     fn assignment(member: &Member, assignment: &Assignment) -> Self {
         Self::course(member).then(format!("/c/{}/a/{}", member.slug, assignment.slug), &assignment.title)
     }
@@ -177,7 +177,7 @@ impl PageFrame {
 /// A page, or why there is none.
 type Page = Result<Html<String>, Problem>;
 
-/// A page from its template.
+/// Returns a page from its template.
 fn show(template: &impl Template) -> Page {
     template.render().map(Html).map_err(|error| {
         tracing::error!(%error, "a page could not be made");
@@ -185,7 +185,7 @@ fn show(template: &impl Template) -> Page {
     })
 }
 
-/// After a form was sent: a page that may be loaded again.
+/// Redirects after a form was sent, to a page that may be loaded again.
 fn see(address: &str) -> Redirect {
     Redirect::to(address)
 }
@@ -212,17 +212,18 @@ pub(super) async fn show_others(request: Request, next: Next) -> Response {
     if wants_page { as_page(answer, None) } else { answer }
 }
 
-/// The answer where nothing is.
+/// Returns the answer where nothing is.
 pub(super) async fn missing() -> Problem {
     Problem::not_found("page")
 }
 
-/// The answer to a method that an address does not take.
+/// Returns the answer to a method that an address does not take.
 pub(super) async fn wrong_method(method: Method) -> Problem {
     Problem::wrong_method(method.as_str())
 }
 
-/// A refusal as a page; other answers as they are. Who is not signed in, and wanted a page, comes to it afterwards.
+/// Returns a refusal as a page; other answers as they are. Who is not signed in, and wanted a page, comes to it
+/// afterwards.
 fn as_page(mut response: Response, wanted: Option<&Uri>) -> Response {
     let Some(problem) = response.extensions_mut().remove::<Problem>() else { return response };
     if let Some(wanted) = wanted.filter(|_| problem.status() == StatusCode::UNAUTHORIZED) {

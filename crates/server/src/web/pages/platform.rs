@@ -95,8 +95,8 @@ pub(super) struct NewPlatform {
     hosts: String,
 }
 
-/// The browser's word while it comes from a platform: sent with what another site makes it send, which is what the
-/// platform's answer is. In a frame many browsers keep it apart, or drop it; so nobody comes in by a frame.
+/// Returns the browser's word while it comes from a platform: sent with what another site makes it send, which is what
+/// the platform's answer is. In a frame many browsers keep it apart, or drop it; so nobody comes in by a frame.
 fn browser_word(app: &App, word: &str) -> String {
     let secure = app.is_secure();
     let rest = if secure { "SameSite=None; Secure; Partitioned" } else { "SameSite=Lax" };
@@ -158,13 +158,13 @@ pub(super) async fn launch(visitor: Visitor, Fields(answer): Fields<Answer>) -> 
     Ok(sign_in::enter(&visitor.app, &launched.session, &launched.to))
 }
 
-/// The service's public keys, where platforms look for them.
+/// Returns the service's public keys, where platforms look for them.
 pub(super) async fn keys(State(app): State<App>) -> Result<Response, Problem> {
     let keys = app.platform_keys().await?;
     Ok(([(header::CACHE_CONTROL, "public, max-age=300")], Json(keys)).into_response())
 }
 
-/// The configuration whose address an administrator of Canvas enters.
+/// Returns the configuration whose address an administrator of Canvas enters.
 pub(super) async fn configuration(State(app): State<App>) -> Json<Value> {
     let public = &app.public;
     let launch = app.launch_address();

@@ -5,7 +5,7 @@ use std::{cmp::Reverse, collections::BTreeMap};
 /// The greatest number of scenes that are named in a sentence.
 const NAMED: usize = 3;
 
-/// The scenes that somebody has wrong, by the results that count, and those who have, most of them first.
+/// Returns the scenes that somebody has wrong, by the results that count, and those who have, most of them first.
 pub(super) fn wrong(standings: &[Standing], failed: &BTreeMap<i64, FailedScenes>) -> Vec<(String, Vec<String>)> {
     let mut logins: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for standing in standings {
@@ -19,7 +19,7 @@ pub(super) fn wrong(standings: &[Standing], failed: &BTreeMap<i64, FailedScenes>
     scenes
 }
 
-/// The change that an attempt has made, in a sentence.
+/// Returns the change that an attempt has made, in a sentence.
 pub(super) fn change(change: &AttemptChange) -> String {
     let list = |scenes: &[String]| {
         let more = scenes.len().saturating_sub(NAMED);

@@ -33,7 +33,7 @@ struct SettingsPage {
 /// A suite in a form: value, words, and whether it is this one.
 pub(super) type SuiteOption = (String, String, bool);
 
-/// The suites to choose from.
+/// Returns the suites to choose from.
 pub(super) fn suites(settings: &Settings, names: &[String]) -> Vec<SuiteOption> {
     let mut suites = Vec::new();
     if let Some(digest) = &settings.suite_archive {
@@ -63,7 +63,7 @@ fn parsed<T: std::str::FromStr>(what: &str, text: &str) -> Result<T, Problem> {
 }
 
 impl Grading {
-    /// The settings with what the form says.
+    /// Returns the settings with what the form says.
     pub(super) fn over(&self, before: &Settings) -> Result<Settings, Problem> {
         let chosen = |text: &str| Some(text.to_owned()).filter(|text| !text.is_empty());
         let (suite, suite_archive) = match self.suite.as_str() {
@@ -134,7 +134,7 @@ impl NewSettings {
     }
 }
 
-/// The moment that a field with a date says; the moment that it had where that is in the same minute.
+/// Returns the moment that a field with a date says; the moment that it had where that is in the same minute.
 pub(super) fn moment(field: &str, zone: &str, before: Option<i64>) -> Result<Option<i64>, Problem> {
     if field.trim().is_empty() {
         return Ok(None);

@@ -55,14 +55,15 @@ pub(super) struct NextPage {
     to: String,
 }
 
-/// A page of this server; the first one where the words name none. Browsers take `//` and `/\` for another host.
+/// Returns a page of this server; the first one where the words name none. Browsers take `//` and `/\` for another
+/// host.
 fn local(to: &str) -> &str {
     let is_local =
         to.starts_with('/') && !to.starts_with("//") && to.bytes().all(|c| c.is_ascii_graphic() && c != b'\\');
     if is_local { to } else { "/" }
 }
 
-/// A new session's cookie, and the way on.
+/// Returns a new session's cookie, and the way on.
 pub(super) fn enter(app: &App, session: &NewSecret, to: &str) -> Response {
     with_cookie(&session_cookie(app, session.reveal(), SESSION), to)
 }
@@ -89,7 +90,7 @@ pub(super) async fn by_token(visitor: Visitor, Fields(form): Fields<Token>) -> R
     Ok(enter(&visitor.app, &session, local(&form.to)))
 }
 
-/// Opening the link does nothing yet: mail programs open links, too.
+/// Shows the page of a sign-in link. Opening the link does nothing yet: mail programs open links, too.
 pub(super) async fn welcome(visitor: Visitor, At { secret, .. }: At) -> Page {
     show(&Welcome { frame: PageFrame::default(), is_good: visitor.is_link(&secret).await? })
 }

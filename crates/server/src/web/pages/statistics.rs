@@ -14,7 +14,7 @@ pub(super) struct Statistics {
 }
 
 impl Statistics {
-    /// Of those who have points; nothing where nobody has.
+    /// Returns the statistics of those who have points; nothing where nobody has.
     pub(super) fn of(standings: &[ShortStanding]) -> Option<Self> {
         let mut parts = Vec::new();
         let mut accepted = 0;

@@ -61,12 +61,12 @@ pub(super) async fn submit(
     Ok(see(&format!("/c/{slug}/s/{}", accepted.submission.id)))
 }
 
-/// The assignment of a submission, where the member sees it.
+/// Finds the assignment of a submission, where the member sees it.
 async fn find_assignment(member: &Member, submission: &Submission) -> Result<Option<Assignment>, Problem> {
     Ok(member.assignments().await?.into_iter().find(|assignment| assignment.slug == submission.assignment))
 }
 
-/// The frame of a submission's pages.
+/// Returns the frame of a submission's pages.
 fn frame(member: &Member, assignment: Option<&Assignment>, submission: &Submission) -> PageFrame {
     let frame =
         assignment.map_or_else(|| PageFrame::course(member), |assignment| PageFrame::assignment(member, assignment));
@@ -105,7 +105,7 @@ pub(super) async fn submission(member: Member, At { id, .. }: At) -> Page {
     })
 }
 
-/// The page that is shown of a submission: staff's own, where there is one that the reader may see.
+/// Returns the page that is shown of a submission: staff's own, where there is one that the reader may see.
 fn page_of(submission: &Submission) -> Option<&'static str> {
     let files = submission.grade.iter().flat_map(|grade| &grade.files);
     let names: Vec<&str> = files.map(|file| file.name.as_str()).collect();

@@ -5,18 +5,18 @@ use crate::{
     task::rounded,
 };
 
-/// A moment, as markup: in UTC, which a script makes the reader's own time.
+/// Returns a moment, as markup: in UTC, which a script makes the reader's own time.
 pub(super) fn time(milliseconds: &i64) -> String {
     let (exact, minute) = (calendar::exact(*milliseconds), calendar::minute(*milliseconds));
     format!("<time datetime=\"{exact}\">{minute} UTC</time>")
 }
 
-/// A moment for a field of a form, in UTC: `2026-11-22T08:45`.
+/// Returns a moment for a field of a form, in UTC: `2026-11-22T08:45`.
 pub(super) fn field(milliseconds: &Option<i64>) -> String {
     milliseconds.map(|at| calendar::minute(at).replace(' ', "T")).unwrap_or_default()
 }
 
-/// Points of the most that could be had, to two digits as in reports; a dash where there are none.
+/// Returns points of the most that could be had, to two digits as in reports; a dash where there are none.
 pub(super) fn points(points: &Option<String>, most: &Option<String>) -> String {
     match (points, most) {
         (Some(points), Some(most)) => format!("{} / {}", rounded(points), rounded(most)),
@@ -25,12 +25,12 @@ pub(super) fn points(points: &Option<String>, most: &Option<String>) -> String {
     }
 }
 
-/// Points alone.
+/// Formats points alone.
 pub(super) fn bare_points(points: &Option<String>) -> String {
     points.as_deref().map(rounded).unwrap_or_default()
 }
 
-/// Where a regrade is, in words.
+/// Returns where a regrade is, in words.
 pub(super) fn regrade(state: &RegradeState) -> &'static str {
     match state {
         RegradeState::Open => "open",
@@ -39,7 +39,7 @@ pub(super) fn regrade(state: &RegradeState) -> &'static str {
     }
 }
 
-/// The facts that a learning platform is to know.
+/// Returns the facts that a learning platform is to know.
 pub(super) fn score(score: &serde_json::Value) -> String {
     match (score["scoreGiven"].as_f64(), score["scoreMaximum"].as_f64()) {
         (Some(points), Some(most)) => format!("{} / {}", rounded(&points.to_string()), rounded(&most.to_string())),
@@ -48,12 +48,12 @@ pub(super) fn score(score: &serde_json::Value) -> String {
     }
 }
 
-/// The beginning of a digest.
+/// Returns the beginning of a digest.
 pub(super) fn short(digest: &str) -> &str {
     digest.get(..12).unwrap_or(digest)
 }
 
-/// How the chip of a submission's state looks.
+/// Returns how the chip of a submission's state looks.
 pub(super) fn look(submission: &Submission) -> &'static str {
     match (submission.state.as_str(), &submission.grade) {
         ("waiting" | "running", _) => "warn",
@@ -62,7 +62,7 @@ pub(super) fn look(submission: &Submission) -> &'static str {
     }
 }
 
-/// The words of the chip: the verdict, or what becomes of the submission while there is none.
+/// Returns the words of the chip: the verdict, or what becomes of the submission while there is none.
 pub(super) fn outcome(submission: &Submission) -> &str {
     match (submission.state.as_str(), &submission.grade) {
         ("waiting" | "running", _) | (_, None) => state(&submission.state),
@@ -70,18 +70,18 @@ pub(super) fn outcome(submission: &Submission) -> &str {
     }
 }
 
-/// Whether a submission is accepted.
+/// Returns whether a submission is accepted.
 pub(super) fn is_accepted(submission: &Option<Submission>) -> bool {
     submission.as_ref().is_some_and(|submission| look(submission) == "good")
 }
 
-/// A size in bytes, in the unit that leaves few digits.
+/// Returns a size in bytes, in the unit that leaves few digits.
 pub(super) fn size(bytes: &(impl Copy + TryInto<u64>)) -> String {
     problem::size((*bytes).try_into().unwrap_or(0))
 }
 
-/// Its points; a dash while there are none. Points by hand are of the whole grade: they have no maximum of the groups
-/// that are shown.
+/// Returns the grade's points; a dash while there are none. Points by hand are of the whole grade: they have no maximum
+/// of the groups that are shown.
 pub(super) fn of(submission: &Submission) -> String {
     let by_hand = submission.mark.as_ref().and_then(|mark| mark.points.as_ref());
     if let (true, Some(by_hand)) = (submission.is_withheld, by_hand) {
@@ -90,12 +90,12 @@ pub(super) fn of(submission: &Submission) -> String {
     submission.grade.as_ref().map_or_else(|| points(&None, &None), |grade| points(&grade.points, &grade.max_points))
 }
 
-/// A number of students.
+/// Returns a number of students.
 pub(super) fn students(count: usize) -> String {
     format!("{count} {}", if count == 1 { "student" } else { "students" })
 }
 
-/// The state of a submission, in words.
+/// Returns the state of a submission, in words.
 pub(super) fn state(state: &str) -> &'static str {
     match state {
         "waiting" => "waiting",

@@ -128,7 +128,7 @@ impl Group {
         store_edges(simd, &pair, EDGE_ROW, &mut self.edges[begin..], largest)
     }
 
-    /// The same of one of the particles with some edges.
+    /// Detects one of the particles with some edges.
     #[inline(always)]
     fn with_edges<S: Simd>(
         &mut self,
@@ -152,7 +152,7 @@ impl Group {
         largest
     }
 
-    /// The same of all particles with all half-planes.
+    /// Detects all particles with all half-planes.
     #[inline(always)]
     fn with_half_planes<S: Simd>(
         &mut self,
@@ -173,7 +173,7 @@ impl Group {
     }
 }
 
-/// A vector in all lanes.
+/// Returns a vector in all lanes.
 #[inline(always)]
 fn all<S: Simd>(simd: S, vector: Vec2) -> Plane<Lanes<S>> {
     Plane { x: Lanes::all(simd, vector.x), y: Lanes::all(simd, vector.y) }
@@ -241,7 +241,7 @@ fn store<S: Simd>(
     largest
 }
 
-/// Which coefficients are small: see [`OPEN`].
+/// Returns which coefficients are small: see [`OPEN`].
 #[inline(always)]
 fn small<S: Simd, const COEFFICIENTS: usize>(simd: S, all: &[Lanes<S>; COEFFICIENTS]) -> Lanes<S> {
     let mut known = Lanes::all(simd, NOTHING);

@@ -13,7 +13,7 @@ pub(super) struct Lists {
     /// Positions at the start of the step (x, y), displacements (x, y) and radii of particles, with as many entries
     /// behind the last one as lanes may reach; these repeat it.
     particles: [Vec<f64>; 5],
-    /// The same of edges: starts and displacements of their first and second ends, and radii.
+    /// The edges' coordinates: starts and displacements of their first and second ends, and radii.
     edges: [Vec<f64>; 9],
     /// Whether these are filled in this pass; nobody needs them before a response has moved bodies.
     has_edges: bool,
@@ -30,12 +30,12 @@ pub(super) struct Lists {
 pub(super) enum Refreshed {
     /// The particle ends where it ended before, to the last bit.
     Same,
-    /// It ends elsewhere.
+    /// The particle ends elsewhere.
     Moved {
         /// An edge ends in it.
         is_end: bool,
     },
-    /// Its displacement is too large for lanes, or no number.
+    /// The displacement is too large for lanes, or no number.
     TooLarge,
 }
 
@@ -125,7 +125,7 @@ impl Lists {
         &own[own.partition_point(|&edge| edge < from)..]
     }
 
-    /// Position, displacement and radius of one particle, in all lanes.
+    /// Returns position, displacement and radius of one particle, in all lanes.
     #[inline(always)]
     pub fn particle<S: Simd>(&self, simd: S, index: usize) -> Five<S> {
         let [x, y, dx, dy, radius] = &self.particles;
@@ -134,7 +134,7 @@ impl Lists {
         (position, displacement, Lanes::all(simd, radius[index]))
     }
 
-    /// The same of the particles from `first` on.
+    /// Returns the motions of the particles from `first` on.
     #[inline(always)]
     pub fn particles<S: Simd>(&self, simd: S, first: usize) -> Five<S> {
         let [x, y, dx, dy, radius] = &self.particles;
@@ -150,7 +150,7 @@ impl Lists {
         (EdgeMotions::new(x2, d2, x3, d3), Lanes::load(simd, &radius[first..]))
     }
 
-    /// The motion of an edge with these ends, in all lanes.
+    /// Returns the motion of an edge with these ends, in all lanes.
     #[inline(always)]
     pub fn edge<S: Simd>(&self, simd: S, [first, second]: [usize; 2]) -> EdgeMotions<Lanes<S>> {
         let ((x2, d2, _), (x3, d3, _)) = (self.particle(simd, first), self.particle(simd, second));
@@ -158,7 +158,7 @@ impl Lists {
     }
 }
 
-/// The vectors from `first` on, of lists of their components.
+/// Returns the vectors from `first` on, of lists of their components.
 #[inline(always)]
 fn plane<S: Simd>(simd: S, x: &[f64], y: &[f64], first: usize) -> Plane<Lanes<S>> {
     Plane { x: Lanes::load(simd, &x[first..]), y: Lanes::load(simd, &y[first..]) }
@@ -181,7 +181,7 @@ fn put(lists: &mut [Vec<f64>], index: usize, count: usize, vector: Vec2) {
     }
 }
 
-/// Whether all are numbers that are not too large.
+/// Returns whether all are numbers that are not too large.
 fn are_moderate(numbers: &[f64]) -> bool {
     numbers.iter().fold(true, |all, number| all & (number.abs() <= LANES_LARGEST_INPUT))
 }

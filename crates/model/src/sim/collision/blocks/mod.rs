@@ -45,7 +45,7 @@ pub(super) struct Blocks {
 }
 
 impl Blocks {
-    /// For a scene with this many steps.
+    /// Creates the blocks for a scene with this many steps.
     pub fn new(steps: u32) -> Self {
         Self { steps, ..Self::default() }
     }

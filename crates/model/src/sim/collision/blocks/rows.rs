@@ -77,7 +77,7 @@ impl Pairs<'_> {
         self.edges(simd, first, edges, output) || self.half_planes(simd, first, half_planes, output)
     }
 
-    /// A particle and these edges, as far as it is no end of them.
+    /// Decides about a particle and these edges, as far as it is no end of them.
     #[inline(always)]
     fn edges<S: Simd>(&mut self, _: S, first: usize, seconds: Range<usize>, output: &mut LoggedRows<'_>) -> bool {
         let width = Lanes::<S>::COUNT;
@@ -99,7 +99,7 @@ impl Pairs<'_> {
         false
     }
 
-    /// A particle and these half-planes.
+    /// Decides about a particle and these half-planes.
     #[inline(always)]
     fn half_planes<S: Simd>(&mut self, _: S, first: usize, seconds: Range<usize>, output: &mut LoggedRows<'_>) -> bool {
         let width = Lanes::<S>::COUNT;
@@ -114,7 +114,7 @@ impl Pairs<'_> {
         false
     }
 
-    /// A particle and these particles.
+    /// Decides about a particle and these particles.
     #[inline(always)]
     fn particles<S: Simd>(
         &mut self,
@@ -163,7 +163,7 @@ fn of_edge(
     ends
 }
 
-/// The same of a pair of particles, or with a half-plane.
+/// Decides about a pair of particles, or with a half-plane.
 #[inline(always)]
 fn of_two(
     pair: Pair,

@@ -36,7 +36,7 @@ pub(super) struct LoggedRows<'a> {
 }
 
 impl<'a> LoggedRows<'a> {
-    /// Nothing is written yet.
+    /// Creates the state in which nothing is written yet.
     #[inline(always)]
     pub fn new(room: &'a mut [u8]) -> Self {
         Self { room, used: 0, polynomials: 0, excluded: 0, largest: 0.0, found: Ok(None) }
@@ -84,7 +84,7 @@ impl<'a> LoggedRows<'a> {
         self.polynomials += 4;
     }
 
-    /// The same of another pair.
+    /// Writes the polynomials of a pair of a kind with two.
     #[inline(always)]
     pub fn write_two(&mut self, row: &[f64; TWO_ROW], small: u64) {
         let Some(room) = self.room.get_mut(self.used..).and_then(<[u8]>::first_chunk_mut::<TWO_BYTES>) else { return };
@@ -122,7 +122,7 @@ pub(super) fn decide_edge(
     decide(setting, counts, pair, row, [5, 3, 3, 6])
 }
 
-/// The same of another pair.
+/// Decides about another pair.
 #[inline(never)]
 pub(super) fn decide_two(
     setting: &Setting<'_>,

@@ -8,8 +8,8 @@ use crate::sim::bodies::Bodies;
 use fosssim_num::vector::{Vec2, at, length, unit};
 pub use polynomials::{EdgeMotions, EdgePolynomials, coefficients, coefficients_and_right_cubic};
 
-/// The contact normal at time `t`: from the particle to the point of the edge's line beside it. `None` when it is
-/// zero, which is no hit; a NaN is one.
+/// Returns the contact normal at time `t`: from the particle to the point of the edge's line beside it. `None` when it
+/// is zero, which is no hit; a NaN is one.
 #[inline]
 pub(super) fn normal([x1, x2, x3]: [Vec2; 3], [d1, d2, d3]: [Vec2; 3], t: f64) -> Option<Vec2> {
     let a = ((x1 + t * d1) - x2) - t * d2;
@@ -19,7 +19,7 @@ pub(super) fn normal([x1, x2, x3]: [Vec2; 3], [d1, d2, d3]: [Vec2; 3], t: f64) -
     (length(n) != 0.0).then_some(n)
 }
 
-/// The response along normal `n` at time `t`, from the mean velocities of the step.
+/// Returns the response along normal `n` at time `t`, from the mean velocities of the step.
 pub(super) fn response(setting: &Setting<'_>, i: usize, [first, second]: [usize; 2], n: Vec2, t: f64) -> Response {
     let Setting { bodies, law, q_start, q_end } = *setting;
     let v1 = law.mean_velocity(q_start, q_end, i);
@@ -34,7 +34,7 @@ pub(super) fn response(setting: &Setting<'_>, i: usize, [first, second]: [usize;
     exchange(bodies, law.factor, law.time_step, [i, first, second], alpha, on_edge - v1, unit(n))
 }
 
-/// The simple detection: the vector to the nearest point of the edge when the disc overlaps it and approaches.
+/// Returns the simple detection: the vector to the nearest point of the edge when the disc overlaps it and approaches.
 #[inline]
 pub(super) fn overlap(bodies: &Bodies, x: &[f64], v: &[f64], i: usize, edge: usize) -> Option<Vec2> {
     let [first, second] = bodies.edges[edge];
@@ -48,7 +48,7 @@ pub(super) fn overlap(bodies: &Bodies, x: &[f64], v: &[f64], i: usize, edge: usi
     None
 }
 
-/// The simple response along normal `n`, from the velocities `v`; positions stay.
+/// Returns the simple response along normal `n`, from the velocities `v`; positions stay.
 pub(super) fn simple_response(
     bodies: &Bodies,
     factor: f64,
@@ -64,15 +64,15 @@ pub(super) fn simple_response(
     exchange(bodies, factor, 0.0, [i, first, second], alpha, on_edge - v1, unit(n))
 }
 
-/// The parameter in [0, 1] of the point of the edge from `y2` to `y3` that is nearest to `y1`; 0 for NaN.
+/// Returns the parameter in [0, 1] of the point of the edge from `y2` to `y3` that is nearest to `y1`; 0 for NaN.
 #[inline]
 fn beside(y1: Vec2, y2: Vec2, y3: Vec2) -> f64 {
     let edge = y3 - y2;
     clamp((y1 - y2).dot(&edge) / edge.dot(&edge))
 }
 
-/// The exchange of momentum along the unit vector `u` at parameter `alpha` of the edge for relative velocity `relative`
-/// (edge minus particle).
+/// Returns the exchange of momentum along the unit vector `u` at parameter `alpha` of the edge for relative velocity
+/// `relative` (edge minus particle).
 fn exchange(
     bodies: &Bodies,
     factor: f64,

@@ -26,7 +26,7 @@ pub struct EdgeMotions<N> {
 }
 
 impl<N: Number> EdgeMotions<N> {
-    /// The motions of edges whose endpoints start at `x2`, `x3` and move by `d2`, `d3` in the step.
+    /// Creates the motions of edges whose endpoints start at `x2`, `x3` and move by `d2`, `d3` in the step.
     #[inline(always)]
     pub fn new(x2: Plane<N>, d2: Plane<N>, x3: Plane<N>, d3: Plane<N>) -> Self {
         let (x32, d32) = (x3 - x2, d3 - d2);
@@ -48,8 +48,8 @@ pub struct EdgePolynomials<N> {
     pub approach: [N; 6],
 }
 
-/// The coefficients for each of several edges with a disc that starts at `x1` and moves by `d1` in the step, and whose
-/// radius and the edge's add up to `radii`. Letters are those of collisions.md 2.
+/// Returns the coefficients for each of several edges with a disc that starts at `x1` and moves by `d1` in the step,
+/// and whose radius and the edge's add up to `radii`. Letters are those of collisions.md 2.
 ///
 /// The t^3 coefficient of the last one is mathematically wrong (`g` where `h` belongs); it is the formula that every
 /// student was given.
@@ -61,7 +61,7 @@ where
     coefficients_and_right_cubic(x1, d1, edges, radii).0
 }
 
-/// The [`coefficients`], and what the definition gives for the t^3 coefficient of the last polynomial
+/// Returns the [`coefficients`], and what the definition gives for the t^3 coefficient of the last polynomial
 /// (numerics.md 1.1).
 #[inline(always)]
 #[expect(clippy::many_single_char_names, reason = "the letters of the specification")]
@@ -98,7 +98,7 @@ where
     (EdgePolynomials { distance, beyond_first: [c, b, a], before_second, approach }, right_cubic)
 }
 
-/// The coefficients of the velocity quintic, with its own letters `a..h`, `i`, `j`; and the right one of t^3.
+/// Returns the coefficients of the velocity quintic, with its own letters `a..h`, `i`, `j`; and the right one of t^3.
 #[inline(always)]
 #[expect(clippy::many_single_char_names, reason = "the letters of the specification")]
 fn approach<N: Number>([a, b, c, d, e, f, g, h]: [N; 8], i: N, j: N) -> ([N; 6], N)
@@ -131,7 +131,7 @@ where
     (quintic, less(-2.0 * g * h * p - 2.0 * f * h * q, others))
 }
 
-/// A number less others, one after the other.
+/// Returns a number less others, one after the other.
 #[inline(always)]
 fn less<N: Number, const COUNT: usize>(mut number: N, others: [N; COUNT]) -> N {
     for other in others {
@@ -157,7 +157,8 @@ mod tests {
         lists.map(Polynomial::trimmed)
     }
 
-    /// The approach polynomial by the formulas of the specification, from differences of positions and displacements.
+    /// Returns the approach polynomial by the formulas of the specification, from differences of positions and
+    /// displacements.
     fn approach_by_the_formulas([x12, x32, x21]: [Vec2; 3], [d12, d32, d21]: [Vec2; 3]) -> [f64; 6] {
         let a = x32.dot(&x32);
         let b = x32.dot(&d32);

@@ -33,7 +33,7 @@ fn divide<T: Copy>(mut list: &mut [T], mut depth: u32, is_less: impl Fn(&T, &T) 
     }
 }
 
-/// The place whose entry is the median.
+/// Returns the place whose entry is the median.
 fn median([a, b, c]: [usize; 3], is_less: impl Fn(usize, usize) -> bool) -> usize {
     match (is_less(a, b), is_less(b, c), is_less(a, c)) {
         (true, true, _) | (false, false, false) => b,

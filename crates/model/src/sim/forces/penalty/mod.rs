@@ -48,14 +48,14 @@ struct Law {
 }
 
 impl Penalty {
-    /// The force between the bodies of a scene.
+    /// Creates the force between the bodies of a scene.
     pub fn new(scene: &Scene, stiffness: f64, thickness: f64, detection: CollisionDetection) -> Self {
         let is_contest = detection == CollisionDetection::Contest;
         let pairs = PenaltyPairs::new(scene, thickness, detection);
         Self { law: Law { stiffness, thickness, is_contest }, pairs }
     }
 
-    /// Its pairs.
+    /// Returns the penalty force's pairs.
     pub fn pairs(&mut self) -> &mut PenaltyPairs {
         &mut self.pairs
     }
@@ -79,7 +79,7 @@ impl Law {
         }
     }
 
-    /// Whether bodies at this distance repel each other.
+    /// Returns whether bodies at this distance repel each other.
     #[inline]
     fn repels(self, distance: f64, reach: f64) -> bool {
         distance < reach && !(self.is_contest && distance < CONTEST_DISTANCE)

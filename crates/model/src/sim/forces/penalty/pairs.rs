@@ -26,7 +26,7 @@ pub struct PenaltyPairs {
 }
 
 impl PenaltyPairs {
-    /// The pairs for the bodies of a scene and this thickness.
+    /// Creates the pairs for the bodies of a scene and this thickness.
     #[must_use]
     pub fn new(scene: &Scene, thickness: f64, detection: CollisionDetection) -> Self {
         let is_contest = detection == CollisionDetection::Contest;

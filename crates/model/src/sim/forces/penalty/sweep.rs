@@ -37,14 +37,14 @@ pub(super) struct Sweep {
 #[derive(Debug, Clone, Copy, Default)]
 struct BodyExtent {
     body: u32,
-    /// Its place in the order before.
+    /// The body's place in the order before.
     rank: u32,
     low: [f64; 4],
     high: [f64; 4],
 }
 
 impl Sweep {
-    /// The search among the particles and edges of a scene.
+    /// Creates the search among the particles and edges of a scene.
     pub fn new(scene: &Scene) -> Self {
         let edges = scene.edges.len();
         Self {
@@ -136,7 +136,7 @@ fn sort(boxes: &mut Vec<BodyExtent>, count: usize, make: impl Fn(u32) -> BodyExt
 }
 
 impl BodyExtent {
-    /// Around what is between two places, with this radius.
+    /// Returns around what is between two places, with this radius.
     fn around(body: u32, [one, other]: [Vec2; 2], radius: f64, has_four_axes: bool) -> Self {
         let mut own = Self { body, ..Self::default() };
         let mut extend = |axis: usize, one: f64, other: f64, radius: f64| {
@@ -153,7 +153,7 @@ impl BodyExtent {
         own
     }
 
-    /// Whether boxes overlap or touch on all axes.
+    /// Returns whether boxes overlap or touch on all axes.
     fn overlaps(&self, other: &Self) -> bool {
         (0..4).all(|axis| !(self.low[axis] > other.high[axis]) && !(other.low[axis] > self.high[axis]))
     }

@@ -18,7 +18,7 @@ pub struct PenaltyTerms {
 }
 
 impl PenaltyTerms {
-    /// Of a scene with `penalty` handling; `None` for all others.
+    /// Returns the terms of a scene with `penalty` handling; `None` for all others.
     #[must_use]
     pub fn of(scene: &Scene) -> Option<Self> {
         let Collision::Penalty { stiffness, thickness, detection } = scene.collision else { return None };
