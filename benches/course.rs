@@ -140,7 +140,7 @@ fn parts() {
 
 /// Returns the trace with every coefficient divided by three.
 fn rescaled(scene: &Scene, trace: &[u8]) -> Vec<u8> {
-    let layout = Layout::of(scene);
+    let layout = Layout::for_scene(scene);
     let (mut reader, mut writer) = (Reader::of_slice(trace, layout), Writer::new(Vec::new(), layout));
     let mut frame = Frame::default();
     while reader.next(&mut frame).expect("a sound trace") {
@@ -152,7 +152,7 @@ fn rescaled(scene: &Scene, trace: &[u8]) -> Vec<u8> {
 
 fn simulate(scene: &Scene, search: RootSearch) -> Vec<u8> {
     let mut simulation = Simulation::new(scene, search);
-    let mut recorder = Recorder::start(Vec::new(), Layout::of(scene), simulation.state());
+    let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(scene), simulation.state());
     for _ in 0..scene.steps() {
         simulation.step(&mut recorder).expect("a step");
     }

@@ -11,7 +11,7 @@ use std::{env, error::Error, fs};
 pub fn run(scene: &[u8]) -> Result<String, Box<dyn Error>> {
     let scene = scene::read("scene", scene)?.scene;
     let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
-    let mut extent = Extent::of(&scene, &simulation.state().positions);
+    let mut extent = Extent::for_scene(&scene, &simulation.state().positions);
     for _ in 0..scene.steps() {
         simulation.step(&mut ())?;
         extent.add(&scene, &simulation.state().positions);

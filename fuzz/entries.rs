@@ -60,7 +60,7 @@ pub fn scene(bytes: &[u8]) {
 /// The recording of at most `steps` steps with its layout, and whether no step failed.
 pub fn record(scene: &Scene, steps: usize) -> std::io::Result<(Layout, Vec<u8>, bool)> {
     let steps = scene.steps().min(u32::try_from(steps).unwrap_or(u32::MAX));
-    let layout = Layout { steps, ..Layout::of(scene) };
+    let layout = Layout { steps, ..Layout::for_scene(scene) };
     let mut simulation = Simulation::new(scene, RootSearch::default());
     let mut recorder = Recorder::start(Vec::new(), layout, simulation.state());
     let sound = (0..steps).all(|_| simulation.step(&mut recorder).is_ok());
@@ -72,7 +72,7 @@ pub fn trace(bytes: &[u8]) {
     let Some((&choice, trace)) = bytes.split_first() else { return };
     let xml = SCENES[usize::from(choice) % SCENES.len()];
     let scene = original::read(xml.as_bytes()).expect("our own scene").scene;
-    let layout = Layout::of(&scene);
+    let layout = Layout::for_scene(&scene);
 
     let strict = frames(Reader::of_slice(trace, layout));
     assert_eq!(strict, frames(Reader::new(trace, layout)), "knowing the length makes no difference");
@@ -83,8 +83,8 @@ pub fn trace(bytes: &[u8]) {
     assert!(stop.is_none() || strict.is_err(), "what the strict reader accepts, the lenient one does: {stop:?}");
 
     let sound = strict.as_ref().map_or_else(|error| error.frame, |(records, _)| *records);
-    assert_eq!(Digests::of(trace, layout).records, sound);
-    assert!(!Summary::of(&scene, trace).to_string().is_empty());
+    assert_eq!(Digests::from_stream(trace, layout).records, sound);
+    assert!(!Summary::for_scene(&scene, trace).to_string().is_empty());
 
     let options = replay::Options { threads: 1, ..replay::Options::default() };
     let outcome = replay::judge(&scene, trace, &options, &mut ());
@@ -144,7 +144,7 @@ pub fn judge(bytes: &[u8]) {
     }
     let finite = |value: &f64| value.is_finite();
     if outcome.ruling(Book::Fair) == Ruling::Accepted {
-        let mut reader = Reader::of_slice(&trace, Layout::of(&scene));
+        let mut reader = Reader::of_slice(&trace, Layout::for_scene(&scene));
         let mut frame = Frame::default();
         while reader.next(&mut frame).expect("what is accepted is sound") {
             assert!(frame.state.positions.iter().chain(&frame.state.velocities).all(finite), "no physics, no points");

@@ -2,7 +2,7 @@
 //! go over as bytes in the machine's order, which NumPy reads where they lie.
 use fosssim_browser::{PageHost, PageSession, parts};
 use fosssim_model::{
-    scene::{self, Loaded, Scene},
+    scene::{self, LoadedScene, Scene},
     trace::{Frame, Layout, Reader},
 };
 use fosssim_num::vector::Vec2;
@@ -35,7 +35,7 @@ fn bytes<'py>(py: Python<'py>, numbers: &[f64]) -> PyResult<Bound<'py, PyBytes>>
 
 fn read(name: &str, xml: &[u8]) -> PyResult<Scene> {
     match scene::read(name, xml) {
-        Ok(Loaded { scene, .. }) => Ok(scene),
+        Ok(LoadedScene { scene, .. }) => Ok(scene),
         Err(refused) => Err(PyValueError::new_err(problems::errors(name, xml, &refused))),
     }
 }
@@ -76,7 +76,7 @@ mod _native {
     ) -> PyResult<(Bound<'py, PyBytes>, Bound<'py, PyBytes>, Option<String>)> {
         let scene = read(name, &xml)?;
         let (positions, velocities, fault) = py.detach(|| {
-            let mut reader = Reader::of_slice(&trace, Layout::of(&scene));
+            let mut reader = Reader::of_slice(&trace, Layout::for_scene(&scene));
             let (mut frame, mut positions, mut velocities) = (Frame::default(), Vec::new(), Vec::new());
             let fault = loop {
                 match reader.next(&mut frame) {

@@ -38,7 +38,7 @@ impl Outside for Program {
         };
         let size = Size::new(SIDE, SIDE).map_err(|error| error.to_string())?;
         let start: Vec<f64> = scene.particles.iter().flat_map(|p| [p.position.x, p.position.y]).collect();
-        let painter = Painter::new(scene, &Extent::of(scene, &start), PictureOptions { size, label: false });
+        let painter = Painter::new(scene, &Extent::for_scene(scene, &start), PictureOptions { size, label: false });
         Ok(Box::new(PictureFolders { painter, raster: Raster::new(size), png, svg }))
     }
 }

@@ -53,7 +53,7 @@ impl Output {
         match fs::metadata(name) {
             Ok(existing) => {
                 let kind = existing.file_type();
-                if inputs.contains(&Identity::of(&existing)) {
+                if inputs.contains(&Identity::from_metadata(&existing)) {
                     bail!("it is also an input; choose another name");
                 } else if kind.is_dir() {
                     bail!("it is a directory; name a file inside");

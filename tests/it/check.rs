@@ -28,7 +28,7 @@ fn reports(scene: &str, trace: &[u8]) -> (Run, Value) {
 
 /// The reference trace of a scene with changed frames.
 fn changed(scene: &str, change: impl FnOnce(&mut Vec<Frame>)) -> Vec<u8> {
-    let layout = Layout::of(&scene::read("scene", scene.as_bytes()).unwrap().scene);
+    let layout = Layout::for_scene(&scene::read("scene", scene.as_bytes()).unwrap().scene);
     let trace = trace_of(scene);
     let mut reader = Reader::of_slice(&trace, layout);
     let mut frames = Vec::new();

@@ -130,7 +130,7 @@ fn the_factor_and_the_form_of_the_polynomials_are_found() {
 fn the_right_form_of_one_polynomial_among_the_courses_is_charged() {
     let scenes = assets();
     let (_, scene) = scenes.iter().find(|(name, _)| name == "ContinuousTimeTests/spinning-edge-sweeps-balls").unwrap();
-    let layout = Layout::of(scene);
+    let layout = Layout::for_scene(scene);
     let trace = simulated(scene, None).unwrap();
     let mut reader = Reader::of_slice(&trace, layout);
     let mut writer = Writer::new(Vec::new(), layout);
@@ -171,7 +171,7 @@ fn a_small_factor_of_edges_is_no_mistake_on_the_courses_scenes() {
         let scene = original::read(&std::fs::read(file).unwrap()).unwrap().scene;
         for factor in [1e-2, 1e-4] {
             let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
-            let mut recorder = Recorder::start(Vec::new(), Layout::of(&scene), simulation.state());
+            let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(&scene), simulation.state());
             for _ in 0..scene.steps() {
                 simulation.step(&mut (Steering(Edges(factor)), &mut recorder)).unwrap();
             }

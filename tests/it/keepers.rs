@@ -2,7 +2,7 @@
 use crate::folder_in_memory::with_namespaces;
 use crate::sandbox::deaths::{eventually, kill, process};
 use crate::sandbox::small;
-use fosssim_oracle::sandbox::{Backend, Ended, Job, Limits, Running, Supervisor};
+use fosssim_oracle::sandbox::{Backend, Ended, Job, Limits, RunningProgram, Supervisor};
 use std::{fs, os::unix::fs::PermissionsExt, path::Path};
 
 /// Waits a moment, so that it can be looked at; then it ends by itself. Every test has another moment, by which its
@@ -17,7 +17,7 @@ impl Bench {
         Self { words: ["/bin/sleep", seconds].map(str::to_owned), folder: tempfile::tempdir().unwrap() }
     }
 
-    fn start(&self, backend: &Backend, limits: Limits) -> Running {
+    fn start(&self, backend: &Backend, limits: Limits) -> RunningProgram {
         let job = Job::new(&self.words[0], self.folder.path()).arguments(&self.words[1..]);
         backend.start(&job.folder_in_memory().limits(limits)).expect("a run")
     }
@@ -35,7 +35,7 @@ impl Bench {
     }
 }
 
-fn finish(running: Running) -> Ended {
+fn finish(running: RunningProgram) -> Ended {
     running.wait().expect("an outcome").ended
 }
 

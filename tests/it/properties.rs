@@ -89,7 +89,7 @@ proptest! {
         let many = judge(&scene, &trace, 3, RootSearch::Always);
         prop_assert_eq!(told(&one), told(&many));
         if let Some(Stop::Trace { frame, .. }) = one.stop {
-            prop_assert!(frame <= Layout::of(&scene).records());
+            prop_assert!(frame <= Layout::for_scene(&scene).records());
         }
     }
 }

@@ -31,7 +31,7 @@ fn wrong_responses_that_lock_step_lets_pass_are_found_at_their_step() {
     assert_eq!(outcome.parity.overall, Overall::Failed);
     let first = outcome.parity.findings.first_divergence.expect("a divergence");
     assert!(matches!(first.detail, FindingDetail::Position { .. } | FindingDetail::Velocity { .. }), "{first}");
-    let layout = Layout::of(&scene);
+    let layout = Layout::for_scene(&scene);
     let same = right.iter().zip(&wrong).take_while(|(one, other)| one == other).count();
     // All frames before the first difference are as large as the initial one plus equal logs; the step must not come
     // before the first differing byte's share of the trace, nor after it by more than one step.

@@ -40,7 +40,7 @@ fn scene(folder: &Path, entry: &Entry) -> Scene {
 /// The trace of a scene, and how many root searches it took.
 fn record(scene: &Scene, search: RootSearch) -> (Vec<u8>, SearchCounts) {
     let mut simulation = Simulation::new(scene, search);
-    let mut recorder = Recorder::start(Vec::new(), Layout::of(scene), simulation.state());
+    let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(scene), simulation.state());
     for _ in 0..scene.steps() {
         simulation.step(&mut recorder).unwrap_or_else(|error| panic!("{error}"));
     }

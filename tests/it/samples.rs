@@ -101,7 +101,7 @@ fn reference(path: &Path) -> Vec<u8> {
     let bytes = std::fs::read(path).expect("a readable scene");
     let scene = original::read(&bytes).unwrap_or_else(|refusal| panic!("{}: {refusal}", path.display())).scene;
     let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
-    let mut recorder = Recorder::start(Vec::new(), Layout::of(&scene), simulation.state());
+    let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(&scene), simulation.state());
     for _ in 0..scene.steps() {
         simulation.step(&mut recorder).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     }
@@ -233,7 +233,7 @@ fn every_variant_moves_everything_as_the_correct_sample_does() {
 /// All positions and velocities of a trace, with everything else left out.
 fn states(path: &Path, mistake: Option<&str>) -> Vec<f64> {
     let bytes = std::fs::read(path).expect("a readable scene");
-    let layout = Layout::of(&original::read(&bytes).expect("a scene").scene);
+    let layout = Layout::for_scene(&original::read(&bytes).expect("a scene").scene);
     let trace = trace(path, mistake);
     let mut rest = &trace[..];
     let mut states = Vec::new();

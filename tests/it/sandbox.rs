@@ -507,7 +507,7 @@ fn a_staged_program_that_is_gone_or_changed_is_our_fault() {
     use fosssim_oracle::sandbox::ProgramIdentity;
     let Some(bench) = Bench::new() else { return };
     let program = bench.script("#!/bin/sh\nexit 0\n");
-    let job = bench.job(&program, &[]).staged(ProgramIdentity::of(&program));
+    let job = bench.job(&program, &[]).staged(ProgramIdentity::from_path(&program));
     assert_eq!(bench.finish(&job).ended, Ended::Exited(0));
     std::fs::write(&program, "#!/bin/sh\nexit 1\n").unwrap();
     let changed = bench.backend.start(&job).unwrap_err();

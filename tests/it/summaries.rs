@@ -18,13 +18,13 @@ fn summaries_of_all_embedded_scenes() {
         let scene = scene::read(name, library::scene(name).expect("an embedded scene")).expect("a sound scene").scene;
         let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
         let mut observers =
-            (Recorder::start(Vec::new(), Layout::of(&scene), simulation.state()), EventCounts::new(&scene));
+            (Recorder::start(Vec::new(), Layout::for_scene(&scene), simulation.state()), EventCounts::new(&scene));
         for _ in 0..scene.steps() {
             simulation.step(&mut observers).expect("a step");
         }
         let (recorder, counts) = observers;
         let trace = recorder.finish().expect("memory").0;
-        let text = format!("{}{}", described(&counts), Summary::of(&scene, &trace[..]));
+        let text = format!("{}{}", described(&counts), Summary::for_scene(&scene, &trace[..]));
         settings.bind(|| insta::assert_snapshot!(name.replace('/', "--"), text));
         scenes += 1;
     }

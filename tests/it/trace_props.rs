@@ -237,7 +237,7 @@ fn example(collision: &str) -> Vec<u8> {
     );
     let scene = original::read(xml.as_bytes()).expect("a scene").scene;
     let mut simulation = Simulation::new(&scene, RootSearch::default());
-    let mut recorder = Recorder::start(Vec::new(), Layout::of(&scene), simulation.state());
+    let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(&scene), simulation.state());
     for _ in 0..scene.steps() {
         simulation.step(&mut recorder).unwrap();
     }
@@ -283,14 +283,14 @@ fn a_summary_says_what_happened_and_where_reading_ended() {
         <edge i="1" j="2" radius="0.5"/></scene>"#;
     let scene = original::read(xml).expect("a scene").scene;
     let mut simulation = Simulation::new(&scene, RootSearch::default());
-    let recorder = Recorder::start(Vec::new(), Layout::of(&scene), simulation.state());
+    let recorder = Recorder::start(Vec::new(), Layout::for_scene(&scene), simulation.state());
     let mut both = (recorder, EventCounts::new(&scene));
     for _ in 0..scene.steps() {
         simulation.step(&mut both).unwrap();
     }
     let (recorder, counts) = both;
     let trace = recorder.finish().unwrap().0;
-    let summary = Summary::of(&scene, &trace[..]);
+    let summary = Summary::for_scene(&scene, &trace[..]);
     assert_eq!(summary.polynomials_per_pass, 10);
     assert_eq!((summary.polynomials.total(), summary.impulses.total()), (counts.polynomials, counts.impulses));
     assert_eq!((counts.passes(), counts.calls), (30, [90, 30, 0].into()));
@@ -302,7 +302,7 @@ fn a_summary_says_what_happened_and_where_reading_ended() {
     assert!(text.contains("polynomial 9, pass 0, particle 1 - particle 2: ["), "{text}");
     assert!(text.contains("  steps 1-2    "), "{text}");
 
-    let damaged = Summary::of(&scene, &trace[..trace.len() - 1]);
+    let damaged = Summary::for_scene(&scene, &trace[..trace.len() - 1]);
     assert_eq!(damaged.digests[..15], summary.digests[..15]);
     assert!(damaged.to_string().contains("damage         byte "), "{damaged}");
 }

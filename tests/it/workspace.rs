@@ -171,7 +171,7 @@ impl Workspace {
 
 /// The reference trace of a scene.
 pub fn trace_of(scene: &str) -> Vec<u8> {
-    fosssim_oracle::suite::recording::Recording::of("scene", scene.as_bytes()).unwrap().trace
+    fosssim_oracle::suite::recording::Recording::for_scene("scene", scene.as_bytes()).unwrap().trace
 }
 
 /// A scene that comes with the program.
@@ -182,7 +182,7 @@ pub fn embedded(name: &str) -> Scene {
 /// The reference trace of a scene that was read already.
 pub fn simulate(scene: &Scene) -> Vec<u8> {
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
-    let mut recorder = Recorder::start(Vec::new(), Layout::of(scene), simulation.state());
+    let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(scene), simulation.state());
     for _ in 0..scene.steps() {
         simulation.step(&mut recorder).expect("a step");
     }

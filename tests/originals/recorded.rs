@@ -29,7 +29,9 @@ fn bundled_scenes_are_recorded_as_their_originals_record_them() {
             let milestone = library::assignment(name).expect("a scene of a milestone");
             let scene = library::scene(name).expect("a scene");
             let fault = match original(&originals, milestone, scene) {
-                Ok(trace) => (trace != Recording::of(name, scene).expect("a recording").trace).then(String::new)?,
+                Ok(trace) => {
+                    (trace != Recording::for_scene(name, scene).expect("a recording").trace).then(String::new)?
+                }
                 Err(shown) => shown,
             };
             Some(format!("{name} {fault}"))

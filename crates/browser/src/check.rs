@@ -4,10 +4,10 @@ use crate::{
     parts::PageAnswer,
     scenes,
 };
-use fosssim_evidence::{self as evidence, Keep, examine};
+use fosssim_evidence::{self as evidence, KeptPart, examine};
 use fosssim_judge::{
     Rules,
-    replay::{Both, Options},
+    replay::{BothObservers, Options},
 };
 use fosssim_model::scene::{self, Scene};
 use fosssim_report::{
@@ -45,8 +45,8 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
     let looks_like = looks_like(&start);
     let options = Options { threads: 1, fair: request.rules.ask_fair(), ..Options::default() };
     let (mut told, mut wrong) = (ToldProgress { host, all: scene.steps() }, WrongSteps::new(StepChoice::None));
-    let heard = &mut Both(&mut told, &mut wrong);
-    let examined = examine(&scene, Cursor::new(start).chain(trace), Keep::All, &options, heard);
+    let heard = &mut BothObservers(&mut told, &mut wrong);
+    let examined = examine(&scene, Cursor::new(start).chain(trace), KeptPart::All, &options, heard);
     let outcome = &examined.outcome;
     // A search for the mistake may take as long as judging.
     host.progress(scene.steps(), scene.steps());

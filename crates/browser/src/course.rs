@@ -18,7 +18,7 @@ impl CourseSuite {
     ///
     /// # Errors
     /// When there is no such group, or when a name can't be written into a suite.
-    pub fn of(plan: &Plan, reader: Audience) -> Result<Self, String> {
+    pub fn for_plan(plan: &Plan, reader: Audience) -> Result<Self, String> {
         let shows = |visibility| reader == Audience::Staff || visibility == Visibility::Visible;
         let groups: Vec<&PlannedGroup> = plan.groups.iter().filter(|group| shows(group.marking.visibility)).collect();
         if groups.is_empty() {

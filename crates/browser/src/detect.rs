@@ -55,7 +55,7 @@ impl PairRequest {
 /// Looks at a pair. The parts behind the first are those of `detect --format text`, `json` and `svg`, and the picture
 /// once more for a page that has the style of plots.
 pub(crate) fn answer(request: &PairRequest) -> PageAnswer {
-    let study = Study::of(&request.motion()?)
+    let study = Study::for_motion(&request.motion()?)
         .map_err(|_| "there is no answer: the numbers are too large or too small, and the original hangs here")?;
     let report = Detect { study: &study, place: None };
     let picture = |embedding| detection::picture(&study, &report.title(), embedding).into_bytes();

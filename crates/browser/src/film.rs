@@ -1,7 +1,7 @@
 //! A scene that is being written: what its strict reader says, and the reference's motion.
 use crate::{dropped::PageHost, parts::PageAnswer};
 use fosssim_model::{
-    scene::{self, Loaded, Problem, Scene, Severity},
+    scene::{self, LoadedScene, Problem, Scene, Severity},
     sim::{RootSearch, Simulation},
     trace::{Layout, Recorder},
 };
@@ -72,12 +72,12 @@ pub(crate) struct Film {
 /// Reads a scene and, if it is right, simulates it.
 pub(crate) fn simulate(name: &str, xml: &[u8], host: &dyn PageHost) -> (Value, Option<Film>) {
     let (scene, problems, more) = match scene::read(name, xml) {
-        Ok(Loaded { scene, warnings, .. }) => (Some(scene), warnings, 0),
+        Ok(LoadedScene { scene, warnings, .. }) => (Some(scene), warnings, 0),
         Err(refused) => (None, refused.list, refused.omitted),
     };
     let problems: Vec<Value> = problems.iter().map(view).collect();
     let Some(scene) = scene else { return (json!({ "problems": problems, "more": more }), None) };
-    let (film, stopped) = Film::of(scene, host);
+    let (film, stopped) = Film::for_scene(scene, host);
     let Film { scene, steps, .. } = &film;
     let value = json!({
         "problems": problems,
@@ -103,10 +103,10 @@ fn view(problem: &Problem) -> Value {
 
 impl Film {
     /// Returns the motion, and why it ends before the scene does.
-    fn of(scene: Scene, host: &dyn PageHost) -> (Self, Option<String>) {
+    fn for_scene(scene: Scene, host: &dyn PageHost) -> (Self, Option<String>) {
         let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
         let mut positions = simulation.state().positions.clone();
-        let start = Extent::of(&scene, &positions);
+        let start = Extent::for_scene(&scene, &positions);
         let (mut extent, mut steps, mut stopped) = (start, 0, None);
         for step in 1..=scene.steps() {
             if positions.len() + 2 * scene.particles.len() > MOST_NUMBERS {
@@ -198,7 +198,7 @@ impl Film {
     pub(crate) fn trace(&self, host: &dyn PageHost) -> Result<Vec<u8>, String> {
         let mut simulation = Simulation::new(&self.scene, RootSearch::WhereNeeded);
         let kept = TraceRoom(Vec::new());
-        let mut recorder = Recorder::start(kept, Layout::of(&self.scene), simulation.state());
+        let mut recorder = Recorder::start(kept, Layout::for_scene(&self.scene), simulation.state());
         for step in 1..=self.scene.steps() {
             if let Err(error) = simulation.step(&mut recorder) {
                 return Err(format!("there is no trace: {}", no_result(&error)));

@@ -55,6 +55,6 @@ pub(crate) fn beginning(file: u32, host: &dyn PageHost) -> PageAnswer {
 fn is_beginning(xml: &[u8], start: &[u8]) -> bool {
     let Ok(loaded) = scene::read("", xml) else { return false };
     let simulation = Simulation::new(&loaded.scene, RootSearch::WhereNeeded);
-    let recorder = Recorder::start(Vec::new(), Layout::of(&loaded.scene), simulation.state());
+    let recorder = Recorder::start(Vec::new(), Layout::for_scene(&loaded.scene), simulation.state());
     recorder.finish().is_ok_and(|(record, _)| start.starts_with(&record))
 }

@@ -6,7 +6,7 @@ use crate::{
 use fosssim_judge::{
     Outcome,
     kept::{KeptTrace, LONGEST},
-    replay::{self, Both, Options, Progress},
+    replay::{self, BothObservers, Options, Progress},
 };
 use fosssim_mistakes::diagnose::{Explanation, explain_kept};
 use fosssim_model::scene::Scene;
@@ -14,7 +14,7 @@ use std::io::{self, Read};
 
 /// The part of a trace that is kept while it is judged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Keep {
+pub enum KeptPart {
     /// Nothing: the trace is neither explained nor shown.
     Nothing,
     /// The trace's beginning; where judging stops, nothing more is read. The writer of a trace that comes once may
@@ -26,7 +26,7 @@ pub enum Keep {
 
 /// A trace that has been judged.
 #[derive(Debug)]
-pub struct Examined<'a> {
+pub struct ExaminedTrace<'a> {
     /// The scene.
     pub scene: &'a Scene,
     /// The verdict.
@@ -42,22 +42,22 @@ pub struct Examined<'a> {
 pub fn examine<'a, R: Read + Send>(
     scene: &'a Scene,
     mut trace: R,
-    keep: Keep,
+    keep: KeptPart,
     options: &Options,
     progress: &mut dyn Progress,
-) -> Examined<'a> {
-    let mut kept = KeptTrace::new(if keep == Keep::Nothing { 0 } else { LONGEST });
+) -> ExaminedTrace<'a> {
+    let mut kept = KeptTrace::new(if keep == KeptPart::Nothing { 0 } else { LONGEST });
     let mut rulings = StepRulings::default();
-    let outcome = replay::judge(scene, kept.reader(&mut trace), options, &mut Both(&mut rulings, progress));
-    if keep == Keep::All && outcome.stop.is_some() {
+    let outcome = replay::judge(scene, kept.reader(&mut trace), options, &mut BothObservers(&mut rulings, progress));
+    if keep == KeptPart::All && outcome.stop.is_some() {
         let room = (LONGEST - kept.bytes().len()) as u64;
         // An error ends what is kept.
         let _ = io::copy(&mut kept.reader(trace.take(room)), &mut io::sink());
     }
-    Examined { scene, rulings: rulings.into_steps(&outcome), outcome, trace: kept }
+    ExaminedTrace { scene, rulings: rulings.into_steps(&outcome), outcome, trace: kept }
 }
 
-impl Examined<'_> {
+impl ExaminedTrace<'_> {
     /// Returns likely mistakes of the program that left the trace ([`explain_kept`]).
     #[must_use]
     pub fn explain(&self) -> Vec<Explanation> {
@@ -68,7 +68,7 @@ impl Examined<'_> {
     /// again, else of what was kept.
     #[must_use]
     pub fn evidence(&self, again: Option<&mut dyn Read>, budget: usize) -> Evidence {
-        let (fair, focus) = (self.outcome.fair.is_some(), Focus::of(&self.outcome));
+        let (fair, focus) = (self.outcome.fair.is_some(), Focus::from_outcome(&self.outcome));
         let gathered = |trace: &mut dyn Read| gather(self.scene, trace, &self.rulings, fair, &focus, budget);
         match again {
             Some(trace) => gathered(trace),

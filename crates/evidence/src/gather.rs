@@ -75,7 +75,7 @@ pub struct Focus {
 impl Focus {
     /// Returns the findings of both books, the official one's first.
     #[must_use]
-    pub fn of(outcome: &Outcome) -> Vec<Self> {
+    pub fn from_outcome(outcome: &Outcome) -> Vec<Self> {
         let books = outcome.fair.iter().map(|fair| &fair.findings).chain([&outcome.parity.findings]);
         books.flat_map(|book| book.first_divergence.iter().chain(&book.examples)).map(Self::from).collect()
     }
@@ -116,7 +116,7 @@ pub fn gather(
     focus: &[Focus],
     budget: usize,
 ) -> Evidence {
-    let layout = Layout::of(scene);
+    let layout = Layout::for_scene(scene);
     let wrong = |ruling: &StepRuling| if fair { ruling.wrong_by_fair } else { ruling.wrong_by_parity };
     let first_wrong = (1..).zip(rulings).find(|(_, ruling)| wrong(ruling)).map(|(step, _)| step);
     let centre = first_wrong.or(focus.first().map(|focus| focus.step)).unwrap_or(0);
@@ -175,7 +175,7 @@ impl<'a> Gathering<'a> {
     fn new(scene: &'a Scene, window: Window) -> Self {
         let simulation = || Simulation::new(scene, RootSearch::WhereNeeded);
         let evidence = Evidence {
-            layout: Layout::of(scene),
+            layout: Layout::for_scene(scene),
             window,
             reference: Track::default(),
             submission: Track::default(),

@@ -276,7 +276,13 @@ impl<'a> Inspector<'a> {
                 by_order(self.log, self.step.expected_polynomials, asked.first, asked.count)
             };
             let (pass, polynomials) = (asked.pass, asked.count);
-            self.step.calls.push(InspectedCall { pass, pair, study: Study::of(&asked.motion), polynomials, logged });
+            self.step.calls.push(InspectedCall {
+                pass,
+                pair,
+                study: Study::for_motion(&asked.motion),
+                polynomials,
+                logged,
+            });
         }
     }
 }
@@ -349,7 +355,7 @@ impl Observer for Inspector<'_> {
                 }
         });
         if wanted {
-            let study = Study::of(&motion());
+            let study = Study::for_motion(&motion());
             // Only the whole step tells whether the list is as long as the reference's.
             self.step.calls.push(InspectedCall { pass, pair, study, polynomials: count, logged: Logged::Unknown });
             self.places.push((self.calls - 1, first));

@@ -16,7 +16,7 @@
 //! # </scene>"#;
 //! # let scene = scene::read("a ball", text)?.scene;
 //! # let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
-//! # let mut recorder = Recorder::start(Vec::new(), Layout::of(&scene), simulation.state());
+//! # let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(&scene), simulation.state());
 //! # for _ in 0..scene.steps() {
 //! #     simulation.step(&mut recorder)?;
 //! # }
@@ -42,7 +42,7 @@ mod rulings;
 mod tests;
 mod track;
 
-pub use examined::{Examined, Keep, examine};
+pub use examined::{ExaminedTrace, KeptPart, examine};
 pub use gather::{Evidence, Focus, Step, StepClass, gather};
 pub use inspected_pair::{InspectedPair, inspect};
 pub use inspected_step::{InspectedCall, InspectedPass, InspectedStep, Logged, MergedZones};

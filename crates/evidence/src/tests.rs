@@ -34,7 +34,7 @@ fn a_right_trace_moves_as_the_reference_to_the_last_bit() {
     let (_, evidence) = judged(&scene, &trace);
     let bits = |track: &Track| track.values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(&evidence.reference), bits(&evidence.submission));
-    assert_eq!(evidence.reference.records as u64, Layout::of(&scene).records());
+    assert_eq!(evidence.reference.records as u64, Layout::for_scene(&scene).records());
     assert!(evidence.steps.iter().all(|step| step.class == StepClass::Right && step.position == 0.0), "{evidence:?}");
     assert!(evidence.steps.iter().all(|step| step.actual_passes == Some(step.expected_passes)));
     assert!(evidence.inspected.is_empty());

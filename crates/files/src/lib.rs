@@ -49,7 +49,7 @@ impl Identity {
 
     /// Returns the identity of an open or existing file.
     #[must_use]
-    pub fn of(metadata: &Metadata) -> Self {
+    pub fn from_metadata(metadata: &Metadata) -> Self {
         Self(metadata.dev(), metadata.ino())
     }
 }

@@ -26,7 +26,7 @@ pub struct Disclosure {
 impl Disclosure {
     /// Returns all that judging found.
     #[must_use]
-    pub fn of(judged: &Outcome, rules: Rules) -> Self {
+    pub fn from_outcome(judged: &Outcome, rules: Rules) -> Self {
         let book = |book: Book| {
             let found = judged.findings_by(book);
             DisclosedBook {

@@ -203,7 +203,7 @@ pub enum FindingDetail {
         #[serde(with = "fosssim_num::written")]
         residual: f64,
         /// The values that the original compares; `None` from the fair rules.
-        rescaled: Option<Rescaled>,
+        rescaled: Option<RescaledCoefficient>,
         /// The reference's whole polynomial, not rescaled.
         expected_polynomial: Polynomial,
         /// The trace's whole polynomial.
@@ -385,7 +385,7 @@ pub enum FindingPlace {
 /// A coefficient as the original compares it: rescaled by sums of moduli, so that one wrong coefficient moves all
 /// others.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct Rescaled {
+pub struct RescaledCoefficient {
     /// The highest power of t whose coefficient is beyond the original's bound.
     #[serde(rename = "coefficient")]
     pub power: usize,
@@ -453,7 +453,7 @@ pub enum Role {
 impl Role {
     /// Returns the role of polynomial `number` (from 0) of a detection call.
     #[must_use]
-    pub const fn of(kind: PairKind, number: usize) -> Self {
+    pub const fn from_number(kind: PairKind, number: usize) -> Self {
         match (kind, number) {
             (_, 0) => Self::Overlap,
             (PairKind::ParticleEdge, 1) => Self::AlphaAboveZero,

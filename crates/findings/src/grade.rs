@@ -2,7 +2,7 @@
 use super::{
     Hints, Rules,
     explanation::Explanation,
-    located::Located,
+    located::LocatedFailure,
     result::{BuildEnd, SceneResult},
     speed::{SpeedGrade, SpeedSource},
     verdict::Verdict,
@@ -60,7 +60,7 @@ pub struct Grade {
     pub looks_like: Option<Assignment>,
     /// The common properties of the scenes in which the program crashes or runs into a limit, where hints let them
     /// through.
-    pub located: Option<Located>,
+    pub located: Option<LocatedFailure>,
 }
 
 impl Grade {
@@ -120,16 +120,18 @@ impl Grade {
     /// Returns the fault of the submission itself, and the reason of each of its scenes: no program that can be run is
     /// in it, its sources do not build, it is of another milestone, or nothing is written yet.
     #[must_use]
-    pub fn unfit(&self) -> Option<Unfit<'_>> {
+    pub fn unfit(&self) -> Option<SubmissionFault<'_>> {
         if let Some(other) = self.looks_like {
-            return Some(Unfit::Milestone(other));
+            return Some(SubmissionFault::Milestone(other));
         }
         let first = self.scenes().next()?;
         let is_unfit = matches!(first.verdict, Verdict::Unusable | Verdict::CompileError | Verdict::Unwritten);
         let why = |scene: &SceneGrade| (scene.verdict, scene.reason.clone(), scene.ended.clone());
         let same = |scene: &SceneGrade| why(scene) == why(first);
-        (is_unfit && self.scenes().all(same))
-            .then(|| self.failed_build().map_or(Unfit::Scene(&first.result), |build| Unfit::Build(&build.end)))
+        (is_unfit && self.scenes().all(same)).then(|| {
+            self.failed_build()
+                .map_or(SubmissionFault::Scene(&first.result), |build| SubmissionFault::Build(&build.end))
+        })
     }
 
     /// Returns the build, where it made no program.
@@ -191,7 +193,7 @@ pub struct Build {
 
 /// A fault of a submission itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Unfit<'a> {
+pub enum SubmissionFault<'a> {
     /// The submission's build failed.
     Build(&'a BuildEnd),
     /// The program is of this milestone, and the suite of another.

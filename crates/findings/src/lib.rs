@@ -41,9 +41,9 @@ pub use book_findings::BookFindings;
 pub use cause::Cause;
 pub use counts::FindingCounts;
 pub use finding::{
-    Finding, FindingDetail, FindingKind, FindingPlace, Part, PolynomialPlace, RecordPart, Rescaled, Role,
+    Finding, FindingDetail, FindingKind, FindingPlace, Part, PolynomialPlace, RecordPart, RescaledCoefficient, Role,
 };
-pub use grade::{Build, Grade, GroupGrade, PassedOver, SceneGrade, Unfit, Visibility};
+pub use grade::{Build, Grade, GroupGrade, PassedOver, SceneGrade, SubmissionFault, Visibility};
 pub use hints::Hints;
 pub use outcome::{Damage, Outcome, Stop};
 pub use parity::{Overall, Residuals};

@@ -31,7 +31,7 @@ pub enum Failing {
 
 /// The contents that the failing scenes have in common.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Located {
+pub struct LocatedFailure {
     /// How it fails.
     pub failing: Failing,
     /// The contents of all these scenes, the most general first; the scenes can't tell them apart.
@@ -51,7 +51,7 @@ pub struct Located {
 impl Failing {
     /// Returns how a program failed that ended so; nothing where it ended well, or where that says nothing of it.
     #[must_use]
-    pub const fn of(ended: &Ended) -> Option<Self> {
+    pub const fn from_end(ended: &Ended) -> Option<Self> {
         match ended {
             Ended::Signalled(_) => Some(Self::Crash),
             Ended::Exited(0) | Ended::CouldNotStart(_) | Ended::Cancelled => None,

@@ -76,7 +76,7 @@ pub struct SpeedRatio {
 impl SpeedGrade {
     /// Returns the points that the scenes of a group get for speed.
     #[must_use]
-    pub fn of<'a>(marking: SpeedMarking, scenes: impl IntoIterator<Item = &'a SceneResult>) -> Self {
+    pub fn from_scenes<'a>(marking: SpeedMarking, scenes: impl IntoIterator<Item = &'a SceneResult>) -> Self {
         let source = source(&scenes.into_iter().collect::<Vec<_>>());
         let points = match &source {
             SpeedSource::Measured(measured) => Some(marking.points_at(measured.ratio)),
@@ -162,7 +162,7 @@ mod tests {
     fn the_least_times_count_and_the_spread_is_told() {
         let right = Verdict::Accepted;
         let scenes = [scene(right, &[(30, 10), (90, 10)], None), scene(right, &[(50, 10), (30, 30)], None)];
-        let grade = SpeedGrade::of(MARKING, &scenes);
+        let grade = SpeedGrade::from_scenes(MARKING, &scenes);
         let expected = SpeedRatio { ratio: 3.0, least: 3.0, most: 4.0, runs: 2 };
         assert_eq!((grade.source, grade.points), (SpeedSource::Measured(expected), Some(35.0)));
     }
@@ -171,7 +171,7 @@ mod tests {
     fn being_right_counts_before_being_fast_and_faults_of_ours_are_nobodys_zero() {
         let (right, wrong) = (Verdict::Accepted, Verdict::WrongAnswer);
         let of = |scenes: &[SceneResult]| {
-            let grade = SpeedGrade::of(MARKING, scenes);
+            let grade = SpeedGrade::from_scenes(MARKING, scenes);
             (grade.source, grade.points)
         };
         let timed = || scene(right, &[(10, 10)], None);

@@ -39,7 +39,7 @@ fn scene(job: &Job) -> Scene {
 /// Returns the first steps of a scene's right trace.
 fn trace(scene: &Scene, steps: u32) -> Vec<u8> {
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
-    let mut recorder = Recorder::start(Vec::new(), Layout::of(scene), simulation.state());
+    let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(scene), simulation.state());
     for _ in 0..steps {
         simulation.step(&mut recorder).expect("a step");
     }
@@ -78,7 +78,7 @@ fn act(job: &Job) -> FakeRun {
         Some("nothing") => FakeRun::wrote([]),
         Some("unwritten") => {
             let (scene, trace) = (scene(job), right_trace(job));
-            let layout = Layout::of(&scene);
+            let layout = Layout::for_scene(&scene);
             // The first record's lists are empty.
             let record = &trace[..layout.state_bytes() + 8];
             FakeRun::wrote(record.repeat(usize::try_from(layout.records()).expect("small")))

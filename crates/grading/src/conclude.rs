@@ -30,14 +30,14 @@ const KEPT_OUTPUT: usize = 4096;
 
 /// How a program ended, what it took, and what it printed.
 #[derive(Debug, Clone)]
-pub struct Ran {
+pub struct ProgramRun {
     ended: Ended,
     measured: Measurements,
     stdout: String,
     stderr: String,
 }
 
-impl Ran {
+impl ProgramRun {
     /// Returns a program that did not run, as if it had ended well after it wrote its trace.
     #[must_use]
     pub fn well() -> Self {
@@ -47,7 +47,7 @@ impl Ran {
 }
 
 #[cfg(target_os = "linux")]
-impl From<&fosssim_sandbox::RunOutcome> for Ran {
+impl From<&fosssim_sandbox::RunOutcome> for ProgramRun {
     fn from(program: &fosssim_sandbox::RunOutcome) -> Self {
         let measured = Measurements {
             cpu: program.cpu,
@@ -55,7 +55,7 @@ impl From<&fosssim_sandbox::RunOutcome> for Ran {
             memory: Some(program.peak_memory),
             ..Measurements::default()
         };
-        let kept = |stream: &fosssim_sandbox::Captured, name: &str| {
+        let kept = |stream: &fosssim_sandbox::CapturedOutput, name: &str| {
             let mut text = beginning(&stream.bytes, KEPT_OUTPUT);
             if stream.truncated {
                 let mebibytes = stream.bytes.len() as f64 / f64::from(1 << 20);
@@ -74,7 +74,7 @@ pub struct Run<'a> {
     /// The scene.
     pub task: &'a SceneTask,
     /// How the program ended.
-    pub program: &'a Ran,
+    pub program: &'a ProgramRun,
     /// The judged trace.
     pub judged: &'a Outcome,
     /// Bytes of the trace that arrived.
@@ -146,7 +146,7 @@ pub fn conclude(run: &Run<'_>, explain: impl FnOnce(Look) -> Vec<Explanation>) -
         reason,
         ended: Some(program.ended.clone()),
         differs,
-        disclosure: Some(Disclosure::of(judged, rules)),
+        disclosure: Some(Disclosure::from_outcome(judged, rules)),
         explanations: if is_explained { explain(look) } else { Vec::new() },
         right_steps: judged.right_steps(rules.official()),
         steps: judged.steps,
@@ -164,7 +164,7 @@ pub fn conclude(run: &Run<'_>, explain: impl FnOnce(Look) -> Vec<Explanation>) -
 /// Returns the bytes of a complete trace of this scene in which every list is empty; nothing where the reference's are
 /// empty, too.
 fn bytes_of_nothing(scene: &Scene) -> Option<u64> {
-    let layout = Layout::of(scene);
+    let layout = Layout::for_scene(scene);
     let has_pairs = scene.particles.len() > 1 || !(scene.particles.is_empty() || scene.half_planes.is_empty());
     // A record ends with the numbers of its impulses and of its polynomials (trace-format.md 2).
     let record = layout.state_bytes() as u64 + 2 * size_of::<i32>() as u64;
@@ -210,7 +210,7 @@ fn verdict_of_trace(run: &Run<'_>) -> (Verdict, Reason) {
     }
     match (&judged.stop, judged.ruling(rules.official())) {
         (Some(Stop::Trace { .. }), _) if trace_bytes == 0 => (Verdict::NoOutput, Reason::NoTrace),
-        (Some(Stop::Trace { .. }), _) if Layout::of(&run.task.scene).is_states_only(trace_bytes) => {
+        (Some(Stop::Trace { .. }), _) if Layout::for_scene(&run.task.scene).is_states_only(trace_bytes) => {
             (Verdict::BadTrace, Reason::Trace(BadTrace::StatesOnly))
         }
         (Some(Stop::Trace { frame, step, cause, offset, what }), _) => {
@@ -273,7 +273,7 @@ mod tests {
         let options = replay::Options { fair: true, ..replay::Options::default() };
         let judged = replay::judge(&scene, &trace[..], &options, &mut ());
         let task = &SceneTask { name: "a/b".to_owned(), xml: Vec::new(), scene, recording: None };
-        let program = Ran::well();
+        let program = ProgramRun::well();
         let limits = &RunLimits::default();
         for (hints, expected) in [
             (Hints::None, None),

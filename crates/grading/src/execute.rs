@@ -2,7 +2,7 @@
 use super::{
     cancellation::Cancellation,
     cards::{Cards, Judged},
-    conclude::{Look, Ran, Run, conclude},
+    conclude::{Look, ProgramRun, Run, conclude},
     config::{Hints, RunLimits},
     fault,
     guard::{Fault, guarded},
@@ -18,10 +18,10 @@ use fosssim_judge::{
     Outcome, Rules,
     kept::{KeptTrace, LONGEST},
     recorded,
-    replay::{self, Both, Options, Progress, Remark},
+    replay::{self, BothObservers, Options, Progress, Remark},
 };
 use fosssim_sandbox::{
-    self as sandbox, Backend, Job, LeftFolder, Limits, Policy, ProgramIdentity, Running, collect::CollectError,
+    self as sandbox, Backend, Job, LeftFolder, Limits, Policy, ProgramIdentity, RunningProgram, collect::CollectError,
 };
 use std::{
     io::{self, Read},
@@ -95,7 +95,7 @@ impl Runner<'_> {
         let mut kept = KeptTrace::new(LONGEST);
         let mut rulings = StepRulings::default();
         let mut told = ToldSteps(on_step);
-        let heard = &mut Both(&mut rulings, &mut told);
+        let heard = &mut BothObservers(&mut rulings, &mut told);
         let judged = self.judge_trace(program, task, &mut kept, trace, heard);
         drop(left);
         match is_untouched {
@@ -109,7 +109,7 @@ impl Runner<'_> {
         };
         let run = Run {
             task,
-            program: &Ran::from(&outcome),
+            program: &ProgramRun::from(&outcome),
             judged: &judged,
             trace_bytes,
             rules: self.rules,
@@ -184,7 +184,7 @@ impl Runner<'_> {
         program: &Path,
         identity: Option<ProgramIdentity>,
         task: &SceneTask,
-    ) -> Result<(Running, Temporary), String> {
+    ) -> Result<(RunningProgram, Temporary), String> {
         let folder = self.folders.take().map_err(|error| format!("no working folder for a run: {error}"))?;
         let job = Job::new(program, folder.path())
             .arguments(self.arguments(program))

@@ -136,7 +136,7 @@ impl<'a> SharedGrading<'a> {
 
     /// Returns the contents of the reference's run of each scene. A scene without an end has none.
     pub(super) fn contents(&self, plan: &Plan) -> &[Contents] {
-        self.contents.get_or_init(|| plan.scenes().map(|task| ContentIndex::of(&task.scene)).collect())
+        self.contents.get_or_init(|| plan.scenes().map(|task| ContentIndex::for_scene(&task.scene)).collect())
     }
 
     /// Returns the copy of the reference program.
@@ -148,7 +148,7 @@ impl<'a> SharedGrading<'a> {
         // A program may behave as it is called, so its name belongs to what is graded.
         let own = [scene.name.as_str(), called, students.words().0];
         let words: Vec<&str> = self.words.iter().map(String::as_str).chain(own).collect();
-        Key::of(digest, &scene.xml, &words)
+        Key::from_program(digest, &scene.xml, &words)
     }
 
     /// Finds an earlier result. Where traces or cards are wanted, one without them does not count.

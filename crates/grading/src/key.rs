@@ -14,7 +14,7 @@ impl Key {
     /// Returns the key of a run: digests of program and scene, and words for everything else that matters (rules,
     /// limits, the command, the way of judging). What judges is always part of it.
     #[must_use]
-    pub fn of(program: &blake3::Hash, scene: &[u8], words: &[&str]) -> Self {
+    pub fn from_program(program: &blake3::Hash, scene: &[u8], words: &[&str]) -> Self {
         Self::by(this_build(), program, scene, words)
     }
 
@@ -97,12 +97,15 @@ mod tests {
     #[test]
     fn keys_differ_when_anything_differs() {
         let program = blake3::hash(b"program");
-        assert_ne!(Key::of(&program, b"scene", &["ab", "c"]), Key::of(&program, b"scene", &["a", "bc"]));
-        assert_ne!(Key::of(&program, b"scene", &[]), Key::of(&program, b"scen", &[]));
-        assert_ne!(Key::of(&blake3::hash(b"x"), b"scene", &[]), Key::of(&program, b"scene", &[]));
+        assert_ne!(
+            Key::from_program(&program, b"scene", &["ab", "c"]),
+            Key::from_program(&program, b"scene", &["a", "bc"])
+        );
+        assert_ne!(Key::from_program(&program, b"scene", &[]), Key::from_program(&program, b"scen", &[]));
+        assert_ne!(Key::from_program(&blake3::hash(b"x"), b"scene", &[]), Key::from_program(&program, b"scene", &[]));
         // Two builds of one version are two judges.
         assert_ne!(Key::by("one build", &program, b"scene", &[]), Key::by("another", &program, b"scene", &[]));
-        assert_eq!(Key::by(this_build(), &program, b"scene", &[]), Key::of(&program, b"scene", &[]));
+        assert_eq!(Key::by(this_build(), &program, b"scene", &[]), Key::from_program(&program, b"scene", &[]));
         assert_eq!(this_build().len(), 64, "a digest, and no version");
     }
 

@@ -5,7 +5,7 @@
 //! other by Ochiai's measure, and where chance would not bring that about: Fisher's exact test, for as many values as
 //! are looked at. Values that the scenes can't tell apart are told together.
 use super::coverage::{Coverage, FAMILIES};
-pub use fosssim_findings::located::{Content, Failing, Located};
+pub use fosssim_findings::located::{Content, Failing, LocatedFailure};
 use fosssim_model::scene::Scene;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -23,7 +23,7 @@ pub type Contents = BTreeSet<ContentIndex>;
 
 /// One scene that was run: whether its program failed, and how.
 #[derive(Debug, Clone, Copy)]
-pub struct Tried<'a> {
+pub struct TriedScene<'a> {
     /// The scene's name.
     pub scene: &'a str,
     /// How its program failed, if it did.
@@ -40,8 +40,8 @@ const SIGNIFICANT: f64 = 0.01;
 impl ContentIndex {
     /// Returns all that a scene contains; nothing where it can't be simulated to its end.
     #[must_use]
-    pub fn of(scene: &Scene) -> Contents {
-        let coverage = Coverage::of(scene).unwrap_or_default();
+    pub fn for_scene(scene: &Scene) -> Contents {
+        let coverage = Coverage::for_scene(scene).unwrap_or_default();
         let values = coverage.values().map(|(family, axis, value)| Self { family, value: Some((axis, value)) });
         let kinds = coverage.values().map(|(family, ..)| Self { family, value: None });
         values.chain(kinds).collect()
@@ -72,8 +72,8 @@ impl ContentIndex {
 
 /// Returns the contents that the failing scenes have in common; nothing where the evidence is weak.
 #[must_use]
-pub fn locate(tried: &[Tried<'_>]) -> Option<Located> {
-    let failed: Vec<&Tried<'_>> = tried.iter().filter(|one| one.failing.is_some()).collect();
+pub fn locate(tried: &[TriedScene<'_>]) -> Option<LocatedFailure> {
+    let failed: Vec<&TriedScene<'_>> = tried.iter().filter(|one| one.failing.is_some()).collect();
     let first = failed.first()?;
     let mut shared = first.contents.clone();
     failed.iter().for_each(|one| shared.retain(|content| one.contents.contains(content)));
@@ -106,7 +106,7 @@ pub fn locate(tried: &[Tried<'_>]) -> Option<Located> {
         true => one,
         false => Failing::Several,
     })?;
-    Some(Located {
+    Some(LocatedFailure {
         failing,
         contents: contents.into_iter().map(ContentIndex::named).collect(),
         failed: failed.len(),
@@ -148,8 +148,8 @@ mod tests {
         (0..all).map(scene).collect()
     }
 
-    fn located(contents: &[Contents], fails: impl Fn(usize) -> Option<Failing>) -> Option<Located> {
-        let tried = |(number, contents)| Tried { scene: "a/b", failing: fails(number), steps: 7, contents };
+    fn located(contents: &[Contents], fails: impl Fn(usize) -> Option<Failing>) -> Option<LocatedFailure> {
+        let tried = |(number, contents)| TriedScene { scene: "a/b", failing: fails(number), steps: 7, contents };
         locate(&contents.iter().enumerate().map(tried).collect::<Vec<_>>())
     }
 

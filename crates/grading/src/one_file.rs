@@ -26,7 +26,7 @@ pub(super) fn is_anothers(file: &File, noted: Option<&OneFile>) -> io::Result<bo
     let metadata = file.metadata()?;
     match noted {
         _ if metadata.nlink() == 1 => Ok(false),
-        Some(noted) if noted.identity == Identity::of(&metadata) => Ok(noted.is_anothers),
+        Some(noted) if noted.identity == Identity::from_metadata(&metadata) => Ok(noted.is_anothers),
         // Nobody has looked whose it is: the machine's fault or a trick, and no reason for a zero.
         _ => Err(io::Error::other("the file was exchanged while submissions were graded; grade again")),
     }
@@ -45,7 +45,7 @@ mod tests {
         }
         let file = File::open(at("one")).expect("a file");
         let noted = |name: &str, is_anothers| {
-            let identity = Identity::of(&std::fs::metadata(at(name)).expect("data"));
+            let identity = Identity::from_metadata(&std::fs::metadata(at(name)).expect("data"));
             OneFile { identity, is_shared: is_anothers, is_anothers }
         };
         assert!(!is_anothers(&file, None).expect("known"), "one name is enough");

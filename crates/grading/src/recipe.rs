@@ -129,7 +129,7 @@ fn kind_of(file: &mut File) -> io::Result<FileKind> {
     let mut start = Vec::new();
     file.take(fosssim_intake::START as u64).read_to_end(&mut start)?;
     file.rewind()?;
-    Ok(FileKind::of(&start))
+    Ok(FileKind::from_start(&start))
 }
 
 /// Opens the archive in a folder, if it has exactly one: learning platforms make a folder around each upload.

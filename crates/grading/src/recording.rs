@@ -47,10 +47,10 @@ impl Recording {
     ///
     /// # Errors
     /// When the scene has errors, or a step has no result.
-    pub fn of(name: &str, xml: &[u8]) -> Result<Self, CannotRecord> {
+    pub fn for_scene(name: &str, xml: &[u8]) -> Result<Self, CannotRecord> {
         let scene = scene::read(name, xml)?.scene;
         let trace = trace(&scene)?;
-        let digests = Digests::of(&trace[..], Layout::of(&scene));
+        let digests = Digests::from_stream(&trace[..], Layout::for_scene(&scene));
         Ok(Self {
             name: name.to_owned(),
             steps: scene.steps(),
@@ -110,7 +110,7 @@ pub fn diff(name: &str, recorded: &str, now: &str) -> String {
 /// Returns the trace of a scene.
 pub(super) fn trace(scene: &Scene) -> Result<Vec<u8>, CannotRecord> {
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
-    let mut recorder = Recorder::start(Vec::new(), Layout::of(scene), simulation.state());
+    let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(scene), simulation.state());
     for _ in 0..scene.steps() {
         simulation.step(&mut recorder)?;
     }
@@ -133,7 +133,7 @@ mod tests {
 
     #[test]
     fn a_recording_agrees_with_itself() {
-        let recording = Recording::of("Group/name", SCENE).unwrap();
+        let recording = Recording::for_scene("Group/name", SCENE).unwrap();
         assert_eq!((recording.steps, recording.trace.len()), (4, 5 * 32));
         let packed = recording.packed().unwrap();
         assert_eq!(recording.difference(Some(&packed), Some(recording.digests.as_bytes())), None);
@@ -144,11 +144,11 @@ mod tests {
 
     #[test]
     fn a_changed_byte_is_shown_with_its_place_and_its_step() {
-        let recording = Recording::of("Group/name", SCENE).unwrap();
+        let recording = Recording::for_scene("Group/name", SCENE).unwrap();
         let mut other = recording.clone();
         other.trace[32 * 3 + 1] ^= 1;
         let layout = Layout { particles: 1, impulses: false, polynomials: false, steps: 4 };
-        other.digests = Digests::of(&other.trace[..], layout).to_string();
+        other.digests = Digests::from_stream(&other.trace[..], layout).to_string();
         let shown = recording.difference(Some(&other.packed().unwrap()), Some(other.digests.as_bytes())).unwrap();
         assert!(shown.contains("part at byte 97\n"), "{shown}");
         assert!(shown.contains("\n-3 ") && shown.contains("\n+3 ") && !shown.contains("\n-2 "), "{shown}");
@@ -156,7 +156,7 @@ mod tests {
 
     #[test]
     fn a_missing_or_damaged_recording_is_said() {
-        let recording = Recording::of("Group/name", SCENE).unwrap();
+        let recording = Recording::for_scene("Group/name", SCENE).unwrap();
         assert!(recording.difference(None, None).unwrap().contains("there is no recording"));
         let packed = recording.packed().unwrap();
         let shown = recording.difference(Some(&packed[..packed.len() - 3]), None).unwrap();

@@ -31,7 +31,7 @@ pub fn group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) ->
         })
         .collect();
     let points = sum(marking.points, all_accepted, &scenes);
-    let speed = marking.speed.map(|speed| SpeedGrade::of(speed, scenes.iter().map(|scene| &scene.result)));
+    let speed = marking.speed.map(|speed| SpeedGrade::from_scenes(speed, scenes.iter().map(|scene| &scene.result)));
     GroupGrade {
         name: name.to_owned(),
         visibility: marking.visibility,
@@ -147,10 +147,9 @@ fn follows(group: &GroupGrade) -> bool {
     };
     let credits = [Credit::Scenes, Credit::Steps, Credit::All];
     credits.into_iter().any(|credit| group.scenes.iter().all(|scene| has_its_share(credit, scene)))
-        && group
-            .speed
-            .as_ref()
-            .is_none_or(|speed| *speed == SpeedGrade::of(speed.marking, group.scenes.iter().map(|scene| &scene.result)))
+        && group.speed.as_ref().is_none_or(|speed| {
+            *speed == SpeedGrade::from_scenes(speed.marking, group.scenes.iter().map(|scene| &scene.result))
+        })
         && group.points == with_speed(sum(max_points, all_accepted, &group.scenes), group.speed.as_ref())
         && group.verdict == group.scenes.iter().map(|scene| scene.verdict).max().unwrap_or(Verdict::NotRun)
 }

@@ -156,7 +156,7 @@ fn copied_as(name: &OsStr, file: File, path: &Path, room: &mut u64) -> Result<St
     let copy = folder.path().join(name);
     // A program is executable, whether the way here kept the bit or not.
     let digest = copy_file(file, path, &copy, room, true)?;
-    let identity = ProgramIdentity::of(&copy);
+    let identity = ProgramIdentity::from_path(&copy);
     Ok(Staged { program: copy, digest, build: None, refused: None, identity, _folder: Some(folder) })
 }
 
@@ -251,7 +251,7 @@ fn copy_file(
         // The file may have grown since anybody looked at its length.
         *room = room.checked_sub(read.len() as u64).ok_or_else(too_large)?;
         hasher.update(read);
-        executable |= length == 0 && FileKind::of(read) == FileKind::Program;
+        executable |= length == 0 && FileKind::from_start(read) == FileKind::Program;
         length += read.len() as u64;
         if read.iter().all(|byte| *byte == 0) {
             target.seek(SeekFrom::Start(length)).map_err(at(to))?;

@@ -1,14 +1,14 @@
 //! Grades by traces that are there already. Nothing is run: how long a program took, and that it ended well, nobody
 //! knows.
 use super::{
-    conclude::{CountedReader, Ran, Run, conclude},
+    conclude::{CountedReader, ProgramRun, Run, conclude},
     grade::Grade,
     plan::Plan,
     result::{Measurements, SceneResult},
     score,
     task::SceneTask,
 };
-use fosssim_evidence::{Examined, Keep, examine};
+use fosssim_evidence::{ExaminedTrace, KeptPart, examine};
 use fosssim_judge::replay::{Options, Progress};
 use fosssim_mistakes::together::settle;
 use std::{
@@ -23,15 +23,15 @@ pub fn judged<'a, R: Read + Send>(
     task: &'a SceneTask,
     trace: R,
     progress: &mut dyn Progress,
-) -> (SceneResult, Examined<'a>) {
+) -> (SceneResult, ExaminedTrace<'a>) {
     let options =
         Options { stop_by: plan.rules.official(), threads: 1, fair: plan.rules.ask_fair(), ..Options::default() };
     let bytes = AtomicU64::new(0);
     let counted = CountedReader { inner: trace, bytes: &bytes };
-    let examined = examine(&task.scene, counted, Keep::All, &options, progress);
+    let examined = examine(&task.scene, counted, KeptPart::All, &options, progress);
     let run = Run {
         task,
-        program: &Ran::well(),
+        program: &ProgramRun::well(),
         judged: &examined.outcome,
         trace_bytes: bytes.load(Ordering::Relaxed),
         rules: plan.rules,

@@ -31,7 +31,7 @@ pub const START: usize = 512;
 impl FileKind {
     /// Tells what a file is that begins with these bytes, at most [`START`] of them.
     #[must_use]
-    pub fn of(start: &[u8]) -> Self {
+    pub fn from_start(start: &[u8]) -> Self {
         match start {
             [0x7f, b'E', b'L', b'F', ..] | [b'#', b'!', ..] => Self::Program,
             [b'P', b'K', 3, 4, ..] => Self::Archive(ArchiveKind::Zip),

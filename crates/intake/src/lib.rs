@@ -7,7 +7,7 @@
 //! ```
 //! use fosssim_intake::{FileKind, described};
 //!
-//! assert_eq!(FileKind::of(b"#!/bin/sh"), FileKind::Program);
+//! assert_eq!(FileKind::from_start(b"#!/bin/sh"), FileKind::Program);
 //! assert_eq!(described(b"MZ\x90"), "a program for Windows");
 //! ```
 #![forbid(unsafe_code)]
@@ -208,7 +208,7 @@ impl Walk<'_> {
     /// Walks through an archive of any kind.
     fn archive(&mut self, mut file: File) -> Result<(), ArchiveError> {
         let start = start_of(&mut file).map_err(ArchiveError::Read)?;
-        match FileKind::of(&start) {
+        match FileKind::from_start(&start) {
             FileKind::Archive(ArchiveKind::Zip) => self.zip(file),
             FileKind::Archive(ArchiveKind::TarGz) => self.tar(GzDecoder::new(BufReader::new(file))),
             FileKind::Archive(ArchiveKind::Tar) => self.tar(BufReader::new(file)),
@@ -370,7 +370,7 @@ impl Walk<'_> {
         const AT_ONE_GO: u64 = 64 << 10;
         let mut chunk = Vec::new();
         input.by_ref().take(START as u64).read_to_end(&mut chunk).map_err(damaged)?;
-        let kind = FileKind::of(&chunk);
+        let kind = FileKind::from_start(&chunk);
         while !chunk.is_empty() {
             self.bytes += chunk.len() as u64;
             if self.bytes > self.limits.bytes {

@@ -114,7 +114,7 @@ fn step(scene: &Scene) {
 
 fn record<W: std::io::Write>(scene: &Scene, target: W) -> W {
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
-    let mut recorder = Recorder::start(target, Layout::of(scene), simulation.state());
+    let mut recorder = Recorder::start(target, Layout::for_scene(scene), simulation.state());
     for _ in 0..scene.steps() {
         simulation.step(&mut recorder).expect("a step");
     }
@@ -144,7 +144,7 @@ fn rounded(scene: &Scene, trace: &[u8]) -> Vec<u8> {
 
 /// The trace with coefficients that follow from its own and their numbers in a record.
 fn with(scene: &Scene, trace: &[u8], coefficient: impl Fn(f64, usize) -> f64) -> Vec<u8> {
-    let layout = Layout::of(scene);
+    let layout = Layout::for_scene(scene);
     let (mut reader, mut writer) = (Reader::of_slice(trace, layout), Writer::new(Vec::new(), layout));
     let mut frame = Frame::default();
     while reader.next(&mut frame).expect("a sound trace") {
@@ -233,7 +233,8 @@ fn hits() {
     for (name, xml) in [("balls rest in a bowl", bowl()), ("a ring of edges rests on an edge", ring())] {
         let scene = original::read(xml.as_bytes()).expect("a scene").scene;
         let trace = record(&scene, Vec::new());
-        let (mut reader, mut frame, mut impulses) = (Reader::new(&trace[..], Layout::of(&scene)), Frame::default(), 0);
+        let (mut reader, mut frame, mut impulses) =
+            (Reader::new(&trace[..], Layout::for_scene(&scene)), Frame::default(), 0);
         while reader.next(&mut frame).expect("a sound trace") {
             impulses += frame.impulses.len();
         }

@@ -21,7 +21,7 @@ pub(crate) struct Contacts(Vec<(PairKey, usize)>);
 
 impl Contacts {
     /// Sorts a record's impulses.
-    pub fn of(impulses: &[LoggedImpulse]) -> Self {
+    pub fn from_impulses(impulses: &[LoggedImpulse]) -> Self {
         let mut keys: Vec<_> = impulses.iter().enumerate().map(|(index, logged)| (logged_key(logged), index)).collect();
         keys.sort_unstable();
         Self(keys)

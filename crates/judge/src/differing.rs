@@ -2,7 +2,7 @@
 //!
 //! Any positive factor is right, so the factor on which most coefficients agree is taken out first, 1 before all
 //! others. The original rescales by sums of moduli instead (oracle-behaviour.md 6.2), where one wrong coefficient moves
-//! all the others; its own comparison stays with [`Rescaled`](super::finding::Rescaled).
+//! all the others; its own comparison stays with [`RescaledCoefficient`](super::finding::RescaledCoefficient).
 
 /// Coefficients agree up to this share of themselves.
 const ALIKE: f64 = 1e-9;

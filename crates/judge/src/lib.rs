@@ -13,7 +13,7 @@
 //! # </scene>"#;
 //! # let scene = scene::read("a ball", text)?.scene;
 //! # let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
-//! # let mut recorder = Recorder::start(Vec::new(), Layout::of(&scene), simulation.state());
+//! # let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(&scene), simulation.state());
 //! # for _ in 0..scene.steps() {
 //! #     simulation.step(&mut recorder)?;
 //! # }
@@ -45,8 +45,8 @@ mod tally;
 pub use differing::{differing, factor};
 pub use fosssim_findings::{
     Book, BookFindings, Damage, Finding, FindingCounts, FindingDetail, FindingKind, Outcome, Overall, PairWords, Part,
-    PassWords, PolynomialPlace, Power, RecordPart, Rescaled, Residuals, Role, Rules, Ruling, Stop, WithoutResult,
-    parity, passes,
+    PassWords, PolynomialPlace, Power, RecordPart, RescaledCoefficient, Residuals, Role, Rules, Ruling, Stop,
+    WithoutResult, parity, passes,
 };
 use fosssim_findings::{counts, finding, outcome, rules};
 pub use fosssim_model::trace::Unreadable;

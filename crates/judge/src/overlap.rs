@@ -34,7 +34,7 @@ impl OverlapStudy {
     ///
     /// # Errors
     /// [`StepError`], where the step has no result.
-    pub fn of(scene: &Scene, step: u32, before: &State, pair: Pair) -> Result<Option<Self>, StepError> {
+    pub fn for_pair(scene: &Scene, step: u32, before: &State, pair: Pair) -> Result<Option<Self>, StepError> {
         let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
         let mut run = |seed| {
             let mut watch = PairWatch { scene, pair, found: None };
@@ -119,7 +119,7 @@ mod tests {
             <edge i="0" j="1" radius="0.1"/></scene>"#
         ));
         let pair = Pair { kind: PairKind::ParticleEdge, first: 2, second: 0 };
-        OverlapStudy::of(&scene, 1, &State::of(&scene), pair).expect("a step").expect("asked")
+        OverlapStudy::for_pair(&scene, 1, &State::for_scene(&scene), pair).expect("a step").expect("asked")
     }
 
     #[test]

@@ -41,9 +41,9 @@ pub struct StepFindings<'a> {
 impl Progress for () {}
 
 /// Two that hear the same, one after the other.
-pub struct Both<'a>(pub &'a mut dyn Progress, pub &'a mut dyn Progress);
+pub struct BothObservers<'a>(pub &'a mut dyn Progress, pub &'a mut dyn Progress);
 
-impl Progress for Both<'_> {
+impl Progress for BothObservers<'_> {
     fn begins(&mut self) {
         self.0.begins();
         self.1.begins();

@@ -49,8 +49,8 @@ fn compare(
     recording: &mut dyn Read,
     progress: &mut dyn Progress,
 ) -> Result<Outcome, RecordingError> {
-    let layout = Layout::of(scene);
-    let places = RecordPlaces::of(scene);
+    let layout = Layout::for_scene(scene);
+    let places = RecordPlaces::for_scene(scene);
     let (mut trace, mut recording) =
         (Lenient::new(trace, layout).with_limit(record_memory(scene)), Lenient::new(recording, layout));
     let (mut actual, mut expected) = (LenientFrame::default(), LenientFrame::default());
@@ -116,7 +116,7 @@ struct RecordPlaces {
 }
 
 impl RecordPlaces {
-    fn of(scene: &Scene) -> Self {
+    fn for_scene(scene: &Scene) -> Self {
         Self { pairs: pairs(scene), continuous: matches!(scene.collision, Collision::ContinuousTime { .. }) }
     }
 
@@ -129,6 +129,6 @@ impl RecordPlaces {
         let round = u32::try_from(number).unwrap_or(u32::MAX);
         let stage = if self.continuous { Stage::ContinuousTime } else { Stage::Impulses { round } };
         let pass = Pass { stage, index: round };
-        PolynomialPlace { pass, pair, role: Role::of(pair.kind, which), index }
+        PolynomialPlace { pass, pair, role: Role::from_number(pair.kind, which), index }
     }
 }

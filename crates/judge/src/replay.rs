@@ -8,7 +8,7 @@ mod workers;
 
 pub use super::{
     options::Options,
-    progress::{Both, Progress, Remark, StepFindings, WrongStep},
+    progress::{BothObservers, Progress, Remark, StepFindings, WrongStep},
 };
 
 use super::{
@@ -99,7 +99,7 @@ pub(super) fn judge_within(
     options: &Options,
     progress: &mut dyn Progress,
 ) -> Outcome {
-    let reader = Lenient::new(trace, Layout::of(scene)).with_limit(memory);
+    let reader = Lenient::new(trace, Layout::for_scene(scene)).with_limit(memory);
     let mut replay = Replay::new(scene, reader, options.fair);
     if let Some(floor) = floor {
         replay.budgets = replay.budgets.map(|budget| budget.with_floor(floor));
@@ -214,7 +214,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
     }
 
     fn new(scene: &'a Scene, reader: Lenient<R>, fair: bool) -> Self {
-        let layout = Layout::of(scene);
+        let layout = Layout::for_scene(scene);
         let logs_impulses = scene.collision.handling().records.impulses == ImpulseList::Responses;
         Self {
             scene,

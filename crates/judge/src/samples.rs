@@ -30,7 +30,7 @@ pub(crate) fn scene(text: &str) -> Scene {
 
 /// Returns the frames of a run that `steer` may change as it goes.
 pub(crate) fn run(scene: &Scene, mut steer: impl Observer) -> Vec<Frame> {
-    let layout = Layout::of(scene);
+    let layout = Layout::for_scene(scene);
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     let mut recorder = Recorder::start(Vec::new(), layout, simulation.state());
     for _ in 0..layout.steps {
@@ -47,7 +47,7 @@ pub(crate) fn run(scene: &Scene, mut steer: impl Observer) -> Vec<Frame> {
 
 /// Returns the bytes of these frames.
 pub(crate) fn written(scene: &Scene, frames: &[Frame]) -> Vec<u8> {
-    let mut writer = Writer::new(Vec::new(), Layout::of(scene));
+    let mut writer = Writer::new(Vec::new(), Layout::for_scene(scene));
     frames.iter().for_each(|frame| writer.frame(frame));
     writer.finish().expect("written").0
 }

@@ -36,7 +36,7 @@ pub struct Curve {
 }
 
 impl Curve {
-    fn of(role: Role, untrimmed: Polynomial) -> Result<Self, NoAnswer> {
+    fn search(role: Role, untrimmed: Polynomial) -> Result<Self, NoAnswer> {
         let endless = |_| NoAnswer { role, coefficients: untrimmed };
         let logged = Polynomial::trimmed(untrimmed.coefficients());
         let zeros = match logged.coefficients() {
@@ -78,7 +78,7 @@ pub struct Answer {
 }
 
 impl Answer {
-    fn of(motion: &PairMotion, curves: &[&Curve]) -> Result<Self, NoAnswer> {
+    fn for_motion(motion: &PairMotion, curves: &[&Curve]) -> Result<Self, NoAnswer> {
         let polynomials: Vec<Polynomial> = curves.iter().map(|curve| curve.logged).collect();
         // Every search has ended before, on its own.
         let time = first_time(&polynomials).unwrap_or(f64::INFINITY);
@@ -131,23 +131,23 @@ impl Study {
     ///
     /// # Errors
     /// [`NoAnswer`], where the original hangs.
-    pub fn of(motion: &PairMotion) -> Result<Self, NoAnswer> {
+    pub fn for_motion(motion: &PairMotion) -> Result<Self, NoAnswer> {
         let kind = motion.kind();
         let polynomials = motion.polynomials();
         let curves: Vec<Curve> = polynomials
             .iter()
             .enumerate()
-            .map(|(number, &untrimmed)| Curve::of(Role::of(kind, number), untrimmed))
+            .map(|(number, &untrimmed)| Curve::search(Role::from_number(kind, number), untrimmed))
             .collect::<Result<_, _>>()?;
-        let answer = Answer::of(motion, &curves.iter().collect::<Vec<_>>())?;
+        let answer = Answer::for_motion(motion, &curves.iter().collect::<Vec<_>>())?;
         let bounded = formulas::BoundedPairMotion::from(motion);
         let expected = bounded.polynomials();
         let right_approach = match right_approach(&polynomials, &expected) {
             None => None,
             Some(right) => {
-                let curve = Curve::of(Role::Approach, right)?;
+                let curve = Curve::search(Role::Approach, right)?;
                 let others = curves.iter().take(3).chain([&curve]).collect::<Vec<_>>();
-                let answer = Answer::of(motion, &others)?;
+                let answer = Answer::for_motion(motion, &others)?;
                 Some(RightApproach { curve, answer })
             }
         };
@@ -225,7 +225,7 @@ mod tests {
 
     #[test]
     fn the_assignments_examples() {
-        let study = Study::of(&first_example()).unwrap();
+        let study = Study::for_motion(&first_example()).unwrap();
         assert_eq!(study.curves[0].logged.coefficients(), [-361.0, -304.0, -468.0, -288.0, 0.0]);
         assert!(!study.answer.decision.collides());
         let second = PairMotion::Edge {
@@ -233,7 +233,7 @@ mod tests {
             ends: [point(2.0, 1.0, 3.0, 5.0), point(6.0, 2.0, 3.0, 7.0)],
             radii: [1.0, 2.0],
         };
-        let study = Study::of(&second).unwrap();
+        let study = Study::for_motion(&second).unwrap();
         assert_eq!(study.curves[0].logged.coefficients(), [-16.0, 0.0, -68.0, 36.0, -16.0]);
         assert_eq!(study.curves[0].positive, []);
         assert_eq!((study.answer.decision.collides(), study.certain), (false, Some(false)));
@@ -247,7 +247,7 @@ mod tests {
             ends: [point(-1.0, 0.0, 0.0, 0.5), point(1.0, 0.0, 0.5, 0.125)],
             radii: [0.125, 0.125],
         };
-        let study = Study::of(&motion).unwrap();
+        let study = Study::for_motion(&motion).unwrap();
         let Decision::Hit { time, normal } = study.answer.decision else { panic!("{:?}", study.answer) };
         assert_eq!(study.answer.positive[0].lo, time);
         assert_eq!(motion.normal(time), Some(normal));
@@ -268,7 +268,7 @@ mod tests {
             ends: [point(-1.0, 0.0, 0.0, 0.5), point(1.0, 0.0, 0.0, 0.5)],
             radii: [0.125, 0.125],
         };
-        assert_eq!(Study::of(&motion).unwrap().right_approach, None);
+        assert_eq!(Study::for_motion(&motion).unwrap().right_approach, None);
     }
 
     #[test]
@@ -277,15 +277,15 @@ mod tests {
             centres: [point(0.0, 0.0, 0.0, 0.0), point(gap, 0.0, 2.0 * radius - gap, 0.0)],
             radii: [radius; 2],
         };
-        assert_eq!(Study::of(&particles(0.7, 0.1)).unwrap().certain, None);
-        assert_eq!(Study::of(&particles(0.75, 0.125)).unwrap().certain, Some(true));
+        assert_eq!(Study::for_motion(&particles(0.7, 0.1)).unwrap().certain, None);
+        assert_eq!(Study::for_motion(&particles(0.75, 0.125)).unwrap().certain, Some(true));
     }
 
     #[test]
     fn numbers_that_overflow_have_no_answer() {
         let PairMotion::Edge { centre, ends, radii } = first_example() else { unreachable!() };
         let huge = PointMotion { start: Vec2::new(1e200, 0.0), ..centre };
-        let refused = Study::of(&PairMotion::Edge { centre: huge, ends, radii }).unwrap_err();
+        let refused = Study::for_motion(&PairMotion::Edge { centre: huge, ends, radii }).unwrap_err();
         assert_eq!(refused.role, Role::Overlap);
         assert_eq!(refused.to_string(), "the root search of the overlap polynomial does not end");
     }

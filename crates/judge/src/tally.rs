@@ -189,7 +189,7 @@ impl<'a> Tally<'a> {
         let theirs = &self.frame.impulses;
         self.identical &= own.len() == theirs.len()
             && own.iter().zip(theirs).all(|(own, logged)| LoggedImpulse::from(*own).is_same(logged));
-        let by_pair = Contacts::of(theirs);
+        let by_pair = Contacts::from_impulses(theirs);
         let logged = |own: &Impulse| key(own.pair).and_then(|key| by_pair.about(key).next());
         let mut own_keys: Vec<_> = own.iter().filter_map(|own| key(own.pair)).collect();
         own_keys.sort_unstable();
@@ -310,7 +310,7 @@ impl Observer for Tally<'_> {
             places.for_each(|(place, bytes)| *place = f64::from_le_bytes(*bytes));
             self.compare_polynomial(&coefficients[..bytes.len() / 8], || {
                 let (_, pair, which) = order.polynomial(number).expect("a pass logs the polynomials of these pairs");
-                PolynomialPlace { pass, pair, role: Role::of(pair.kind, which), index }
+                PolynomialPlace { pass, pair, role: Role::from_number(pair.kind, which), index }
             });
         }
         own.clear();

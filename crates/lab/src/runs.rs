@@ -33,7 +33,7 @@ pub fn is_accepted(outcome: &Outcome) -> bool {
 
 /// A scene with the trace of a right program.
 #[derive(Debug)]
-pub struct Watched {
+pub struct WatchedScene {
     /// The scene's name.
     pub name: String,
     /// The scene.
@@ -42,7 +42,7 @@ pub struct Watched {
     pub right: Vec<u8>,
 }
 
-impl Watched {
+impl WatchedScene {
     /// Returns the scenes in the groups of a folder.
     ///
     /// # Errors

@@ -9,7 +9,7 @@
 //! # </scene>"#;
 //! # let scene = scene::read("a ball", text)?.scene;
 //! # let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
-//! # let mut recorder = Recorder::start(Vec::new(), Layout::of(&scene), simulation.state());
+//! # let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(&scene), simulation.state());
 //! # for _ in 0..scene.steps() {
 //! #     simulation.step(&mut recorder)?;
 //! # }

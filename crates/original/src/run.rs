@@ -90,7 +90,7 @@ fn without_folder(
 ) -> u8 {
     if let Some(file) = &arguments.output {
         match create(Path::new(file), identity) {
-            Ok(file) => drop(Recorder::start(file, Layout::of(scene), &State::of(scene)).finish()),
+            Ok(file) => drop(Recorder::start(file, Layout::for_scene(scene), &State::for_scene(scene)).finish()),
             Err(message) => return complain(message),
         }
     }
@@ -120,7 +120,7 @@ fn load(arguments: &Arguments) -> Result<(OriginalScene, Identity), Refusal> {
             explanation: error.to_string(),
         })?
     };
-    Ok((original::read(&bytes)?, Identity::of(&metadata)))
+    Ok((original::read(&bytes)?, Identity::from_metadata(&metadata)))
 }
 
 fn refuse_scene(arguments: &Arguments, refusal: &Refusal) -> u8 {
@@ -146,7 +146,7 @@ fn unsupported(arguments: &Arguments, scene: &Scene) -> Option<String> {
 
 /// Creates the trace.
 fn create(name: &Path, scene: Identity) -> Result<File, Vec<u8>> {
-    if fs::metadata(name).is_ok_and(|metadata| Identity::of(&metadata) == scene) {
+    if fs::metadata(name).is_ok_and(|metadata| Identity::from_metadata(&metadata) == scene) {
         let text = format!("{} is the scene itself; choose another name for the trace\n", name.display());
         return Err(text.into_bytes());
     }
@@ -172,7 +172,7 @@ fn simulate<W: Write>(
     mut pictures: Option<Box<dyn Pictures>>,
 ) -> u8 {
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
-    let mut recorder = Recorder::start(file, Layout::of(scene), simulation.state());
+    let mut recorder = Recorder::start(file, Layout::for_scene(scene), simulation.state());
     transcript.begins();
     let mut stopped = None;
     for step in 1..=scene.steps() {
@@ -209,7 +209,7 @@ fn draw(scene: &Scene, name: &Path, mut pictures: Box<dyn Pictures>) -> Result<(
         return Err("pictures of a trace (-g, -m with -i) need a file, which can be read twice\n".to_owned());
     }
     let trace = open(name).map_err(|error| format!("cannot read {}: {error}\n", name.display()))?;
-    let layout = Layout::of(scene);
+    let layout = Layout::for_scene(scene);
     let mut reader = Reader::new(trace, layout);
     let mut frame = Frame::default();
     while let Ok(true) = reader.next(&mut frame) {

@@ -17,7 +17,7 @@
 //! # </scene>"#;
 //! # let scene = scene::read("a ball", text)?.scene;
 //! # let positions = [0.0, 0.0];
-//! let (extent, size) = (Extent::of(&scene, &positions), Size::new(320, 240)?);
+//! let (extent, size) = (Extent::for_scene(&scene, &positions), Size::new(320, 240)?);
 //! let mut painter = Painter::new(&scene, &extent, PictureOptions { size, label: false });
 //! let shapes = painter.picture(0, &positions, None);
 //! assert!(svg::document(size, painter.background(), "a ball", &shapes).contains("<circle"));

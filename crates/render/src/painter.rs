@@ -76,7 +76,7 @@ impl Painter {
         let half_planes = coloured(scene.half_planes.len(), Colour::BLACK, &display.half_plane_colors);
         let paths = display.paths.iter().filter(|path| path.particle < scene.particles.len());
         Self {
-            view: View::of(scene, extent, options.size),
+            view: View::for_scene(scene, extent, options.size),
             label: options.label,
             time_step: scene.time_step,
             background: display.background.map_or(Colour::WHITE, Colour::from),

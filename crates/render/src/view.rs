@@ -28,7 +28,7 @@ impl Default for Extent {
 impl Extent {
     /// Returns the box around a scene's particles at these positions, in trace order.
     #[must_use]
-    pub fn of(scene: &Scene, positions: &[f64]) -> Self {
+    pub fn for_scene(scene: &Scene, positions: &[f64]) -> Self {
         let mut extent = Self::default();
         extent.add(scene, positions);
         extent
@@ -97,7 +97,7 @@ pub struct View {
 impl View {
     /// Returns the view of a scene: its own viewport, or the box that holds its bodies, with a margin.
     #[must_use]
-    pub fn of(scene: &Scene, extent: &Extent, size: Size) -> Self {
+    pub fn for_scene(scene: &Scene, extent: &Extent, size: Size) -> Self {
         match scene.display.viewport {
             // Zero or negative means "fit".
             Some(Viewport { center, size: half }) if half > 0.0 => Self::new(center, [half, half], size),
@@ -154,7 +154,7 @@ mod tests {
     }
 
     fn view(scene: &Scene, positions: &[f64]) -> View {
-        View::of(scene, &Extent::of(scene, positions), Size::new(200, 100).unwrap())
+        View::for_scene(scene, &Extent::for_scene(scene, positions), Size::new(200, 100).unwrap())
     }
 
     #[test]
@@ -187,7 +187,7 @@ mod tests {
     #[test]
     fn a_body_that_flies_away_does_not_make_the_others_dots() {
         let scene = scene("");
-        let start = Extent::of(&scene, &[-2.0, 0.0, 2.0, 1.0]);
+        let start = Extent::for_scene(&scene, &[-2.0, 0.0, 2.0, 1.0]);
         let mut run = start;
         run.add(&scene, &[-2.0, 0.0, 5000.0, 1.0]);
         assert_eq!(run.near(&start).high.x, 10.0);

@@ -7,7 +7,7 @@ use super::{
     words::{first_divergence, located},
 };
 use crate::foreign::one_line;
-use fosssim_findings::{Book, disclosure::DisclosedFinding, located::Located};
+use fosssim_findings::{Book, disclosure::DisclosedFinding, located::LocatedFailure};
 use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 use std::fmt::Write;
 
@@ -39,7 +39,7 @@ pub struct Diagnosis {
     /// With several traces, the mistakes that explain them together, the one that explains most first.
     pub common: Vec<Explanation>,
     /// The common properties of the scenes in which the program crashes or runs into a limit.
-    pub located: Option<Located>,
+    pub located: Option<LocatedFailure>,
 }
 
 impl Diagnosis {

@@ -37,7 +37,7 @@ pub fn sentence(explanations: &[Explanation]) -> Option<String> {
 }
 
 /// The sentences about one explanation, in their parts.
-pub(crate) struct Told {
+pub(crate) struct ExplanationParts {
     /// Whether it is a mistake that is likely, and not an observation.
     pub(crate) is_likely: bool,
     /// The sentence.
@@ -50,7 +50,7 @@ pub(crate) struct Told {
     pub(crate) example: Vec<String>,
 }
 
-impl From<&Explanation> for Told {
+impl From<&Explanation> for ExplanationParts {
     fn from(explanation: &Explanation) -> Self {
         let Explanation { reproduced, samples, about, .. } = explanation;
         // An explanation that reproduces nothing is an observation, not a mistake that is likely.
@@ -71,7 +71,7 @@ impl From<&Explanation> for Told {
 }
 
 fn of_one(explanation: &Explanation) -> Vec<String> {
-    let Told { is_likely, what, evidence, details, example } = Told::from(explanation);
+    let ExplanationParts { is_likely, what, evidence, details, example } = ExplanationParts::from(explanation);
     let likely = if is_likely { "likely mistake: " } else { "" };
     let evidence = evidence.map_or_else(String::new, |evidence| format!(" ({evidence})"));
     let mut lines = vec![format!("{likely}{what}{evidence}")];

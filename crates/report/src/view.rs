@@ -2,7 +2,9 @@
 //!
 //! `schemas/check.schema.json` documents the shape of a check. A field's meaning never changes within one schema
 //! version; fields may be added.
-use fosssim_findings::{Book, Finding, FindingDetail, FindingKind, FindingPlace, PolynomialPlace, Rescaled, Role};
+use fosssim_findings::{
+    Book, Finding, FindingDetail, FindingKind, FindingPlace, PolynomialPlace, RescaledCoefficient, Role,
+};
 use fosssim_model::{
     sim::Pass,
     trace::{ImpulsePair, LoggedImpulse},
@@ -121,7 +123,7 @@ pub struct FindingView {
     pub tolerance: Option<Number>,
     /// A coefficient as the original compares it.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub rescaled: Option<Rescaled>,
+    pub rescaled: Option<RescaledCoefficient>,
     /// The finding in words.
     pub text: String,
 }

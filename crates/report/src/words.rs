@@ -8,7 +8,7 @@ use crate::{describe::no_result, number::counted};
 pub use located::located;
 
 use fosssim_findings::{
-    FindingPlace, Grade, Unfit, Verdict,
+    FindingPlace, Grade, SubmissionFault, Verdict,
     disclosure::{DisclosedBook, DisclosedFinding},
     result::{
         Activity, BadTrace, BuildEnd, Ended, Failure, FolderContents, Limit, NotRunReason, Reached, Reason, SavedTrace,
@@ -94,10 +94,10 @@ pub fn details(result: &SceneResult) -> Vec<String> {
 #[must_use]
 pub fn unfit(grade: &Grade) -> Option<String> {
     grade.unfit().map(|unfit| match unfit {
-        Unfit::Build(end) => build(end),
-        Unfit::Milestone(other) => milestone(other),
-        Unfit::Scene(result) if result.verdict == Verdict::Unwritten => unwritten(grade),
-        Unfit::Scene(result) => summary(result),
+        SubmissionFault::Build(end) => build(end),
+        SubmissionFault::Milestone(other) => milestone(other),
+        SubmissionFault::Scene(result) if result.verdict == Verdict::Unwritten => unwritten(grade),
+        SubmissionFault::Scene(result) => summary(result),
     })
 }
 

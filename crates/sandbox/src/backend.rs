@@ -23,7 +23,7 @@ use super::{
     layers::{self, Layer, LayerReport},
     outcome::Ended,
     own, program, room,
-    running::{Running, Supervised},
+    running::{RunningProgram, Supervised},
     supervisor::{MODE_KEEP, MODE_PROBE, MODE_RUN},
     sys,
     wire::{self, Event, Probe, RunOrder, SUPERVISOR_ARGUMENT, Walls},
@@ -261,7 +261,7 @@ impl Backend {
     /// # Errors
     ///
     /// Faults of ours or of the host.
-    pub fn start(&self, job: &Job) -> Result<Running, SandboxError> {
+    pub fn start(&self, job: &Job) -> Result<RunningProgram, SandboxError> {
         let (supervisor, walls, keepers) = match &self.kind {
             Kind::Launcher { supervisor, walls, keepers } => (supervisor, *walls, keepers),
             Kind::Fake(script) => {
@@ -270,7 +270,7 @@ impl Backend {
             }
         };
         if let Some(staged) = &job.staged
-            && ProgramIdentity::of(&job.program).as_ref() != Some(staged)
+            && ProgramIdentity::from_path(&job.program).as_ref() != Some(staged)
         {
             return Err(SandboxError::Changed { program: job.program.display().to_string() });
         }
@@ -286,7 +286,7 @@ impl Backend {
             write_files(job)?;
         }
         let (mut asked, first) = loop {
-            let (mut asked, kept) = match Keeping::of(&order) {
+            let (mut asked, kept) = match Keeping::from_order(&order) {
                 Some(kind) => supervisor.ask_keeper(&order, &job.files, kind, keepers)?,
                 None => (supervisor.spawn_for(&order)?, false),
             };
@@ -304,7 +304,7 @@ impl Backend {
                 };
                 let (SpawnedSupervisor { host, control, answers }, layers) = (asked, self.layers.clone());
                 let supervised = Supervised { host, answers, session, user, order, layers };
-                Ok(Running::new(supervised, control, folder))
+                Ok(RunningProgram::new(supervised, control, folder))
             }
             Ok(Event::Failed(failure)) => {
                 asked.host.rest(None);

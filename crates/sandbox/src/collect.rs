@@ -3,7 +3,7 @@
 //! A hostile program leaves a link to a reference, a pipe, a device or a terabyte of holes where its output should be.
 //! So the file is opened beneath the folder without following any link and without waiting, and judged by the open
 //! descriptor: a regular file, with one name, within the limit. Call this only when every process is dead, which is
-//! when [`Running::wait`](super::Running::wait) has returned.
+//! when [`RunningProgram::wait`](super::RunningProgram::wait) has returned.
 
 use std::{
     fs::File,

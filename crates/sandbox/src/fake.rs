@@ -7,8 +7,8 @@ use super::{
     job::Job,
     laid,
     layers::LayerReport,
-    outcome::{Captured, Ended, RunOutcome, StartProblem},
-    running::Running,
+    outcome::{CapturedOutput, Ended, RunOutcome, StartProblem},
+    running::RunningProgram,
 };
 
 /// The answer of a fake run.
@@ -46,7 +46,7 @@ impl FakeRun {
         Self::ended(Ended::CouldNotStart(problem))
     }
 
-    pub(super) fn into_running(self, job: &Job, layers: Arc<[LayerReport]>) -> Result<Running, SandboxError> {
+    pub(super) fn into_running(self, job: &Job, layers: Arc<[LayerReport]>) -> Result<RunningProgram, SandboxError> {
         if let Some(name) = job.trace.as_ref().filter(|_| !self.trace.is_empty()) {
             laid::write_file(job, name, &self.trace)?;
         }
@@ -56,11 +56,11 @@ impl FakeRun {
             cpu: self.cpu,
             wall: self.cpu,
             peak_memory: self.peak_memory,
-            stdout: Captured { bytes: self.stdout, truncated: false },
-            stderr: Captured { bytes: self.stderr, truncated: false },
+            stdout: CapturedOutput { bytes: self.stdout, truncated: false },
+            stderr: CapturedOutput { bytes: self.stderr, truncated: false },
             layers,
         };
-        Ok(Running::known(outcome, job.folder.clone()))
+        Ok(RunningProgram::known(outcome, job.folder.clone()))
     }
 }
 

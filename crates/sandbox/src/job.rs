@@ -69,7 +69,7 @@ pub struct ProgramIdentity([i64; 5]);
 impl ProgramIdentity {
     /// Returns the identity of the regular file at the path, links followed; `None` where there is none.
     #[must_use]
-    pub fn of(path: &Path) -> Option<Self> {
+    pub fn from_path(path: &Path) -> Option<Self> {
         let metadata = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file)?;
         let (device, inode) = (metadata.dev().cast_signed(), metadata.ino().cast_signed());
         Some(Self([device, inode, metadata.size().cast_signed(), metadata.mtime(), metadata.mtime_nsec()]))

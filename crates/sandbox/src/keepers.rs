@@ -40,7 +40,7 @@ impl Kind {
     }
 
     /// Returns the kind of this order; `None` when there can be no keeper for it.
-    pub(super) fn of(order: &RunOrder) -> Option<Self> {
+    pub(super) fn from_order(order: &RunOrder) -> Option<Self> {
         if !Self::exists_for(order) {
             return None;
         }
@@ -54,7 +54,7 @@ impl Kind {
         let named = order.readable.iter().chain(&order.executable).chain(&order.named);
         let identity = |path: &Path| path.metadata().ok().map(|metadata| (metadata.dev(), metadata.ino()));
         let files = named.map(|path| identity(&wire::path(path))).collect();
-        Some(Self { order: common, program: ProgramIdentity::of(&wire::path(&order.program)), files })
+        Some(Self { order: common, program: ProgramIdentity::from_path(&wire::path(&order.program)), files })
     }
 }
 
@@ -207,20 +207,20 @@ mod tests {
 
     #[test]
     fn runs_of_one_submission_are_of_one_kind() {
-        let kind = Kind::of(&order()).unwrap();
+        let kind = Kind::from_order(&order()).unwrap();
         let same = RunOrder {
             folder: b"/x".to_vec(),
             arguments: vec![b"-s".to_vec()],
             files: vec![(b"a".to_vec(), 9)],
             ..order()
         };
-        assert_eq!(Kind::of(&same).unwrap(), kind);
+        assert_eq!(Kind::from_order(&same).unwrap(), kind);
         for other in [
             RunOrder { program: b"/bin/ls".to_vec(), ..order() },
             RunOrder { limits: Limits { memory: 7, ..Limits::default() }, ..order() },
             RunOrder { readable: vec![b"/etc/hostname".to_vec()], ..order() },
         ] {
-            assert_ne!(Kind::of(&other).unwrap(), kind);
+            assert_ne!(Kind::from_order(&other).unwrap(), kind);
         }
     }
 
@@ -228,7 +228,7 @@ mod tests {
     fn a_program_that_was_exchanged_is_of_another_kind() {
         let folder = tempfile::tempdir().unwrap();
         let program = folder.path().join("program");
-        let kind = || Kind::of(&RunOrder { program: wire::raw(&program), ..order() }).unwrap();
+        let kind = || Kind::from_order(&RunOrder { program: wire::raw(&program), ..order() }).unwrap();
         std::fs::write(&program, "one").unwrap();
         let before = kind();
         assert_eq!(kind(), before);
@@ -239,9 +239,9 @@ mod tests {
 
     #[test]
     fn tools_and_runs_without_namespaces_have_supervisors_of_their_own() {
-        assert!(Kind::of(&RunOrder { tools: true, ..order() }).is_none());
-        assert!(Kind::of(&RunOrder { volatile: false, ..order() }).is_none());
-        assert!(Kind::of(&RunOrder { walls: Walls::default(), ..order() }).is_none());
+        assert!(Kind::from_order(&RunOrder { tools: true, ..order() }).is_none());
+        assert!(Kind::from_order(&RunOrder { volatile: false, ..order() }).is_none());
+        assert!(Kind::from_order(&RunOrder { walls: Walls::default(), ..order() }).is_none());
     }
 
     #[test]

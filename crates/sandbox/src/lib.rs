@@ -1,7 +1,7 @@
 //! Runs one program under limits and says how it ended.
 //!
 //! The room knows nothing of scenes, traces or verdicts: bytes go in and out, and an [`RunOutcome`] says what the
-//! kernel saw. [`Job`] is what to run, [`Backend`] is how, [`Running`] is a program at work.
+//! kernel saw. [`Job`] is what to run, [`Backend`] is how, [`RunningProgram`] is a program at work.
 //!
 //! How it works: the grader starts its own binary again with a hidden first argument ([`supervisor_main`]). That
 //! fresh, single-threaded process is the *supervisor*: it makes itself the reaper of everything below it, forks, shuts
@@ -55,9 +55,9 @@ pub use fake::FakeRun;
 pub use fault::SandboxError;
 pub use job::{Job, Limits, Policy, ProgramIdentity};
 pub use layers::{Layer, LayerReport};
-pub use outcome::{Captured, Ended, RunOutcome, StartProblem};
+pub use outcome::{CapturedOutput, Ended, RunOutcome, StartProblem};
 pub use own::is_own;
-pub use running::{Canceller, LeftFolder, Running};
+pub use running::{Canceller, LeftFolder, RunningProgram};
 pub use supervisor::supervisor_main;
 #[doc(hidden)]
 pub use wire::read_messages;

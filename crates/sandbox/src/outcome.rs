@@ -8,7 +8,7 @@ use super::layers::LayerReport;
 
 /// The output of a program to one stream.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Captured {
+pub struct CapturedOutput {
     /// The first bytes, up to the limit. They are the program's words: escape them before they are shown.
     pub bytes: Vec<u8>,
     /// Whether there was more.
@@ -27,9 +27,9 @@ pub struct RunOutcome {
     /// Peak of the resident memory in bytes.
     pub peak_memory: u64,
     /// Standard output.
-    pub stdout: Captured,
+    pub stdout: CapturedOutput,
     /// Standard error.
-    pub stderr: Captured,
+    pub stderr: CapturedOutput,
     /// The layers that were active; a report states those that were not.
     pub layers: Arc<[LayerReport]>,
 }

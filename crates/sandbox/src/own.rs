@@ -101,7 +101,7 @@ fn digest_of(path: &Path) -> Option<blake3::Hash> {
 
 /// A path that may be allowed.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Allowed {
+pub(super) enum AllowedPath {
     /// With all that lies beneath it.
     Whole(PathBuf),
     /// A folder that may only be listed, with all beneath it.
@@ -111,7 +111,7 @@ pub(super) enum Allowed {
 /// Returns the rules that allow everything at and beneath `path` except what is `own` (resolved paths).
 ///
 /// Links beneath a folder that is split are left out: their targets are allowed in their own places, or not at all.
-pub(super) fn around(path: &Path, own: &[PathBuf]) -> Vec<Allowed> {
+pub(super) fn around(path: &Path, own: &[PathBuf]) -> Vec<AllowedPath> {
     let Ok(path) = path.canonicalize() else { return Vec::new() };
     let mut allowed = Vec::new();
     let mut left = vec![path];
@@ -120,12 +120,12 @@ pub(super) fn around(path: &Path, own: &[PathBuf]) -> Vec<Allowed> {
             continue;
         }
         if !own.iter().any(|own| own.starts_with(&path)) {
-            allowed.push(Allowed::Whole(path));
+            allowed.push(AllowedPath::Whole(path));
             continue;
         }
         let real = entries(&path).filter(|entry| entry.file_type().is_ok_and(|kind| !kind.is_symlink()));
         left.extend(real.map(|entry| entry.path()));
-        allowed.push(Allowed::Listing(path));
+        allowed.push(AllowedPath::Listing(path));
     }
     allowed
 }
@@ -148,14 +148,14 @@ mod tests {
         let whole: Vec<PathBuf> = around(&root, &own)
             .into_iter()
             .filter_map(|allowed| match allowed {
-                Allowed::Whole(path) => Some(path),
-                Allowed::Listing(_) => None,
+                AllowedPath::Whole(path) => Some(path),
+                AllowedPath::Listing(_) => None,
             })
             .collect();
         assert_eq!(whole.len(), 2, "{whole:?}");
         assert!(whole.contains(&root.join("lib")) && whole.contains(&root.join("local/bin/python3")));
         assert_eq!(around(&own[0], &own), []);
-        assert_eq!(around(&root.join("lib"), &own), [Allowed::Whole(root.join("lib"))]);
+        assert_eq!(around(&root.join("lib"), &own), [AllowedPath::Whole(root.join("lib"))]);
     }
 
     #[test]

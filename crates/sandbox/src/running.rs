@@ -14,7 +14,7 @@ use super::{
     fault::{SandboxError, set_up_failed},
     keepers::{Host, RestingKeeper},
     layers::LayerReport,
-    outcome::{Captured, RunOutcome},
+    outcome::{CapturedOutput, RunOutcome},
     supervisor::orphans,
     wire::{self, COMMAND_CANCEL, Event, RunOrder},
 };
@@ -24,7 +24,7 @@ type ControlSocket = Arc<Mutex<Option<UnixStream>>>;
 
 /// A program at work. Dropped, it is stopped, and the drop waits until every process is dead.
 #[derive(Debug)]
-pub struct Running {
+pub struct RunningProgram {
     state: State,
     folder: LeftFolder,
     canceller: Canceller,
@@ -51,7 +51,7 @@ pub(super) struct Supervised {
     pub(super) layers: Arc<[LayerReport]>,
 }
 
-impl Running {
+impl RunningProgram {
     /// Creates a run whose supervisor has said that it is ready.
     pub(super) fn new(supervised: Supervised, control: UnixStream, in_memory: Option<OpenFolder>) -> Self {
         let folder = LeftFolder { in_memory, path: wire::path(&supervised.order.folder), _keeper: None };
@@ -87,11 +87,11 @@ impl Running {
         self.wait_with_folder().map(|(outcome, _)| outcome)
     }
 
-    /// Waits as [`Running::wait`] does, and returns also what the program left in its working folder.
+    /// Waits as [`RunningProgram::wait`] does, and returns also what the program left in its working folder.
     ///
     /// # Errors
     ///
-    /// As for [`Running::wait`].
+    /// As for [`RunningProgram::wait`].
     pub fn wait_with_folder(mut self) -> Result<(RunOutcome, LeftFolder), SandboxError> {
         let (outcome, keeper) = match std::mem::replace(&mut self.state, State::Taken) {
             State::Supervised(supervised) => self.conclude(*supervised)?,
@@ -133,8 +133,8 @@ impl Running {
             cpu: report.cpu,
             wall: report.wall,
             peak_memory: report.peak_memory,
-            stdout: Captured { bytes: stdout, truncated: report.stdout_truncated },
-            stderr: Captured { bytes: stderr, truncated: report.stderr_truncated },
+            stdout: CapturedOutput { bytes: stdout, truncated: report.stdout_truncated },
+            stderr: CapturedOutput { bytes: stderr, truncated: report.stderr_truncated },
             layers: supervised.layers,
         };
         Ok((outcome, keeper))
@@ -173,7 +173,7 @@ impl LeftFolder {
     }
 }
 
-impl Drop for Running {
+impl Drop for RunningProgram {
     fn drop(&mut self) {
         if let State::Supervised(supervised) = std::mem::replace(&mut self.state, State::Taken) {
             self.canceller.cancel();
@@ -201,7 +201,7 @@ pub struct Canceller {
 }
 
 impl Canceller {
-    /// Has the program and all that it started killed; [`Running::wait`] then says `Cancelled`.
+    /// Has the program and all that it started killed; [`RunningProgram::wait`] then says `Cancelled`.
     pub fn cancel(&self) {
         if let Some(control) = self.control.lock().unwrap_or_else(PoisonError::into_inner).as_mut() {
             // A supervisor that has ended needs no command.

@@ -234,7 +234,7 @@ pub(super) fn kill_everybody_inside() -> bool {
 }
 
 /// A process that has ended.
-pub(super) struct Reaped {
+pub(super) struct ReapedProcess {
     /// Which.
     pub(super) pid: i32,
     /// The process's raw wait status.
@@ -246,9 +246,9 @@ pub(super) struct Reaped {
 /// # Errors
 ///
 /// `ECHILD` when there is no child at all.
-pub(super) fn reap() -> io::Result<Option<Reaped>> {
+pub(super) fn reap() -> io::Result<Option<ReapedProcess>> {
     let ended = rustix::process::wait(WaitOptions::NOHANG)?;
-    Ok(ended.map(|(pid, status)| Reaped { pid: pid.as_raw_pid(), status: status.as_raw() }))
+    Ok(ended.map(|(pid, status)| ReapedProcess { pid: pid.as_raw_pid(), status: status.as_raw() }))
 }
 
 /// Waits until the child has ended; the answer is its exit code, or 128 and the signal that ended it.

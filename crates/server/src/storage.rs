@@ -1,7 +1,7 @@
 //! Whether the server can still write, and whether it has room for more.
 //!
 //! A database that answers reads may be unable to write: a full disk, a folder that became read-only. So
-//! [`Storage::prove`] writes, to the database and to the store, and [`Storage::has_room`] refuses uploads before the
+//! [`Storage::prove`] writes, to the database and to the store, and [`Storage::ensure_room`] refuses uploads before the
 //! disk is full, so that what was accepted can still be graded.
 use crate::{
     db::{self, Database, DbError},
@@ -101,7 +101,7 @@ impl Storage {
     ///
     /// # Errors
     /// When less than the low-water mark is free: 507. Nothing was written.
-    pub fn has_room(&self) -> Result<(), Problem> {
+    pub fn ensure_room(&self) -> Result<(), Problem> {
         // A disk that does not say how full it is can't be refused by.
         if self.disk().is_some_and(|(free, _)| free < self.low_water) {
             tracing::error!(low_water = self.low_water, "uploads are refused: the disk is nearly full");

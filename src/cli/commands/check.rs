@@ -6,10 +6,10 @@ use crate::{
         input::{self, SceneInput, TraceInput},
         output::Output,
     },
-    evidence::{self, Evidence, Examined, Keep, examine},
+    evidence::{self, Evidence, ExaminedTrace, KeptPart, examine},
     judge::{
         Outcome, Stop,
-        replay::{self, Both},
+        replay::{self, BothObservers},
     },
     report::{
         self,
@@ -32,10 +32,10 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<u8> {
     let inputs: Vec<_> = scene.identity.into_iter().chain(trace.identity).collect();
     // An output that can't be written is said before the work is done, not after.
     let target = arguments.output.as_deref().map(|name| Output::create(name, &inputs)).transpose()?;
-    let (shown, lasts) = (ShownParts::of(arguments), is_lasting(name));
+    let (shown, lasts) = (ShownParts::from_arguments(arguments), is_lasting(name));
     let mut wrong = wrong_steps(arguments, &scene)?;
     let mut bar = console::Bar::new(scene.scene.steps());
-    let (options, heard) = (options(arguments), &mut Both(&mut bar, &mut wrong));
+    let (options, heard) = (options(arguments), &mut BothObservers(&mut bar, &mut wrong));
     let examined = examine(&scene.scene, &mut trace.reader, shown.keep(lasts), &options, heard);
     drop(bar);
     let outcome = &examined.outcome;
@@ -53,7 +53,7 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<u8> {
         looks_like: trace.looks_like,
     };
     let accepted = check.accepted();
-    let is_states_only = |data: std::fs::Metadata| Layout::of(&scene.scene).is_states_only(data.len());
+    let is_states_only = |data: std::fs::Metadata| Layout::for_scene(&scene.scene).is_states_only(data.len());
     if lasts && !accepted && std::fs::metadata(name).is_ok_and(is_states_only) {
         console::remark(format!("{}\n", words::STATES_ONLY));
     }
@@ -71,7 +71,7 @@ fn write(
     target: Option<Output>,
     format: CheckFormat,
     check: report::check::Check<'_>,
-    examined: &Examined<'_>,
+    examined: &ExaminedTrace<'_>,
     evidence: &dyn Fn() -> Evidence,
 ) -> Result<()> {
     let style = if target.is_some() { Style::Plain } else { console::style() };
@@ -95,17 +95,17 @@ struct ShownParts {
 }
 
 impl ShownParts {
-    fn of(arguments: &CheckArguments) -> Self {
+    fn from_arguments(arguments: &CheckArguments) -> Self {
         // Of single steps the numbers are asked for.
         let is_explained = arguments.step.is_empty() && !arguments.no_explain;
         Self { is_explained, is_drawn: arguments.format == CheckFormat::Html }
     }
 
-    fn keep(&self, lasts: bool) -> Keep {
+    fn keep(&self, lasts: bool) -> KeptPart {
         match (self.is_explained || self.is_drawn, lasts) {
-            (false, _) => Keep::Nothing,
-            (true, false) => Keep::Read,
-            (true, true) => Keep::All,
+            (false, _) => KeptPart::Nothing,
+            (true, false) => KeptPart::Read,
+            (true, true) => KeptPart::All,
         }
     }
 }
@@ -148,7 +148,7 @@ fn refuse_unreadable(outcome: &Outcome, scene: &SceneInput, trace: &TraceInput) 
 }
 
 /// Returns the evidence: of the whole trace, where what was kept is not all of it and the file can be read again.
-fn evidence_of(examined: &Examined<'_>, name: &Path, lasts: bool) -> Evidence {
+fn evidence_of(examined: &ExaminedTrace<'_>, name: &Path, lasts: bool) -> Evidence {
     let mut again = if lasts && !examined.trace.is_whole() { input::trace(name).ok() } else { None };
     examined.evidence(again.as_mut().map(|trace| &mut trace.reader as &mut dyn Read), evidence::BUDGET)
 }

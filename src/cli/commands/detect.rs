@@ -33,7 +33,7 @@ pub(super) fn run(arguments: &DetectArguments) -> Result<()> {
 }
 
 fn study(motion: &PairMotion) -> Result<Study> {
-    Study::of(motion).context(NO_ANSWER)
+    Study::for_motion(motion).context(NO_ANSWER)
 }
 
 fn show(arguments: &DetectArguments, study: &Study, place: Option<Place<'_>>, inputs: &[Identity]) -> Result<()> {
@@ -98,7 +98,7 @@ fn of_scene(arguments: &DetectArguments, name: &Path) -> Result<()> {
         None => (simulated(&scene, step)?, None),
     };
     if matches!(scene.scene.collision, Collision::Simple { .. }) {
-        let found = OverlapStudy::of(&scene.scene, step, &before, pair);
+        let found = OverlapStudy::for_pair(&scene.scene, step, &before, pair);
         let study =
             found.map_err(|error| anyhow::Error::msg(no_result(&error)))?.context("nobody asks about this pair")?;
         let (scene, trace) = (scene.name.as_str(), traced.as_ref().map(|traced| traced.name.as_str()));
@@ -152,7 +152,7 @@ struct Traced {
 
 fn traced(scene: &SceneInput, name: &Path, step: u32) -> Result<Traced> {
     let mut trace = input::trace(name)?;
-    let layout = Layout::of(&scene.scene);
+    let layout = Layout::for_scene(&scene.scene);
     let mut reader = trace.records(&scene.scene);
     let (mut frame, mut before, mut mid) = (Frame::default(), State::default(), State::default());
     loop {

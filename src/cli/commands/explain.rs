@@ -9,7 +9,7 @@ use crate::{
         output::Output,
     },
     diagnose::{self, Explanation},
-    evidence::{Keep, examine},
+    evidence::{KeptPart, examine},
     files::Place,
     judge::{Rules, fair::FairVerdict, kept::LONGEST, replay::Options},
     report::{
@@ -17,7 +17,7 @@ use crate::{
         diagnosis::{Case, Diagnosis},
         foreign::{one_line, printed},
         number::counted,
-        page::{Card, Explained},
+        page::{Card, ExplainedPage},
         style::Style,
     },
     sandbox::Ended,
@@ -26,7 +26,7 @@ use crate::{
         Folders, Runner, SceneTask,
         cards::Judged,
         config::{Hints, RunLimits},
-        located::{ContentIndex, Contents, Failing, Located, Tried, locate},
+        located::{ContentIndex, Contents, Failing, LocatedFailure, TriedScene, locate},
         milestone,
         plan::{self, Plan},
     },
@@ -65,7 +65,7 @@ pub(super) fn run(arguments: &Explain) -> Result<u8> {
     let text = match arguments.format {
         ExplainFormat::Text => diagnosis.text(style),
         ExplainFormat::Json => diagnosis.json(),
-        ExplainFormat::Html => Explained { diagnosis: &diagnosis, cards: &cards }.html(),
+        ExplainFormat::Html => ExplainedPage { diagnosis: &diagnosis, cards: &cards }.html(),
     };
     match target {
         Some(target) => target.finish_and_tell(text.as_bytes(), arguments.format == ExplainFormat::Html)?,
@@ -100,7 +100,7 @@ fn case(
 ) -> (Case, Option<Card>, u32) {
     let hints: Hints = arguments.hints;
     let options = Options { fair: true, ..Options::default() };
-    let examined = examine(scene, bytes, Keep::All, &options, &mut ());
+    let examined = examine(scene, bytes, KeptPart::All, &options, &mut ());
     let outcome = &examined.outcome;
     // How the program ended tells more than how its trace did.
     let note = note.or_else(|| outcome.stop.as_ref().map(|stop| stopped(stop, outcome)));
@@ -190,7 +190,7 @@ fn program_on_probes(
         if let Ended::CouldNotStart(problem) = &outcome.ended {
             bail!("{}: {problem}", program.display());
         }
-        let failing = Failing::of(&outcome.ended);
+        let failing = Failing::from_end(&outcome.ended);
         stopped += usize::from(matches!(failing, Some(Failing::Time | Failing::Memory | Failing::Output)));
         let note = note(&outcome.ended, trace.is_empty(), &outcome.stderr.bytes);
         traceless += usize::from(trace.is_empty());
@@ -249,14 +249,14 @@ fn said(stderr: &[u8]) -> String {
 
 /// Returns the properties that the failing scenes have in common, by the end of the program in each and the number of
 /// complete steps.
-fn located(tasks: &[SceneTask], ends: &[(Option<Failing>, u32)]) -> Option<Located> {
+fn located(tasks: &[SceneTask], ends: &[(Option<Failing>, u32)]) -> Option<LocatedFailure> {
     if ends.iter().all(|(failing, _)| failing.is_none()) {
         return None;
     }
-    let contents: Vec<Contents> = tasks.iter().map(|task| ContentIndex::of(&task.scene)).collect();
+    let contents: Vec<Contents> = tasks.iter().map(|task| ContentIndex::for_scene(&task.scene)).collect();
     let tried = tasks.iter().zip(&contents).zip(ends);
     let tried =
-        tried.map(|((task, contents), &(failing, steps))| Tried { scene: &task.name, failing, steps, contents });
+        tried.map(|((task, contents), &(failing, steps))| TriedScene { scene: &task.name, failing, steps, contents });
     locate(&tried.collect::<Vec<_>>())
 }
 

@@ -27,7 +27,7 @@ pub(super) fn run(arguments: &PageArguments) -> Result<()> {
             let context = || format!("cannot read the module {}", name.display());
             let (file, metadata) = open_for_reading(name).with_context(context)?;
             let module = read_limited(file, &metadata, LARGEST).with_context(context)?;
-            (Cow::Owned(module), vec![Identity::of(&metadata)])
+            (Cow::Owned(module), vec![Identity::from_metadata(&metadata)])
         }
         (None, Some(module)) => (Cow::Borrowed(module), Vec::new()),
         (None, None) => bail!(
@@ -46,5 +46,5 @@ pub(super) fn run(arguments: &PageArguments) -> Result<()> {
 /// Returns the part of a suite that the page's readers may see.
 fn course(name: &str, reader: Audience) -> Result<CourseSuite> {
     let plan = plan::find(name)?;
-    CourseSuite::of(&plan, reader).map_err(|why| anyhow!("the suite {name}: {why}"))
+    CourseSuite::for_plan(&plan, reader).map_err(|why| anyhow!("the suite {name}: {why}"))
 }

@@ -2,7 +2,7 @@
 use super::ending::file_name;
 use crate::{
     cli::output,
-    evidence::{self, Examined, Focus, Keep, examine},
+    evidence::{self, ExaminedTrace, Focus, KeptPart, examine},
     files::Place,
     judge::{Rules, replay},
     report::{
@@ -120,10 +120,10 @@ pub(super) fn draw(judged: &Judged<'_>, recorded: bool) -> Option<String> {
     if recorded {
         let again = guarded(|| {
             let options = replay::Options { threads: 1, fair: true, ..replay::Options::default() };
-            examine(judged.scene, judged.trace, Keep::Nothing, &options, &mut ())
+            examine(judged.scene, judged.trace, KeptPart::Nothing, &options, &mut ())
         });
         // A failure while drawing costs nobody's points.
-        let Ok(Examined { outcome, rulings, .. }) = again else { return None };
+        let Ok(ExaminedTrace { outcome, rulings, .. }) = again else { return None };
         let own = Judged { outcome: &outcome, rulings: &rulings, rules: Rules::Fair, ..*judged };
         return draw(&own, false).map(|kept| Card::from_kept(&kept).map_or(kept, |card| card.noting(RECORDED).kept()));
     }
@@ -139,10 +139,10 @@ pub(super) fn draw(judged: &Judged<'_>, recorded: bool) -> Option<String> {
 /// above.
 pub(super) fn card(judged: &Judged<'_>, trace_name: Option<&str>, depth: usize) -> Option<Card> {
     let Judged { scene, name, trace, is_cut, outcome, rulings, explanations, rules, hints } = *judged;
-    let (fair, focus) = (outcome.fair.is_some(), Focus::of(outcome));
+    let (fair, focus) = (outcome.fair.is_some(), Focus::from_outcome(outcome));
     let evidence = evidence::gather(scene, &mut &trace[..], rulings, fair, &focus, BUDGET);
     let what_if = match (hints, explanations.first()) {
-        (Hints::Full, Some(first)) => WhatIf::of(scene, first, (!is_cut).then_some(trace), &evidence),
+        (Hints::Full, Some(first)) => WhatIf::for_scene(scene, first, (!is_cut).then_some(trace), &evidence),
         _ => None,
     };
     let steps = WrongSteps::new(StepChoice::None);
@@ -159,5 +159,5 @@ pub(super) fn card(judged: &Judged<'_>, trace_name: Option<&str>, depth: usize) 
     };
     let has_trace = trace_name.is_some();
     let case = Case { check, scene, evidence: Some(&evidence), what_if: what_if.as_ref(), hints, has_trace };
-    Card::of(&case, depth)
+    Card::for_case(&case, depth)
 }

@@ -23,7 +23,7 @@ pub(super) fn run(arguments: &Record) -> Result<u8> {
     let scenes = if embedded { bundled() } else { scenes(&arguments.assets)? };
     let mut recordings = Vec::new();
     for Input { name, stem, xml } in scenes {
-        recordings.push((stem, Recording::of(&name, &xml).with_context(|| format!("cannot record {name}"))?));
+        recordings.push((stem, Recording::for_scene(&name, &xml).with_context(|| format!("cannot record {name}"))?));
     }
     if !arguments.check {
         return write(&recordings, &arguments.references);

@@ -17,7 +17,7 @@ pub(super) fn run(arguments: &Simulate) -> Result<()> {
     let to_stdout = output.is_stdout();
     let root_search = if arguments.audit { RootSearch::Audit } else { RootSearch::WhereNeeded };
     let mut simulation = Simulation::new(&scene.scene, root_search);
-    let mut recorder = Recorder::start(output, Layout::of(&scene.scene), simulation.state());
+    let mut recorder = Recorder::start(output, Layout::for_scene(&scene.scene), simulation.state());
     let mut counts = EventCounts::new(&scene.scene);
     let steps = scene.scene.steps();
     let mut bar = console::Bar::new(steps);

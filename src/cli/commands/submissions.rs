@@ -200,7 +200,7 @@ fn refusal(folder: &Path, path: &Path, data: &fs::Metadata) -> Option<String> {
     let read = opened.and_then(|(file, _)| {
         file.take(fosssim_intake::START as u64).read_to_end(&mut start).map_err(|error| error.to_string())
     });
-    match (read, FileKind::of(&start)) {
+    match (read, FileKind::from_start(&start)) {
         // Its grade tells what keeps it from being read.
         (Err(_), _) | (_, FileKind::Program | FileKind::Archive(_)) => None,
         (Ok(_), FileKind::Other) => {

@@ -62,7 +62,7 @@ fn undecided(plan: &plan::Plan) -> Vec<Undecided> {
 /// end.
 fn coverage(plan: &plan::Plan) -> Coverage {
     let tasks: Vec<_> = plan.scenes().collect();
-    let all = tasks.par_iter().filter_map(|task| Coverage::of(&task.scene).ok());
+    let all = tasks.par_iter().filter_map(|task| Coverage::for_scene(&task.scene).ok());
     all.reduce(Coverage::default, |mut one, other| {
         one.add(&other);
         one

@@ -16,7 +16,7 @@ use anyhow::{Result, bail};
 pub(super) fn info(arguments: &TraceInfo) -> Result<u8> {
     let scene = input::scene(&arguments.scene)?;
     let mut trace = input::trace(&arguments.trace)?;
-    let summary = Summary::of(&scene.scene, &mut trace.reader);
+    let summary = Summary::for_scene(&scene.scene, &mut trace.reader);
     trace.not_failed()?;
     let json = || report::info_json(&scene.name, &trace.name, &summary);
     console::show(arguments.format, || summary.to_string(), json)?;
@@ -32,7 +32,7 @@ pub(super) fn show(arguments: &TraceShow) -> Result<()> {
     if step > steps {
         bail!("the scene {} has {}; there is no step {step}", scene.name, counted(steps.into(), "step"));
     }
-    let layout = Layout::of(&scene.scene);
+    let layout = Layout::for_scene(&scene.scene);
     let mut reader = trace.records(&scene.scene);
     let (mut frame, mut before) = (Frame::default(), Frame::default());
     let mut records = Vec::new();

@@ -4,7 +4,7 @@ use crate::files::{Identity, read_limited};
 use crate::{
     cli::console,
     report::problems,
-    scene::{self, LARGEST_SCENE, Loaded},
+    scene::{self, LARGEST_SCENE, LoadedScene},
     suite::library,
 };
 use anyhow::{Context, Result, bail};
@@ -43,7 +43,7 @@ pub(in crate::cli) fn scene(name: &Path) -> Result<SceneInput> {
         );
     }
     match scene::read(&shown, &bytes) {
-        Ok(Loaded { scene, warnings, .. }) => {
+        Ok(LoadedScene { scene, warnings, .. }) => {
             // Embedded scenes are as they are meant to be.
             if identity.is_some() {
                 console::remark(problems::warnings(&shown, &bytes, &warnings));
@@ -65,5 +65,5 @@ fn is_binary(bytes: &[u8]) -> bool {
 fn scene_file(name: &Path) -> Result<(Vec<u8>, Option<Identity>)> {
     let (file, metadata) = open(name)?;
     let bytes = read_limited(file, &metadata, LARGEST_SCENE as u64)?;
-    Ok((bytes, Some(Identity::of(&metadata))))
+    Ok((bytes, Some(Identity::from_metadata(&metadata))))
 }

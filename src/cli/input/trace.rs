@@ -48,7 +48,7 @@ impl TraceInput {
 
     /// Reads its records, as those of a trace of this scene.
     pub(in crate::cli) fn records(&mut self, scene: &Scene) -> Reader<&mut Box<dyn Read + Send>> {
-        Reader::new(&mut self.reader, Layout::of(scene)).with_scene(scene)
+        Reader::new(&mut self.reader, Layout::for_scene(scene)).with_scene(scene)
     }
 }
 
@@ -89,7 +89,7 @@ pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
         let (file, metadata) = open(name).with_context(context)?;
         let file = patient(file, &metadata).with_context(context)?;
         let reader = maybe_packed(Box::new(watched(file)), has_extension(name, "zst"), &failure);
-        (reader.with_context(context)?, Some(Identity::of(&metadata)))
+        (reader.with_context(context)?, Some(Identity::from_metadata(&metadata)))
     };
     let mut start = Vec::new();
     // The second reading reports bytes that can't be read.

@@ -14,6 +14,19 @@ const WIDTH: usize = 120;
 /// Types whose name stands in a second crate, too.
 const MOST_SHARED_NAMES: usize = 47;
 
+/// Types whose name is a bare participle, adverb or pronoun: `Graded` instead of `BatchResult`.
+const MOST_BARE_NAMES: usize = 55;
+
+/// Such names that do not end in `ed`.
+const BARE_NAMES: [&str; 16] = [
+    "Again", "Alive", "Both", "Chosen", "Done", "Found", "Held", "Known", "Late", "Left", "Own", "Ran", "Said", "Seen",
+    "Shown", "Told",
+];
+
+/// Functions of these names, which are no verbs.
+const MOST_VAGUE_FUNCTIONS: usize = 47;
+const VAGUE_FUNCTIONS: [&str; 5] = ["look", "of", "stand", "told", "words"];
+
 /// A file that is longer holds a second noun.
 const LONGEST_FILE: usize = 600;
 
@@ -143,6 +156,34 @@ fn names_of_types_stand_in_one_crate() {
     assert!(crates.len() > 800, "{}: the test no longer understands the sources", crates.len());
     crates.retain(|_, crates| crates.len() > 1);
     assert!(crates.len() <= MOST_SHARED_NAMES, "{} names stand in several crates: {crates:#?}", crates.len());
+}
+
+/// A name says what a value is, not what has become of it.
+#[test]
+fn types_have_nouns_for_names() {
+    let is_bare = |name: &str| {
+        let is_one_word = !name.chars().skip(1).any(char::is_uppercase);
+        is_one_word && name.ends_with("ed") && !name.ends_with("eed") || BARE_NAMES.contains(&name)
+    };
+    let mut bare = Vec::new();
+    for source in sources().iter().filter(|source| !is_of_tests(name(source))) {
+        let text = text(source);
+        let found = text.lines().filter_map(type_name).filter(|found| is_bare(found));
+        bare.extend(found.map(|found| format!("{}: {found}", name(source))));
+    }
+    assert!(bare.len() <= MOST_BARE_NAMES, "{} names lack a noun: {bare:#?}", bare.len());
+}
+
+/// A function's name says what it does; a constructor is `new`, `from_x`, `with_x`, `read` or `parse`.
+#[test]
+fn functions_have_verbs_for_names() {
+    let mut vague = Vec::new();
+    for source in sources().iter().filter(|source| !is_of_tests(name(source))) {
+        let text = text(source);
+        let found = text.lines().filter_map(function).filter(|found| VAGUE_FUNCTIONS.contains(found));
+        vague.extend(found.map(|found| format!("{}: {found}", name(source))));
+    }
+    assert!(vague.len() <= MOST_VAGUE_FUNCTIONS, "{} names are no verbs: {vague:#?}", vague.len());
 }
 
 #[test]

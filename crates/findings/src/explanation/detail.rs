@@ -1,5 +1,5 @@
 //! The exact form of what is wrong, as values. May give a right formula away.
-use super::{area::Area, fault::Changed, reading::Reading, subject::Subject};
+use super::{area::Area, fault::ChangedQuantity, reading::Reading, subject::Subject};
 use fosssim_model::sim::PairKind;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -83,7 +83,7 @@ pub enum PolynomialDetail {
         /// The letter.
         letter: Cow<'static, str>,
         /// The thing in its place.
-        stand: Stand,
+        stand: Substitute,
     },
     /// A coefficient carries a factor.
     Factor {
@@ -106,7 +106,7 @@ pub enum PolynomialDetail {
 
 /// The value in place of a letter of a formula.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub enum Stand {
+pub enum Substitute {
     /// The letter itself with this factor.
     Scaled(#[serde(with = "fosssim_num::written")] f64),
     /// Another letter of the formula.
@@ -181,7 +181,7 @@ pub enum StageDetail {
     /// The changes by isolated contacts.
     Change {
         /// The quantity, and its owner.
-        changed: Changed,
+        changed: ChangedQuantity,
         /// By how much.
         amount: Amount,
         /// Whether across the contact vector, too.

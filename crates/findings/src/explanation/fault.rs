@@ -193,16 +193,16 @@ pub enum WrongResponses {
     /// The responses change nothing.
     Nothing,
     /// The responses leave these as they are.
-    Unchanged(Vec<Changed>),
+    Unchanged(Vec<ChangedQuantity>),
     /// The responses change these also across the contact vector.
-    Across(Vec<Changed>),
+    Across(Vec<ChangedQuantity>),
     /// The responses change these along the contact vector by another amount.
-    Amount(Vec<Changed>),
+    Amount(Vec<ChangedQuantity>),
 }
 
 /// A quantity that a contact changes, and its owner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub struct Changed {
+pub struct ChangedQuantity {
     /// The kind of the contact's pair.
     pub kind: PairKind,
     /// The body: 0 is the pair's (first) particle; 1 is the second particle, or the edge's first endpoint, and 2 its

@@ -12,11 +12,11 @@ mod subject;
 
 pub use about::{About, OfPolynomials};
 pub use area::Area;
-pub use detail::{Amount, Detail, PolynomialDetail, Ratios, StageDetail, Stand, Weight};
+pub use detail::{Amount, Detail, PolynomialDetail, Ratios, StageDetail, Substitute, Weight};
 pub use example::{Example, ExamplePlace, ExampleValue, StepRecord};
 pub use fault::{
-    ChangeCause, ChangeRatio, Changed, ChangedParticles, LoopEnd, NanStage, NotFinite, Quantity, StageFault, StepStage,
-    WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber, WrongPositions, WrongResponses,
+    ChangeCause, ChangeRatio, ChangedParticles, ChangedQuantity, LoopEnd, NanStage, NotFinite, Quantity, StageFault,
+    StepStage, WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber, WrongPositions, WrongResponses,
     WrongVectors, WrongZoneRounds, WrongZones,
 };
 pub use guess::{CoefficientGuess, Guess, ListGuess, QuantityGuess};
@@ -162,7 +162,7 @@ impl Explanation {
             return subjects.clone();
         }
         let claims = self.claims_by_subject();
-        let all = PairKind::ALL.into_iter().flat_map(Subject::of).copied();
+        let all = PairKind::ALL.into_iter().flat_map(Subject::all_of_kind).copied();
         all.filter(|subject| claims.contains_key(format!("{subject:?}").as_str())).collect()
     }
 

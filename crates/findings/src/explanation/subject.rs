@@ -26,7 +26,7 @@ pub enum Subject {
 impl Subject {
     /// Returns the polynomials of one kind of pair, in the order of the trace.
     #[must_use]
-    pub const fn of(kind: PairKind) -> &'static [Self] {
+    pub const fn all_of_kind(kind: PairKind) -> &'static [Self] {
         match kind {
             PairKind::ParticleParticle => &[Self::ParticleOverlap, Self::ParticleApproach],
             PairKind::ParticleEdge => &[Self::EdgeOverlap, Self::AlphaLow, Self::AlphaHigh, Self::EdgeApproach],

@@ -77,7 +77,7 @@ impl Coverage {
     ///
     /// # Errors
     /// When it can't be simulated to its end.
-    pub fn of(scene: &Scene) -> Result<Self, StepError> {
+    pub fn for_scene(scene: &Scene) -> Result<Self, StepError> {
         let mut coverage = Self::default();
         if scene.assignment() == Assignment::T2M2 {
             let mut watch = watch::Watch::new(scene, &mut coverage);

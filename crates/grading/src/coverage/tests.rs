@@ -3,7 +3,7 @@ use crate::{library, plan};
 use fosssim_model::scene::read;
 
 fn of(text: &str) -> Coverage {
-    Coverage::of(&read("scene", text.as_bytes()).expect("a scene").scene).expect("a run")
+    Coverage::for_scene(&read("scene", text.as_bytes()).expect("a scene").scene).expect("a run")
 }
 
 fn has(coverage: &Coverage, one: &str, other: &str) -> bool {
@@ -38,7 +38,7 @@ fn earlier_assignments_contain_nothing_of_this() {
 fn nothing_is_seen_that_cannot_be() {
     for name in library::names() {
         let scene = read(name, library::scene(name).expect("a scene")).expect("sound").scene;
-        let seen = Coverage::of(&scene).expect("a run").seen;
+        let seen = Coverage::for_scene(&scene).expect("a run").seen;
         let wrong: Vec<String> =
             seen.iter().filter(|one| !one.is_possible()).map(|one| format!("{name}: {}", one.words())).collect();
         assert!(wrong.is_empty(), "{wrong:#?}");
@@ -50,7 +50,7 @@ fn the_newest_version_contains_more_than_the_one_before() {
     let covered = |suite: &str| {
         let mut coverage = Coverage::default();
         for task in plan::find(suite).expect("a suite").scenes() {
-            coverage.add(&Coverage::of(&task.scene).expect("a run"));
+            coverage.add(&Coverage::for_scene(&task.scene).expect("a run"));
         }
         (0..FAMILIES.len())
             .map(|family| coverage.counts(family))

@@ -11,8 +11,8 @@ use crate::{
 };
 use fosssim_findings::FindingPlace;
 use fosssim_judge::{
-    Book, Damage, Finding, FindingCounts, FindingDetail, FindingKind, Part, PolynomialPlace, RecordPart, Rescaled,
-    Residuals, Role, Ruling, Unreadable, fair::Cause,
+    Book, Damage, Finding, FindingCounts, FindingDetail, FindingKind, Part, PolynomialPlace, RecordPart,
+    RescaledCoefficient, Residuals, Role, Ruling, Unreadable, fair::Cause,
 };
 use fosssim_model::{
     sim::{Impulse, Pair, PairKind, Pass, Stage, StepError},
@@ -23,7 +23,7 @@ use fosssim_sandbox::{Ended, StartProblem};
 use std::{path::PathBuf, time::Duration};
 
 fn key() -> Key {
-    Key::of(&blake3::hash(b"program"), b"scene", &[])
+    Key::from_program(&blake3::hash(b"program"), b"scene", &[])
 }
 
 /// A result that was written and read again.
@@ -49,7 +49,7 @@ fn findings() -> Vec<Finding> {
         Impulse { pair: pair(PairKind::ParticleEdge), normal: Vec2::new(-0.0, f64::INFINITY), time: 1.0 / 3.0 };
     let actual = LoggedImpulse { kind: 9, first: -1, second: 2, normal: Vec2::new(5e-324, -1e308), time: 0.1 };
     let polynomial = Polynomial::untrimmed(&[1e-300, f64::NEG_INFINITY, 0.3]);
-    let rescaled = Rescaled { power: 1, expected: 1.0, actual: 2.5, residual: 1.5 };
+    let rescaled = RescaledCoefficient { power: 1, expected: 1.0, actual: 2.5, residual: 1.5 };
     let details = [
         FindingDetail::MissedCollision { expected },
         FindingDetail::SuperfluousCollision { actual },

@@ -178,7 +178,7 @@ mod tests {
     }
 
     fn key(word: &str) -> Key {
-        Key::of(&blake3::hash(b"program"), b"scene", &[word])
+        Key::from_program(&blake3::hash(b"program"), b"scene", &[word])
     }
 
     #[test]

@@ -3,7 +3,7 @@ use crate::{
     config::Visibility,
     grade::Grade,
     grader::{SubmissionGrading, lock},
-    located::{Contents, Failing, Located, Tried, locate},
+    located::{Contents, Failing, LocatedFailure, TriedScene, locate},
     milestone, one_file, patience,
     plan::PlannedGroup,
     result::{Ended, Reason, SceneResult},
@@ -78,15 +78,15 @@ impl SubmissionGrading<'_> {
 
 /// Returns the contents that the failing scenes have in common. `contents` are those of all scenes in their order,
 /// computed only where some fail and some do not.
-fn common<'a>(grade: &Grade, contents: impl FnOnce() -> &'a [Contents]) -> Option<Located> {
-    let failing = |ended: &Option<Ended>| ended.as_ref().and_then(Failing::of);
+fn common<'a>(grade: &Grade, contents: impl FnOnce() -> &'a [Contents]) -> Option<LocatedFailure> {
+    let failing = |ended: &Option<Ended>| ended.as_ref().and_then(Failing::from_end);
     let was_run = |reason: &Reason| !matches!(reason, Reason::LeftOut(_) | Reason::Stopped | Reason::Failed(_));
     let run = || grade.scenes().filter(|scene| was_run(&scene.reason) && scene.ended.is_some());
     let failed = run().filter(|scene| failing(&scene.ended).is_some()).count();
     if failed == 0 || failed == run().count() {
         return None;
     }
-    let tried: Vec<Tried<'_>> = grade
+    let tried: Vec<TriedScene<'_>> = grade
         .scenes()
         .zip(contents())
         .filter(|(scene, _)| was_run(&scene.reason) && scene.ended.is_some() && scene.verdict != Verdict::NotRun)
@@ -95,7 +95,7 @@ fn common<'a>(grade: &Grade, contents: impl FnOnce() -> &'a [Contents]) -> Optio
                 Reason::Program(reached) => reached.steps,
                 _ => 0,
             };
-            Tried { scene: &scene.scene, failing: failing(&scene.ended), steps, contents }
+            TriedScene { scene: &scene.scene, failing: failing(&scene.ended), steps, contents }
         })
         .collect();
     locate(&tried)

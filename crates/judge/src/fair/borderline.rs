@@ -39,7 +39,7 @@ impl Observer for BorderlineObserver<'_> {
         if detection.polynomials.is_empty() {
             return;
         }
-        let motion = BoundedPairMotion::of(self.scene, detection.pair, detection.q_start, detection.q_end);
+        let motion = BoundedPairMotion::for_pair(self.scene, detection.pair, detection.q_start, detection.q_end);
         if contact::is_borderline(&motion, &motion.polynomials()) {
             let collides = detection.decision.collides();
             let (step, &Detection { pass, pair, .. }) = (self.step, detection);

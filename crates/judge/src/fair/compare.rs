@@ -77,7 +77,7 @@ impl Similarity {
 
     /// Returns the comparison of these expected and logged coefficients, of which there are as many.
     #[inline(always)]
-    pub fn of(own: &[f64], logged: &[f64]) -> Self {
+    pub fn measure(own: &[f64], logged: &[f64]) -> Self {
         // Loops of a known length are unrolled.
         match own.len() {
             2 => Self::of_length::<2>(own, logged),
@@ -145,7 +145,7 @@ fn is_clear(expected: &[Bounded], actual: &[f64]) -> Option<Match> {
     }
     let mut values = [0.0; MAX_COEFFICIENTS];
     values.iter_mut().zip(kept).for_each(|(value, own)| *value = own.value);
-    let similarity = Similarity::of(values.get(..kept.len())?, actual);
+    let similarity = Similarity::measure(values.get(..kept.len())?, actual);
     let is_right = similarity.is_clear(lost == 0) && norm(expected).is_finite() && !says_nothing(expected);
     is_right.then(|| similarity.matched())
 }
@@ -228,14 +228,14 @@ fn compare_closely(expected: &[Bounded], actual: &[f64], hints: &[f64]) -> Resul
     let (right, logged) = (&right[MAX_COEFFICIENTS - whole..], &logged[MAX_COEFFICIENTS - whole..]);
     let missing = whole.saturating_sub(actual.len());
     if !right.iter().all(|r| r.value.is_finite() && r.bound.is_finite()) {
-        return has_numbers_where(|r| r.value.is_finite(), right, logged);
+        return check_numbers_where(|r| r.value.is_finite(), right, logged);
     }
     if norm(right) == 0.0 && logged.iter().any(|s| *s != 0.0) {
         // Not even round-off: nothing moves, and every formula says so.
         return judge(right, logged, missing, 1.0).map(|share| Match { scale: None, share });
     }
     if says_nothing(right) {
-        return has_numbers_where(|_| true, right, logged);
+        return check_numbers_where(|_| true, right, logged);
     }
     let matched = |scale: f64| judge(right, logged, missing, scale).map(|share| Match { scale: Some(scale), share });
     let hinted = || {
@@ -278,7 +278,7 @@ pub(super) fn compare_with_one(expected: &[Bounded], actual: &[f64]) -> Result<(
 }
 
 /// Checks that numbers are exactly where they should be.
-fn has_numbers_where(should: fn(&Bounded) -> bool, right: &[Bounded], logged: &[f64]) -> Result<Match, Mismatch> {
+fn check_numbers_where(should: fn(&Bounded) -> bool, right: &[Bounded], logged: &[f64]) -> Result<Match, Mismatch> {
     let wrong = right.iter().zip(logged).position(|(r, s)| should(r) != s.is_finite());
     let Some(k) = wrong else { return Ok(Match { scale: None, share: 0.0 }) };
     let (expected, actual) = (right[k].value, logged[k]);

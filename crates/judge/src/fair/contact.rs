@@ -166,7 +166,7 @@ fn compare_normal(
 /// Returns the vector from a pair's first object to the nearest point of the second at these positions (collisions.md
 /// 6).
 fn overlap_normal(context: &Context<'_>, pair: Pair, positions: &[f64]) -> Vec2 {
-    BoundedPairMotion::of(context.scene, pair, positions, positions).to_nearest(1.0)
+    BoundedPairMotion::for_pair(context.scene, pair, positions, positions).to_nearest(1.0)
 }
 
 /// How far the state at the end of a step may be off.
@@ -178,7 +178,7 @@ pub(super) struct Tolerances<'a> {
 
 impl<'a> Tolerances<'a> {
     /// Returns around this state of the reference.
-    pub fn of(context: &Context<'_>, own: &State, sensitivity: Option<&'a State>) -> Self {
+    pub fn from_context(context: &Context<'_>, own: &State, sensitivity: Option<&'a State>) -> Self {
         let roundings = FAIR_UNITS * UNIT_ROUNDOFF;
         let size = largest(&own.positions);
         let speed = largest(&own.velocities);

@@ -32,8 +32,16 @@ impl<'a> Context<'a> {
         let counts = pairs.counts();
         let of_kinds = ByKind::from_fn(|kind| counts[kind] as u64);
         let (per_pass, pairs) = (pairs.polynomials(), pairs.count());
-        let records_per_step = Layout::of(scene).records_per_step();
-        Self { scene, per_pass, pairs, of_kinds, records_per_step, ordinary: Ordinary::of(scene), looks_closely: false }
+        let records_per_step = Layout::for_scene(scene).records_per_step();
+        Self {
+            scene,
+            per_pass,
+            pairs,
+            of_kinds,
+            records_per_step,
+            ordinary: Ordinary::for_scene(scene),
+            looks_closely: false,
+        }
     }
 
     /// Returns the particles of a pair: one, two, or three with an edge.
@@ -82,7 +90,7 @@ pub(crate) struct Records<'a> {
 
 /// A decision as it was followed.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Followed {
+pub(super) struct FollowedDecision {
     pub pair: Pair,
     pub pass: Pass,
     pub decision: Decision,

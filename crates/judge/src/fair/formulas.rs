@@ -98,7 +98,7 @@ impl Expected {
 
 impl BoundedPairMotion {
     /// Returns the pair's motion in a step.
-    pub fn of(scene: &Scene, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Self {
+    pub fn for_pair(scene: &Scene, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Self {
         let (first, second) = (pair.first as usize, pair.second as usize);
         let places = |particle| [at(q_start, particle), at(q_end, particle)];
         let size = |particles: &[usize]| {
@@ -303,7 +303,7 @@ mod tests {
         struct Compare<'a>(&'a Scene, usize);
         impl fosssim_model::sim::Observer for Compare<'_> {
             fn detection(&mut self, detection: &fosssim_model::sim::Detection<'_>) {
-                let motion = BoundedPairMotion::of(self.0, detection.pair, detection.q_start, detection.q_end);
+                let motion = BoundedPairMotion::for_pair(self.0, detection.pair, detection.q_start, detection.q_end);
                 let expected = motion.polynomials();
                 for (number, polynomial) in detection.polynomials.iter().enumerate() {
                     let own = expected.polynomial(number);
@@ -329,7 +329,7 @@ mod tests {
         let scene = original::read(SCENE.as_bytes()).expect("a scene").scene;
         let (q_start, q_end) = ([0.1, 1.3, -1.7, 0.3, 1.9, -0.4], [0.45, 0.25, -1.55, 0.55, 1.8, 0.05]);
         let pair = Pair { kind: PairKind::ParticleEdge, first: 0, second: 0 };
-        let expected = BoundedPairMotion::of(&scene, pair, &q_start, &q_end).polynomials();
+        let expected = BoundedPairMotion::for_pair(&scene, pair, &q_start, &q_end).polynomials();
         let (course, right) = (expected.polynomial(3), expected.other_form(3).expect("an edge"));
         let differing: Vec<usize> = (0..6).filter(|&k| course[k].value != right[k].value).collect();
         assert_eq!(differing, [2]);

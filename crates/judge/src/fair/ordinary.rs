@@ -19,7 +19,7 @@ pub(crate) struct Ordinary {
 
 impl Ordinary {
     /// Returns the range of the scene's start: most states need no other.
-    pub fn of(scene: &Scene) -> Self {
+    pub fn for_scene(scene: &Scene) -> Self {
         let radii = scene.particles.iter().map(|particle| extent(particle.position) + particle.radius);
         let sizes = radii.chain(scene.half_planes.iter().map(|half_plane| extent(half_plane.point)));
         let position = Some(sizes.fold(0.0, f64::max)).filter(|size| *size > 0.0).unwrap_or(1.0);

@@ -29,7 +29,7 @@ pub(super) struct Logged<'a> {
 
 /// The judgement of a logged polynomial.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Said {
+pub(super) enum PolynomialJudgement {
     /// The polynomial is right.
     Right,
     /// The polynomial is right, and of the definition's form, not the course's.
@@ -63,14 +63,14 @@ impl StepJudgement {
         logged: &Logged<'_>,
         first: Result<Match, Mismatch>,
         is_known: bool,
-    ) -> Said {
+    ) -> PolynomialJudgement {
         let Logged { place, number, list } = *logged;
         let own = expected.polynomial(number);
         let pend = |judged: &mut Self, form: Form, expected: &[Bounded], factors: Option<[f64; 2]>| {
             if is_known {
                 judged.pend(logged, (form, false), expected, factors.unwrap_or(NONE));
             }
-            Said::Hangs
+            PolynomialJudgement::Hangs
         };
         // That another one of the course's form is right tells nothing new, whatever the other form says.
         let tells_nothing = first.is_ok() && self.course_form.is_some();
@@ -78,7 +78,7 @@ impl StepJudgement {
             return match first.map_err(|mismatch| (mismatch, possible_factors(own, list))) {
                 Ok(found) => self.take(logged, own, found, is_known),
                 Err((_, factors @ Some(_))) => pend(self, Form::Either, own, factors),
-                Err((mismatch, None)) => Said::Wrong(mismatch),
+                Err((mismatch, None)) => PolynomialJudgement::Wrong(mismatch),
             };
         };
         let other = compare(right, list, &self.hints(place.pair.kind, number));
@@ -96,12 +96,12 @@ impl StepJudgement {
                 None if found.scale.is_some() => {
                     self.right_form = self.right_form.or(Some(place));
                     self.take(logged, right, found, is_known);
-                    Said::RightForm
+                    PolynomialJudgement::RightForm
                 }
                 factors => pend(self, Form::Course, own, factors),
             },
             (Err(_), Err(mismatch)) => match [own, right].map(|form| possible_factors(form, list)) {
-                [None, None] => Said::Wrong(mismatch),
+                [None, None] => PolynomialJudgement::Wrong(mismatch),
                 [course, definition] => {
                     pend(self, Form::Course, own, course);
                     pend(self, Form::Right, right, definition)
@@ -112,7 +112,7 @@ impl StepJudgement {
 
     /// Notes the factor of a right polynomial. One that shows a single coefficient, and lacks others that the course's
     /// library would have kept of the assignment's own, claims a factor, which others have to confirm.
-    fn take(&mut self, logged: &Logged<'_>, expected: &[Bounded], found: Match, is_known: bool) -> Said {
+    fn take(&mut self, logged: &Logged<'_>, expected: &[Bounded], found: Match, is_known: bool) -> PolynomialJudgement {
         let claims = found.scale.and_then(|scale| claimed_factors(expected, logged.list, scale));
         match claims {
             None => self.take_share_and_factor(logged.place.pair.kind, logged.number, &found),
@@ -123,7 +123,7 @@ impl StepJudgement {
                 }
             }
         }
-        Said::Right
+        PolynomialJudgement::Right
     }
 
     /// Notes the share of the tolerance that a right polynomial uses, and its factor, if it tells one.

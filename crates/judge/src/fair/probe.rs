@@ -5,7 +5,7 @@
 //! that graze, stiff springs, systems of bad condition and zones of nearly no extent get the room that they need, and
 //! nothing else gets any.
 use super::{
-    context::{Context, Followed, Records},
+    context::{Context, FollowedDecision, Records},
     formulas::BoundedPairMotion,
 };
 use fosssim_model::sim::{Decision, Detection, Observer, Pair, Pass, Resume, Simulation, Stage, State, Steer, Time};
@@ -39,7 +39,7 @@ pub(super) fn probe(
     context: &Context<'_>,
     simulation: &mut Simulation,
     records: &Records<'_>,
-    decisions: &[Followed],
+    decisions: &[FollowedDecision],
 ) -> Sensitivity {
     let zeros = vec![0.0; records.before.positions.len()];
     let still = State { positions: zeros.clone(), velocities: zeros };
@@ -89,7 +89,7 @@ fn run(
     context: &Context<'_>,
     simulation: &mut Simulation,
     records: &Records<'_>,
-    decisions: &[Followed],
+    decisions: &[FollowedDecision],
     seed: u64,
 ) -> Option<Run> {
     simulation.state_mut().clone_from(records.before);
@@ -106,7 +106,7 @@ pub(crate) fn perturb(state: &mut State, seed: u64) {
     if seed == 0 {
         return;
     }
-    let mut signs = Signs::of(seed);
+    let mut signs = Signs::from_seed(seed);
     for value in state.positions.iter_mut().chain(&mut state.velocities) {
         *value += signs.next() * FAIR_UNITS * UNIT_ROUNDOFF * *value;
     }
@@ -116,7 +116,7 @@ pub(crate) fn perturb(state: &mut State, seed: u64) {
 struct Signs(u64);
 
 impl Signs {
-    fn of(seed: u64) -> Self {
+    fn from_seed(seed: u64) -> Self {
         Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15))
     }
 
@@ -149,7 +149,7 @@ impl PerturbedRun<'_> {
 /// Takes the known decisions, and notes what would have been decided.
 struct PerturbedRun<'a> {
     records: &'a Records<'a>,
-    decisions: &'a [Followed],
+    decisions: &'a [FollowedDecision],
     seed: u64,
     run: Run,
     /// Whether the positions that the pass sees must be noted anew.
@@ -183,7 +183,7 @@ impl Observer for PerturbedRun<'_> {
 
 impl Steer for PerturbedRun<'_> {
     fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], _polynomials: &mut [Polynomial]) {
-        self.motion = Some(BoundedPairMotion::of(self.context.scene, pair, q_start, q_end));
+        self.motion = Some(BoundedPairMotion::for_pair(self.context.scene, pair, q_start, q_end));
     }
 
     /// Changes a matrix by roundings of its largest entries, as a solver leaves the solution for such a one, wherever
@@ -191,7 +191,7 @@ impl Steer for PerturbedRun<'_> {
     fn system(&mut self, matrix: &mut [f64]) {
         let squares: f64 = matrix.iter().map(|entry| entry * entry).sum();
         let size = (squares / (matrix.len() as f64).sqrt()).sqrt();
-        let mut signs = Signs::of(self.seed);
+        let mut signs = Signs::from_seed(self.seed);
         for entry in matrix.iter_mut().filter(|entry| self.seed > 0 && **entry != 0.0) {
             *entry += signs.next() * FAIR_UNITS * UNIT_ROUNDOFF * size;
         }
@@ -232,7 +232,7 @@ mod tests {
     #[test]
     fn signs_are_mixed() {
         let of = |seed| {
-            let mut signs = Signs::of(seed);
+            let mut signs = Signs::from_seed(seed);
             std::array::from_fn::<_, 100, _>(|_| signs.next() > 0.0)
         };
         for seed in 1..=RUNS {

@@ -39,7 +39,7 @@ struct Run {
 impl<'a> Reach<'a> {
     /// Creates the reach when nothing but the scene is known.
     pub fn new(scene: &'a Scene) -> Self {
-        Self { scene, range: Ordinary::of(scene), run: None, other: None }
+        Self { scene, range: Ordinary::for_scene(scene), run: None, other: None }
     }
 
     /// Judges a step with a state that is out of the ordinary. `known` is its judgement, if it starts from ordinary

@@ -49,7 +49,7 @@ impl NearPair {
 #[must_use]
 pub fn applied(scene: &Scene, before: &State, own: &State, logged: &State) -> Vec<(Pair, usize)> {
     let context = Context::new(scene);
-    let tolerances = Tolerances::of(&context, own, None);
+    let tolerances = Tolerances::from_context(&context, own, None);
     let Some(near) = NearPairs::find(scene, &tolerances, before, own, logged) else { return Vec::new() };
     let wrong = near.candidates.iter().filter_map(|one| {
         let times = match one.excess? {
@@ -116,8 +116,8 @@ impl NearPairs {
         let h = scene.time_step;
         let layer = layer_of_contest(scene, &before.positions);
         let mut terms = match &layer {
-            Some((all_pairs, _)) => PenaltyTerms::of(all_pairs)?,
-            None => PenaltyTerms::of(scene)?,
+            Some((all_pairs, _)) => PenaltyTerms::for_scene(all_pairs)?,
+            None => PenaltyTerms::for_scene(scene)?,
         };
         let particles = scene.particles.len();
         let mut rest: Vec<Vec2> =
@@ -180,7 +180,7 @@ fn layer_of_contest(scene: &Scene, x: &[f64]) -> Option<(Scene, BTreeSet<Pair>)>
     };
     let (all_pairs, mut due) = ((thickness > 0.0).then(|| between_all(thickness))?, BTreeSet::new());
     for (scene, is_bare) in [(&all_pairs, false), (&between_all(0.0), true)] {
-        PenaltyTerms::of(scene)?.visit(x, |pair, _| {
+        PenaltyTerms::for_scene(scene)?.visit(x, |pair, _| {
             if is_bare || pair.kind == PairKind::ParticleHalfPlane {
                 due.insert(pair);
             }

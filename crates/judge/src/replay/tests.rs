@@ -32,7 +32,7 @@ fn a_batch_counts_all_lists() {
                 (0..polynomials).for_each(|_| frame.polynomials.push(&[]));
             }
         });
-        let mut replay = Replay::new(&scene, Lenient::new(&trace[..], Layout::of(&scene)), true);
+        let mut replay = Replay::new(&scene, Lenient::new(&trace[..], Layout::for_scene(&scene)), true);
         replay.read_initial().expect("a first record");
         let mut batch = Batch::default();
         assert!(replay.read_batch(&mut batch).is_none());
@@ -61,7 +61,7 @@ fn a_crowd_of_contacts_is_judged() {
 #[test]
 fn a_record_beyond_the_memory_is_wrong_by_its_length_or_not_judged() {
     let scene = crowd();
-    let layout = Layout::of(&scene);
+    let layout = Layout::for_scene(&scene);
     let mut simulation = Simulation::new(&scene, Default::default());
     let mut recorder = Recorder::start(Vec::new(), layout, simulation.state());
     (0..2).for_each(|_| simulation.step(&mut recorder).expect("a step"));
@@ -94,7 +94,7 @@ fn a_record_beyond_the_memory_is_wrong_by_its_length_or_not_judged() {
 fn a_step_without_result_ends_nothing_but_the_originals_rules() {
     let scene = crate::samples::scene(crate::samples::ZONES);
     let trace = changed(&scene, |frames| {
-        let layout = Layout::of(&scene);
+        let layout = Layout::for_scene(&scene);
         frames[usize::try_from(layout.end_record(1)).expect("small")].state.positions[4] = f64::NAN;
     });
     for threads in [1, 2] {

@@ -2,7 +2,7 @@
 use super::{StepResult, sum_of_moduli};
 use crate::{
     differing::{differing, factor},
-    finding::{Finding, FindingDetail, FindingKind, PolynomialPlace, Rescaled},
+    finding::{Finding, FindingDetail, FindingKind, PolynomialPlace, RescaledCoefficient},
     progress::Remark,
 };
 use fosssim_num::{
@@ -69,7 +69,7 @@ impl Pending {
             if residual > PARITY_COEFFICIENT {
                 self.record(FindingKind::Coefficient, || {
                     let power = own.len() - 1 - number;
-                    let rescaled = Rescaled { power, expected: rescaled, actual: coefficient, residual };
+                    let rescaled = RescaledCoefficient { power, expected: rescaled, actual: coefficient, residual };
                     finding(wrong_coefficient(place(), rescaled, expected, &shown))
                 });
             }
@@ -89,7 +89,7 @@ impl Pending {
 /// Returns a wrong coefficient, under the name that a person would give it.
 fn wrong_coefficient(
     place: PolynomialPlace,
-    rescaled: Rescaled,
+    rescaled: RescaledCoefficient,
     expected: &Polynomial,
     actual: &Polynomial,
 ) -> FindingDetail {

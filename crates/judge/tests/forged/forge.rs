@@ -71,7 +71,7 @@ struct Note<'a>(&'a Scene, Vec<Known>);
 impl Observer for Note<'_> {
     fn detection(&mut self, detection: &Detection<'_>) {
         let &Detection { pair, q_start, q_end, .. } = detection;
-        let expected = BoundedPairMotion::of(self.0, pair, q_start, q_end).polynomials();
+        let expected = BoundedPairMotion::for_pair(self.0, pair, q_start, q_end).polynomials();
         self.1.extend((0..pair.kind.polynomials()).map(|number| Known { pair, number, expected }));
     }
 }
@@ -81,7 +81,7 @@ struct Multiply<'a, F>(&'a Scene, F);
 
 impl<F: FnMut(Pair, usize, &[f64]) -> f64> Steer for Multiply<'_, F> {
     fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
-        let whole = BoundedPairMotion::of(self.0, pair, q_start, q_end).polynomials();
+        let whole = BoundedPairMotion::for_pair(self.0, pair, q_start, q_end).polynomials();
         for (number, polynomial) in polynomials.iter_mut().enumerate() {
             let factor = (self.1)(pair, number, polynomial.coefficients());
             let own: Vec<f64> = whole.polynomial(number).iter().map(|c| c.value).collect();
@@ -116,12 +116,12 @@ impl Stage {
     }
 
     fn records_per_step(&self) -> usize {
-        Layout::of(&self.scene).records_per_step() as usize
+        Layout::for_scene(&self.scene).records_per_step() as usize
     }
 
     /// The right trace with other polynomials, those of both records of a step alike.
     fn relogged(&self, change: impl Fn(usize, usize, &[f64]) -> Option<Vec<f64>>) -> Vec<u8> {
-        let mut writer = Writer::new(Vec::new(), Layout::of(&self.scene));
+        let mut writer = Writer::new(Vec::new(), Layout::for_scene(&self.scene));
         for (number, frame) in self.frames.iter().enumerate() {
             let mut frame = frame.clone();
             let log = std::mem::take(&mut frame.polynomials);
@@ -156,7 +156,7 @@ impl Stage {
 
 /// The frames of a run that `steer` may change.
 fn run(scene: &Scene, steer: &mut dyn Observer) -> Option<Vec<Frame>> {
-    let layout = Layout::of(scene);
+    let layout = Layout::for_scene(scene);
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     let mut recorder = Recorder::start(Vec::new(), layout, simulation.state());
     for _ in 0..layout.steps {
@@ -433,7 +433,7 @@ pub fn multiply(stage: &Stage, random: &mut Random) -> Option<String> {
     if !frames.iter().all(is_whole) {
         return None;
     }
-    let mut writer = Writer::new(Vec::new(), Layout::of(&stage.scene));
+    let mut writer = Writer::new(Vec::new(), Layout::for_scene(&stage.scene));
     frames.iter().for_each(|frame| writer.frame(frame));
     let what = || format!("{}: {factors:?}", stage.name);
     let judged = match stage.judged(&writer.finish().expect("memory").0) {

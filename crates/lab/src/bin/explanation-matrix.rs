@@ -5,7 +5,7 @@
 //! correct variant is accused.
 #![forbid(unsafe_code)]
 use anyhow::Context;
-use fosssim_lab::runs::{Watched, judged, trace};
+use fosssim_lab::runs::{WatchedScene, judged, trace};
 use fosssim_oracle::{
     diagnose::{Explanation, known, several},
     student::{CATALOGUE, Row, RowKind, Student},
@@ -39,7 +39,7 @@ type ExplainedTrace = (Outcome, Duration, Vec<Explanation>);
 fn main() -> anyhow::Result<ExitCode> {
     let folder = std::env::args_os().nth(1).map_or_else(|| PathBuf::from("assets"), PathBuf::from);
     let part = std::env::args().nth(2).unwrap_or_default();
-    let scenes = Watched::of_folder(&folder)?;
+    let scenes = WatchedScene::of_folder(&folder)?;
     let rows: Vec<_> = CATALOGUE.iter().filter(|row| row.kind != RowKind::Hostile && row.id.contains(&part)).collect();
     let results: Vec<Vec<ExplainedTrace>> =
         rows.par_iter().map(|row| scenes.iter().map(|scene| explain(scene, row)).collect()).collect();
@@ -120,7 +120,7 @@ fn together(wrong: &[(&Row, &Vec<ExplainedTrace>)]) {
     confused.iter().for_each(|line| println!("{line}"));
 }
 
-fn explain(watched: &Watched, row: &Row) -> ExplainedTrace {
+fn explain(watched: &WatchedScene, row: &Row) -> ExplainedTrace {
     let trace = trace(&watched.scene, Student::new(Some(row.mistake)));
     if trace == watched.right {
         return (Outcome::Same, Duration::ZERO, Vec::new());

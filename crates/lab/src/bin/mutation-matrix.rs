@@ -6,7 +6,7 @@
 //! set of scenes that catches all that can be caught. It ends with status 1 when a mistake changes no trace at all
 //! (then no rule book could ever see it), when the fair rules miss one, and when they refuse a correct variant.
 #![forbid(unsafe_code)]
-use fosssim_lab::runs::{Watched, is_accepted, judged, trace};
+use fosssim_lab::runs::{WatchedScene, is_accepted, judged, trace};
 use fosssim_oracle::{
     judge::{FindingKind, Outcome, Overall},
     student::{CATALOGUE, Row, RowKind, Student},
@@ -62,7 +62,7 @@ fn fair(outcome: &Outcome) -> Answer {
 fn main() -> anyhow::Result<ExitCode> {
     let folder = std::env::args_os().nth(1).map_or_else(|| PathBuf::from("assets"), PathBuf::from);
     let part = std::env::args().nth(2).unwrap_or_default();
-    let cases = Watched::of_folder(&folder)?;
+    let cases = WatchedScene::of_folder(&folder)?;
     let rows: Vec<&Row> =
         CATALOGUE.iter().filter(|row| row.kind != RowKind::Hostile && row.id.contains(&part)).collect();
     let matrix: Vec<Vec<MatrixCell>> =
@@ -95,7 +95,7 @@ fn mistakes(rows: &[&Row], matrix: &[Vec<MatrixCell>], book: usize, caught: bool
 fn accused<'a>(
     book: usize,
     rows: &[&'a Row],
-    cases: &'a [Watched],
+    cases: &'a [WatchedScene],
     matrix: &[Vec<MatrixCell>],
 ) -> Vec<(&'a Row, &'a str)> {
     rows.iter()
@@ -107,7 +107,7 @@ fn accused<'a>(
         .collect()
 }
 
-fn cell(case: &Watched, row: &Row) -> MatrixCell {
+fn cell(case: &WatchedScene, row: &Row) -> MatrixCell {
     let trace = trace(&case.scene, Student::new(Some(row.mistake)));
     if trace == case.right {
         return [Answer::Same; RULE_BOOKS.len()];
@@ -121,7 +121,7 @@ fn refused(cell: &MatrixCell, book: usize) -> bool {
     cell[book] == Answer::Refused
 }
 
-fn print_book(name: &str, book: usize, rows: &[&Row], cases: &[Watched], matrix: &[Vec<MatrixCell>]) {
+fn print_book(name: &str, book: usize, rows: &[&Row], cases: &[WatchedScene], matrix: &[Vec<MatrixCell>]) {
     println!(
         "rules: {name}\n  . the correct trace   - another trace, accepted   X refused   l lost coefficients change a decision\n"
     );

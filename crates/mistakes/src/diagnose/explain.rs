@@ -45,7 +45,7 @@ pub fn explain_kept(scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
 
 /// Explains a trace as [`explain`] does, whatever its records are read from.
 fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
-    if Layout::of(scene).polynomials && pairs(scene).count() > MOST_PAIRS {
+    if Layout::for_scene(scene).polynomials && pairs(scene).count() > MOST_PAIRS {
         return not_finite::of_source(scene, source);
     }
     let Sampled { mut reference, not_finite, scan, detections } = sampled(scene, source);
@@ -65,7 +65,7 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
         if let Some(kind) = of_kind {
             let is_of_kind = |claim: &&String| {
                 let kinds = PairKind::ALL.into_iter().filter(|one| kind.is_none_or(|kind| kind == *one));
-                kinds.flat_map(Subject::of).any(|subject| claim.starts_with(&format!("{subject:?}/")))
+                kinds.flat_map(Subject::all_of_kind).any(|subject| claim.starts_with(&format!("{subject:?}/")))
             };
             let claims = polynomials.iter().flat_map(|one| &one.claims);
             explanation.claims = claims.filter(is_of_kind).cloned().collect();

@@ -107,7 +107,8 @@ fn zeros(one: &Explanation) -> Vec<Explanation> {
     let subjects = one.subjects();
     // The approach of particles and edges is supplied.
     let is_theirs = |subject: &&Subject| **subject != Subject::EdgeApproach;
-    let is_all = |kind: &PairKind| Subject::of(*kind).iter().filter(is_theirs).all(|one| subjects.contains(one));
+    let is_all =
+        |kind: &PairKind| Subject::all_of_kind(*kind).iter().filter(is_theirs).all(|one| subjects.contains(one));
     let kinds = PairKind::ALL.into_iter().filter(|kind| is_zero && is_all(kind));
     let row = |kind: PairKind| {
         let of_kind = |row: &&Row| row.kind_of_pair() == Some(kind) && row.id.ends_with("-zero");

@@ -21,11 +21,11 @@ mod written;
 pub use crate::{assignments::probe_scenes, plain::formula_in};
 pub use explain::{explain, explain_kept};
 pub use fosssim_findings::explanation::{
-    About, Amount, ChangeCause, ChangeRatio, Changed, ChangedParticles, CoefficientGuess, Detail, Example,
+    About, Amount, ChangeCause, ChangeRatio, ChangedParticles, ChangedQuantity, CoefficientGuess, Detail, Example,
     ExamplePlace, ExampleValue, Explanation, Guess, ListGuess, LoopEnd, NanStage, NotFinite, OfPolynomials, PairCounts,
-    PolynomialDetail, Quantity, QuantityGuess, Ratios, StageDetail, StageFault, Stand, StepRecord, StepStage, Weight,
-    WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber, WrongPairs, WrongPositions, WrongResponses,
-    WrongVectors, WrongZoneRounds, WrongZones,
+    PolynomialDetail, Quantity, QuantityGuess, Ratios, StageDetail, StageFault, StepRecord, StepStage, Substitute,
+    Weight, WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber, WrongPairs, WrongPositions,
+    WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
 };
 use fosssim_findings::explanation::{about, fault, guess};
 pub use heads::several;
@@ -34,7 +34,7 @@ pub use naming::is_named_in;
 pub use near::{PairTrait, pair_traits};
 pub use not_finite::not_finite;
 pub use ruled_out::refuted;
-pub use settled::{Settled, settled};
+pub use settled::{SettledTrace, settled};
 pub use written::{is_written, milestone};
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use crate::student::find;
 
 /// The explanations of one trace, once all traces of its program have been heard.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Settled {
+pub struct SettledTrace {
     /// The explanations, the likeliest first.
     pub explanations: Vec<Explanation>,
     /// The number of explanations, the first ones, that all traces together give; this trace alone gives the others.
@@ -15,15 +15,15 @@ pub struct Settled {
 /// explains the trace, they are all that is said: in the place of the trace's own ones, which can't tell as much, but
 /// with its counts and its example. Else the trace keeps its own, without those that are `refuted`.
 #[must_use]
-pub fn settled(own: &[Explanation], likely: &[Explanation], refuted: &[String]) -> Settled {
+pub fn settled(own: &[Explanation], likely: &[Explanation], refuted: &[String]) -> SettledTrace {
     let of_all = likely.iter().filter(|one| !one.is_not_finite()).flat_map(|one| agreed(own, one));
     let mut explanations: Vec<Explanation> = of_all.collect();
     if explanations.is_empty() {
-        return Settled { explanations: own.iter().filter_map(|one| without(one, refuted)).collect(), agreed: 0 };
+        return SettledTrace { explanations: own.iter().filter_map(|one| without(one, refuted)).collect(), agreed: 0 };
     }
     // Where numbers end each trace says for itself.
     explanations.extend(own.iter().find(|one| one.is_not_finite()).cloned());
-    Settled { agreed: explanations.len(), explanations }
+    SettledTrace { agreed: explanations.len(), explanations }
 }
 
 /// Returns the explanation without what is refuted; nothing where that is all of it.
@@ -96,9 +96,9 @@ mod tests {
         // A trace that they do not explain keeps its own explanations.
         assert_eq!(
             settled(std::slice::from_ref(&other), &likely, &[]),
-            Settled { explanations: vec![other], agreed: 0 }
+            SettledTrace { explanations: vec![other], agreed: 0 }
         );
-        assert_eq!(settled(&[], &likely, &[]), Settled::default());
+        assert_eq!(settled(&[], &likely, &[]), SettledTrace::default());
     }
 
     #[test]

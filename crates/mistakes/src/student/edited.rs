@@ -24,7 +24,7 @@ pub struct TermPart {
 
 impl TermPart {
     /// Returns a particle's part of a quantity that knows no pairs; it is added.
-    pub const fn of(term: Term, particle: usize) -> Self {
+    pub const fn from_term(term: Term, particle: usize) -> Self {
         Self { term, particle, first: particle, role: 0, length: 1.0, is_negative: false }
     }
 }
@@ -117,7 +117,7 @@ impl World {
     pub fn contribute_opposite(&self, g: &mut [f64], term: Term, ends: (usize, usize), push: Vec2, length: f64) {
         let part = |role, particle| {
             let first = ends.0;
-            TermPart { first, role, length, is_negative: role == 0, ..TermPart::of(term, particle) }
+            TermPart { first, role, length, is_negative: role == 0, ..TermPart::from_term(term, particle) }
         };
         self.contribute(g, part(0, ends.0), push);
         self.contribute(g, part(1, ends.1), push);
@@ -131,7 +131,7 @@ impl World {
         }
         for particle in 0..target.len() / 2 {
             let value = h * Vec2::new(rates[2 * particle], rates[2 * particle + 1]);
-            self.contribute(target, TermPart::of(term, particle), value);
+            self.contribute(target, TermPart::from_term(term, particle), value);
         }
     }
 }

@@ -27,7 +27,7 @@ pub fn gradient(world: &World, x: &[f64], v: &[f64]) -> Vec<f64> {
 
 fn add_gradient(world: &World, force: &Force, x: &[f64], v: &[f64], g: &mut [f64]) {
     let (student, count) = (world.student, world.scene.particles.len());
-    let subtracted = |term, particle| TermPart { is_negative: true, ..TermPart::of(term, particle) };
+    let subtracted = |term, particle| TermPart { is_negative: true, ..TermPart::from_term(term, particle) };
     match *force {
         Force::Spring { .. } => spring(world, force, x, v, g),
         Force::SimpleGravity { acceleration } => {
@@ -41,7 +41,7 @@ fn add_gradient(world: &World, force: &Force, x: &[f64], v: &[f64], g: &mut [f64
             let of = if student.makes(StepMistake::DragOfPositions) { x } else { v };
             for i in 0..count {
                 let speed = if student.makes(StepMistake::DragQuadratic) { length(at(v, i)) } else { 1.0 };
-                world.contribute(g, TermPart::of(Term::Drag, i), speed * (coefficient * at(of, i)));
+                world.contribute(g, TermPart::from_term(Term::Drag, i), speed * (coefficient * at(of, i)));
             }
         }
         Force::Vortex { .. } => vortex(force, x, v, g),

@@ -102,7 +102,7 @@ impl PenaltySum<'_> {
     fn push(&mut self, term: Term, (role, particle): (usize, usize), length: f64, push: Vec2) {
         self.world.contribute(
             self.g,
-            TermPart { role, length, is_negative: role == 0, ..TermPart::of(term, particle) },
+            TermPart { role, length, is_negative: role == 0, ..TermPart::from_term(term, particle) },
             push,
         );
     }

@@ -128,7 +128,7 @@ impl SimplePass<'_> {
     /// Changes the velocity of a body of the pair, which `role` tells.
     fn push(&self, kind: &SimpleKind, state: &mut State, (role, particle): (usize, usize), n: Vec2, change: Vec2) {
         if !self.world.fixed(particle) || self.makes(kind.response, Slip::FixedAsFree) {
-            let part = TermPart { role, length: length(n), ..TermPart::of(kind.response, particle) };
+            let part = TermPart { role, length: length(n), ..TermPart::from_term(kind.response, particle) };
             self.world.contribute(&mut state.v, part, change);
         }
     }
@@ -244,7 +244,7 @@ impl SimplePass<'_> {
         }
         let (u, bounce, v) = (unit(n), self.bounce(kind), self.velocity(kind, state, one));
         let change = if self.makes(kind.response, Slip::Whole) { bounce * v } else { bounce * v.dot(&u) * u };
-        let part = TermPart { length: length(n), is_negative: true, ..TermPart::of(kind.response, one) };
+        let part = TermPart { length: length(n), is_negative: true, ..TermPart::from_term(kind.response, one) };
         self.world.contribute(&mut state.v, part, change);
         Some(n)
     }

@@ -114,7 +114,7 @@ mod tests {
         let trace = student::trace(&scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
         let options = replay::Options { fair: true, ..replay::Options::default() };
         let judged = replay::judge(&scene, &trace[..], &options, &mut ());
-        let all = |rules| Disclosure::of(&judged, rules);
+        let all = |rules| Disclosure::from_outcome(&judged, rules);
         assert_eq!(Hints::None.disclose(all(Rules::Both)), None);
         let told = |hints: Hints| hints.disclose(all(Rules::Both)).expect("something");
         assert_eq!(told(Hints::Where), Hints::Where.disclose(told(Hints::What)).expect("something"), "cut twice");

@@ -4,7 +4,7 @@
 //! A [`Definition`] says it as data, one file per assignment here. What else is bound to an assignment - suites, the
 //! catalogue of mistakes, formulas, probe scenes - stands in a folder `assignments/<key>` of the room that has such a
 //! thing. Readers of traces, simulator and judge ask the assignment of a scene, which its collision type tells
-//! ([`Assignment::of`]). It knows nothing of scenes, states and files.
+//! ([`Assignment::for_collisions`]). It knows nothing of scenes, states and files.
 
 mod collision_type;
 mod force_kind;
@@ -66,7 +66,7 @@ impl Assignment {
 
     /// Returns the assignment that brought this collision type into the course.
     #[must_use]
-    pub const fn of(collision: CollisionType) -> Self {
+    pub const fn for_collisions(collision: CollisionType) -> Self {
         match collision {
             CollisionType::None => Self::T1M1,
             CollisionType::Simple | CollisionType::Penalty => Self::T2M1,
@@ -228,7 +228,7 @@ mod tests {
         for collision in CollisionType::ALL {
             let handles = |assignment: &Assignment| assignment.definition().handling(collision).is_some();
             let all: Vec<Assignment> = Assignment::ALL.into_iter().filter(handles).collect();
-            assert_eq!(all, [Assignment::of(collision)], "{collision:?}");
+            assert_eq!(all, [Assignment::for_collisions(collision)], "{collision:?}");
         }
     }
 

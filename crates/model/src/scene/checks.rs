@@ -28,7 +28,7 @@ pub(super) fn check(document: &Document<'_>, parts: &SceneParts<'_, '_>, report:
     fixed_and_moving(parts, report);
     edges_without_length(parts, report);
     forces_without_direction(parts, report);
-    if let Some(rule) = ContactRule::of(parts) {
+    if let Some(rule) = ContactRule::from_parts(parts) {
         coincident_particles(parts, &rule, report);
         particles_on_edges(parts, &rule, report);
         particles_on_half_planes(parts, &rule, report);
@@ -37,7 +37,7 @@ pub(super) fn check(document: &Document<'_>, parts: &SceneParts<'_, '_>, report:
 
 /// Returns an error or warning about an element.
 fn about(tag: &Tag<'_>, message: String, help: &str) -> Problem {
-    Problem::of(tag.rule.name, &tag.span, message).help(help)
+    Problem::from_element(tag.rule.name, &tag.span, message).help(help)
 }
 
 fn steps(parts: &SceneParts<'_, '_>, report: &mut Report) {
@@ -179,7 +179,7 @@ struct ContactRule {
 }
 
 impl ContactRule {
-    fn of(parts: &SceneParts<'_, '_>) -> Option<Self> {
+    fn from_parts(parts: &SceneParts<'_, '_>) -> Option<Self> {
         match parts.collision? {
             // In the contest bodies at the same place leave each other alone.
             Collision::None

@@ -109,7 +109,7 @@ impl<'t> DocumentReader<'t, '_> {
         if let Some(open) = self.open.last() {
             if !self.document.broken {
                 self.report.error(|| {
-                    Problem::of(open.name, &open.span, format!("`<{}>` is never closed", quote(open.name)))
+                    Problem::from_element(open.name, &open.span, format!("`<{}>` is never closed", quote(open.name)))
                         .help(format!("end it with `/>` or with `</{}>`", quote(open.name)))
                 });
             }
@@ -184,8 +184,12 @@ impl<'t> DocumentReader<'t, '_> {
         let glued = behind.len() < inner.len() - name.len() && behind.bytes().next().is_some_and(|b| !is_space(b));
         if glued && behind != "/" {
             self.report.error(|| {
-                Problem::of(name, span, format!("only a line break between `{}` and its first attribute", quote(name)))
-                    .help("the original joins the lines and loses the element; put a space before the attribute")
+                Problem::from_element(
+                    name,
+                    span,
+                    format!("only a line break between `{}` and its first attribute", quote(name)),
+                )
+                .help("the original joins the lines and loses the element; put a space before the attribute")
             });
         }
     }
@@ -207,10 +211,10 @@ impl<'t> DocumentReader<'t, '_> {
                     "everything stands in one element `scene`",
                 ),
             };
-            self.report.error(|| Problem::of(name, span, message).help(help));
+            self.report.error(|| Problem::from_element(name, span, message).help(help));
         } else if !self.in_scene {
             self.report.error(|| {
-                Problem::of(name, span, "a second `scene`")
+                Problem::from_element(name, span, "a second `scene`")
                     .help("only the first one counts; move its elements there or to a file of their own")
             });
         }
@@ -227,10 +231,9 @@ impl<'t> DocumentReader<'t, '_> {
         }
         self.document.broken = true;
         self.report.error(|| {
-            Problem::of(name, span, format!("`{}` inside `{}`", quote(name), quote(parent.name))).help(format!(
-                "only elements directly in `scene` count; is the end of `{}` missing?",
-                quote(parent.name)
-            ))
+            Problem::from_element(name, span, format!("`{}` inside `{}`", quote(name), quote(parent.name))).help(
+                format!("only elements directly in `scene` count; is the end of `{}` missing?", quote(parent.name)),
+            )
         });
     }
 
@@ -249,7 +252,7 @@ impl<'t> DocumentReader<'t, '_> {
         self.report.error(|| {
             let similar = grammar::similar_element(name);
             meant.extend(similar);
-            Problem::of(name, span, format!("unknown element `{}`", quote(name))).help(similar.map_or_else(
+            Problem::from_element(name, span, format!("unknown element `{}`", quote(name))).help(similar.map_or_else(
                 || "the original ignores it silently".to_owned(),
                 |similar| format!("did you mean `{similar}`?"),
             ))
@@ -268,7 +271,7 @@ impl<'t> DocumentReader<'t, '_> {
                 let nested = self.in_scene && self.open.get(1).is_some_and(|open| open.complained);
                 if !nested {
                     self.report.error(|| {
-                        Problem::of(last.name, &last.span, format!("`<{}>` is not closed", quote(last.name)))
+                        Problem::from_element(last.name, &last.span, format!("`<{}>` is not closed", quote(last.name)))
                             .help(format!("end it with `/>` or with `</{}>`", quote(last.name)))
                     });
                 }
@@ -280,7 +283,7 @@ impl<'t> DocumentReader<'t, '_> {
                 let slip = last.is_some_and(|open| grammar::closest(name, [open.name].into_iter()).is_some());
                 self.report.error(|| {
                     let help = last.map(|open| format!("open is `<{}>`", quote(open.name)));
-                    Problem::of(name, &span, format!("`</{}>` closes nothing", quote(name))).maybe_help(help)
+                    Problem::from_element(name, &span, format!("`</{}>` closes nothing", quote(name))).maybe_help(help)
                 });
                 if !slip {
                     return;

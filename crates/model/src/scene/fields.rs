@@ -72,7 +72,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         let (span, tag, number) = (self.span(name), self.tag, self.number);
         self.report.add(severity, || {
             let (message, help) = words();
-            Problem::of(tag.rule.name, &span, format!("`{name}` of {} {message}", who(tag, number)))
+            Problem::from_element(tag.rule.name, &span, format!("`{name}` of {} {message}", who(tag, number)))
                 .attribute(name)
                 .help(help)
         });
@@ -203,7 +203,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         if attribute.is_none() && !self.tag.broken && !self.tag.meant.contains(name) {
             let (tag, number) = (self.tag, self.number);
             self.report.error(|| {
-                Problem::of(tag.rule.name, &tag.span, format!("{} has no `{name}`", who(tag, number)))
+                Problem::from_element(tag.rule.name, &tag.span, format!("{} has no `{name}`", who(tag, number)))
                     .attribute(name)
                     .help(format!("required: {what}"))
             });

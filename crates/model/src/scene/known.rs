@@ -102,7 +102,7 @@ impl Scene {
     pub fn assignment(&self) -> Assignment {
         match self.collision {
             Collision::Penalty { detection: CollisionDetection::Contest, .. } => Assignment::T2M3,
-            collision => self.assignments().next().unwrap_or(Assignment::of(collision.kind())),
+            collision => self.assignments().next().unwrap_or(Assignment::for_collisions(collision.kind())),
         }
     }
 }

@@ -33,5 +33,5 @@ pub use model::{
     Collision, CollisionDetection, Color, Display, Edge, Force, HalfPlane, Particle, ParticlePath, Scene, Viewport,
 };
 pub use problem::{MOST_PROBLEMS, Problem, Problems, Severity};
-pub use reader::{LARGEST_SCENE, Loaded, read};
+pub use reader::{LARGEST_SCENE, LoadedScene, read};
 pub use write::{collision_element, integrator_element, write};

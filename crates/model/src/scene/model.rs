@@ -102,7 +102,7 @@ impl Collision {
     #[must_use]
     pub fn handling(&self) -> &'static Handling {
         let kind = self.kind();
-        Assignment::of(kind).definition().handling(kind).expect("an assignment handles what it brings")
+        Assignment::for_collisions(kind).definition().handling(kind).expect("an assignment handles what it brings")
     }
 }
 

@@ -88,7 +88,7 @@ impl Problem {
     }
 
     /// Returns about an element of this name.
-    pub(super) fn of(element: &str, span: &Range<usize>, message: impl Into<String>) -> Self {
+    pub(super) fn from_element(element: &str, span: &Range<usize>, message: impl Into<String>) -> Self {
         Self { element: Some(quote(element)), ..Self::new(span.clone(), message) }
     }
 
@@ -202,7 +202,7 @@ mod tests {
         let mut report = Report::default();
         report.warning(|| Problem::new(13..13, "third"));
         report.error(|| Problem::new(8..9, "second").help("do this"));
-        report.error(|| Problem::of("e", &(3..4), "first"));
+        report.error(|| Problem::from_element("e", &(3..4), "first"));
         let (list, omitted) = report.finish(text);
         let shown = Problems { source: "x".into(), list, omitted }.to_string();
         assert_eq!(shown, "1:1: first\n2:3: second (do this)\n3:2: warning: third");

@@ -14,7 +14,7 @@ pub const LARGEST_SCENE: usize = 8 << 20;
 
 /// A scene without errors.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Loaded {
+pub struct LoadedScene {
     /// The scene; all indices are valid, all numbers finite.
     pub scene: Scene,
     /// Oddities for its author to look at, in the order of the places.
@@ -27,7 +27,7 @@ pub struct Loaded {
 ///
 /// All problems that were found, up to [`super::MOST_PROBLEMS`] of a kind, when at least one of them is an error. The
 /// spans refer to `text` as given.
-pub fn read(name: &str, text: &[u8]) -> Result<Loaded, Problems> {
+pub fn read(name: &str, text: &[u8]) -> Result<LoadedScene, Problems> {
     if text.len() > LARGEST_SCENE {
         let message = format!("the file has {} bytes", text.len());
         return Err(Problems::whole(name, message, "a scene has at most 8 MiB"));
@@ -57,7 +57,7 @@ pub fn read(name: &str, text: &[u8]) -> Result<Loaded, Problems> {
     let refused = report.has_errors();
     let (list, omitted) = report.finish(text);
     match scene {
-        Some(scene) if !refused => Ok(Loaded { scene, warnings: list }),
+        Some(scene) if !refused => Ok(LoadedScene { scene, warnings: list }),
         _ => Err(Problems { source: name.to_owned(), list, omitted }),
     }
 }

@@ -76,13 +76,17 @@ impl<'t> Tag<'t> {
                     None if rule.attributes.is_empty() => format!("`{}` has none", rule.name),
                     None => format!("`{}` has {}", rule.name, list(rule.attributes)),
                 };
-                Problem::of(rule.name, &name_span, format!("unknown attribute `{}` of `{}`", quote(name), rule.name))
-                    .attribute(name)
-                    .help(help)
+                Problem::from_element(
+                    rule.name,
+                    &name_span,
+                    format!("unknown attribute `{}` of `{}`", quote(name), rule.name),
+                )
+                .attribute(name)
+                .help(help)
             });
         } else if self.attributes.iter().any(|other| other.name == name) {
             report.error(|| {
-                Problem::of(rule.name, &name_span, format!("a second `{name}` of `{}`", rule.name))
+                Problem::from_element(rule.name, &name_span, format!("a second `{name}` of `{}`", rule.name))
                     .attribute(name)
                     .help("the original takes the first; remove one")
             });
@@ -114,7 +118,8 @@ fn broken(rule: &Rule, inner: &str, start: usize, error: &AttrError) -> Problem 
     } else {
         (word, format!("{message} `{}`", quote(&before[word..])), "attributes are written `name=\"value\"`")
     };
-    Problem::of(rule.name, &(start + from..start + before.len()), format!("{message} in `{}`", rule.name)).help(help)
+    Problem::from_element(rule.name, &(start + from..start + before.len()), format!("{message} in `{}`", rule.name))
+        .help(help)
 }
 
 /// Returns whether it is white space of XML.

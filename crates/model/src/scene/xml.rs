@@ -120,7 +120,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
         let tag = tags.next()?;
         for other in tags {
             self.report.error(|| {
-                Problem::of(name, &other.span, format!("a second `{name}`"))
+                Problem::from_element(name, &other.span, format!("a second `{name}`"))
                     .help("the original takes the first and ignores the others; remove one")
             });
         }
@@ -149,7 +149,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
             && !self.document.meant.contains(name)
         {
             self.report.error(|| {
-                Problem::of(name, scene, format!("the scene has no `{name}`"))
+                Problem::from_element(name, scene, format!("the scene has no `{name}`"))
                     .help(format!("add `<{name} {attributes}/>`"))
             });
         }
@@ -203,7 +203,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
             }
             other => {
                 self.report.warning(|| {
-                    Problem::of("collisiondetection", &part.tag.span, "`collisiondetection` has no effect")
+                    Problem::from_element("collisiondetection", &part.tag.span, "`collisiondetection` has no effect")
                         .help("it says how a `penalty` scene finds its pairs; other collision handling tests all pairs")
                 });
                 Some(other)

@@ -32,7 +32,7 @@ pub(super) struct PassCursor {
 impl PassCursor {
     /// Returns the first pair in which this particle comes first.
     #[inline]
-    pub const fn of(first: usize) -> Self {
+    pub const fn at(first: usize) -> Self {
         Self { first, kind: PairKind::ALL[0], second: 0 }
     }
 
@@ -101,7 +101,7 @@ impl Pairs {
 
     /// Returns the pairs in which this particle comes first.
     pub fn of(&self, first: usize) -> impl Iterator<Item = Pair> + Clone {
-        PairKind::ALL.into_iter().zip(self.objects().row(PassCursor::of(first))).flat_map(move |(kind, seconds)| {
+        PairKind::ALL.into_iter().zip(self.objects().row(PassCursor::at(first))).flat_map(move |(kind, seconds)| {
             let is_pair = move |&second: &usize| match kind {
                 PairKind::ParticleEdge => !is_end(self.edges[second], first),
                 PairKind::ParticleParticle | PairKind::ParticleHalfPlane => true,

@@ -32,7 +32,7 @@ impl Simulation {
     /// When an edge names a particle that does not exist; the strict reader refuses such scenes.
     #[must_use]
     pub fn new(scene: &Scene, root_search: RootSearch) -> Self {
-        let state = State::of(scene);
+        let state = State::for_scene(scene);
         Self {
             bodies: Bodies::new(scene),
             forces: Forces::new(scene),

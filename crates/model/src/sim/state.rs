@@ -13,7 +13,7 @@ pub struct State {
 impl State {
     /// Returns the state in which a scene starts.
     #[must_use]
-    pub fn of(scene: &Scene) -> Self {
+    pub fn for_scene(scene: &Scene) -> Self {
         let mut state = Self::default();
         for particle in &scene.particles {
             state.positions.extend([particle.position.x, particle.position.y]);

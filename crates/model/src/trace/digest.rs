@@ -36,7 +36,7 @@ pub struct Short(pub u64);
 
 impl Short {
     /// Returns the shortened digest.
-    pub(super) fn of(digest: Sha256) -> Self {
+    pub(super) fn from_digest(digest: Sha256) -> Self {
         let [a, b, c, d, e, f, g, h, ..] = finish(digest).0;
         Self(u64::from_be_bytes([a, b, c, d, e, f, g, h]))
     }
@@ -89,7 +89,7 @@ pub struct Digests {
 impl Digests {
     /// Reads a whole trace, in the memory of one record and eight bytes per step. A malformed trace has digests, too:
     /// those of its sound steps and that of all its bytes.
-    pub fn of(mut stream: impl Read, layout: Layout) -> Self {
+    pub fn from_stream(mut stream: impl Read, layout: Layout) -> Self {
         Self::walk(&mut stream, layout, &mut |_, _, _| {})
     }
 
@@ -112,7 +112,7 @@ impl Digests {
             frame(record, &current, reader.notes());
             digest.update(reader.raw());
             if !layout.is_mid(record) {
-                steps.push(Short::of(std::mem::take(&mut digest)));
+                steps.push(Short::from_digest(std::mem::take(&mut digest)));
             }
         };
         let begin = if stopped.is_some() { reader.record_offset() } else { reader.offset() };
@@ -168,11 +168,11 @@ mod tests {
     #[test]
     fn a_changed_step_changes_its_digest_only() {
         let mut bytes = [0; 96];
-        let sound = Digests::of(&bytes[..], LAYOUT);
+        let sound = Digests::from_stream(&bytes[..], LAYOUT);
         assert_eq!((sound.steps.len(), sound.bytes, sound.records, sound.trailing), (3, 96, 3, 0));
         assert_eq!(sound.steps[0], sound.steps[1]);
         bytes[70] = 1;
-        let changed = Digests::of(&bytes[..], LAYOUT);
+        let changed = Digests::from_stream(&bytes[..], LAYOUT);
         assert_eq!(sound.steps[..2], changed.steps[..2]);
         assert_ne!(sound.steps[2], changed.steps[2]);
         assert_ne!(sound.sha256, changed.sha256);
@@ -180,12 +180,12 @@ mod tests {
 
     #[test]
     fn the_whole_digest_is_that_of_the_file() {
-        let digests = Digests::of(&[0; 100][..], LAYOUT);
+        let digests = Digests::from_stream(&[0; 100][..], LAYOUT);
         assert_eq!(digests.trailing, 4);
         // The answer of `head -c 100 /dev/zero | sha256sum`.
         let expected = "cd00e292c5970d3c5e2f0ffa5171e555bc46bfc4faddfb4a418b6840b86e79a3";
         assert_eq!(digests.sha256.to_string(), expected);
-        let cut = Digests::of(&[0; 50][..], LAYOUT);
+        let cut = Digests::from_stream(&[0; 50][..], LAYOUT);
         assert_eq!((cut.steps.len(), cut.records, cut.trailing, cut.bytes), (1, 1, 18, 50));
         assert!(cut.to_string().contains("byte 32, record 1 (step 1): positions and velocities need 32 bytes"));
     }

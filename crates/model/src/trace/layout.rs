@@ -17,7 +17,7 @@ pub struct Layout {
 impl Layout {
     /// Returns the layout of this scene's traces.
     #[must_use]
-    pub fn of(scene: &Scene) -> Self {
+    pub fn for_scene(scene: &Scene) -> Self {
         let records = scene.collision.handling().records;
         let (impulses, polynomials) = (records.impulses != ImpulseList::Absent, records.polynomials);
         Self { particles: scene.particles.len(), impulses, polynomials, steps: scene.steps() }

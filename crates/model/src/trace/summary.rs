@@ -41,14 +41,14 @@ const GROUPS: u32 = 16;
 ///     <halfplane px="0" py="0" nx="0" ny="1"/></scene>"#;
 /// let scene = original::read(xml).expect("a scene").scene;
 /// let mut simulation = Simulation::new(&scene, RootSearch::default());
-/// let mut recorder = Recorder::start(Vec::new(), Layout::of(&scene), simulation.state());
+/// let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(&scene), simulation.state());
 /// for _ in 0..scene.steps() {
 ///     simulation.step(&mut recorder)?;
 /// }
 /// let (trace, _) = recorder.finish()?;
 ///
 /// // A course's own test would hand this to `insta::assert_snapshot!`.
-/// let summary = Summary::of(&scene, &trace[..]);
+/// let summary = Summary::for_scene(&scene, &trace[..]);
 /// assert_eq!(
 ///     summary.to_string(),
 ///     "\
@@ -115,8 +115,8 @@ pub struct StepView {
 impl Summary {
     /// Summarises a trace of `scene`, in the memory of one record and eight bytes per step. A malformed trace has a
     /// summary, too: it says where reading ended.
-    pub fn of(scene: &Scene, mut trace: impl Read) -> Self {
-        let layout = Layout::of(scene);
+    pub fn for_scene(scene: &Scene, mut trace: impl Read) -> Self {
+        let layout = Layout::for_scene(scene);
         let mut summary = Self {
             collision: scene.collision.kind().name(),
             layout,
@@ -147,7 +147,7 @@ impl Summary {
         self.collisions.extend(frame.impulses.iter().take(room).map(|impulse| (step, *impulse)));
         let events = (frame.impulses.len(), frame.polynomials.len());
         if self.busiest.as_ref().is_none_or(|busiest| events > (busiest.impulses, busiest.polynomials)) {
-            let view = StepView::of(scene, step, frame);
+            let view = StepView::for_step(scene, step, frame);
             self.first.get_or_insert_with(|| view.clone());
             self.busiest = Some(view);
         }
@@ -155,7 +155,7 @@ impl Summary {
 }
 
 impl StepView {
-    fn of(scene: &Scene, step: u32, frame: &Frame) -> Self {
+    fn for_step(scene: &Scene, step: u32, frame: &Frame) -> Self {
         let (log, pairs) = (&frame.polynomials, pairs(scene));
         let shown = log.iter().take(POLYNOMIALS).enumerate().filter_map(|(index, coefficients)| {
             let (pass, Pair { kind, first, second }, _) = pairs.polynomial(index)?;
@@ -176,7 +176,9 @@ fn groups(steps: &[Short], all: u32) -> Vec<(u32, u32, Short)> {
         let last = first + steps.len() as u32 - 1;
         let digest = match steps {
             [single] => *single,
-            _ => Short::of(steps.iter().fold(Sha256::new(), |all, step| all.chain_update(step.0.to_be_bytes()))),
+            _ => {
+                Short::from_digest(steps.iter().fold(Sha256::new(), |all, step| all.chain_update(step.0.to_be_bytes())))
+            }
         };
         (std::mem::replace(&mut first, last + 1), last, digest)
     };

@@ -85,7 +85,7 @@ impl Level {
 
 /// A decision, with its enclosure, margin and level.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Certified {
+pub struct CertifiedDecision {
     /// The decision.
     pub certainty: Certainty,
     /// For `Yes`: encloses `tau` for every choice of coefficients, a fraction of the step in `[0, 1]`. About as wide as
@@ -112,7 +112,7 @@ pub struct Certified {
 /// # Panics
 /// With more than [`MAX_POLYNOMIALS`] polynomials, or more than [`MAX_COEFFICIENTS`] coefficients in one.
 #[must_use]
-pub fn decide(polynomials: &[&[Bounded]], units: f64) -> Certified {
+pub fn decide(polynomials: &[&[Bounded]], units: f64) -> CertifiedDecision {
     let upper = Problem::new(polynomials, units, Ends::Upper);
     if !upper.is_finite() {
         return borderline(None, Level::Range);
@@ -147,7 +147,7 @@ pub fn decide(polynomials: &[&[Bounded]], units: f64) -> Certified {
 }
 
 /// Returns the decision when all coefficients are exact.
-fn without_errors(problem: &Problem, search: &Search, units: f64) -> Certified {
+fn without_errors(problem: &Problem, search: &Search, units: f64) -> CertifiedDecision {
     match search.answer {
         Answer::Reached(time) => yes([search.from, time], units + problem.slack_of_yes(time), Level::Subdivision),
         Answer::Never => no(Level::Subdivision, units + search.slack),
@@ -159,7 +159,13 @@ fn without_errors(problem: &Problem, search: &Search, units: f64) -> Certified {
 }
 
 /// Returns the decision by exact arithmetic; `upper_hits` and `lower_misses` are the answers that are known already.
-fn by_integers(upper: &Problem, lower: &Problem, units: f64, upper_hits: bool, lower_misses: bool) -> Certified {
+fn by_integers(
+    upper: &Problem,
+    lower: &Problem,
+    units: f64,
+    upper_hits: bool,
+    lower_misses: bool,
+) -> CertifiedDecision {
     let ExactAnswer::First { time: first, .. } = exact(upper) else {
         debug_assert!(!upper_hits, "the subdivision has proved a hit");
         return no(Level::Exact, units);
@@ -180,14 +186,14 @@ fn exact(problem: &Problem) -> ExactAnswer {
     exact_first(&slices[..problem.polynomials().len()])
 }
 
-fn yes(time: [f64; 2], margin: f64, level: Level) -> Certified {
-    Certified { certainty: Certainty::Yes, time: Some(time), margin: margin.min(MARGIN_CAP), level }
+fn yes(time: [f64; 2], margin: f64, level: Level) -> CertifiedDecision {
+    CertifiedDecision { certainty: Certainty::Yes, time: Some(time), margin: margin.min(MARGIN_CAP), level }
 }
 
-fn no(level: Level, margin: f64) -> Certified {
-    Certified { certainty: Certainty::No, time: None, margin: margin.min(MARGIN_CAP), level }
+fn no(level: Level, margin: f64) -> CertifiedDecision {
+    CertifiedDecision { certainty: Certainty::No, time: None, margin: margin.min(MARGIN_CAP), level }
 }
 
-fn borderline(time: Option<[f64; 2]>, level: Level) -> Certified {
-    Certified { certainty: Certainty::Borderline, time, margin: 0.0, level }
+fn borderline(time: Option<[f64; 2]>, level: Level) -> CertifiedDecision {
+    CertifiedDecision { certainty: Certainty::Borderline, time, margin: 0.0, level }
 }

@@ -109,7 +109,7 @@ impl PieceWalk<'_> {
         let mut open = Controls::new();
         let mut improves = false;
         for control in controls.as_slice() {
-            match Sign::of(control) {
+            match Sign::from_control(control) {
                 Sign::Negative(distance) => {
                     self.slack = self.slack.min(slack(distance, self.problem.polynomials()[control.index].bound));
                     return None;
@@ -194,7 +194,7 @@ enum Sign {
 }
 
 impl Sign {
-    fn of(control: &Control) -> Self {
+    fn from_control(control: &Control) -> Self {
         let values = &control.values[..control.length];
         let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
         for &value in values {

@@ -3,7 +3,7 @@ use super::{
         bounded::{Bounded, UNIT_ROUNDOFF},
         first_time::first_time_of,
     },
-    Certainty, Certified, Level, decide,
+    Certainty, CertifiedDecision, Level, decide,
     exact::{ExactAnswer, exact_first},
     range::slack,
 };
@@ -16,7 +16,7 @@ type Lists = Vec<Vec<f64>>;
 type Example<'a> = (&'a [&'a [f64]], Option<(f64, bool)>);
 
 /// The decision for coefficients whose terms add up to their modulus: bound = |value|.
-fn decided(lists: &[Vec<f64>], units: f64) -> Certified {
+fn decided(lists: &[Vec<f64>], units: f64) -> CertifiedDecision {
     let bounded: Vec<Vec<Bounded>> =
         lists.iter().map(|list| list.iter().map(|&value| Bounded::rounded(value)).collect()).collect();
     let slices: Vec<&[Bounded]> = bounded.iter().map(Vec::as_slice).collect();
@@ -44,7 +44,7 @@ fn particle_pair(x: [f64; 2], d: [f64; 2], reach: f64) -> [Vec<Bounded>; 2] {
     [vec![-dd, -2.0 * xd, reach * reach - xx], vec![-dd, -xd]]
 }
 
-fn decide_pair(pair: &[Vec<Bounded>; 2]) -> Certified {
+fn decide_pair(pair: &[Vec<Bounded>; 2]) -> CertifiedDecision {
     decide(&[&pair[0], &pair[1]], 64.0)
 }
 

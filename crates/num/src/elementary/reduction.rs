@@ -4,7 +4,7 @@ use super::{fused, tables::TWO_OVER_PI};
 
 /// An angle near zero and the quarters of a turn that were taken from it, of which the last two bits count.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Reduced {
+pub(super) struct ReducedAngle {
     pub(super) quarters: u32,
     pub(super) angle: f64,
     /// The difference of the angle from its nearest number.
@@ -37,18 +37,18 @@ const fn power(exponent: i32) -> f64 {
 }
 
 /// Reduces an angle below 1.05e8.
-pub(super) fn near(x: f64) -> Reduced {
+pub(super) fn near(x: f64) -> ReducedAngle {
     let shifted = fused(x, TO_QUARTERS, ROUNDS);
     let quarters = shifted - ROUNDS;
     let first = fused(-quarters, PIECES[1], fused(-quarters, PIECES[0], x));
     let second = fused(-quarters, PIECES[2], first);
     let angle = fused(-quarters, PIECES[3], second);
     let rest = fused(-quarters, PIECES[2], first - second) + fused(-quarters, PIECES[3], second - angle);
-    Reduced { quarters: shifted.to_bits() as u32 & 3, angle, rest }
+    ReducedAngle { quarters: shifted.to_bits() as u32 & 3, angle, rest }
 }
 
 /// Reduces any finite angle from there on.
-pub(super) fn far(x: f64) -> Reduced {
+pub(super) fn far(x: f64) -> ReducedAngle {
     let x = x * power(-600);
     let scaled = x * SPLITS;
     let high = scaled - (scaled - x);
@@ -76,7 +76,7 @@ pub(super) fn far(x: f64) -> Reduced {
     let more = (((high * HALVES[0] - product) + high * HALVES[1]) + low * HALVES[0])
         + (low * HALVES[1] + sum * QUARTER[1] + rest * QUARTER[0]);
     let angle = product + more;
-    Reduced { quarters: (whole as i32 & 3).cast_unsigned(), angle, rest: (product - angle) + more }
+    ReducedAngle { quarters: (whole as i32 & 3).cast_unsigned(), angle, rest: (product - angle) + more }
 }
 
 /// Quarters of a turn: whole ones (less whole turns), a part of one, and what that is more than its nearest number.

@@ -2,7 +2,7 @@
 //! and Bachelis, ACM TOMS 17, 1991). An angle beyond the table's is first brought near zero.
 use super::{
     fused,
-    reduction::{QUARTER, Reduced, far, near},
+    reduction::{QUARTER, ReducedAngle, far, near},
     tables::ANGLES,
 };
 
@@ -59,7 +59,7 @@ fn high_word(angle: f64) -> u32 {
     (angle.abs().to_bits() >> 32) as u32
 }
 
-fn reduced(angle: f64, word: u32) -> Option<Reduced> {
+fn reduced(angle: f64, word: u32) -> Option<ReducedAngle> {
     match word {
         _ if !angle.is_finite() => None,
         word if word < NEAR_ENDS => Some(near(angle)),
@@ -68,7 +68,7 @@ fn reduced(angle: f64, word: u32) -> Option<Reduced> {
 }
 
 /// Returns the sine of an angle that is larger by this number of quarter turns.
-fn at_quarter(Reduced { quarters, angle, rest }: Reduced, more: u32) -> f64 {
+fn at_quarter(ReducedAngle { quarters, angle, rest }: ReducedAngle, more: u32) -> f64 {
     let quarter = quarters + more;
     let value = if quarter & 1 == 0 { sine(angle, rest) } else { cosine(angle, rest) };
     if quarter & 2 == 0 { value } else { -value }

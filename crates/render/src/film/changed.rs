@@ -14,7 +14,7 @@ impl ChangedArea {
     /// Returns the smallest part outside of which two pictures of a byte per pixel are the same; one pixel where they
     /// are the same everywhere, because a film has no empty pictures. All of a film's first picture, which has none
     /// before.
-    pub fn of(size: Size, before: &[u8], after: &[u8]) -> Self {
+    pub fn between(size: Size, before: &[u8], after: &[u8]) -> Self {
         if before.is_empty() {
             return Self { left: 0, top: 0, width: size.width(), height: size.height() };
         }
@@ -76,7 +76,7 @@ mod tests {
         ] {
             let mut after = before.clone();
             dots.iter().for_each(|&(x, y)| after[y * 20 + x] = 1);
-            let part = ChangedArea::of(size, &before, &after);
+            let part = ChangedArea::between(size, &before, &after);
             assert_eq!([part.left, part.top, part.width, part.height], expected, "{dots:?}");
             assert_eq!(part.cut(size, &after).iter().filter(|&&byte| byte == 1).count(), dots.len());
         }

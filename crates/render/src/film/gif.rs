@@ -51,7 +51,7 @@ impl<'a> Gif<'a> {
                 *known.entry(colour).or_insert_with(|| nearest(palette, colour))
             })
             .collect();
-        let part = ChangedArea::of(self.size, &self.before, &after);
+        let part = ChangedArea::between(self.size, &self.before, &after);
         // Delays are hundredths of a second: their sum stays true at every rate.
         let at = |pictures: u64| 100 * pictures / u64::from(self.rate.per_second());
         let delay = at(self.pictures + 1) - at(self.pictures);

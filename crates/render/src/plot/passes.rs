@@ -26,7 +26,7 @@ impl PassPlot<'_> {
         let mut sheet = Sheet::new(HEIGHT, self.title, &self.description(), embedding);
         sheet.text([LEFT, 18.0], Anchor::Start, Tone::Plain, self.title);
         let steps = self.expected.len().max(self.actual.len());
-        let columns = Columns::of(steps);
+        let columns = Columns::for_steps(steps);
         let most = self.expected.iter().copied().chain(self.actual.iter().copied().flatten()).max().unwrap_or(0).max(1);
         let y = |count: u32| BOTTOM - f64::from(count) / f64::from(most) * (BOTTOM - TOP);
         let every = (most / 4).max(1);

@@ -40,9 +40,9 @@ impl ResidualPlot<'_> {
         let steps = self.series.iter().map(|series| series.values.len()).max().unwrap_or(0);
         let mut sheet = Sheet::new(HEIGHT, self.title, &self.description(), embedding);
         sheet.text([LEFT, 18.0], Anchor::Start, Tone::Plain, self.title);
-        let scale = Scale::of(self);
+        let scale = Scale::from_plot(self);
         scale.draw(&mut sheet);
-        let columns = Columns::of(steps);
+        let columns = Columns::for_steps(steps);
         sheet.steps(&columns, BOTTOM + LANE + 16.0, HEIGHT - 6.0);
         if let Some((step, why)) = self.mark
             && (1..=steps).contains(&(step as usize))
@@ -103,7 +103,7 @@ struct Scale {
 }
 
 impl Scale {
-    fn of(plot: &ResidualPlot<'_>) -> Self {
+    fn from_plot(plot: &ResidualPlot<'_>) -> Self {
         let values = plot.series.iter().flat_map(|series| series.values).copied().chain([plot.tolerance]);
         let shown = values.map(f64::abs).filter(|value| *value > 0.0 && value.is_finite());
         let (least, most) =
@@ -171,7 +171,7 @@ mod tests {
         let svg = plot(&values);
         assert!(svg.len() < 30_000, "{}", svg.len());
         let series = [Series { name: "position", values: &values }];
-        let scale = Scale::of(&ResidualPlot { title: "", series: &series, tolerance: 1e-10, mark: None });
+        let scale = Scale::from_plot(&ResidualPlot { title: "", series: &series, tolerance: 1e-10, mark: None });
         let top = crate::number::pixel(scale.y(1e-3));
         assert!(svg.contains(&format!(" {top}L")), "the peak is drawn");
     }

@@ -266,7 +266,7 @@ pub struct Columns {
 const MOST_COLUMNS: usize = 540;
 
 impl Columns {
-    pub fn of(steps: usize) -> Self {
+    pub fn for_steps(steps: usize) -> Self {
         Self { steps, columns: steps.clamp(1, MOST_COLUMNS) }
     }
 
@@ -306,7 +306,7 @@ mod tests {
     #[test]
     fn columns_share_all_steps_out() {
         for steps in [1, 2, 7, 540, 541, 5000] {
-            let columns = Columns::of(steps);
+            let columns = Columns::for_steps(steps);
             let all: Vec<usize> = (0..columns.columns).flat_map(|column| columns.range(column)).collect();
             assert_eq!(all, (0..steps).collect::<Vec<_>>(), "{steps}");
         }

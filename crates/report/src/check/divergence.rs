@@ -4,7 +4,7 @@ use super::super::{
     style::{Look, Style},
     table::{Align, Cell, Table},
 };
-use fosssim_judge::{Finding, FindingDetail, Power, Rescaled, differing, factor};
+use fosssim_judge::{Finding, FindingDetail, Power, RescaledCoefficient, differing, factor};
 use fosssim_model::trace::LoggedImpulse;
 
 /// Renders the block about one finding, with a heading and without advice.
@@ -126,7 +126,7 @@ pub(crate) fn side_by_side(detail: &FindingDetail) -> SideBySide {
             // The factor that the finding was made with.
             let factor = if own == 0.0 { factor(reference, trace) } else { expected / own };
             let mut sides = polynomials_with(place, reference, trace, factor, Some(*power));
-            sides.original = rescaled.as_ref().map(|Rescaled { power, expected, actual, .. }| {
+            sides.original = rescaled.as_ref().map(|RescaledCoefficient { power, expected, actual, .. }| {
                 let (power, actual, expected) = (Power(*power), exact(*actual), exact(*expected));
                 format!("(after the original's rescaling: {power} {actual}, expected {expected})")
             });

@@ -5,7 +5,7 @@ use crate::page::{Audience, GradePage};
 use fosssim_grading::{
     Grade, PassedOver, Reason, SceneGrade, Verdict,
     config::Visibility,
-    located::{Content, Failing, Located},
+    located::{Content, Failing, LocatedFailure},
     result::{Ended, Reached, Wrong},
 };
 use fosssim_judge::{FindingKind, fair::Cause};
@@ -218,7 +218,7 @@ fn what_failing_scenes_have_in_common_is_told_in_every_format() {
     grade.groups[0].scenes[0].result.verdict = Verdict::RuntimeError;
     grade.groups[1].visibility = Visibility::Visible;
     grade.verdict = Verdict::RuntimeError;
-    grade.located = Some(Located {
+    grade.located = Some(LocatedFailure {
         failing: Failing::Crash,
         contents: vec![Content { family: "the failsafe moves a zone".into(), value: None }],
         failed: 24,

@@ -9,7 +9,7 @@ use crate::{
 use fosssim_findings::Verdict;
 use fosssim_findings::{
     Book, Build, Grade, GroupGrade, PassedOver, Rules, SceneGrade, Visibility,
-    located::Located,
+    located::LocatedFailure,
     speed::{SpeedGrade, SpeedRatio, SpeedSource},
 };
 use fosssim_mistakes::together::{likely_mistake, likely_mistakes};
@@ -85,7 +85,7 @@ view! {
 view! {
     /// The scenes in which a program fails.
     #[schemars(deny_unknown_fields)]
-    struct LocatedView from found: Located {
+    struct LocatedView from found: LocatedFailure {
         /// The whole in words.
         text: String = plain(&words::located(found)),
         /// Scenes in which the program fails.

@@ -27,7 +27,7 @@ const SMALL: usize = 60_000;
 impl Card {
     /// Returns the card of a case below a heading of this depth; nothing where hints are to say nothing.
     #[must_use]
-    pub fn of(case: &Case<'_>, depth: usize) -> Option<Self> {
+    pub fn for_case(case: &Case<'_>, depth: usize) -> Option<Self> {
         if case.hints == Hints::None {
             return None;
         }

@@ -14,7 +14,7 @@ use crate::{
         follows, headline, notes, problem,
     },
     describe::pair_key,
-    explain::Told,
+    explain::ExplanationParts,
     number::count,
     style::Look,
 };
@@ -277,7 +277,7 @@ fn some(calls: &[(u32, &InspectedCall)], depth: usize, open: bool) -> String {
 pub(super) fn mistakes(explanations: &[Explanation], is_shown_beside: bool) -> String {
     let mut out = String::new();
     for one in explanations {
-        let Told { is_likely, what, evidence, details, example } = Told::from(one);
+        let ExplanationParts { is_likely, what, evidence, details, example } = ExplanationParts::from(one);
         out += "<section class=\"card mistake\">";
         if is_likely {
             out += "<p class=\"label\">Likely mistake</p>";

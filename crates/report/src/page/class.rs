@@ -129,7 +129,7 @@ impl ClassPage<'_> {
         if named.is_empty() && signed.is_empty() {
             return out + "<p>No two submissions make the same mistake.</p></section>\n";
         }
-        for Shared { mistake, members } in &named {
+        for SharedMistake { mistake, members } in &named {
             let first = &self.grades[members[0]];
             let scene = first.scenes().find(|scene| is_named_in(mistake, &scene.explanations));
             let look = scene.map_or_else(String::new, |scene| {
@@ -260,7 +260,7 @@ fn is_failed(scene: &SceneGrade) -> bool {
 }
 
 /// A likely mistake, and the numbers of the submissions that make it.
-struct Shared {
+struct SharedMistake {
     mistake: Explanation,
     members: Vec<usize>,
 }
@@ -340,8 +340,8 @@ fn figures(grades: &[Grade]) -> String {
 
 /// Returns likely mistakes that several submissions make, the most frequent first, and the numbers of the submissions
 /// that fail without any that is named.
-fn by_mistake(grades: &[Grade]) -> (Vec<Shared>, Vec<usize>) {
-    let mut found: BTreeMap<String, Shared> = BTreeMap::new();
+fn by_mistake(grades: &[Grade]) -> (Vec<SharedMistake>, Vec<usize>) {
+    let mut found: BTreeMap<String, SharedMistake> = BTreeMap::new();
     let mut rest = Vec::new();
     for (number, grade) in grades.iter().enumerate() {
         let likely = likely_mistakes(grade);
@@ -349,7 +349,11 @@ fn by_mistake(grades: &[Grade]) -> (Vec<Shared>, Vec<usize>) {
             rest.push(number);
         }
         for (mistake, _) in likely {
-            found.entry(mistake.said()).or_insert_with(|| Shared { mistake, members: Vec::new() }).members.push(number);
+            found
+                .entry(mistake.said())
+                .or_insert_with(|| SharedMistake { mistake, members: Vec::new() })
+                .members
+                .push(number);
         }
     }
     let mut several: Vec<_> = found.into_values().filter(|one| one.members.len() > 1).collect();

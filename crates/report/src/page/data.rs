@@ -1,7 +1,7 @@
 //! The data of the motion viewer: one JSON block per case, and the motions as packed doubles.
 use super::{
     Case, markup,
-    packed::{Packed, Precision, Rounded},
+    packed::{PackedMotions, Precision, Rounded},
 };
 use crate::{
     check::{first::first, follows},
@@ -27,7 +27,7 @@ pub(super) fn blocks(case: &Case<'_>, evidence: &Evidence, key: &str, precision:
     let what = case.what_if.filter(|what| is_full && !what.equal).map(|what| ("what", &what.track));
     let tracks: Vec<(&str, &Track)> =
         [("submission", &evidence.submission)].into_iter().chain(reference).chain(what).collect();
-    let Packed { blocks, rounded } = Packed::of(evidence, &tracks, precision);
+    let PackedMotions { blocks, rounded } = PackedMotions::from_evidence(evidence, &tracks, precision);
     let mut out = String::new();
     let data = markup::data(&of_case(case, evidence, rounded.as_ref()));
     let _ = writeln!(out, r#"<script type="application/json" id="case-{key}">{data}</script>"#);

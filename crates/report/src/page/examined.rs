@@ -1,7 +1,7 @@
 //! The page about a trace that has just been judged.
 use super::{Case, WhatIf};
 use crate::{check::Check, words::explanation};
-use fosssim_evidence::{Evidence, Examined, Track};
+use fosssim_evidence::{Evidence, ExaminedTrace, Track};
 use fosssim_findings::Hints;
 use fosssim_mistakes::{diagnose::Explanation, student};
 use fosssim_model::scene::Scene;
@@ -11,7 +11,7 @@ impl WhatIf {
     /// reproduced with it, where the trace was not kept whole (`None`), or where the evidence does not hold the whole
     /// motion.
     #[must_use]
-    pub fn of(scene: &Scene, named: &Explanation, trace: Option<&[u8]>, evidence: &Evidence) -> Option<Self> {
+    pub fn for_scene(scene: &Scene, named: &Explanation, trace: Option<&[u8]>, evidence: &Evidence) -> Option<Self> {
         // A motion that is not there as a whole is not made as a whole either, and can't be compared.
         let trace = trace?;
         if named.reproduced == 0 || !evidence.window.is_whole(evidence.layout.steps) {
@@ -26,10 +26,10 @@ impl WhatIf {
 
 /// Returns the page about one trace that was judged, with all hints: its author has asked.
 #[must_use]
-pub fn of_examined(check: Check<'_>, examined: &Examined<'_>, evidence: &Evidence) -> String {
+pub fn of_examined(check: Check<'_>, examined: &ExaminedTrace<'_>, evidence: &Evidence) -> String {
     let scene = examined.scene;
     let trace = (examined.trace.is_whole() && !check.explanations.is_empty()).then(|| examined.trace.bytes());
-    let what_if = check.explanations.first().and_then(|first| WhatIf::of(scene, first, trace, evidence));
+    let what_if = check.explanations.first().and_then(|first| WhatIf::for_scene(scene, first, trace, evidence));
     let title = format!("{}: {}", check.verdict(), check.scene);
     let (evidence, what_if) = (Some(evidence), what_if.as_ref());
     Case { check, scene, evidence, what_if, hints: Hints::Full, has_trace: true }.page(&title)

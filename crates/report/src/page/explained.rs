@@ -26,14 +26,14 @@ fn telling((case, card): ExplainedCase<'_>, common: &[Explanation]) -> (bool, us
 
 /// A page about some traces of one program.
 #[derive(Debug, Clone)]
-pub struct Explained<'a> {
+pub struct ExplainedPage<'a> {
     /// All that is to be said.
     pub diagnosis: &'a Diagnosis,
     /// The card of each of its traces, in their order.
     pub cards: &'a [Option<Card>],
 }
 
-impl Explained<'_> {
+impl ExplainedPage<'_> {
     /// Renders the file.
     #[must_use]
     pub fn html(&self) -> String {

@@ -13,7 +13,7 @@ use crate::{
     number::counted,
     words,
 };
-use fosssim_findings::{Grade, GroupGrade, SceneGrade, Verdict, Visibility, located::Located};
+use fosssim_findings::{Grade, GroupGrade, SceneGrade, Verdict, Visibility, located::LocatedFailure};
 use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 use fosssim_mistakes::together::for_students;
 use sha2::{Digest, Sha256};
@@ -138,7 +138,7 @@ impl GradePage<'_> {
 }
 
 /// Returns where a program fails.
-pub(super) fn located(found: &Located) -> String {
+pub(super) fn located(found: &LocatedFailure) -> String {
     let words = text(&one_line(&words::located(found)));
     format!("<h2>Where it fails</h2>\n<div class=\"card mistake\"><p class=\"lead\">{words}</p></div>\n")
 }

@@ -22,7 +22,7 @@ mod tests;
 pub use card::Card;
 pub use class::ClassPage;
 pub use examined::of_examined;
-pub use explained::Explained;
+pub use explained::ExplainedPage;
 pub use graded::{Audience, GradePage};
 
 use super::check::Check;

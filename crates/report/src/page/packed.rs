@@ -43,13 +43,13 @@ pub(super) struct Rounded {
 
 /// Motions of one case in base64.
 #[derive(Debug)]
-pub(super) struct Packed {
+pub(super) struct PackedMotions {
     pub(super) blocks: Vec<String>,
     pub(super) rounded: Option<Rounded>,
 }
 
-impl Packed {
-    pub(super) fn of(evidence: &Evidence, tracks: &[(&str, &Track)], precision: Precision) -> Self {
+impl PackedMotions {
+    pub(super) fn from_evidence(evidence: &Evidence, tracks: &[(&str, &Track)], precision: Precision) -> Self {
         let raw: usize = tracks.iter().map(|(_, track)| 8 * track.values.len()).sum();
         if precision == Precision::AsRoomAllows && raw <= TRIED {
             let blocks: Vec<String> = tracks.iter().map(|(_, track)| base64(&bytes(&track.values))).collect();
@@ -142,8 +142,12 @@ mod tests {
         Evidence { layout, window, reference: track.clone(), submission: track, steps: Vec::new(), inspected }
     }
 
-    fn packed(evidence: &Evidence, precision: Precision) -> Packed {
-        Packed::of(evidence, &[("submission", &evidence.submission), ("reference", &evidence.reference)], precision)
+    fn packed(evidence: &Evidence, precision: Precision) -> PackedMotions {
+        PackedMotions::from_evidence(
+            evidence,
+            &[("submission", &evidence.submission), ("reference", &evidence.reference)],
+            precision,
+        )
     }
 
     /// A course's scenes are exact; what would take more room than the budget is rounded.

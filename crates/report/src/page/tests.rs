@@ -133,11 +133,11 @@ fn a_proof_is_told_of_whole_traces_only() {
     let mut rulings = StepRulings::default();
     let options = replay::Options { fair: true, ..Default::default() };
     let outcome = replay::judge(&scene, &trace[..], &options, &mut rulings);
-    let focus = Focus::of(&outcome);
+    let focus = Focus::from_outcome(&outcome);
     let evidence = gather(&scene, &mut &trace[..], &rulings.into_steps(&outcome), true, &focus, BUDGET);
     let named = &diagnose::explain(&scene, &trace)[0];
-    assert!(WhatIf::of(&scene, named, Some(&trace), &evidence).expect("a run").equal);
-    assert_eq!(WhatIf::of(&scene, named, None, &evidence), None);
+    assert!(WhatIf::for_scene(&scene, named, Some(&trace), &evidence).expect("a run").equal);
+    assert_eq!(WhatIf::for_scene(&scene, named, None, &evidence), None);
 }
 
 #[test]
@@ -220,10 +220,10 @@ fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
         looks_like: None,
     };
     let case = Case { check, scene, evidence: Some(&evidence), what_if: Some(&what_if), hints, has_trace: false };
-    let card = Card::of(&case, 3).and_then(|card| Card::from_kept(&card.kept()));
+    let card = Card::for_case(&case, 3).and_then(|card| Card::from_kept(&card.kept()));
     let why = Reason::Wrong(Wrong::Untold);
     let mut result = SceneResult::without_run("Group/scene", scene.steps(), Verdict::WrongAnswer, why);
-    result.disclosure = Some(Disclosure::of(&outcome, Rules::Fair));
+    result.disclosure = Some(Disclosure::from_outcome(&outcome, Rules::Fair));
     result.explanations = all;
     (card, result)
 }

@@ -103,7 +103,7 @@ impl ShownStep<'_> {
                 text += &format!("    {}\n", style.paint(Look::Faint, &PassWords(label.pass).to_string()));
             }
             let place = label.map_or_else(String::new, |label| {
-                format!("{}, {}: ", PairWords(label.pair), Role::of(label.pair.kind, label.number))
+                format!("{}, {}: ", PairWords(label.pair), Role::from_number(label.pair.kind, label.number))
             });
             text += &format!("    {index}  {place}{}\n", polynomial(coefficients));
         }
@@ -131,7 +131,7 @@ impl ShownStep<'_> {
                 "index": index,
                 "pass": label.map(|label| label.pass),
                 "pair": label.map(|label| label.pair),
-                "role": label.map(|label| Role::of(label.pair.kind, label.number)),
+                "role": label.map(|label| Role::from_number(label.pair.kind, label.number)),
                 "coefficients": numbers(coefficients),
             })
         };

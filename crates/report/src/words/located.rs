@@ -1,13 +1,13 @@
 //! Sentences about the common properties of scenes in which a program crashes or runs into a limit.
-use fosssim_findings::located::{Content, Failing, Located};
+use fosssim_findings::located::{Content, Failing, LocatedFailure};
 
 /// The greatest number of other contents named that the scenes can't tell from the first one.
 const NAMED: usize = 2;
 
 /// Returns the contents that they have in common, with counts, and where the first of them ends.
 #[must_use]
-pub fn located(found: &Located) -> String {
-    let Located { failing, contents, failed, with, without, first, step } = found;
+pub fn located(found: &LocatedFailure) -> String {
+    let LocatedFailure { failing, contents, failed, with, without, first, step } = found;
     let Some((place, others)) = contents.split_first() else { return String::new() };
     let scenes = format!("{with} scenes {}", place_of(place));
     let which = if failed == with { format!("All {scenes}") } else { format!("{failed} of the {scenes}") };
@@ -54,7 +54,7 @@ mod tests {
             family: family.into(),
             value: value.map(|words| words.map(Into::into)),
         };
-        let found = Located {
+        let found = LocatedFailure {
             failing: Failing::Crash,
             contents: vec![
                 content("the failsafe moves a zone", None),
@@ -72,7 +72,7 @@ mod tests {
              GeometricTests/chain, the last complete record is that of step 14. Just as likely: those with a step of hybrid \
              (zones: one)."
         );
-        let some = Located {
+        let some = LocatedFailure {
             failing: Failing::Several,
             contents: vec![content("the failsafe moves a zone", Some(["held by", "a half-plane"]))],
             failed: 7,

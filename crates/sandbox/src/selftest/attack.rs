@@ -23,18 +23,18 @@ pub(super) struct AttackNeed {
 
 impl AttackNeed {
     const ALL: [Self; 7] = [
-        Self::of("file rules", &[Layer::FileRules]),
+        Self::new("file rules", &[Layer::FileRules]),
         // Files of the host are closed to programs, or out of sight.
-        Self::of("hidden files", &[Layer::FileRules, Layer::Namespaces]),
+        Self::new("hidden files", &[Layer::FileRules, Layer::Namespaces]),
         // Files of the host are in mounts of the run's own.
-        Self::of("private mounts", &[Layer::Namespaces]),
-        Self::of("private processes", &[Layer::Namespaces]),
-        Self::of("signal scope", &[Layer::Scopes, Layer::OwnUser]),
-        Self::of("named violations", &[Layer::NamedCalls]),
+        Self::new("private mounts", &[Layer::Namespaces]),
+        Self::new("private processes", &[Layer::Namespaces]),
+        Self::new("signal scope", &[Layer::Scopes, Layer::OwnUser]),
+        Self::new("named violations", &[Layer::NamedCalls]),
         Self { name: "x86_64", walls: &[], by_processor: cfg!(target_arch = "x86_64") },
     ];
 
-    const fn of(name: &'static str, walls: &'static [Layer]) -> Self {
+    const fn new(name: &'static str, walls: &'static [Layer]) -> Self {
         Self { name, walls, by_processor: false }
     }
 

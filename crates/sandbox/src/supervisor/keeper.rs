@@ -24,7 +24,7 @@ use std::{
 
 use super::{
     namespaces,
-    prepared::{Held, Prepared},
+    prepared::{Held, PreparedRun},
     run::{self, Run},
     view,
 };
@@ -106,14 +106,14 @@ fn settle(order: &RunOrder) -> Result<Side, Failure> {
     }
     mounts::unshare(libc::CLONE_NEWNS | libc::CLONE_NEWNET).map_err(stage("make namespaces"))?;
     view::prepare(order)?;
-    let prepared = Prepared::of(order, PROGRAM, alone)?;
+    let prepared = PreparedRun::for_order(order, PROGRAM, alone)?;
     Ok(Side::Keeper(Keeper { held: Some(held), prepared }))
 }
 
 struct Keeper {
     /// Every run takes it, in its own copy of this.
     held: Option<Held>,
-    prepared: Prepared,
+    prepared: PreparedRun,
 }
 
 impl Keeper {

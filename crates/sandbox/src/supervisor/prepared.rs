@@ -31,7 +31,7 @@ impl Held {
 
 /// The preparations that need no program, and serve all runs that differ in scene and folder only.
 #[derive(Default)]
-pub(super) struct Prepared {
+pub(super) struct PreparedRun {
     places: Option<walls::Places>,
     pub(super) filters: Option<child::Filters>,
     ignored: Option<Rc<[i32]>>,
@@ -39,10 +39,10 @@ pub(super) struct Prepared {
     alone: Option<SingleThread>,
 }
 
-impl Prepared {
+impl PreparedRun {
     /// Prepares for orders like this one, whose programs have this number, in a process that has one thread.
-    pub(super) fn of(order: &RunOrder, number: i32, alone: SingleThread) -> Result<Self, Failure> {
-        let open = || walls::Places::of(order).out_of_the_way();
+    pub(super) fn for_order(order: &RunOrder, number: i32, alone: SingleThread) -> Result<Self, Failure> {
+        let open = || walls::Places::for_order(order).out_of_the_way();
         let purpose = child::purpose(order, order.walls.own_user, None, number);
         let filters = filter::filters(purpose).map_err(stage("compile the system call filter"))?;
         let places = order.walls.landlock.then(open).flatten();
@@ -71,7 +71,7 @@ impl Prepared {
         match &self.places {
             _ if !order.walls.landlock => Ok(None),
             Some(places) => walls::rules(order, places, folder).map(Some),
-            None => walls::rules(order, &walls::Places::of(order), folder).map(Some),
+            None => walls::rules(order, &walls::Places::for_order(order), folder).map(Some),
         }
     }
 }

@@ -111,7 +111,7 @@ pub(super) fn threads_of_user(user: u32) -> u64 {
 
 /// The processes that did not end.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(super) struct Left {
+pub(super) struct LeftProcesses {
     /// Processes.
     pub(super) count: u32,
     /// Whether the kernel itself holds all of them (state D), which no program can bring about.
@@ -123,7 +123,7 @@ pub(super) struct Left {
 ///
 /// Everybody is stopped before anybody is killed: a fork bomb would otherwise use each place that becomes free.
 /// `reaped` is called for every process that was reaped.
-pub(super) fn end_all(user: Option<u32>, alone: bool, mut reaped: impl FnMut(sys::Reaped)) -> Left {
+pub(super) fn end_all(user: Option<u32>, alone: bool, mut reaped: impl FnMut(sys::ReapedProcess)) -> LeftProcesses {
     // Only a process that the kernel itself holds (state D) lasts so long.
     const PATIENCE: Duration = Duration::from_secs(20);
     let start = Instant::now();
@@ -131,7 +131,7 @@ pub(super) fn end_all(user: Option<u32>, alone: bool, mut reaped: impl FnMut(sys
         if alone {
             // One word ends all, whatever they look like, and where no child is left then, there is nobody.
             if sys::kill_everybody_inside() && reap_all(&mut reaped) {
-                return Left::default();
+                return LeftProcesses::default();
             }
         }
         let victims = stop_then_kill(|| {
@@ -141,18 +141,18 @@ pub(super) fn end_all(user: Option<u32>, alone: bool, mut reaped: impl FnMut(sys
         });
         // No child is left, and no zombie either.
         if reap_all(&mut reaped) && user.is_none_or(|user| of_user(user).is_empty()) {
-            return Left::default();
+            return LeftProcesses::default();
         }
         if start.elapsed() > PATIENCE {
             let held = victims.iter().filter_map(|pid| read(*pid)).all(|stat| stat.state == b'D');
-            return Left { count: u32::try_from(victims.len()).unwrap_or(u32::MAX).max(1), held };
+            return LeftProcesses { count: u32::try_from(victims.len()).unwrap_or(u32::MAX).max(1), held };
         }
         std::thread::sleep(Duration::from_millis(1));
     }
 }
 
 /// Reaps the children that have ended; true if no child is left.
-fn reap_all(reaped: &mut impl FnMut(sys::Reaped)) -> bool {
+fn reap_all(reaped: &mut impl FnMut(sys::ReapedProcess)) -> bool {
     loop {
         match sys::reap() {
             Ok(Some(process)) => reaped(process),

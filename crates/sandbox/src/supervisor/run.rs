@@ -22,7 +22,7 @@ use super::{
     group::Group,
     holdings, locks, modes,
     namespaces::{self, Side},
-    prepared::{Held, Prepared},
+    prepared::{Held, PreparedRun},
     processes, slot,
     streams::CapturedStream,
 };
@@ -83,7 +83,7 @@ fn settle(order: RunOrder, control: File) -> Result<SettledRun, Failure> {
     {
         return Ok(SettledRun::Elsewhere(code));
     }
-    Run::start(order, control, held, &Prepared::default()).map(|run| SettledRun::Here(Box::new(run)))
+    Run::start(order, control, held, &PreparedRun::default()).map(|run| SettledRun::Here(Box::new(run)))
 }
 
 /// The report, standard output and standard error.
@@ -119,7 +119,7 @@ pub(super) struct Run {
 
 impl Run {
     /// Prepares everything and forks.
-    pub(super) fn start(order: RunOrder, control: File, held: Held, prepared: &Prepared) -> Result<Self, Failure> {
+    pub(super) fn start(order: RunOrder, control: File, held: Held, prepared: &PreparedRun) -> Result<Self, Failure> {
         let (order, Held { slot, group }) = (Rc::new(order), held);
         sys::become_reaper().map_err(stage("become the reaper"))?;
         let folder: OwnedFd = File::open(wire::path(&order.folder)).map_err(stage("open the working folder"))?.into();

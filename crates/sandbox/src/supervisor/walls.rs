@@ -21,7 +21,7 @@ use landlock::{
 };
 
 use crate::{
-    own::{self, Allowed},
+    own::{self, AllowedPath},
     sys::{self, OFlags},
     wire::{self, RunOrder},
 };
@@ -81,7 +81,7 @@ pub(super) struct Places(Vec<(OwnedFd, BitFlags<AccessFs>)>);
 
 impl Places {
     /// Opens those of an order. Paths that this host lacks are left out.
-    pub(super) fn of(order: &RunOrder) -> Self {
+    pub(super) fn for_order(order: &RunOrder) -> Self {
         let read = AccessFs::ReadFile | AccessFs::ReadDir;
         let execute = read | AccessFs::Execute;
         let own: Vec<PathBuf> = order.own.iter().map(wire::path).collect();
@@ -139,8 +139,8 @@ impl Places {
     fn add_around(&mut self, path: &Path, access: BitFlags<AccessFs>, own: &[PathBuf]) {
         for allowed in own::around(path, own) {
             match allowed {
-                Allowed::Whole(path) => self.add(&path, access),
-                Allowed::Listing(path) => self.add(&path, access & AccessFs::ReadDir),
+                AllowedPath::Whole(path) => self.add(&path, access),
+                AllowedPath::Listing(path) => self.add(&path, access & AccessFs::ReadDir),
             }
         }
     }

@@ -186,7 +186,7 @@ impl App {
     ///
     /// # Errors
     /// When the disk is nearly full.
-    pub fn has_room(&self) -> Result<(), crate::problem::Problem> {
-        self.0.storage.has_room()
+    pub fn ensure_room(&self) -> Result<(), crate::problem::Problem> {
+        self.0.storage.ensure_room()
     }
 }

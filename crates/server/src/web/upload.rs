@@ -71,7 +71,7 @@ struct Place<'a> {
 
 /// Receives the body of a request: the file itself, or a form with a field `file`.
 pub(super) async fn receive(app: &App, request: Request, most: u64) -> Result<Received, Problem> {
-    if let Err(problem) = app.has_room() {
+    if let Err(problem) = app.ensure_room() {
         return Err(refuse(app, request, most, problem).await);
     }
     receive_at(&Place { incoming: &app.incoming, patience: app.patience }, request, most).await
@@ -236,7 +236,7 @@ pub(super) fn plain_name(name: &str) -> String {
 
 /// Returns whether a file that begins so is a program.
 pub(super) fn is_program(start: &[u8]) -> bool {
-    FileKind::of(start) == FileKind::Program
+    FileKind::from_start(start) == FileKind::Program
 }
 
 /// Returns the form of an archive, and whether it can be that: sources must hold the `program`, where nothing builds

@@ -157,7 +157,7 @@ impl Reel {
             extent.join(&overlay.extent);
         }
         let start: Vec<f64> = scene.particles.iter().flat_map(|p| [p.position.x, p.position.y]).collect();
-        let start = Extent::of(scene, &start);
+        let start = Extent::for_scene(scene, &start);
         extent.join(&start);
         let painter = Painter::new(scene, &extent.near(&start), options);
         Self { painter, main, overlay, picks, single: false }
@@ -211,7 +211,7 @@ impl RenderTarget {
         let inputs: Vec<Identity> = [Some(&arguments.scene), arguments.trace.as_ref(), arguments.overlay.as_ref()]
             .into_iter()
             .flatten()
-            .filter_map(|name| Some(Identity::of(&std::fs::metadata(name).ok()?)))
+            .filter_map(|name| Some(Identity::from_metadata(&std::fs::metadata(name).ok()?)))
             .collect();
         if form == RenderFormat::Mp4 {
             Ffmpeg::find()?;

@@ -3,10 +3,10 @@ use super::{Role, pair};
 use fosssim_mistakes::{
     assignments::t2m2::{Input, Reading, Subject},
     diagnose::{
-        About, Amount, Changed, CoefficientGuess, Detail, Example, ExamplePlace, ExampleValue, Explanation, Guess,
-        ListGuess, LoopEnd, NanStage, NotFinite, OfPolynomials, PolynomialDetail, Quantity, QuantityGuess, Ratios,
-        StageDetail, StageFault, Stand, StepRecord, Weight, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber,
-        WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
+        About, Amount, ChangedQuantity, CoefficientGuess, Detail, Example, ExamplePlace, ExampleValue, Explanation,
+        Guess, ListGuess, LoopEnd, NanStage, NotFinite, OfPolynomials, PolynomialDetail, Quantity, QuantityGuess,
+        Ratios, StageDetail, StageFault, StepRecord, Substitute, Weight, WrongDecisions, WrongGeometric, WrongMotion,
+        WrongNumber, WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
     },
     student::Area,
 };
@@ -52,7 +52,7 @@ fn explanation(about: About, details: Vec<Detail>, example: Option<Example>) -> 
 
 fn faults() -> Vec<StageFault> {
     let kind = Some(PairKind::ParticleHalfPlane);
-    let changed = || vec![Changed { kind: PairKind::ParticleEdge, body: 2, quantity: Quantity::Velocity }];
+    let changed = || vec![ChangedQuantity { kind: PairKind::ParticleEdge, body: 2, quantity: Quantity::Velocity }];
     vec![
         StageFault::Order,
         StageFault::Decisions { kind, wrong: WrongDecisions::Superfluous },
@@ -105,16 +105,16 @@ fn details() -> Vec<Detail> {
         PolynomialDetail::Displacements(1.0 / 3.0),
         PolynomialDetail::Exchange { key: "end-positions".into(), of_edges: true },
         PolynomialDetail::Special("one-unscaled".into()),
-        stands(Stand::Scaled(-0.0)),
-        stands(Stand::Letter("a".into())),
-        stands(Stand::Dot { vectors: ["x21".into(), "(p-x-dx)".into()], negated: true }),
-        stands(Stand::One),
+        stands(Substitute::Scaled(-0.0)),
+        stands(Substitute::Letter("a".into())),
+        stands(Substitute::Dot { vectors: ["x21".into(), "(p-x-dx)".into()], negated: true }),
+        stands(Substitute::One),
         PolynomialDetail::Factor { power: 3, factor: 0.1 },
         PolynomialDetail::Unknown { power: 0 },
         PolynomialDetail::Weight(weight(1e308)),
         PolynomialDetail::Alternative(vec![weight(0.1), weight(-0.0)]),
     ];
-    let changed = Changed { kind: PairKind::ParticleParticle, body: 0, quantity: Quantity::Position };
+    let changed = ChangedQuantity { kind: PairKind::ParticleParticle, body: 0, quantity: Quantity::Position };
     let change = |amount| StageDetail::Change { changed, amount, across: true, wrong: 1, of: 2 };
     let stages = [
         StageDetail::Order,

@@ -203,7 +203,7 @@ fn garbage_of_constant_size_check() {
 /// Sums with which something may overflow or underflow on the way are not right at once, however well they fit.
 #[test]
 fn extreme_sums_are_looked_at_closely() {
-    let is_clear = |own: f64, logged: f64| Similarity::of(&[own, -own], &[logged, -logged]).is_clear(true);
+    let is_clear = |own: f64, logged: f64| Similarity::measure(&[own, -own], &[logged, -logged]).is_clear(true);
     for moderate in [1e-99, 1.0, 1e99] {
         assert!(is_clear(moderate, 1.0) && is_clear(1.0, moderate), "{moderate}");
     }

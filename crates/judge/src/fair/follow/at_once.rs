@@ -52,7 +52,7 @@ impl Follower<'_> {
                 found[number] = Some(Match { scale: None, share: 0.0 });
                 continue;
             }
-            let similarity = Similarity::of(own, logged);
+            let similarity = Similarity::measure(own, logged);
             if similarity.is_clear(own.len() == lengths[number]) && similarity.sum > floors[number] {
                 found[number] = Some(similarity.matched());
             }
@@ -141,7 +141,7 @@ mod tests {
         fn detection(&mut self, detection: &Detection<'_>) {
             let &Detection { pair, q_start, q_end, .. } = detection;
             let floors = floors(self.0, q_start, q_end)[pair.kind];
-            let expected = BoundedPairMotion::of(self.0, pair, q_start, q_end).polynomials();
+            let expected = BoundedPairMotion::for_pair(self.0, pair, q_start, q_end).polynomials();
             for (number, floor) in floors.into_iter().enumerate().take(pair.kind.polynomials()) {
                 for list in std::iter::once(expected.polynomial(number)).chain(expected.other_form(number)) {
                     let norm: f64 = list.iter().map(|c| c.bound).sum();

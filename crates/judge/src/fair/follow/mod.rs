@@ -9,7 +9,7 @@ mod polynomials;
 
 use super::{
     contact::{self, Tolerances},
-    context::{Context, Followed, Records},
+    context::{Context, FollowedDecision, Records},
     formulas::{BoundedPairMotion, Expected},
     probe::Sensitivity,
     step_judgement::StepJudgement,
@@ -41,7 +41,7 @@ pub(super) struct Follower<'a> {
     /// The judgement of the step so far.
     pub judged: StepJudgement,
     /// All decisions of the step.
-    pub decisions: Vec<Followed>,
+    pub decisions: Vec<FollowedDecision>,
     /// Calls of hybrid scenes whose decisions round-off may flip, in order (on a second look).
     pub borderline: Vec<usize>,
     pass: Pass,
@@ -119,7 +119,7 @@ impl<'a> Follower<'a> {
             moving: Vec::new(),
             tainted: [false; 2],
             wrong_formulas: ByKind::default(),
-            contacts: Contacts::of(&records.end.impulses),
+            contacts: Contacts::from_impulses(&records.end.impulses),
             used: vec![false; records.end.impulses.len()],
             call: CurrentCall::default(),
             has_disputes: false,
@@ -168,7 +168,7 @@ impl<'a> Follower<'a> {
     /// Compares the states at the end of the step, with pairs left out where these explain the trace's.
     fn settle_states(&mut self, own: &State) {
         let Records { frame, before, end, .. } = self.records;
-        let tolerances = Tolerances::of(self.context, own, self.sensitivity.map(|known| &known.end));
+        let tolerances = Tolerances::from_context(self.context, own, self.sensitivity.map(|known| &known.end));
         let known = matches!(self.context.scene.collision, Collision::Penalty { .. }).then(|| self.judged.clone());
         contact::states(&mut self.judged, frame, own, &end.state, &tolerances);
         let Some(known) = known.filter(|known| known.total() < self.judged.total()) else { return };
@@ -246,7 +246,7 @@ impl Steer for Follower<'_> {
             self.judged.same[pair.kind] += 1;
             if self.sensitivity.is_some() || !self.is_hybrid() {
                 // Should the decision be disputed, it must be known how far round-off may reach.
-                let motion = BoundedPairMotion::of(self.context.scene, pair, q_start, q_end);
+                let motion = BoundedPairMotion::for_pair(self.context.scene, pair, q_start, q_end);
                 self.call.seen = Some(SeenCall { motion, has_right_approach: false });
             }
             self.note_course_form(pair, q_start, q_end, index);
@@ -264,7 +264,7 @@ impl Steer for Follower<'_> {
                 && polynomials.iter().all(|own| contact::is_searchable(own.coefficients()))
                 && exclusion_of((0..count).map(logged)).is_some();
             if self.call.seen.is_none() && !(self.call.misses_logged && self.is_hybrid()) {
-                let motion = BoundedPairMotion::of(self.context.scene, pair, q_start, q_end);
+                let motion = BoundedPairMotion::for_pair(self.context.scene, pair, q_start, q_end);
                 self.call.seen = Some(SeenCall { motion, has_right_approach: false });
             }
             if self.call.misses_logged {
@@ -292,7 +292,7 @@ impl Steer for Follower<'_> {
     fn decide(&mut self, pair: Pair, decision: Decision) -> Decision {
         let decision = if self.call.misses_logged { self.dispute(pair, decision) } else { decision };
         let decision = self.settle(pair, decision);
-        self.decisions.push(Followed { pair, pass: self.pass, decision });
+        self.decisions.push(FollowedDecision { pair, pass: self.pass, decision });
         decision
     }
 
@@ -307,7 +307,7 @@ impl Steer for Follower<'_> {
         }
         if !self.tainted[0] {
             let bounds = self.sensitivity.map(|known| &known.mid);
-            let tolerances = Tolerances::of(self.context, state, bounds);
+            let tolerances = Tolerances::from_context(self.context, state, bounds);
             contact::states(&mut self.judged, self.records.frame - 1, state, &mid.state, &tolerances);
         }
         if mid.state.is_finite() {

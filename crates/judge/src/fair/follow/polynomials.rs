@@ -4,7 +4,7 @@ use crate::{
     fair::{
         compare::{Match, Mismatch, compare, shows_factor},
         formulas::{BoundedPairMotion, Expected},
-        polynomial::{Logged, Said, compare_first, wrong_polynomial},
+        polynomial::{Logged, PolynomialJudgement, compare_first, wrong_polynomial},
     },
     finding::{FindingDetail, PolynomialPlace, Role},
 };
@@ -35,7 +35,7 @@ impl<'a> Follower<'a> {
         }
         let bounds = self.sensitivity.and_then(|known| known.passes.get(self.pass.index as usize));
         let motion = |q_end: &[f64], bounds: Option<&Vec<f64>>| {
-            let motion = BoundedPairMotion::of(self.context.scene, pair, q_start, q_end);
+            let motion = BoundedPairMotion::for_pair(self.context.scene, pair, q_start, q_end);
             bounds.map_or(motion, |bounds| motion.widened(self.context.particles(pair), bounds))
         };
         let mut seen = motion(q_end, bounds);
@@ -71,19 +71,19 @@ impl<'a> Follower<'a> {
             let said = self.judged.note(&expected, &logged, result, is_reached);
             let hangs = self.judged.pended() > pended;
             match said {
-                Said::Right => {}
-                Said::RightForm => has_right_approach = true,
-                Said::Hangs => {
+                PolynomialJudgement::Right => {}
+                PolynomialJudgement::RightForm => has_right_approach = true,
+                PolynomialJudgement::Hangs => {
                     has_right_approach |= expected.other_form(number).is_some() && self.judged.right_form.is_some();
                     is_right &= is_reached;
                 }
-                Said::Wrong(mismatch) => {
+                PolynomialJudgement::Wrong(mismatch) => {
                     is_right = false;
                     self.charge_polynomial(&logged, &expected, mismatch, is_known);
                 }
             }
             // Positions that a response has led to have its round-off.
-            self.judged.hangs |= self.is_moved(pair) && (hangs || matches!(said, Said::Wrong(_)));
+            self.judged.hangs |= self.is_moved(pair) && (hangs || matches!(said, PolynomialJudgement::Wrong(_)));
         }
         self.call.seen = Some(SeenCall { motion: seen, has_right_approach });
         is_right
@@ -91,7 +91,7 @@ impl<'a> Follower<'a> {
 
     /// Returns polynomial `number` of a call whose first one is at `index`.
     fn logged_polynomial(&self, pair: Pair, index: usize, number: usize) -> Logged<'a> {
-        let (role, index) = (Role::of(pair.kind, number), index + number);
+        let (role, index) = (Role::from_number(pair.kind, number), index + number);
         let place = PolynomialPlace { pass: self.pass, pair, role, index };
         Logged { place, number, list: self.records.end.polynomials.get(index) }
     }
@@ -134,7 +134,7 @@ impl<'a> Follower<'a> {
     /// Notes the form of an approach polynomial which is the reference's bit for bit.
     pub(super) fn note_course_form(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], index: usize) {
         if pair.kind == PairKind::ParticleEdge && self.judged.course_form.is_none() {
-            let expected = BoundedPairMotion::of(self.context.scene, pair, q_start, q_end).polynomials();
+            let expected = BoundedPairMotion::for_pair(self.context.scene, pair, q_start, q_end).polynomials();
             self.judged.note_course_form(&expected, &self.logged_polynomial(pair, index, 3));
         }
     }

@@ -22,7 +22,7 @@ mod tests {
     /// A name stands for one letter, so that a message about it says what is meant.
     #[test]
     fn every_letter_is_found_by_its_name() {
-        for subject in PairKind::ALL.into_iter().flat_map(Subject::of).copied() {
+        for subject in PairKind::ALL.into_iter().flat_map(Subject::all_of_kind).copied() {
             for (number, formula) in readings(subject).iter().enumerate() {
                 for letter in formula.letters {
                     let found =

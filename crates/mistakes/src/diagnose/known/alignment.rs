@@ -11,7 +11,7 @@ use fosssim_model::{scene::Scene, sim::State, trace::Layout};
 
 /// Returns the record that this program leaves out, if the trace's beginning is right once that is taken into account.
 pub(super) fn missing_record(scene: &Scene, scan: &Scan) -> Option<Explanation> {
-    let layout = Layout::of(scene);
+    let layout = Layout::for_scene(scene);
     ["log-no-initial", "log-no-mid"].into_iter().filter_map(find).find_map(|row| {
         let expected = records_without(layout, row);
         if scan.outline.records.is_some_and(|records| records > expected) {

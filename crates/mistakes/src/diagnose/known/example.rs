@@ -27,7 +27,7 @@ pub(super) fn example(reference: &mut Reference<'_>, scene: &Scene, correct: Cor
                 if index < log.len() { log.get(index).to_vec() } else { Vec::new() }
             };
             let place = capture.place(index).map_or(ExamplePlace::NumberedPolynomial(index), |(pair, pass, number)| {
-                ExamplePlace::Polynomial { pair, pass: pass.index, role: Role::of(pair.kind, number) }
+                ExamplePlace::Polynomial { pair, pass: pass.index, role: Role::from_number(pair.kind, number) }
             });
             (place, list(&ours.end.polynomials), list(&theirs.end.polynomials))
         }

@@ -72,7 +72,7 @@ pub(super) fn known_or_open(reference: &mut Reference<'_>, scene: &Scene, mut sc
         return only(missing);
     }
     if scan.outline.is_of_other_scene(scene) {
-        let (layout, outline) = (Layout::of(scene), &scan.outline);
+        let (layout, outline) = (Layout::for_scene(scene), &scan.outline);
         let has_length = !outline.is_longer && outline.records.is_none_or(|records| records == layout.records());
         return only(Explanation::of_other_scene(has_length));
     }

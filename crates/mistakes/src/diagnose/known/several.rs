@@ -32,7 +32,7 @@ pub(super) struct Several {
 /// Returns the set of rows that reproduces all kept steps; `None` where none is found with at least two rows.
 pub(super) fn several(reference: &Reference<'_>, scene: &Scene, scan: &Scan, correct: Correct) -> Option<Several> {
     let search = Search::new(reference, scene, scan, correct);
-    if !Layout::of(scene).polynomials {
+    if !Layout::for_scene(scene).polynomials {
         return search.together();
     }
     let mut found = search.starts().into_iter().find_map(|start| search.from(start))?;

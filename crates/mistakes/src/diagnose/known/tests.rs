@@ -242,7 +242,7 @@ fn a_trace_that_leads_nowhere_is_left() {
         <particle m="1" px="-0.25" py="0" vx="0" vy="0" fixed="1" radius="0.2"/>
         <particle m="1" px="0.25" py="0" vx="0" vy="0" fixed="1" radius="0.2"/></scene>"#;
     let scene = original::read(text.as_bytes()).expect("a scene").scene;
-    let layout = Layout::of(&scene);
+    let layout = Layout::for_scene(&scene);
     let state =
         |y| State { positions: vec![0.0, y, -0.25, 0.0, 0.25, 0.0], velocities: vec![1.0, 0.0, 0.0, 0.0, 0.0, 0.0] };
     let mut writer = Writer::new(Vec::new(), layout);

@@ -33,7 +33,7 @@ impl<'a> Trials<'a> {
     /// Creates the trials on a scene; `correct` is the program to which mistakes are added.
     pub(super) fn new(reference: &'a Reference<'_>, scene: &Scene, correct: Correct) -> Self {
         let world = World::new(scene.clone(), Student::default());
-        let (round_off, step_work) = (Tolerance::of(scene), step_work(scene));
+        let (round_off, step_work) = (Tolerance::for_scene(scene), step_work(scene));
         Self { world, correct, round_off, step_work, work: Cell::new(0), left: &reference.trials }
     }
 

@@ -36,7 +36,7 @@ impl<'a> Moment<'a> {
         Self {
             scene,
             before,
-            start: State::of(scene).positions,
+            start: State::for_scene(scene).positions,
             largest: scene.particles.iter().fold(0.0, |largest, particle| largest.max(2.0 * particle.radius)),
             corner: boxes.iter().fold(Vec2::repeat(f64::INFINITY), |low, one| low.inf(&one[0])),
             boxes,

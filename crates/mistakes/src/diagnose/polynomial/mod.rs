@@ -60,7 +60,7 @@ const AS_LIKELY: f64 = 1.6;
 /// formulas overflow are left out. The samples of one kind should hold all of its polynomials.
 #[must_use]
 pub fn explain(samples: &[Sample]) -> Vec<Explanation> {
-    let subjects = PairKind::ALL.into_iter().flat_map(Subject::of).copied();
+    let subjects = PairKind::ALL.into_iter().flat_map(Subject::all_of_kind).copied();
     let mut open: Vec<Suspect> = subjects
         .filter_map(|subject| PolynomialStudy::new(subject, samples))
         .map(|study| Suspect { candidates: candidates(&study), study })
@@ -92,7 +92,7 @@ fn missing(samples: &[Sample]) -> Option<Explanation> {
             details.push(Detail::Polynomial(PolynomialDetail::Logged { logged, of: kind.polynomials() }));
             count += of_kind().count() as u64;
         }
-        subjects.extend(Subject::of(kind).iter().skip(logged));
+        subjects.extend(Subject::all_of_kind(kind).iter().skip(logged));
     }
     (!subjects.is_empty()).then(|| Explanation {
         details: distinct(details, MOST_OTHERS),
@@ -179,7 +179,9 @@ pub(super) fn form_claim(subject: Subject, guess: &Guess, form: &[PolynomialDeta
 /// logged, in all samples.
 fn known_makers(study: &PolynomialStudy<'_>) -> Vec<String> {
     let kind = study.subject.kind();
-    let Some(number) = Subject::of(kind).iter().position(|&other| other == study.subject) else { return Vec::new() };
+    let Some(number) = Subject::all_of_kind(kind).iter().position(|&other| other == study.subject) else {
+        return Vec::new();
+    };
     let is_formula = |row: &&Row| {
         let is_of_kind = row.kind_of_pair() == Some(kind)
             && matches!(row.area, Area::ParticleParticle | Area::ParticleEdge | Area::ParticleHalfPlane);

@@ -5,7 +5,7 @@ use crate::assignments::t2m2::{
     formulas::{Formula, Letter},
     ingredients::{Ingredient, ingredients},
 };
-use crate::diagnose::{Guess, PolynomialDetail, QuantityGuess, Stand};
+use crate::diagnose::{Guess, PolynomialDetail, QuantityGuess, Substitute};
 use fosssim_num::bounded::Bounded;
 
 /// A quantity that is tried in a letter's place.
@@ -30,14 +30,14 @@ impl Trial<'_> {
         }
     }
 
-    fn told(&self, letters: &[Letter]) -> Stand {
+    fn told(&self, letters: &[Letter]) -> Substitute {
         match self {
-            Self::Scaled(factor) => Stand::Scaled(*factor),
-            Self::Letter(other) => Stand::Letter(letters[*other].name.into()),
+            Self::Scaled(factor) => Substitute::Scaled(*factor),
+            Self::Letter(other) => Substitute::Letter(letters[*other].name.into()),
             Self::Dot(one, two, sign) => {
-                Stand::Dot { vectors: [one.name, two.name].map(Into::into), negated: *sign < 0.0 }
+                Substitute::Dot { vectors: [one.name, two.name].map(Into::into), negated: *sign < 0.0 }
             }
-            Self::One => Stand::One,
+            Self::One => Substitute::One,
         }
     }
 

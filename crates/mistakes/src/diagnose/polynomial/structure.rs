@@ -121,7 +121,7 @@ fn rearrangements(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
 
 /// Polynomials of the same detection in each other's places.
 fn other_polynomials(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
-    for &other in Subject::of(study.subject.kind()) {
+    for &other in Subject::all_of_kind(study.subject.kind()) {
         if other == study.subject {
             continue;
         }

@@ -72,7 +72,7 @@ pub(super) struct Candidate {
 impl<'a> PolynomialStudy<'a> {
     /// Collects what was logged for a polynomial; `None` if no sample is wrong.
     pub fn new(subject: Subject, samples: &'a [Sample]) -> Option<Self> {
-        let number = Subject::of(subject.kind()).iter().position(|&other| other == subject)?;
+        let number = Subject::all_of_kind(subject.kind()).iter().position(|&other| other == subject)?;
         let mut cases: Vec<Case<'a>> = samples
             .iter()
             .filter(|sample| sample.motion.kind() == subject.kind())

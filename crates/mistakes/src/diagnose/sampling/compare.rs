@@ -48,8 +48,8 @@ pub const ROUND_OFF: Tolerance = Tolerance {
 
 impl Tolerance {
     /// Returns round-off, in steps of this scene.
-    pub fn of(scene: &Scene) -> Self {
-        let is_newton = scene.integrator == Integrator::ImplicitEuler && !Layout::of(scene).polynomials;
+    pub fn for_scene(scene: &Scene) -> Self {
+        let is_newton = scene.integrator == Integrator::ImplicitEuler && !Layout::for_scene(scene).polynomials;
         Self { state: if is_newton { KNOWN_NEWTON_STATE } else { KNOWN_STATE }, ..ROUND_OFF }
     }
 }

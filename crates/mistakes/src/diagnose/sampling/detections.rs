@@ -69,7 +69,7 @@ impl<'a> Detections<'a> {
     /// Gathers the samples of a step. One without result is of a trace gone wild; what was gathered stays.
     pub fn step(&mut self, reference: &mut Reference<'_>, step: u32, frames: &StepFrames) {
         let is_full = self.kinds.values().all(|kind| kind.wrong >= MOST_WRONG);
-        if is_full || !Layout::of(self.scene).polynomials {
+        if is_full || !Layout::for_scene(self.scene).polynomials {
             return;
         }
         let (mid, log) = (&frames.mid, &frames.end.polynomials);
@@ -168,7 +168,7 @@ impl Steer for Gatherer<'_> {
             // NaN and infinity say nothing about a formula.
             return;
         }
-        let expected = formulas::BoundedPairMotion::of(self.scene, pair, q_start, q_end).polynomials();
+        let expected = formulas::BoundedPairMotion::for_pair(self.scene, pair, q_start, q_end).polynomials();
         let is_right = size == pair.kind.polynomials()
             && polynomials.iter().enumerate().all(|(number, logged)| {
                 let forms = [Some(expected.polynomial(number)), expected.other_form(number)];

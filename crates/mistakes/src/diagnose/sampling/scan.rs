@@ -104,8 +104,8 @@ impl Scanner {
     /// Creates the scan for traces of this scene.
     pub fn new(scene: &Scene) -> Self {
         Self {
-            has_mid: Layout::of(scene).polynomials,
-            round_off: Tolerance::of(scene),
+            has_mid: Layout::for_scene(scene).polynomials,
+            round_off: Tolerance::for_scene(scene),
             capture: Capture::new(&scene.collision),
             scan: Scan::default(),
             seen: BTreeMap::new(),

@@ -112,7 +112,7 @@ pub struct StepReader<'a> {
 impl<'a> StepReader<'a> {
     /// Reads the first record.
     pub fn new(scene: &Scene, source: Source<'a>) -> Self {
-        let layout = Layout::of(scene);
+        let layout = Layout::for_scene(scene);
         let mut reader = Lenient::of_slice(source.beginning, layout).with_limit(record_memory(scene));
         let (mut frames, mut outline) = (StepFrames::default(), Outline::default());
         let next = outline.read(&mut reader, &mut frames.before).then_some(1);

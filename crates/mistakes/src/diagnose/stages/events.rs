@@ -66,7 +66,7 @@ impl StepEvents<'_> {
         if pair.kind != PairKind::ParticleEdge {
             return;
         }
-        let expected = BoundedPairMotion::of(self.scene, pair, q_start, q_end).polynomials();
+        let expected = BoundedPairMotion::for_pair(self.scene, pair, q_start, q_end).polynomials();
         let values = |form: &[Bounded]| form.iter().map(|one| one.value).collect::<Vec<f64>>();
         if let Some(other) = expected.other_form(APPROACH).map(values)
             && other != values(expected.polynomial(APPROACH))
@@ -137,7 +137,7 @@ pub(super) struct StepFacts {
 
 impl StepFacts {
     /// Returns the facts of a step; none where the reference has no result.
-    pub(super) fn of(reference: &mut Reference<'_>, scene: &Scene, kept: &KeptStep) -> Option<Self> {
+    pub(super) fn for_step(reference: &mut Reference<'_>, scene: &Scene, kept: &KeptStep) -> Option<Self> {
         let prediction = reference.step(kept.step, &kept.before, &mut Steering(NoCollisions))?.clone();
         let mut observers = (Capture::new(&scene.collision), StepEvents { scene, heard: Events::default() });
         reference.step(kept.step, &kept.before, &mut observers)?;
@@ -211,7 +211,7 @@ impl StepFacts {
         }
         let of_pass = self.detections.iter().take_while(|(_, first)| *first < size);
         of_pass.filter(|(pair, _)| is_asked(*pair)).all(|(pair, first)| {
-            let expected = BoundedPairMotion::of(scene, *pair, &self.before.positions, end).polynomials();
+            let expected = BoundedPairMotion::for_pair(scene, *pair, &self.before.positions, end).polynomials();
             (0..expected.count()).all(|number| {
                 let forms = [Some(expected.polynomial(number)), expected.other_form(number)];
                 let index = pass * size + first + number;

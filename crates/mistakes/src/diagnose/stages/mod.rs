@@ -49,7 +49,7 @@ pub(super) fn explain<'a>(
             work += kept.records.end.polynomials.len();
             goes_on
         })
-        .filter_map(|kept| StepFacts::of(reference, scene, kept))
+        .filter_map(|kept| StepFacts::for_step(reference, scene, kept))
         .collect();
     if facts.iter().all(|facts| !facts.is_wrong) {
         return None;

@@ -4,7 +4,7 @@ use super::{
     events::{Hit, StepFacts},
     observation, ratios,
 };
-use crate::diagnose::{Amount, Changed, Quantity, StageDetail, StageFault, WrongResponses, sampling::bodies};
+use crate::diagnose::{Amount, ChangedQuantity, Quantity, StageDetail, StageFault, WrongResponses, sampling::bodies};
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{PairKind, Stage, State},
@@ -27,7 +27,7 @@ struct Change {
 
 /// The changes that isolated contacts made, whose bodies have no other contact in the step.
 pub(super) struct Responses {
-    changes: BTreeMap<Changed, Vec<Change>>,
+    changes: BTreeMap<ChangedQuantity, Vec<Change>>,
     contacts: usize,
     /// Contacts of impulse rounds that changed nothing: nobody knows whether they were found.
     unresolved: usize,
@@ -40,12 +40,12 @@ impl Responses {
         let mut all = Self { changes: BTreeMap::new(), contacts: 0, unresolved: 0, in_rounds };
         for facts in facts {
             for (hit, expected, actual) in isolated(scene, facts) {
-                let mut changes: Vec<(Changed, Change)> = Vec::new();
+                let mut changes: Vec<(ChangedQuantity, Change)> = Vec::new();
                 for (body, particle) in bodies(scene, hit.pair).into_iter().enumerate() {
                     for quantity in [Quantity::Position, Quantity::Velocity] {
                         let states = [&facts.prediction, expected, actual];
                         let change = change(particle, quantity, states, unit(hit.normal));
-                        changes.push((Changed { kind: hit.pair.kind, body, quantity }, change));
+                        changes.push((ChangedQuantity { kind: hit.pair.kind, body, quantity }, change));
                     }
                 }
                 let is_nothing = |change: &Change| !change.across && change.ratio.is_none_or(|ratio| ratio == 0.0);
@@ -71,7 +71,7 @@ impl Responses {
     /// Returns the fault in responses; nothing when those that can be seen are right.
     pub(super) fn explain(&self, facts: &[StepFacts]) -> Option<Explanation> {
         let changes = &self.changes;
-        let wrong: BTreeMap<Changed, Vec<Change>> = changes
+        let wrong: BTreeMap<ChangedQuantity, Vec<Change>> = changes
             .iter()
             .map(|(place, all)| (*place, all.iter().filter(|change| !change.is_right).copied().collect::<Vec<_>>()))
             .filter(|(_, wrong)| !wrong.is_empty())
@@ -176,7 +176,7 @@ fn change(particle: usize, quantity: Quantity, states: [&State; 3], u: Vec2) -> 
     }
 }
 
-fn detail(changed: Changed, wrong: &[Change], of: usize) -> StageDetail {
+fn detail(changed: ChangedQuantity, wrong: &[Change], of: usize) -> StageDetail {
     let along: Vec<f64> = wrong.iter().filter_map(|change| change.ratio).collect();
     let amount = match common_value(&along) {
         _ if along.is_empty() => Amount::Unwanted,

@@ -156,7 +156,7 @@ struct Moved {
 
 impl Moved {
     fn look(&mut self, scene: &Scene, facts: &StepFacts) {
-        let Some(first) = FirstRound::of(scene, facts) else { return };
+        let Some(first) = FirstRound::for_scene(scene, facts) else { return };
         for zone in &first.zones {
             if !first.is_seen(zone) && (first.is_at_rest(zone) || !first.is_split(zone)) {
                 continue;

@@ -27,7 +27,7 @@ pub(super) struct Group {
 }
 
 impl Group {
-    fn of(mut particles: Vec<usize>, half_plane: bool) -> Self {
+    fn from_particles(mut particles: Vec<usize>, half_plane: bool) -> Self {
         particles.sort_unstable();
         particles.dedup();
         Self { particles, half_plane }
@@ -35,7 +35,7 @@ impl Group {
 
     fn union(groups: &[&Self]) -> Self {
         let particles = groups.iter().flat_map(|group| group.particles.iter().copied()).collect();
-        Self::of(particles, groups.iter().any(|group| group.half_plane))
+        Self::from_particles(particles, groups.iter().any(|group| group.half_plane))
     }
 
     /// Returns whether it goes back to its start.
@@ -79,7 +79,7 @@ pub(super) struct FirstRound<'a> {
 
 impl<'a> FirstRound<'a> {
     /// Returns the zones of a step; none where the step has no first round, or where something before it is wrong.
-    pub(super) fn of(scene: &'a Scene, facts: &'a StepFacts) -> Option<Self> {
+    pub(super) fn for_scene(scene: &'a Scene, facts: &'a StepFacts) -> Option<Self> {
         let (loop_passes, passes) = facts.logged_passes().filter(|_| facts.has_right_middle())?;
         let is_right = facts.right_polynomials >= (loop_passes + 1) * facts.pass_size();
         let (_, middle) = facts.middles()?;
@@ -89,10 +89,10 @@ impl<'a> FirstRound<'a> {
             return None;
         }
         let zones = facts.zones.iter().filter(|zone| zone.round == round);
-        let zones = zones.map(|zone| Group::of(zone.particles.clone(), zone.half_plane)).collect();
+        let zones = zones.map(|zone| Group::from_particles(zone.particles.clone(), zone.half_plane)).collect();
         let contacts = facts.hits.iter().filter(|hit| hit.pass == first).map(|hit| {
             let is_half_plane = hit.pair.kind == PairKind::ParticleHalfPlane;
-            Group::of(bodies(scene, hit.pair), is_half_plane)
+            Group::from_particles(bodies(scene, hit.pair), is_half_plane)
         });
         let (contacts, end) = (contacts.collect(), &facts.actual.end.state);
         let (middle, second, rounds) = (&middle.state, loop_passes + 1, passes.max(2) - 1);
@@ -214,12 +214,14 @@ impl<'a> FirstRound<'a> {
             };
             // A particle that stays where it should be anyway was not left out.
             let is_left = || left.iter().any(|&one| !self.is_at(&self.expected(zone), one));
-            if is_left() && [false, zone.half_plane].iter().any(|flag| leads_there(&Group::of(part.clone(), *flag))) {
+            if is_left()
+                && [false, zone.half_plane].iter().any(|flag| leads_there(&Group::from_particles(part.clone(), *flag)))
+            {
                 let wrong = if zone.stops(self.scene) { WrongZones::PartlyStopped } else { WrongZones::Partly };
                 return Some(Fate::Wrong(wrong));
             }
             if !foreign.is_empty() {
-                let with = Group::of([part.clone(), foreign.clone()].concat(), zone.half_plane);
+                let with = Group::from_particles([part.clone(), foreign.clone()].concat(), zone.half_plane);
                 if leads_there(&with) {
                     return Some(Fate::Wrong(WrongZones::Others));
                 }

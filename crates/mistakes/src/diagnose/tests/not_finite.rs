@@ -16,7 +16,7 @@ fn scene(name: &str) -> Scene {
 
 fn frames(scene: &Scene) -> Vec<LenientFrame> {
     let trace = student::trace(scene, Student::default()).expect("it comes to an end");
-    let layout = Layout::of(scene);
+    let layout = Layout::for_scene(scene);
     let mut reader = Lenient::new(&trace[..], layout);
     let read = |_| {
         let mut frame = LenientFrame::default();
@@ -27,7 +27,7 @@ fn frames(scene: &Scene) -> Vec<LenientFrame> {
 }
 
 fn written(scene: &Scene, frames: Vec<LenientFrame>) -> Vec<u8> {
-    let mut writer = Writer::new(Vec::new(), Layout::of(scene));
+    let mut writer = Writer::new(Vec::new(), Layout::for_scene(scene));
     for LenientFrame { state, impulses, polynomials, .. } in frames {
         writer.frame(&Frame { state, impulses, polynomials });
     }

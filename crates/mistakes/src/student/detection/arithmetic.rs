@@ -20,9 +20,9 @@ pub trait Number:
 }
 
 /// A double whose products and sums are fused: one rounding instead of two.
-pub type Fused = f64;
+pub type FusedDouble = f64;
 
-impl Number for Fused {
+impl Number for FusedDouble {
     #[expect(clippy::disallowed_methods, reason = "a student's compiler fuses what it likes")]
     fn multiply_add(self, factor: Self, addend: Self) -> Self {
         self.mul_add(factor, addend)

@@ -28,7 +28,7 @@ pub enum Axes {
 
 impl Axes {
     /// Returns the coordinates that this student computes in.
-    pub fn of(student: Student) -> Self {
+    pub fn for_student(student: Student) -> Self {
         match student.mistake_in(HERE) {
             Some(Mistake::FrameShifted) => Self::Shifted,
             Some(Mistake::FrameComoving) => Self::Comoving,

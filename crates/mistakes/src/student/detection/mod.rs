@@ -60,7 +60,7 @@ impl Encounter {
         let frame = axes_of(world.student, pair);
         let (student, all) = (world.student, world.scene.particles.len());
         let (kind, _) = pair.object.numbers();
-        let slip = IndexSlip::of(student, kind);
+        let slip = IndexSlip::for_student(student, kind);
         let body = |role: usize, index: usize| {
             let place = |list: &[f64]| {
                 if slip.is_single { Vec2::new(list[index], list[index + 1]) } else { at(list, index) }
@@ -158,7 +158,7 @@ enum RadiusSlip {
 }
 
 impl IndexSlip {
-    fn of(student: Student, kind: usize) -> Self {
+    fn for_student(student: Student, kind: usize) -> Self {
         let area = [Area::ParticleParticle, Area::ParticleEdge, Area::ParticleHalfPlane][kind];
         let (is_single, radius) = match student.mistake_in(&[area]) {
             Some(
@@ -185,7 +185,7 @@ fn is_on_prediction(student: Student, kind: usize) -> bool {
 /// Returns the coordinates for this pair. A half-plane that moves has no formulas, so nobody moves along with its
 /// particle.
 fn axes_of(student: Student, pair: Pair) -> Axes {
-    match (Axes::of(student), pair.object) {
+    match (Axes::for_student(student), pair.object) {
         (Axes::Comoving, Object::HalfPlane(_)) => Axes::Scene,
         (frame, _) => frame,
     }

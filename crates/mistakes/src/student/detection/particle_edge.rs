@@ -3,7 +3,7 @@ use fosssim_num::vector::Vec2;
 
 use super::{
     VECTORS,
-    arithmetic::{self, Fused},
+    arithmetic::{self, FusedDouble},
     basis, factorised, quintic,
     wide::Wide,
 };
@@ -25,7 +25,7 @@ pub fn polynomials(student: Student, bodies: &[MovingBody; 3], edge_radius: f64)
             return vec![vec![0.0; 5], vec![0.0; 3], vec![0.0; 3], quintic::approach(student, bodies)];
         }
         Some(Mistake::ExtendedPrecision) => return arithmetic::particle_edge::<Wide>(bodies, edge_radius),
-        Some(Mistake::FusedArithmetic) => return arithmetic::particle_edge::<Fused>(bodies, edge_radius),
+        Some(Mistake::FusedArithmetic) => return arithmetic::particle_edge::<FusedDouble>(bodies, edge_radius),
         Some(Mistake::InterpolatedAll) => {
             let reach = bodies[0].radius + edge_radius;
             let mut lists = basis::particle_edge(bodies, reach * reach).to_vec();
@@ -253,7 +253,7 @@ pub fn contact_vector(student: Student, bodies: &[MovingBody; 3], t: f64) -> Vec
             two.start + alpha * (three.start - two.start) - one.start - t * one.displacement
         }
         Some(Mistake::ExtendedPrecision) => arithmetic::to_edge::<Wide>(bodies, t),
-        Some(Mistake::FusedArithmetic) => arithmetic::to_edge::<Fused>(bodies, t),
+        Some(Mistake::FusedArithmetic) => arithmetic::to_edge::<FusedDouble>(bodies, t),
         Some(Mistake::ContactOtherFormula) => {
             let across = Vec2::new(-along.y, along.x);
             (two.at(t) - one.at(t)).dot(&across) / along.dot(&along) * across

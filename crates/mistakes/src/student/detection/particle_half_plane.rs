@@ -3,7 +3,7 @@ use fosssim_num::vector::{Vec2, unit};
 
 use super::{
     MovingBody, VECTORS,
-    arithmetic::{self, Fused},
+    arithmetic::{self, FusedDouble},
     basis,
     wide::Wide,
 };
@@ -24,7 +24,7 @@ pub fn polynomials(student: Student, one: &MovingBody, point: Vec2, normal: Vec2
         Some(Mistake::HalfPlaneEmpty) => return Vec::new(),
         Some(Mistake::HalfPlaneZero) => return vec![vec![0.0; 3], vec![0.0; 2]],
         Some(Mistake::ExtendedPrecision) => return arithmetic::particle_half_plane::<Wide>(one, point, normal),
-        Some(Mistake::FusedArithmetic) => return arithmetic::particle_half_plane::<Fused>(one, point, normal),
+        Some(Mistake::FusedArithmetic) => return arithmetic::particle_half_plane::<FusedDouble>(one, point, normal),
         Some(Mistake::InterpolatedAll) => return basis::particle_half_plane(one, point, normal),
         Some(Mistake::HalfPlaneNoPoint) => (-one.start).dot(&q),
         Some(Mistake::HalfPlaneEndPosition) => (point - one.end()).dot(&q),
@@ -113,7 +113,7 @@ pub fn contact_vector(student: Student, one: &MovingBody, point: Vec2, normal: V
             (point - one.at(t)).dot(&u) * u
         }
         Some(Mistake::ExtendedPrecision) => arithmetic::to_half_plane::<Wide>(one, point, normal, t),
-        Some(Mistake::FusedArithmetic) => arithmetic::to_half_plane::<Fused>(one, point, normal, t),
+        Some(Mistake::FusedArithmetic) => arithmetic::to_half_plane::<FusedDouble>(one, point, normal, t),
         _ => offset.dot(&normal) / square * normal,
     }
 }

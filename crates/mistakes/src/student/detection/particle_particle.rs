@@ -3,7 +3,7 @@ use fosssim_num::vector::Vec2;
 
 use super::{
     MovingBody, VECTORS,
-    arithmetic::{self, Fused},
+    arithmetic::{self, FusedDouble},
     basis,
     wide::Wide,
 };
@@ -19,7 +19,7 @@ pub fn polynomials(student: Student, one: &MovingBody, two: &MovingBody) -> Vec<
         Some(Mistake::ParticleParticleEmpty) => return Vec::new(),
         Some(Mistake::ParticleParticleZero) => return vec![vec![0.0; 3], vec![0.0; 2]],
         Some(Mistake::ExtendedPrecision) => return arithmetic::particle_particle::<Wide>(one, two),
-        Some(Mistake::FusedArithmetic) => return arithmetic::particle_particle::<Fused>(one, two),
+        Some(Mistake::FusedArithmetic) => return arithmetic::particle_particle::<FusedDouble>(one, two),
         Some(Mistake::InterpolatedAll) => return basis::particle_particle(one, two),
         _ => {}
     }
@@ -124,7 +124,7 @@ pub fn contact_vector(student: Student, one: &MovingBody, two: &MovingBody, t: f
         Some(Mistake::ParticleParticleContactFirstAtEnd) => two.at(t) - one.end(),
         Some(Mistake::ParticleParticleContactSecondAtEnd) => two.end() - one.at(t),
         Some(Mistake::ExtendedPrecision) => arithmetic::between_particles::<Wide>(one, two, t),
-        Some(Mistake::FusedArithmetic) => arithmetic::between_particles::<Fused>(one, two, t),
+        Some(Mistake::FusedArithmetic) => arithmetic::between_particles::<FusedDouble>(one, two, t),
         Some(Mistake::ContactOtherFormula) => (two.start - one.start) + t * (two.displacement - one.displacement),
         _ => two.at(t) - one.at(t),
     }

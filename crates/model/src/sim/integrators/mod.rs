@@ -175,7 +175,7 @@ mod tests {
     fn advanced(integrator: Integrator, particles: Vec<Particle>) -> State {
         let force = Force::Constant { force: Vec2::new(4.0, 0.0) };
         let scene = Scene { integrator, forces: vec![force], ..scene(particles) };
-        let (bodies, mut forces, mut state) = (Bodies::new(&scene), Forces::new(&scene), State::of(&scene));
+        let (bodies, mut forces, mut state) = (Bodies::new(&scene), Forces::new(&scene), State::for_scene(&scene));
         Stepper::new(&scene).advance(1, &bodies, &mut forces, &mut state, None).unwrap();
         state
     }

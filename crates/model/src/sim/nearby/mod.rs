@@ -10,7 +10,7 @@ mod tests;
 
 use crate::scene::{Edge, Scene};
 use fosssim_num::vector::{Vec2, at};
-use strips::{Placed, Rectangle, Strips};
+use strips::{PlacedParticle, Rectangle, Strips};
 
 /// Radii of one size are at most this many times smaller than the largest of it.
 const RANGE: f64 = 4.0;
@@ -101,7 +101,7 @@ impl Nearby {
         particles.clear();
         edge_pairs.clear();
         sizes.iter_mut().for_each(|size| size.update(x));
-        let mut keep = |one: &Placed, other: &Placed| {
+        let mut keep = |one: &PlacedParticle, other: &PlacedParticle| {
             let [first, second] = [one, other].map(|entry| radii[entry.particle as usize]);
             if !is_beyond(other.place - one.place, (first + second) + *margin) {
                 let (one, other) = (one.particle, other.particle);

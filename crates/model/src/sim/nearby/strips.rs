@@ -19,7 +19,7 @@ const LAST_ROW: i64 = i64::MAX - 8;
 
 /// A particle as the last search saw it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Placed {
+pub(super) struct PlacedParticle {
     row: i64,
     pub place: Vec2,
     pub particle: u32,
@@ -36,7 +36,7 @@ struct Strip {
 /// Particles of like radii, sorted.
 #[derive(Debug, Clone)]
 pub(super) struct Strips {
-    entries: Vec<Placed>,
+    entries: Vec<PlacedParticle>,
     /// The rows that have particles, in order.
     rows: Vec<Strip>,
     /// The largest radius.
@@ -63,7 +63,7 @@ impl Strips {
         let radius = members.iter().map(|member| member.1).fold(f64::NEG_INFINITY, f64::max);
         let reach = (radius + radius) + margin;
         let zero = Vec2::zeros();
-        let entry = |&(particle, _): &(u32, f64)| Placed { row: 0, place: zero, particle };
+        let entry = |&(particle, _): &(u32, f64)| PlacedParticle { row: 0, place: zero, particle };
         Self {
             entries: members.iter().map(entry).collect(),
             rows: Vec::new(),
@@ -80,7 +80,7 @@ impl Strips {
     }
 
     /// Returns all particles that have a place.
-    pub fn entries(&self) -> &[Placed] {
+    pub fn entries(&self) -> &[PlacedParticle] {
         let end = self.rows.last().map_or(0, |row| row.end);
         &self.entries[..end]
     }
@@ -108,7 +108,7 @@ impl Strips {
 
     /// Hands all pairs to `hear` that may reach each other, each once, as long as it says so. Returns how many were
     /// tested.
-    pub fn pairs(&self, mut hear: impl FnMut(&Placed, &Placed) -> bool) -> u64 {
+    pub fn pairs(&self, mut hear: impl FnMut(&PlacedParticle, &PlacedParticle) -> bool) -> u64 {
         // Nothing is closer than zero, and NaN reaches nothing.
         if !(self.reach > 0.0) {
             return 0;
@@ -171,7 +171,7 @@ impl Strips {
         &self,
         rectangle: Rectangle,
         narrow: impl Fn([f64; 2]) -> [f64; 2],
-        mut hear: impl FnMut(&Placed) -> bool,
+        mut hear: impl FnMut(&PlacedParticle) -> bool,
     ) -> u64 {
         let Rectangle { low, high } = rectangle;
         let (lowest, highest) = (row_of(low.y, self.density), row_of(high.y, self.density));
@@ -201,9 +201,10 @@ fn row_of(y: f64, density: f64) -> i64 {
 }
 
 /// Sorts entries by row and x: nearly sorted ones with one look at each, others as any list.
-fn sort(entries: &mut [Placed]) {
-    let is_before =
-        |one: &Placed, other: &Placed| one.row < other.row || one.row == other.row && one.place.x < other.place.x;
+fn sort(entries: &mut [PlacedParticle]) {
+    let is_before = |one: &PlacedParticle, other: &PlacedParticle| {
+        one.row < other.row || one.row == other.row && one.place.x < other.place.x
+    };
     // In a large scene a few of a hundred change rows in a step, and pass all that lies between.
     let mut moves = 8 * entries.len();
     for index in 1..entries.len() {

@@ -2,7 +2,9 @@
 use super::{capitalised, letters};
 use fosssim_mistakes::{
     assignments::t2m2::{Letter, Reading, Subject, find_exchange, find_special, letter},
-    diagnose::{CoefficientGuess, Guess, ListGuess, OfPolynomials, PolynomialDetail, QuantityGuess, Stand, Weight},
+    diagnose::{
+        CoefficientGuess, Guess, ListGuess, OfPolynomials, PolynomialDetail, QuantityGuess, Substitute, Weight,
+    },
 };
 
 /// Returns the fault of these polynomials.
@@ -148,12 +150,12 @@ fn described(reading: Reading, name: &str) -> String {
     meaning(reading, name).map_or_else(|| name.to_owned(), |meaning| format!("{name} = {meaning}"))
 }
 
-fn stands_for(reading: Reading, letter: &str, stand: &Stand) -> String {
+fn stands_for(reading: Reading, letter: &str, stand: &Substitute) -> String {
     let stand = match stand {
-        Stand::Scaled(factor) => format!("{factor} {letter}"),
-        Stand::Letter(other) => described(reading, other),
-        Stand::Dot { vectors: [one, two], negated } => format!("{}{one}.{two}", if *negated { "-" } else { "" }),
-        Stand::One => "1".to_owned(),
+        Substitute::Scaled(factor) => format!("{factor} {letter}"),
+        Substitute::Letter(other) => described(reading, other),
+        Substitute::Dot { vectors: [one, two], negated } => format!("{}{one}.{two}", if *negated { "-" } else { "" }),
+        Substitute::One => "1".to_owned(),
     };
     match meaning(reading, letter) {
         None => format!("{stand} is used instead of {letter}"),

@@ -3,7 +3,7 @@ use super::capitalised;
 use crate::view::key;
 use fosssim_mistakes::{
     diagnose::{
-        Amount, ChangeCause, ChangeRatio, Changed, ChangedParticles, LoopEnd, Quantity, Ratios, StageDetail,
+        Amount, ChangeCause, ChangeRatio, ChangedParticles, ChangedQuantity, LoopEnd, Quantity, Ratios, StageDetail,
         StageFault, WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber, WrongPositions,
         WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
     },
@@ -222,7 +222,7 @@ fn of_responses(wrong: &WrongResponses) -> String {
 }
 
 /// Returns the subject that changes wrongly.
-fn who_changes(all: &[Changed]) -> String {
+fn who_changes(all: &[ChangedQuantity]) -> String {
     let quantities = distinct(all.iter().map(|one| one.quantity));
     let bodies = distinct(all.iter().map(body));
     match (&quantities[..], &bodies[..]) {
@@ -233,7 +233,7 @@ fn who_changes(all: &[Changed]) -> String {
     }
 }
 
-const fn body(changed: &Changed) -> &'static str {
+const fn body(changed: &ChangedQuantity) -> &'static str {
     match (changed.kind, changed.body) {
         (PairKind::ParticleParticle, 0) => "the first particle",
         (PairKind::ParticleParticle, _) => "the second particle",

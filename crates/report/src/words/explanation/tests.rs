@@ -3,10 +3,10 @@ use super::*;
 use fosssim_mistakes::{
     assignments::t2m2::{EXCHANGES, Reading, SPECIALS, Subject},
     diagnose::{
-        Amount, ChangeCause, ChangeRatio, Changed, ChangedParticles, CoefficientGuess, Guess, ListGuess, LoopEnd,
-        NanStage, NotFinite, OfPolynomials, PolynomialDetail, Quantity, QuantityGuess, Ratios, StageDetail, StageFault,
-        Stand, Weight, WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber, WrongPositions,
-        WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
+        Amount, ChangeCause, ChangeRatio, ChangedParticles, ChangedQuantity, CoefficientGuess, Guess, ListGuess,
+        LoopEnd, NanStage, NotFinite, OfPolynomials, PolynomialDetail, Quantity, QuantityGuess, Ratios, StageDetail,
+        StageFault, Substitute, Weight, WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber,
+        WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
     },
     student::all_rows,
 };
@@ -111,7 +111,7 @@ fn changes() -> [WrongChange; 4] {
 
 /// All that can be wrong with a stage.
 fn faults() -> Vec<StageFault> {
-    let changed = |body, quantity| Changed { kind: PairKind::ParticleEdge, body, quantity };
+    let changed = |body, quantity| ChangedQuantity { kind: PairKind::ParticleEdge, body, quantity };
     let position = vec![changed(0, Quantity::Position)];
     let both = vec![changed(1, Quantity::Position), changed(1, Quantity::Velocity)];
     let velocities = vec![changed(1, Quantity::Velocity), changed(2, Quantity::Velocity)];
@@ -185,7 +185,7 @@ fn faults() -> Vec<StageFault> {
 
 /// All that can be said of polynomials and stages, one explanation each.
 fn all() -> Vec<Explanation> {
-    let edge = Subject::of(PairKind::ParticleEdge).to_vec();
+    let edge = Subject::all_of_kind(PairKind::ParticleEdge).to_vec();
     let of = |subjects: Vec<Subject>, found| explanation("k", About::Polynomials { subjects, found }, Vec::new());
     let mut all = vec![
         explanation("k", About::Scene { has_length: true }, Vec::new()),
@@ -247,10 +247,10 @@ fn lines_of_all_sorts() -> Vec<Detail> {
         PolynomialDetail::Exchange { key: "first-radius-only".into(), of_edges: true },
         PolynomialDetail::Exchange { key: "first-radius-only".into(), of_edges: false },
         PolynomialDetail::Special("radius-unscaled".into()),
-        stands("h", Stand::Scaled(0.5)),
-        stands("R^2", Stand::Letter("a".into())),
-        stands("d", Stand::Dot { vectors: ["x21".into(), "d21".into()], negated: true }),
-        stands("R^2", Stand::One),
+        stands("h", Substitute::Scaled(0.5)),
+        stands("R^2", Substitute::Letter("a".into())),
+        stands("d", Substitute::Dot { vectors: ["x21".into(), "d21".into()], negated: true }),
+        stands("R^2", Substitute::One),
         PolynomialDetail::Factor { power: 3, factor: 0.0 },
         PolynomialDetail::Factor { power: 3, factor: 1.5 },
         PolynomialDetail::Unknown { power: 4 },
@@ -258,7 +258,7 @@ fn lines_of_all_sorts() -> Vec<Detail> {
         PolynomialDetail::Weight(weight(&["b", "b"], 2)),
         PolynomialDetail::Alternative(vec![weight(&["e", "h"], 2), weight(&["R"], 1)]),
     ];
-    let changed = Changed { kind: PairKind::ParticleEdge, body: 2, quantity: Quantity::Velocity };
+    let changed = ChangedQuantity { kind: PairKind::ParticleEdge, body: 2, quantity: Quantity::Velocity };
     let change = |amount, across| StageDetail::Change { changed, amount, across, wrong: 3, of: 4 };
     let stages = [
         StageDetail::Order,

@@ -3,7 +3,7 @@ mod catalogue;
 
 use super::*;
 use crate::assignments::t2m2::{Input, Inputs, Reading, formulas};
-use crate::diagnose::{CoefficientGuess, ExamplePlace, Stand, Weight};
+use crate::diagnose::{CoefficientGuess, ExamplePlace, Substitute, Weight};
 use fosssim_judge::fair::formulas::BoundedPairMotion;
 use fosssim_model::sim::{Pair, PairMotion, PointMotion};
 use fosssim_num::{polynomial::trim, vector::Vec2};
@@ -197,7 +197,7 @@ fn weight(power: usize, letters: &str, actual: f64, expected: f64) -> impl Fn(&P
 }
 
 /// That something stands for this letter of the assignment's formula.
-fn stands(subject: Subject, letter: &'static str, stand: Stand) -> impl Fn(&PolynomialDetail) -> bool {
+fn stands(subject: Subject, letter: &'static str, stand: Substitute) -> impl Fn(&PolynomialDetail) -> bool {
     let reading = Reading { subject, number: 0 };
     move |detail| *detail == PolynomialDetail::StandsFor { reading, letter: letter.into(), stand: stand.clone() }
 }
@@ -244,7 +244,7 @@ fn the_tables_are_the_formulas_of_the_fair_rules() {
         for _ in 0..200 {
             let motion = numbers.motion(kind);
             let (judged, inputs) = (BoundedPairMotion::from(&motion).polynomials(), Inputs::new(&motion));
-            for (number, &subject) in Subject::of(kind).iter().enumerate() {
+            for (number, &subject) in Subject::all_of_kind(kind).iter().enumerate() {
                 for (form, formula) in formulas::readings(subject).iter().enumerate() {
                     let is_other = subject == Subject::EdgeApproach && form == 1;
                     let right =
@@ -318,20 +318,25 @@ fn a_scale_of_its_own_for_every_polynomial_hides_no_term() {
 
 #[test]
 fn one_wrong_letter_is_named() {
-    let square = Stand::Dot { vectors: ["x21".into(), "x21".into()], negated: false };
+    let square = Substitute::Dot { vectors: ["x21".into(), "x21".into()], negated: false };
     only(PairKind::ParticleEdge, "letter", stands(Subject::EdgeApproach, "d", square), |motion| {
         let l = letters(motion);
         let mut lists = edge_lists(motion);
         lists[3] = quintic(&l, l.d, true);
         lists
     });
-    only(PairKind::ParticleEdge, "letter-factor", stands(Subject::EdgeOverlap, "h", Stand::Scaled(0.5)), |motion| {
-        let mut l = letters(motion);
-        let mut lists = edge_lists(motion);
-        l.h *= 0.5;
-        lists[0] = quartic(&l);
-        lists
-    });
+    only(
+        PairKind::ParticleEdge,
+        "letter-factor",
+        stands(Subject::EdgeOverlap, "h", Substitute::Scaled(0.5)),
+        |motion| {
+            let mut l = letters(motion);
+            let mut lists = edge_lists(motion);
+            l.h *= 0.5;
+            lists[0] = quartic(&l);
+            lists
+        },
+    );
 }
 
 #[test]
@@ -399,7 +404,7 @@ fn wrong_inputs_are_one_explanation_for_all_polynomials() {
         );
         assert_eq!(one.samples, 1200, "{one:#?}");
         let About::Polynomials { subjects, .. } = &one.about else { panic!("{one:#?}") };
-        assert_eq!(subjects[..], *Subject::of(PairKind::ParticleEdge), "{one:#?}");
+        assert_eq!(subjects[..], *Subject::all_of_kind(PairKind::ParticleEdge), "{one:#?}");
     }
 }
 
@@ -510,7 +515,7 @@ fn small_slips_in_quadratics_are_named() {
         let (n, r) = n_square(motion);
         lists[0][2] += r * n.sqrt() - r * n;
     });
-    half_plane("letter", &stands(Subject::HalfPlaneApproach, "(dx.n)", Stand::One), &|motion, lists| {
+    half_plane("letter", &stands(Subject::HalfPlaneApproach, "(dx.n)", Substitute::One), &|motion, lists| {
         let PairMotion::HalfPlane { centre: body, point, normal, .. } = motion else { panic!("no half-plane") };
         lists[1] = vec![-1.0, (*point - body.start).dot(normal)];
     });

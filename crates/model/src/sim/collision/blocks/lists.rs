@@ -27,7 +27,7 @@ pub(super) struct Lists {
 
 /// The effect of a response on the lists.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Refreshed {
+pub(super) enum RefreshedBody {
     /// The particle ends where it ended before, to the last bit.
     Same,
     /// The particle ends elsewhere.
@@ -63,15 +63,15 @@ impl Lists {
     }
 
     /// Takes over the displacement of a particle.
-    pub fn refresh(&mut self, setting: Setting<'_>, particle: usize) -> Refreshed {
+    pub fn refresh(&mut self, setting: Setting<'_>, particle: usize) -> RefreshedBody {
         let Setting { bodies, displacements, .. } = setting;
         let shift = at(displacements, particle);
         let [_, _, dx, dy, _] = &self.particles;
         if [dx[particle], dy[particle]].map(f64::to_bits) == [shift.x, shift.y].map(f64::to_bits) {
-            return Refreshed::Same;
+            return RefreshedBody::Same;
         }
         if !are_moderate(&[shift.x, shift.y]) {
-            return Refreshed::TooLarge;
+            return RefreshedBody::TooLarge;
         }
         put(&mut self.particles[2..4], particle, bodies.particles(), shift);
         if std::mem::replace(&mut self.has_edges, true) {
@@ -92,7 +92,7 @@ impl Lists {
             }
             repeat_last(&mut self.edges[..8], bodies.edges.len());
         }
-        Refreshed::Moved { is_end: !self.own_edges[particle].is_empty() }
+        RefreshedBody::Moved { is_end: !self.own_edges[particle].is_empty() }
     }
 
     /// Fills the lists of values that do not change while the scene is simulated.

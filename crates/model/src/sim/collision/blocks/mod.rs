@@ -17,7 +17,7 @@ use super::super::{
 };
 use fosssim_num::lanes::Instructions;
 use group::Group;
-use lists::{Lists, Refreshed};
+use lists::{Lists, RefreshedBody};
 use rows::Pairs;
 
 /// The inputs of a pass.
@@ -60,12 +60,12 @@ impl Blocks {
     pub fn refresh(&mut self, setting: Setting<'_>, moved: [usize; 3]) -> bool {
         // Fixed particles stay, and so does all that is computed with them.
         moved.into_iter().all(|particle| match self.lists.refresh(setting, particle) {
-            Refreshed::Same => true,
-            Refreshed::Moved { is_end } => {
+            RefreshedBody::Same => true,
+            RefreshedBody::Moved { is_end } => {
                 self.group.spoil(particle, is_end);
                 true
             }
-            Refreshed::TooLarge => false,
+            RefreshedBody::TooLarge => false,
         })
     }
 

@@ -20,7 +20,7 @@ pub struct PenaltyTerms {
 impl PenaltyTerms {
     /// Returns the terms of a scene with `penalty` handling; `None` for all others.
     #[must_use]
-    pub fn of(scene: &Scene) -> Option<Self> {
+    pub fn for_scene(scene: &Scene) -> Option<Self> {
         let Collision::Penalty { stiffness, thickness, detection } = scene.collision else { return None };
         let gradient = vec![0.0; 2 * scene.particles.len()];
         Some(Self {
