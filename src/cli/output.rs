@@ -257,7 +257,7 @@ impl Folder {
             Ok(()) => {}
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists && name.is_dir() => {}
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
-                bail!("{} is no folder; name one for the pictures", name.display())
+                bail!("{} is not a folder; name one for the pictures", name.display())
             }
             Err(error) => return Err(error).with_context(|| format!("cannot make the folder {}", name.display())),
         }

@@ -190,8 +190,8 @@ test("each trace is recognised anew, and a scene that its reader chooses or drop
 test("what is no trace, and a broken scene, are told at once", async () => {
   const { page, complaints, close } = await opened(browser, html);
   for (const [content, words] of [
-    ["Dear grader", /is no trace: it looks like text/],
-    ["", /is no trace: it is empty/],
+    ["Dear grader", /is not a trace: it looks like text/],
+    ["", /is not a trace: it is empty/],
   ]) {
     writeFileSync(join(folder, "notes.bin"), content);
     await drop(page, join(folder, "notes.bin"));
@@ -472,7 +472,7 @@ test("a scene is written: messages in place, its motion, and files that are the 
     await page.locator("#source").evaluate((area) => area.value.slice(area.selectionStart, area.selectionEnd)),
     "x",
   );
-  assert.match(await page.locator("#problems").innerText(), /`time` of .* is `x`, which is no number/);
+  assert.match(await page.locator("#problems").innerText(), /`time` of .* must be a number, not `x`/);
   assert.equal(await page.locator("#marks mark").last().innerText(), "x");
   assert.deepEqual(complaints, []);
   await close();

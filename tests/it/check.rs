@@ -460,11 +460,15 @@ fn what_is_no_trace_is_told_in_one_line() {
         workspace.write("thing", bytes);
         let run = workspace.run(["check", "scene.xml", "thing"]);
         assert_eq!((run.code, run.out().lines().count()), (Some(1), 1), "{}", run.shown());
-        assert!(run.out().starts_with("BAD TRACE: thing is no trace: ") && run.out().contains(says), "{}", run.shown());
+        assert!(
+            run.out().starts_with("BAD TRACE: thing is not a trace: ") && run.out().contains(says),
+            "{}",
+            run.shown()
+        );
     }
     // A trace that is cut short is a trace all the same.
     workspace.write("thing", &trace_of(BOUNCE)[..20]);
-    assert!(!workspace.run(["check", "scene.xml", "thing"]).out().contains("is no trace"));
+    assert!(!workspace.run(["check", "scene.xml", "thing"]).out().contains("is not a trace"));
 }
 
 #[test]

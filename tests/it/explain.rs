@@ -282,7 +282,7 @@ fn without_a_trace_there_is_nothing_to_explain() {
     assert!(run.out().contains(said), "{}", run.shown());
     workspace.write("notes.txt", "nothing but some words\n");
     let run = workspace.run(["explain", SPINNING, "notes.txt"]);
-    assert!(run.code == Some(2) && run.err().contains("is no trace: it looks like text"), "{}", run.shown());
+    assert!(run.code == Some(2) && run.err().contains("is not a trace: it looks like text"), "{}", run.shown());
 }
 
 /// The library of T1M3 takes implicit integrators, refuses another and knows no collisions, whatever a student wrote.

@@ -102,7 +102,7 @@ fn nonsense_is_refused_before_anything_is_written() {
         ("scene.xml trace.bin --output trace.bin --format gif", "it is also an input"),
         ("scene.xml --output scene.xml --format gif", "it is also an input"),
         ("scene.xml --output no/such/x.gif", "there is no folder no/such"),
-        ("scene.xml --output scene.xml --format png", "scene.xml is no folder"),
+        ("scene.xml --output scene.xml --format png", "scene.xml is not a folder"),
     ] {
         let run = render(&workspace, words);
         assert_eq!((run.code, run.stdout.len()), (Some(2), 0), "{words}: {}", run.shown());

@@ -73,7 +73,7 @@ async function recognised(file) {
   const found =
     scenes.find((scene) => scene === name || scene.endsWith(`/${name}`)) ?? (scenes.length === 1 ? scenes[0] : null);
   if (found) return sceneOf(found);
-  if (looks_like) throw new Error(`${file.name} is no trace: it ${looks_like}.`);
+  if (looks_like) throw new Error(`${file.name} is not a trace: it ${looks_like}.`);
   throw new Error(
     scenes.length
       ? `The trace begins like those of ${scenes.join(" and ")}: choose its scene, or drop its XML.`

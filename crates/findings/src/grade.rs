@@ -172,7 +172,7 @@ impl Grade {
     }
 }
 
-/// An entry of a class's folder that is no submission, and why: nobody is left out in silence.
+/// An entry of a class's folder that is not a submission, and why: nobody is left out in silence.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct PassedOver {

@@ -380,7 +380,7 @@ fn read_build(problems: &mut Vec<Problem>, build: Spanned<RawBuild>) -> BuildSte
         program.is_empty() || program.starts_with('/') || program.split('/').any(|part| part == "..")
     };
     if let Some(program) = raw.program.as_ref().filter(leads_out) {
-        let text = format!("build.program \"{program}\" has to be a path inside the submission's folder");
+        let text = format!("build.program \"{program}\" must be a path inside the submission's folder");
         problems.push((span, text));
     }
     BuildStep {
@@ -427,7 +427,7 @@ fn read_speed(problems: &mut Vec<Problem>, raw: Spanned<RawSpeed>) -> SpeedMarki
         }
     };
     if none_at <= full_at {
-        let text = format!("speed.none_at ({none_at}) has to be greater than speed.full_at ({full_at})");
+        let text = format!("speed.none_at ({none_at}) must be greater than speed.full_at ({full_at})");
         problems.push((span, text));
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the range has been checked")]
@@ -491,19 +491,19 @@ mod tests {
         let error = read(text).expect_err("wrong");
         let told = error.to_string();
         for line in [
-            "1:10: schema has to be a whole number that is not negative, and is a string",
+            "1:10: schema must be a whole number that is not negative, not a string",
             "3:9: rules \"Fair!\" is not known: there are \"parity\", \"fair\" and \"both\"; did you mean \"fair\"?",
             "4:9: hints \"half\" is not known: there are \"none\", \"where\", \"what\" and \"full\"",
-            "5:15: show_output has to be true or false, and is an integer",
+            "5:15: show_output must be true or false, not an integer",
             "6:1: unknown key `cpu_seconds` in the suite: it belongs into [limits]",
-            "7:7: run has to be a list of texts, [\"...\"], and is a string",
+            "7:7: run must be a list of texts, [\"...\"], not a string",
             "9:1: unknown key `cpu-second` in [limits]: did you mean `cpu_seconds`?",
-            "10:14: memory_mib has to be a number, and is a string",
+            "10:14: memory_mib must be a number, not a string",
             "11:9: files is NaN: it has to lie between 1 and 1000000",
             "13:1: unknown key `comand` in [build]: did you mean `command`?",
-            "build.program \"../x\" has to be a path inside the submission's folder",
+            "build.program \"../x\" must be a path inside the submission's folder",
             "16:1: unknown key `nam` in this [[group]]: did you mean `name`?",
-            "17:25: each of scenes has to be a text in quotes, and this is an integer",
+            "17:25: each of scenes must be a text in quotes, not an integer",
             "18:10: credit \"step\" is not known: there are \"scenes\", \"steps\" and \"all\"; did you mean \"steps\"?",
             "21:10: group \"b\" has no scenes",
             "22:10: points is -1: it has to lie between 0 and 1000000",

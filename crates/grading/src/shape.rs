@@ -151,7 +151,7 @@ fn fits(name: &str, kind: &ValueKind, value: &mut Spanned<DeValue<'_>>, problems
     let at = value.span();
     let is = value.get_ref().type_str();
     let mut wrong = |wanted: &str| {
-        problems.push((at.clone(), format!("{name} has to be {wanted}, and is {}", article(is))));
+        problems.push((at.clone(), format!("{name} must be {wanted}, not {}", article(is))));
         false
     };
     match (kind, value.get_mut()) {
@@ -176,7 +176,7 @@ fn fits(name: &str, kind: &ValueKind, value: &mut Spanned<DeValue<'_>>, problems
             let before = problems.len();
             for item in list.iter().filter(|item| !item.get_ref().is_str()) {
                 let is = article(item.get_ref().type_str());
-                problems.push((item.span(), format!("each of {name} has to be a text in quotes, and this is {is}")));
+                problems.push((item.span(), format!("each of {name} must be a text in quotes, not {is}")));
             }
             problems.len() == before
         }

@@ -267,7 +267,7 @@ fn copy_file(
 
 fn too_large() -> CopyError {
     CopyError::Submission(format!(
-        "it holds more than {MOST_FILES} files or {LARGEST_FOLDER} bytes: that is no submission"
+        "it holds more than {MOST_FILES} files or {LARGEST_FOLDER} bytes: that is not a submission"
     ))
 }
 
@@ -446,7 +446,7 @@ mod tests {
         let sources = folder.path().join("sources");
         std::fs::create_dir(&sources).unwrap();
         File::create(sources.join("huge")).unwrap().set_len(100 << 30).unwrap();
-        assert!(why(copy_sources(&sources, &folder.path().join("copy"))).contains("no submission"));
+        assert!(why(copy_sources(&sources, &folder.path().join("copy"))).contains("not a submission"));
     }
 
     #[test]

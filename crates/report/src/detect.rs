@@ -101,7 +101,7 @@ impl Detect<'_> {
         text += &motion(&study.motion, style);
         text += &format!(
             "\n{}\n",
-            style.paint(Look::Strong, "Polynomials in t, the fraction of the step; each is to be positive")
+            style.paint(Look::Strong, "Polynomials in t, the fraction of the step; each must be positive")
         );
         for curve in &study.curves {
             text += &polynomial_lines(&curve.role.to_string(), curve, style);

@@ -105,7 +105,7 @@ problems! {
         detail,
         "mend the file and upload it again; nothing was counted";
     /// The upload is no suite.
-    no_suite(detail: impl Into<String>): 422, "unusable-upload", "This is no suite",
+    no_suite(detail: impl Into<String>): 422, "unusable-upload", "This is not a suite",
         detail,
         "mend the suite and upload it again; the assignment has the suite that it had";
     /// An upload with more bytes than allowed.

@@ -79,7 +79,7 @@ fn trace_on_scene(scene: &Path, trace: &Path, arguments: &Explain) -> Result<(Ca
     let scene = input::scene(scene)?;
     let mut trace = input::trace(trace)?;
     if let Some(kind) = trace.looks_like {
-        bail!("{} is no trace: it {kind}", trace.name);
+        bail!("{} is not a trace: it {kind}", trace.name);
     }
     let (case, card, _) =
         case((scene.name, trace.name.clone()), true, &scene.scene, &mut trace.reader, None, arguments);

@@ -185,7 +185,7 @@ fn copy(from: &Folder, to: &Place, depth: usize) -> Result<()> {
                 copy().with_context(|| format!("cannot copy {} to {}", source.display(), target.path().display()))?;
             }
             Ok(FolderEntry::Folder(_) | FolderEntry::Other) => {
-                console::complain(format!("passed over {}: it is no file\n", input::shown(&source)));
+                console::complain(format!("passed over {}: it is not a file\n", input::shown(&source)));
             }
             Err(error) => return Err(error).with_context(|| format!("cannot read {}", source.display())),
         }

@@ -121,7 +121,7 @@ impl Results<'_> {
         let mut keep = |result: Result<()>| drop(result.map_err(|error| wrong.get_or_insert(error).to_string()));
         if self.is_part && self.folder.is_some() {
             console::complain(
-                "a part of the suite is no grade: grades.csv and the other tables are left as they are\n",
+                "a part of the suite is not a grade: grades.csv and the other tables are left as they are\n",
             );
         } else if let Some(folder) = self.folder {
             let lines = || grade::json_lines(grades, passed_over);

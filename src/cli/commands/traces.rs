@@ -29,7 +29,7 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report]) -> Resu
     for folder in &arguments.programs {
         if !folder.is_dir() {
             bail!(
-                "{} is no folder: with --traces a submission is a folder of traces, Group/name.bin",
+                "{} is not a folder: with --traces a submission is a folder of traces, Group/name.bin",
                 folder.display()
             );
         }

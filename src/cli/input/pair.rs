@@ -56,7 +56,7 @@ pub(in crate::cli) fn of_scene(word: &str, scene: &Scene) -> Result<Pair> {
     let kind = kind_of(kind)?;
     let (first, second) = indices.split_once(',').context("two indices are needed, as in pe:3,1")?;
     let index = |text: &str, count: usize, what: &str| -> Result<u32> {
-        let index: u32 = text.trim().parse().with_context(|| format!("`{text}` is no index"))?;
+        let index: u32 = text.trim().parse().with_context(|| format!("`{text}` is not an index"))?;
         if (index as usize) < count {
             return Ok(index);
         }
@@ -89,7 +89,7 @@ fn kind_of(word: &str) -> Result<PairKind> {
         let names = PairKind::ALL.into_iter().flat_map(|kind| [kind.short(), kind.name()]);
         let meant = near::closest(word, names).map(|name| format!("; did you mean {name}?")).unwrap_or_default();
         format!(
-            "`{word}` is no kind of pair; there are pp (two particles), pe (particle and edge), ph (particle and \
+            "`{word}` is not a kind of pair; there are pp (two particles), pe (particle and edge), ph (particle and \
              half-plane){meant}"
         )
     })
@@ -121,13 +121,13 @@ fn moving(word: &str) -> Result<PointMotion> {
 /// # Errors
 /// When it is no point with finite coordinates.
 fn vector(word: &str) -> Result<Vec2> {
-    let advice = || format!("`{word}` is no point; write X,Y as in 3,-1.5");
+    let advice = || format!("`{word}` is not a point; write X,Y as in 3,-1.5");
     let (x, y) = word.split_once(',').with_context(advice)?;
     Ok(Vec2::new(number(x).with_context(advice)?, number(y).with_context(advice)?))
 }
 
 fn radii_of(word: &str) -> Result<[f64; 2]> {
-    let advice = || format!("`{word}` are no two radii; write R,R as in 1,0.5");
+    let advice = || format!("`{word}` are not two radii; write R,R as in 1,0.5");
     let (first, second) = word.split_once(',').with_context(advice)?;
     let radius = |text| number(text).and_then(not_negative).with_context(advice);
     Ok([radius(first)?, radius(second)?])
@@ -141,7 +141,7 @@ fn not_negative(radius: f64) -> Result<f64> {
 }
 
 fn number(text: &str) -> Result<f64> {
-    let value: f64 = text.trim().parse().map_err(|_| anyhow!("`{text}` is no number"))?;
+    let value: f64 = text.trim().parse().map_err(|_| anyhow!("`{text}` is not a number"))?;
     if !value.is_finite() {
         bail!("`{text}` is not finite");
     }
@@ -171,14 +171,14 @@ mod tests {
     fn what_is_no_point_is_refused_with_advice() {
         for word in ["", "3", "3;1", "3,x", "3,1+4", "3,1,2", "nan,0", "3,1..", "1e999,0", "3,1+4,1+2,2"] {
             let error = format!("{:#}", moving(word).unwrap_err());
-            assert!(error.contains("is no point"), "{word}: {error}");
+            assert!(error.contains("is not a point"), "{word}: {error}");
         }
     }
 
     #[test]
     fn the_kind_of_pair_is_looked_at_before_the_radii_are_missed() {
         let error = |word: &str| format!("{:#}", motion(word, None).unwrap_err());
-        assert!(error("xx:1").contains("`xx` is no kind of pair"), "{}", error("xx:1"));
+        assert!(error("xx:1").contains("`xx` is not a kind of pair"), "{}", error("xx:1"));
         assert!(error("particle-egde:1").ends_with("did you mean particle-edge?"), "{}", error("particle-egde:1"));
         assert!(error("pp:1,0").contains("pp takes 2 points"), "{}", error("pp:1,0"));
         assert!(error("pp:1,0:3,0").contains("the radii are missing"), "{}", error("pp:1,0:3,0"));
@@ -190,8 +190,8 @@ mod tests {
         assert!(motion("ph:0,1+0,-1:0,0:0,1", Some("0.25")).is_ok());
         for (pair, radii, says) in [
             ("pe:3,1:5,9", "1,1", "pe takes 3 points (the particle's centre and the ends of the edge), not 2"),
-            ("pq:3,1:5,9", "1,1", "`pq` is no kind of pair"),
-            ("pp:3,1:5,9", "1", "`1` are no two radii"),
+            ("pq:3,1:5,9", "1,1", "`pq` is not a kind of pair"),
+            ("pp:3,1:5,9", "1", "`1` are not two radii"),
             ("pp:3,1:5,9", "1,-1", "a radius is negative"),
             ("ph:3,1:0,0:0,0", "1", "the half-plane's normal is zero"),
         ] {

@@ -39,7 +39,7 @@ pub(in crate::cli) fn scene(name: &Path) -> Result<SceneInput> {
     };
     if is_binary(&bytes) {
         bail!(
-            "{shown} is no scene but a trace, or other binary data: SCENE comes first, then TRACE where one is wanted"
+            "{shown} is not a scene but a trace, or other binary data: SCENE comes first, then TRACE where one is wanted"
         );
     }
     match scene::read(&shown, &bytes) {

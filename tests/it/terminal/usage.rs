@@ -29,7 +29,7 @@ fn a_trace_in_the_place_of_the_scene_is_told_in_one_line() {
         let run = workspace.run(command.iter().chain(&["trace.bin", "scene.xml"]));
         assert_eq!(run.code, Some(2), "{}", run.shown());
         assert_eq!(run.err().lines().count(), 1, "{}", run.err());
-        assert!(run.err().contains("trace.bin is no scene but a trace"), "{}", run.err());
+        assert!(run.err().contains("trace.bin is not a scene but a trace"), "{}", run.err());
         assert!(run.err().contains("SCENE comes first"), "{}", run.err());
     }
     let packed = zstd::encode_all(&workspace.read("trace.bin")[..], 3).expect("packed");
@@ -175,7 +175,7 @@ fn slips_in_names_of_scenes_and_pairs_find_what_was_meant() {
         assert!(near.split(',').next().is_some_and(|first| first.ends_with(meant)), "{typed}: {}", run.err());
     }
     let run = workspace.run(["detect", "xx:1"]);
-    assert!(run.err().contains("`xx` is no kind of pair") && !run.err().contains("radii"), "{}", run.err());
+    assert!(run.err().contains("`xx` is not a kind of pair") && !run.err().contains("radii"), "{}", run.err());
 }
 
 #[test]

@@ -72,7 +72,7 @@ pub enum GradeFault {
     #[error(transparent)]
     Keeping(#[from] KeepError),
     /// An event was not borne; grading went on.
-    #[error("telling how grading goes failed: {0}; please report this")]
+    #[error("reporting the progress of grading failed: {0}; please report this")]
     Telling(Fault),
 }
 

@@ -285,7 +285,7 @@ fn words(text: &str, flaw: &Flaw) -> (String, String) {
     let text = quote(text.trim_ascii());
     match flaw {
         Flaw::Empty => ("is empty".to_owned(), "write a number".to_owned()),
-        Flaw::NoNumber => (format!("is `{text}`, which is no number"), "write a number such as `-1.5e-3`".to_owned()),
+        Flaw::NoNumber => (format!("must be a number, not `{text}`"), "write a number such as `-1.5e-3`".to_owned()),
         Flaw::Trailing(prefix) => (
             format!("is `{text}`, which is more than a number"),
             format!("the original reads `{}` and ignores the rest", quote(prefix)),

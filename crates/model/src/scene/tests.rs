@@ -28,7 +28,7 @@ fn numbers() {
     let bad = |value: &str| with(&format!("<dragdamping b=\"{value}\"/>"));
     for (value, words) in [
         ("", "4:16: `b` of dragdamping 0 is empty (write a number)"),
-        ("x", "4:17: `b` of dragdamping 0 is `x`, which is no number (write a number such as `-1.5e-3`)"),
+        ("x", "4:17: `b` of dragdamping 0 must be a number, not `x` (write a number such as `-1.5e-3`)"),
         (
             "0.05xyz",
             "4:17: `b` of dragdamping 0 is `0.05xyz`, which is more than a number (the original reads `0.05` and \
@@ -196,7 +196,7 @@ fn indices() {
     );
     says("<edge i='1' j='1'/>", "4:16: `j` of edge 0 is the same particle as `i` (two different particles are needed)");
     // An unreadable index says nothing about the other one.
-    says("<edge i='x' j='0'/>", "4:10: `i` of edge 0 is `x`, which is no number (write a number such as `-1.5e-3`)");
+    says("<edge i='x' j='0'/>", "4:10: `i` of edge 0 must be a number, not `x` (write a number such as `-1.5e-3`)");
     for (inner, words) in [
         (
             "<springforce edge='0' k='1' l0='1'/>",

@@ -104,7 +104,7 @@ fn head(check: &Check<'_>, style: Style) -> String {
 pub(crate) fn headline(check: &Check<'_>) -> String {
     let outcome = check.outcome;
     if let (Some(kind), true) = (check.looks_like, check.is_no_trace()) {
-        return format!("is no trace: it {kind}");
+        return format!("is not a trace: it {kind}");
     }
     if let Some(question) = check.explanations.iter().find(|one| one.is_other_scene()) {
         return words::explanation::what(question);

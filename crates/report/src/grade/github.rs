@@ -40,7 +40,7 @@ pub(crate) fn annotations(grades: &[Grade]) -> String {
     text
 }
 
-/// Returns a warning per entry that is no submission.
+/// Returns a warning per entry that is not a submission.
 pub(crate) fn passed_over(entries: &[PassedOver]) -> String {
     let warning = |entry: &PassedOver| annotation("warning", &format!("{}: {NOT_GRADED}", entry.name), &entry.why);
     entries.iter().map(warning).collect()

@@ -226,7 +226,7 @@ fn passed(entry: &PassedOver) -> PassedOver {
     PassedOver { name: plain(&entry.name), why: plain(&entry.why) }
 }
 
-/// Returns a line per grade, and one per entry that is no submission, which has no points either.
+/// Returns a line per grade, and one per entry that is not a submission, which has no points either.
 #[must_use]
 pub fn lines(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     let grades = grades.iter().map(|grade| serde_json::to_string(&GradeView::from(grade)));

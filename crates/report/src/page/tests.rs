@@ -122,7 +122,7 @@ fn a_page_about_no_trace_has_no_verdicts_of_books() {
     let check = Check { looks_like: Some("is empty"), ..check_of("head-on", "mine.bin", &outcome, &[]) };
     let case = Case { check, scene: &scene, evidence: None, what_if: None, hints: Hints::Full, has_trace: true };
     let html = case.page("mine.bin");
-    assert!(html.contains("is no trace: it is empty") && !html.contains("fair rules"), "{html}");
+    assert!(html.contains("is not a trace: it is empty") && !html.contains("fair rules"), "{html}");
 }
 
 /// A trace that was not kept whole is not compared with a whole run.

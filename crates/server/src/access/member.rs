@@ -175,7 +175,7 @@ impl Member {
     /// When they may see none of this number.
     pub async fn upload(&self, id: i64) -> Result<(Submission, Artefact), Problem> {
         let submission = self.kept(id).await?;
-        let wrong = |what: &str| Problem::from(DbError::Other(format!("a submission's {what} is none")));
+        let wrong = |what: &str| Problem::from(DbError::Other(format!("a submission's {what} is invalid")));
         let digest: Digest = submission.digest.parse().map_err(|_| wrong("digest"))?;
         let size = u64::try_from(submission.size).map_err(|_| wrong("size"))?;
         Ok((submission, Artefact { digest, size }))

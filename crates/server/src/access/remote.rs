@@ -124,7 +124,7 @@ impl Remote {
     async fn checked(&self, lease: &Lease, outcome: &Outcome) -> Result<Outcome, Problem> {
         let short = |code: &str| (1..=4).contains(&code.len()) && code.bytes().all(|c| c.is_ascii_uppercase());
         if !short(&outcome.code) || outcome.code == crate::task::JUDGE_ERROR {
-            return Err(Problem::invalid("the verdict's code is none"));
+            return Err(Problem::invalid("the verdict's code is unknown"));
         }
         let seconds = Some(outcome.seconds.clone()).filter(|seconds| !seconds.is_empty());
         for number in [&outcome.points, &outcome.max_points, &seconds].into_iter().flatten() {
@@ -152,7 +152,7 @@ impl Remote {
             let Some((_, _, media_type)) = REPORTS.iter().find(|(_, name, _)| *name == file.name) else {
                 return Err(Problem::invalid(format!("no report is called {}", plain(&file.name, 60))));
             };
-            ensure(names.insert(file.name.clone()), Problem::invalid("a report is there twice"))?;
+            ensure(names.insert(file.name.clone()), Problem::invalid("two reports have the same name"))?;
             file.media_type = (*media_type).to_owned();
             let statement = "SELECT size FROM job_file WHERE job = ? AND attempt = ? AND digest = ?";
             let stored =

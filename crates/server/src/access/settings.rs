@@ -88,7 +88,7 @@ pub(crate) fn moment<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Optio
         None => Ok(None),
         Some(Moment::Number(number)) => Ok(Some(number)),
         Some(Moment::Text(text)) => calendar::read(&text).map(Some).ok_or_else(|| {
-            Error::custom(format!("{text:?} is no date with a time zone, such as 2026-12-01T23:59:00+01:00"))
+            Error::custom(format!("{text:?} is not a date with a time zone, such as 2026-12-01T23:59:00+01:00"))
         }),
     }
 }

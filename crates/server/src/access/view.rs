@@ -384,7 +384,7 @@ pub(super) async fn submission(
         let statement = "SELECT name, media_type, digest, size FROM result_file WHERE result = ? ORDER BY name";
         let rows = transaction.rows(statement, values![grade.result]).await?;
         let read = |row: &Row| {
-            let wrong = |what: &str| DbError::Other(format!("a report's {what} is none"));
+            let wrong = |what: &str| DbError::Other(format!("a report's {what} is invalid"));
             let digest = row.text("digest")?.parse().map_err(|_| wrong("digest"))?;
             let size = u64::try_from(row.int("size")?).map_err(|_| wrong("size"))?;
             Ok(read_row!(row => OutputFile { name, media_type; artefact: Artefact { digest, size } }))

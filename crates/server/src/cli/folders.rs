@@ -59,7 +59,7 @@ impl ServiceFolders {
         }
         let metadata = fs::metadata(data).with_context(|| format!("cannot read {}", data.display()))?;
         if !metadata.is_dir() {
-            bail!("{} is no folder: name the server's own folder by --data", data.display());
+            bail!("{} must be a folder: name the server's own folder by --data", data.display());
         }
         tempfile::tempfile_in(data).with_context(|| {
             format!("cannot write in {}: name a folder of the server's own by --data", data.display())

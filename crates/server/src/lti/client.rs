@@ -155,7 +155,7 @@ impl Client {
             let host = Url::parse(&ask.address).ok().and_then(|url| url.host_str().map(str::to_owned));
             let host = host.unwrap_or_else(|| "somewhere else".to_owned());
             return Err(ServiceFault::Refused(format!(
-                "its service is on {host}, which is none of the platform's hosts: an administrator may add it"
+                "its service is on {host}, which is not one of the platform's hosts: an administrator may add it"
             )));
         };
         let (agent, ask) = (self.agent.clone(), ask.clone());
@@ -215,7 +215,7 @@ impl Client {
         let told = self.send(platform, &ask, None).await?.successful()?;
         let token: Token = told.read("its token")?;
         if token.access_token.is_empty() || token.access_token.bytes().any(|c| !c.is_ascii_graphic()) {
-            return Err(ServiceFault::Refused("its token is none".to_owned()));
+            return Err(ServiceFault::Refused("its token is invalid".to_owned()));
         }
         let lasts = Duration::from_secs(token.expires_in.unwrap_or(0).min(24 * 3600)).saturating_sub(MARGIN);
         let kept = (token.access_token.clone(), Instant::now() + lasts);

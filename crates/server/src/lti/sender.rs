@@ -173,7 +173,7 @@ async fn send(database: &Database, lti: &Lti, claim: &Claim) -> Result<Option<Pa
 
 /// Returns the address of a column's scores: its own with `/scores` at the path's end (AGS 3.4).
 fn scores(line_item: &str) -> Result<String, ServiceFault> {
-    let wrong = || ServiceFault::Refused("the address of its grade book's column is none".to_owned());
+    let wrong = || ServiceFault::Refused("the address of its grade book's column is invalid".to_owned());
     let mut url = Url::parse(line_item).map_err(|_| wrong())?;
     url.path_segments_mut().map_err(|()| wrong())?.pop_if_empty().push("scores");
     Ok(url.into())

@@ -154,7 +154,7 @@ fn complete_operation(operation: &mut Operation) {
         RefOr::Ref(_) => false,
     });
     if let (true, Some(RefOr::T(mut refused))) = (takes_file, responses.get("default").cloned()) {
-        refused.description = "The file is none that is taken here, and was not kept: what is wrong with it".to_owned();
+        refused.description = "The file is not accepted here, and was not kept: what is wrong with it".to_owned();
         responses.entry("422".to_owned()).or_insert(RefOr::T(refused));
     }
     for (status, response) in responses {

@@ -119,7 +119,7 @@ impl<T: DeserializeOwned> FromRequest<App> for Body<T> {
 
     async fn from_request(request: Request, state: &App) -> Result<Self, Problem> {
         if !is_of_type(request.headers(), "application/json") {
-            return Err(Problem::invalid("the body is to be JSON: Content-Type: application/json"));
+            return Err(Problem::invalid("the body must be JSON: Content-Type: application/json"));
         }
         let bytes = bytes(request, state).await?;
         let read = serde_json::from_slice(&bytes);
@@ -133,10 +133,10 @@ impl FromRequest<App> for PlainBody {
 
     async fn from_request(request: Request, state: &App) -> Result<Self, Problem> {
         if !is_of_type(request.headers(), "text/csv") {
-            return Err(Problem::invalid("the body is to be a table: Content-Type: text/csv"));
+            return Err(Problem::invalid("the body must be CSV: Content-Type: text/csv"));
         }
         let bytes = bytes(request, state).await?;
-        String::from_utf8(bytes).map(Self).map_err(|_| Problem::invalid("the table is to be in UTF-8"))
+        String::from_utf8(bytes).map(Self).map_err(|_| Problem::invalid("the table must be in UTF-8"))
     }
 }
 
@@ -149,7 +149,7 @@ impl<T: DeserializeOwned> FromRequest<App> for Fields<T> {
             return Ok(Self(form));
         }
         if !is_of_type(request.headers(), "application/x-www-form-urlencoded") {
-            return Err(Problem::invalid("the body is to be a form"));
+            return Err(Problem::invalid("the body must be a form"));
         }
         let bytes = bytes(request, state).await?;
         let request = Request::builder()

@@ -285,7 +285,7 @@ async fn unpack(archive: &Path, folder: PathBuf) -> Result<(PathBuf, PathBuf), G
 /// Returns the submission under its own name, executable: reports and messages speak of it so.
 fn place_program(submission: &Path, folder: &Path, name: &str) -> io::Result<PathBuf> {
     if name.is_empty() || name.starts_with('.') || name.contains(['/', '\0']) {
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, "the submission's name is no plain file name"));
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "the submission's name must be a plain file name"));
     }
     let place = folder.join("submission");
     fs::create_dir(&place)?;

@@ -46,7 +46,7 @@ fn a_server_that_can_t_begin_says_what_to_do() {
     let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
     let taken = listener.local_addr().expect("an address").to_string();
     for (words, folder, part) in [
-        (&["serve", "--listen", "127.0.0.1:0"][..], file.as_path(), "is no folder"),
+        (&["serve", "--listen", "127.0.0.1:0"][..], file.as_path(), "must be a folder"),
         (&["serve", "--listen", "127.0.0.1:0"], Path::new("/proc"), "cannot write in /proc"),
     ] {
         let (code, said) = say(words, folder);

@@ -53,7 +53,7 @@ impl Manifest {
     pub(super) fn read(folder: &Path) -> Result<Self> {
         let file = folder.join(FILE);
         let text = fs::read_to_string(&file)
-            .with_context(|| format!("{} is no backup, or no complete one: it has no {FILE}", folder.display()))?;
+            .with_context(|| format!("{} is not a complete backup: it has no {FILE}", folder.display()))?;
         let form: serde_json::Value = serde_json::from_str(&text).with_context(|| file.display().to_string())?;
         let schema = form["schema"].as_u64().unwrap_or_default();
         if schema > u64::from(SCHEMA) {

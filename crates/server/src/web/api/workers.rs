@@ -79,6 +79,6 @@ pub(super) async fn store(remote: Remote, At { digest, .. }: At, request: Reques
     let most = remote.check_held(&lease).await?;
     let received = upload::receive(&remote.app, request, most).await?;
     let found = crate::store::digest_of_file(&received.file).await?;
-    ensure(found.digest == digest, Problem::invalid("these are other bytes than the digest says"))?;
+    ensure(found.digest == digest, Problem::invalid("the bytes do not match the digest"))?;
     Ok(Json(remote.store(&lease, &received.file).await?))
 }

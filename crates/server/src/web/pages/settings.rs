@@ -141,7 +141,7 @@ pub(super) fn moment(field: &str, zone: &str, before: Option<i64>) -> Result<Opt
     }
     let east = if zone.is_empty() { 0 } else { parsed("the time zone", zone)? };
     let at = calendar::read_field(field.trim(), east);
-    let at = at.ok_or_else(|| Problem::invalid(format!("{field:?} is no date and time")))?;
+    let at = at.ok_or_else(|| Problem::invalid(format!("{field:?} must be a date and time")))?;
     let same = before.filter(|before| before.div_euclid(60_000) == at.div_euclid(60_000));
     Ok(same.or(Some(at)))
 }

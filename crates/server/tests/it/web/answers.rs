@@ -63,7 +63,7 @@ async fn a_refusal_names_what_is_taken(fresh: Fresh) {
     assert!(page.contains("no file was chosen"), "{page}");
     // A suite is no submission.
     let problem = admin.send("PUT", &format!("{ASSIGNMENT}/suite"), &[], b"").expect(422).json();
-    assert_eq!([&problem["title"], &problem["detail"]], ["This is no suite", "the file is empty"]);
+    assert_eq!([&problem["title"], &problem["detail"]], ["This is not a suite", "the file is empty"]);
     let page = post_file(&admin, "/c/physics/a/m1/suite", "suite.zip", b"text").expect(422).text();
     assert!(page.contains("the assignment has the suite that it had"), "{page}");
 }
