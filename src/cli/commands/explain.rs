@@ -174,8 +174,7 @@ fn program_on_probes(
         ..plan.limits
     });
     let runner = |limits| Runner { run: &plan.run, limits, ..runner };
-    let (mut cases, mut cards, mut ends) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut stopped, mut traceless) = (0, 0);
+    let (mut cases, mut cards, mut ends, mut stopped, mut traceless) = (Vec::new(), Vec::new(), Vec::new(), 0, 0);
     let bar = console::Bar::of_runs(tasks.len() as u64);
     for task in &tasks {
         if stopped >= MOST_STOPPED {
@@ -213,12 +212,11 @@ fn program_on_probes(
     if traceless == tasks.len() && arguments.suite.is_some() {
         console::remark("if this program is of another milestone: without --suite that is found out\n");
     }
-    let located = located(&tasks, &ends);
     let (common, refuted) = likely(assignment, &cases, &tasks);
     for case in &mut cases {
         case.explanations = diagnose::settled(&case.explanations, &common, &refuted).explanations;
     }
-    Ok(Some((Diagnosis { cases, common, located }, cards)))
+    Ok(Some((Diagnosis { cases, common, located: located(&tasks, &ends) }, cards)))
 }
 
 /// Returns the remark on how a program ended, unless it ended well.
