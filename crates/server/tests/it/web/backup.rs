@@ -146,7 +146,7 @@ fn a_backup_that_is_damaged_incomplete_or_newer_is_refused() {
         fs::write(&manifest, said.replace(&tables, "\"tables\": 9999")).expect("written");
         refused(5, "the backup's tables have version 9999");
         fs::remove_file(&manifest).expect("removed");
-        refused(6, "is no backup, or no complete one");
+        refused(6, "is not a complete backup");
         fs::write(&manifest, &said).expect("written");
         // The copy of the database is changed.
         fs::write(copy.join("fosssim.db"), b"SQLite format 3").expect("written");
