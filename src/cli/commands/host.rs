@@ -103,7 +103,7 @@ pub(super) fn demo(arguments: &Demo) -> Result<u8> {
             reference: None,
         };
         let grades = batch::run(&grader, &[submission], None, &cancellation, &mut |_| {}).grades;
-        console::print(Format::Text.render(&grades))?;
+        console::report(&Format::Text.render(&grades))?;
         if cancellation.is_cancelled() {
             return Ok(exit::INTERRUPTED);
         }
