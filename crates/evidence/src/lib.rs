@@ -7,7 +7,7 @@
 //! there.
 //!
 //! ```
-//! use fosssim_evidence::{Keep, examine};
+//! use fosssim_evidence::{KeptPart, examine};
 //! use fosssim_judge::replay::Options;
 //! # use fosssim_model::{scene, sim::{RootSearch, Simulation}, trace::{Layout, Recorder}};
 //! # let text = br#"<scene>
@@ -23,7 +23,7 @@
 //! # let (trace, _) = recorder.finish()?;
 //!
 //! let options = Options { fair: true, ..Options::default() };
-//! let examined = examine(&scene, &trace[..], Keep::All, &options, &mut ());
+//! let examined = examine(&scene, &trace[..], KeptPart::All, &options, &mut ());
 //! assert_eq!(examined.outcome.parity.findings.wrong_steps, 0);
 //! assert!(examined.explain().is_empty());
 //! assert_eq!(examined.trace.bytes(), trace);
