@@ -52,7 +52,7 @@ fn take_module() {
     println!("cargo:rustc-cfg=has_module");
 }
 
-/// Returns behind everything that Rust says to the linker: of `-pie` and `-no-pie` the last one counts.
+/// Returns the words behind all that Rust says to the linker: of `-pie` and `-no-pie` the last one counts.
 fn arguments(folder: &Path) -> [String; 3] {
     [format!("-L{}", folder.display()), "-static".to_owned(), "-no-pie".to_owned()]
 }

@@ -19,7 +19,7 @@ use std::{
 /// The longest time without any progress after the first signal.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// Returns temporary files that an interrupt has to remove.
+/// Returns the temporary files that an interrupt has to remove.
 pub(super) fn pending() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
     static PENDING: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
     PENDING.lock().unwrap_or_else(PoisonError::into_inner)

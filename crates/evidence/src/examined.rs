@@ -58,7 +58,7 @@ pub fn examine<'a, R: Read + Send>(
 }
 
 impl ExaminedTrace<'_> {
-    /// Returns likely mistakes of the program that left the trace ([`explain_kept`]).
+    /// Returns the likely mistakes of the program that left the trace ([`explain_kept`]).
     #[must_use]
     pub fn explain(&self) -> Vec<Explanation> {
         explain_kept(self.scene, &self.trace)

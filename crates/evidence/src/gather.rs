@@ -317,7 +317,7 @@ struct PassCount<'a> {
 }
 
 impl PassCount<'_> {
-    /// Returns as many passes as a number of polynomials makes: every pass of a step logs as many.
+    /// Returns the number of passes that log this number of polynomials: every pass of a step logs as many.
     fn passes_of(&self, logged: usize) -> Option<u32> {
         let passes = self.passes as usize;
         if self.polynomials == 0 || passes == 0 {

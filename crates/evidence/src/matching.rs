@@ -17,7 +17,7 @@ const WRONG: u32 = 3;
 /// is no verdict; raised, faint differences get none.
 const MARKED: f64 = 1e-9;
 
-/// Returns for each expected polynomial the place of the one in the trace's list that stands for it, right or wrong;
+/// Finds for each expected polynomial the place of the one in the trace's list that stands for it, right or wrong;
 /// `None` where the lists are too long to be compared.
 pub(crate) fn matching(expected: &PolynomialLog, actual: &PolynomialLog) -> Option<Vec<Option<usize>>> {
     let same = |one: usize, other: usize| !differ(actual.get(other), expected.get(one));

@@ -20,7 +20,7 @@ impl FindingCounts {
         self.0[kind as usize] += count;
     }
 
-    /// Returns findings that fail the original's collision verdict: collisions and polynomials.
+    /// Returns the findings that fail the original's collision verdict: collisions and polynomials.
     #[must_use]
     pub fn collisions(&self) -> u64 {
         self.total() - self.get(FindingKind::Position) - self.get(FindingKind::Velocity)

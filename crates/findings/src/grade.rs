@@ -245,7 +245,7 @@ pub struct SceneGrade {
 }
 
 impl GroupGrade {
-    /// Returns points that can be reached in its scenes.
+    /// Returns the points that can be reached in its scenes.
     #[must_use]
     pub fn max_points_of_scenes(&self) -> f64 {
         self.max_points - self.speed.as_ref().map_or(0.0, |speed| speed.marking.points)

@@ -202,7 +202,7 @@ impl Display for VectorWords {
     }
 }
 
-/// Returns by how many whole detection passes two counts differ, and whether the trace has more; `None` when it is no
+/// Counts the whole detection passes by which two counts differ, and whether the trace has more; `None` when it is no
 /// whole number of passes.
 #[must_use]
 pub fn passes(expected: usize, actual: usize, per_pass: usize) -> Option<(usize, bool)> {

@@ -79,7 +79,7 @@ impl Plan {
         self.milestone.or_else(by_scenes).unwrap_or(Assignment::DEFAULT)
     }
 
-    /// Returns points that can be reached, without extra ones.
+    /// Returns the points that can be reached, without extra ones.
     #[must_use]
     pub fn max_points(&self) -> f64 {
         let of_speed = |marking: &Marking| marking.speed.map_or(0.0, |speed| speed.points);

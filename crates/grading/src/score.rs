@@ -157,7 +157,7 @@ fn follows(group: &GroupGrade) -> bool {
 /// The number of accepted scenes that are checked for evidence against a likely mistake.
 const WITNESSES: usize = 12;
 
-/// Returns likely mistakes that accepted scenes speak against; the smallest of these are asked.
+/// Returns the likely mistakes that accepted scenes speak against; the smallest of these are asked.
 fn refuted(plan: &Plan, groups: &[GroupGrade]) -> Vec<String> {
     let graded = || groups.iter().flat_map(|group| &group.scenes).zip(plan.scenes());
     let wrong: Vec<(&Scene, &[Explanation])> = graded()

@@ -53,7 +53,7 @@ pub trait Written: Sized {
     type Form: Serialize + DeserializeOwned;
     /// Writes the value in its form.
     fn write(&self) -> Self::Form;
-    /// Returns out of its form.
+    /// Reads the value out of its form.
     fn read(form: Self::Form) -> Self;
 }
 

@@ -37,19 +37,19 @@ impl Size {
         Ok(Self { width, height })
     }
 
-    /// Returns width in pixels.
+    /// Returns the width in pixels.
     #[must_use]
     pub const fn width(self) -> u32 {
         self.width
     }
 
-    /// Returns height in pixels.
+    /// Returns the height in pixels.
     #[must_use]
     pub const fn height(self) -> u32 {
         self.height
     }
 
-    /// Returns number of pixels.
+    /// Returns the number of pixels.
     #[must_use]
     pub const fn pixels(self) -> usize {
         self.width as usize * self.height as usize

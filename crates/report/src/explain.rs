@@ -93,7 +93,7 @@ fn others(keys: &[String]) -> Option<String> {
     }
 }
 
-/// Returns sentences in a row, of which each may hold a colon.
+/// Returns the sentences in a row, of which each may hold a colon.
 fn listed(sentences: &[String]) -> String {
     sentences.iter().map(|one| one.trim_end_matches('.')).collect::<Vec<_>>().join("; ")
 }

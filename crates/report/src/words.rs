@@ -118,7 +118,7 @@ fn unwritten(grade: &Grade) -> String {
     format!("{missing} No trace of its {scenes} holds a polynomial or a collision.")
 }
 
-/// Returns in one sentence why not everything is accepted; nothing where it is.
+/// Says in one sentence why not everything is accepted; nothing where it is.
 #[must_use]
 pub fn reason(grade: &Grade) -> Option<String> {
     if let Some(unfit) = unfit(grade) {

@@ -165,7 +165,7 @@ impl Job {
         self
     }
 
-    /// Returns environment variables, on top of the few that every program gets (`PATH`, `HOME`, `TMPDIR`, `LC_ALL`).
+    /// Sets environment variables, on top of the few that every program gets (`PATH`, `HOME`, `TMPDIR`, `LC_ALL`).
     /// The grader's own environment never reaches the program.
     #[must_use]
     pub fn environment<N: Into<OsString>, V: Into<OsString>>(

@@ -259,7 +259,7 @@ pub(super) fn wait_for(pid: i32) -> io::Result<u8> {
     Ok(code.unwrap_or_default() as u8)
 }
 
-/// Returns processor time and the largest resident set (bytes) of all reaped children and theirs.
+/// Returns the processor time and the largest resident set (bytes) of all reaped children and theirs.
 pub(super) fn children_usage() -> io::Result<(Duration, u64)> {
     // SAFETY: an all-zero `rusage` is a valid value; the kernel fills it.
     let usage = unsafe {
@@ -494,7 +494,7 @@ pub(super) fn page_size() -> u64 {
     rustix::param::page_size() as u64
 }
 
-/// Returns landlock's version in the running kernel; 0 when there is none.
+/// Returns Landlock's version in the running kernel; 0 when there is none.
 pub(super) fn landlock_version() -> i32 {
     let version_flag = 1_u32;
     // SAFETY: with this flag the kernel reads no structure: the pointer is null and the size zero.

@@ -36,7 +36,7 @@ pub struct Storage {
 }
 
 impl Storage {
-    /// Returns storage that refuses uploads below this many free bytes.
+    /// Creates storage that refuses uploads below this many free bytes.
     pub fn new(database: Database, store: Store, incoming: PathBuf, low_water: u64) -> Self {
         Self { database, store, incoming, low_water, last: Mutex::default() }
     }
@@ -91,7 +91,7 @@ impl Storage {
         transaction.commit().await
     }
 
-    /// Returns free bytes of the data folder's disk, and its size, where it says so.
+    /// Returns the free bytes of the data folder's disk, and its size, where it says so.
     pub fn disk(&self) -> Option<(u64, u64)> {
         let disk = statvfs(&self.incoming).ok()?;
         Some((disk.f_bavail.saturating_mul(disk.f_frsize), disk.f_blocks.saturating_mul(disk.f_frsize)))

@@ -166,7 +166,7 @@ impl Explanation {
         all.filter(|subject| claims.contains_key(format!("{subject:?}").as_str())).collect()
     }
 
-    /// Returns for each of its polynomials all that would make it: the guess or the known mistake, and the whole word.
+    /// Lists for each of its polynomials all that would make it: the guess or the known mistake, and the whole word.
     #[must_use]
     pub fn claims_by_subject(&self) -> BTreeMap<&str, Vec<(&str, &str)>> {
         let mut all: BTreeMap<&str, Vec<(&str, &str)>> = BTreeMap::new();

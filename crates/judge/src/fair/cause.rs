@@ -19,7 +19,7 @@ pub fn cause(outcome: &Outcome) -> Option<Cause> {
     }
 }
 
-/// Returns parity fails what fair accepts.
+/// Returns why parity rejects what fair accepts.
 fn too_strict(outcome: &Outcome, fair: &Judgement) -> Cause {
     let Some(first) = &outcome.parity.findings.first_divergence else { return Cause::AccumulatedResiduals };
     // Not all borderline decisions are kept as examples; one that is not may be the one.
@@ -50,7 +50,7 @@ const fn is_approach_of_edge(role: Role, kind: PairKind) -> bool {
     matches!((role, kind), (Role::Approach, PairKind::ParticleEdge))
 }
 
-/// Returns parity passes what fair rejects.
+/// Returns why parity accepts what fair rejects.
 fn too_lax(outcome: &Outcome, fair: &Judgement) -> Cause {
     match fair.refusal {
         Some(FairRefusal::Damaged) => return Cause::Damage,

@@ -177,7 +177,7 @@ pub(super) struct Tolerances<'a> {
 }
 
 impl<'a> Tolerances<'a> {
-    /// Returns around this state of the reference.
+    /// Returns the tolerances around this state of the reference.
     pub fn from_context(context: &Context<'_>, own: &State, sensitivity: Option<&'a State>) -> Self {
         let roundings = FAIR_UNITS * UNIT_ROUNDOFF;
         let size = largest(&own.positions);

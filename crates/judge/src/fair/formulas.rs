@@ -85,7 +85,7 @@ impl Expected {
         self
     }
 
-    /// Returns number of polynomials.
+    /// Returns the number of polynomials.
     pub fn count(&self) -> usize {
         self.sizes.iter().filter(|&&size| size > 0).count()
     }

@@ -88,7 +88,7 @@ impl StepJudgement {
         self.borderline.push(Borderline { step: self.step, pass, pair, collides });
     }
 
-    /// Returns number of findings.
+    /// Returns the number of findings.
     pub(super) fn total(&self) -> u64 {
         self.findings.len() as u64 + self.more.total()
     }

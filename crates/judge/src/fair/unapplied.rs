@@ -168,7 +168,7 @@ impl NearPairs {
     }
 }
 
-/// Returns for a contest with a layer the scene with the force between all pairs, and the pairs whose force is due at
+/// Makes for a contest with a layer the scene with the force between all pairs, and the pairs whose force is due at
 /// positions `x`, since they overlap without their layers or one of them is a half-plane.
 fn layer_of_contest(scene: &Scene, x: &[f64]) -> Option<(Scene, BTreeSet<Pair>)> {
     let Collision::Penalty { stiffness, thickness, detection: CollisionDetection::Contest } = scene.collision else {

@@ -17,7 +17,7 @@ impl ContestOrder {
         Self { simulation: Simulation::new(scene, RootSearch::WhereNeeded), order: SweepOrder::default() }
     }
 
-    /// Returns steps from `before`, spending `most_work` at most. Returns the order from which the reference begins
+    /// Steps from `before`, spending `most_work` at most. Returns the order from which the reference begins
     /// this step; it is empty but in a contest.
     pub(super) fn follow(&mut self, step: u32, before: &State, most_work: u64) -> &SweepOrder {
         if self.simulation.penalty_pairs().is_some_and(|pairs| pairs.order(&mut self.order)) {

@@ -201,7 +201,7 @@ const fn is_alternative(detail: &Detail) -> bool {
     matches!(detail, Detail::Polynomial(PolynomialDetail::Alternative(_)))
 }
 
-/// Returns for each alternative in an exact form the whole form with it.
+/// Lists for each alternative in an exact form the whole form with it.
 fn other_forms(details: &[Detail]) -> Vec<Vec<PolynomialDetail>> {
     let polynomial = |detail: &Detail| match detail {
         Detail::Polynomial(detail) => Some(detail.clone()),

@@ -13,7 +13,7 @@ use super::{
 /// The parts of the assignment whose mistakes are made here.
 const HERE: &[Area] = &[Area::Response];
 
-/// Returns twice `(1 + COR) / 2`.
+/// Returns `(1 + COR) / 2` twice.
 pub fn bounce(world: &World) -> f64 {
     let student = world.student;
     let f = match student.mistake_in(HERE) {

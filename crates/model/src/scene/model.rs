@@ -29,7 +29,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Returns number of steps as the original computes it: the 32-bit conversion of `ceil(duration / dt)`; zero,
+    /// Returns the number of steps as the original computes it: the 32-bit conversion of `ceil(duration / dt)`; zero,
     /// negative and unrepresentable quotients give no step (scene-format.md 4).
     #[must_use]
     pub fn steps(&self) -> u32 {

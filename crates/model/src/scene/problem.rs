@@ -87,7 +87,7 @@ impl Problem {
         Self { severity, line: 1, column: 1, span, element: None, attribute: None, message, help: None }
     }
 
-    /// Returns about an element of this name.
+    /// Creates a problem of an element of this name.
     pub(super) fn from_element(element: &str, span: &Range<usize>, message: impl Into<String>) -> Self {
         Self { element: Some(quote(element)), ..Self::new(span.clone(), message) }
     }

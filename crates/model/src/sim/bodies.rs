@@ -55,7 +55,7 @@ impl Bodies {
         }
     }
 
-    /// Returns number of particles N.
+    /// Returns the number of particles N.
     pub fn particles(&self) -> usize {
         self.masses.len()
     }
@@ -76,7 +76,7 @@ impl Bodies {
         }
     }
 
-    /// Returns about how many pairs a pass looks at.
+    /// Estimates the number of pairs that a pass checks.
     pub fn pairs(&self) -> usize {
         self.particles() * (self.particles() / 2 + self.edges.len() + self.points.len())
     }

@@ -14,7 +14,7 @@ pub struct Pair {
     pub second: u32,
 }
 
-/// Returns names a pair.
+/// Names a pair.
 #[inline]
 #[expect(clippy::cast_possible_truncation, reason = "a scene with 2^32 objects does not fit into memory")]
 pub(super) fn pair(kind: PairKind, first: usize, second: usize) -> Pair {

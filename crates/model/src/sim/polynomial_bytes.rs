@@ -48,7 +48,7 @@ impl PolynomialBytes {
         &self.bytes[..self.used]
     }
 
-    /// Returns number of polynomials.
+    /// Returns the number of polynomials.
     #[must_use]
     pub fn count(&self) -> usize {
         self.count

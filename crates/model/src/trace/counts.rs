@@ -14,10 +14,15 @@ use std::fmt;
 ///
 /// let xml = br#"<scene><duration time="1"/><integrator type="explicit-euler" dt="0.1"/>
 ///     <collision type="continuous-time" COR="1"/>
-/// <particle m="1" px="0" py="0" vx="0" vy="0" fixed="0"/><particle m="1" px="9" py="0" vx="0" vy="0"
-/// fixed="0"/></scene>"#; let scene = original::read(xml).expect("a scene").scene; let mut simulation =
-/// Simulation::new(&scene, RootSearch::default()); let mut counts = EventCounts::new(&scene); for _ in 0..scene.steps()
-/// { simulation.step(&mut counts)?; } let calls: u64 = counts.calls.values().sum();
+///     <particle m="1" px="0" py="0" vx="0" vy="0" fixed="0"/>
+///     <particle m="1" px="9" py="0" vx="0" vy="0" fixed="0"/></scene>"#;
+/// let scene = original::read(xml).expect("a scene").scene;
+/// let mut simulation = Simulation::new(&scene, RootSearch::default());
+/// let mut counts = EventCounts::new(&scene);
+/// for _ in 0..scene.steps() {
+///     simulation.step(&mut counts)?;
+/// }
+/// let calls: u64 = counts.calls.values().sum();
 /// assert_eq!((counts.continuous_time_passes, calls, counts.polynomials), (10, 10, 20));
 /// # Ok::<(), fosssim_model::sim::StepError>(())
 /// ```

@@ -136,7 +136,7 @@ pub(crate) fn pass_over(bytes: &[u8], most: u64) -> (usize, u64, bool) {
     (at, done, false)
 }
 
-/// Returns memory that the log's content takes, in bytes.
+/// Returns the memory that the log's content takes, in bytes.
 pub(crate) fn memory(log: &PolynomialLog) -> usize {
     8 * log.coefficients.len() + POLYNOMIAL_MEMORY * log.ends.len()
 }

@@ -44,7 +44,7 @@ pub enum List {
 }
 
 impl List {
-    /// Returns fewest bytes of an entry: 36 for an impulse, 4 for an empty polynomial.
+    /// Returns the fewest bytes of an entry: 36 for an impulse, 4 for an empty polynomial.
     #[must_use]
     pub const fn entry_bytes(self) -> u64 {
         match self {

@@ -156,7 +156,7 @@ pub struct PolynomialLog {
 }
 
 impl PolynomialLog {
-    /// Returns number of polynomials.
+    /// Returns the number of polynomials.
     #[inline]
     #[must_use]
     pub fn len(&self) -> usize {

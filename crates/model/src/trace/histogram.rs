@@ -14,7 +14,7 @@ impl Histogram {
         *self.0.entry(entries).or_default() += 1;
     }
 
-    /// Returns pairs of a number of entries and how many steps have it, ascending.
+    /// Returns the pairs of a number of entries and how many steps have it, ascending.
     pub fn iter(&self) -> impl Iterator<Item = (u64, u64)> {
         self.0.iter().map(|(&entries, &steps)| (entries, steps))
     }

@@ -36,8 +36,8 @@ const POLYNOMIAL_MEMORY: usize = size_of::<f64>() * MAX_COEFFICIENTS + size_of::
 /// The number of coefficients that are kept of a longer polynomial; any number above [`MAX_COEFFICIENTS`] is as wrong.
 const LONGEST_POLYNOMIAL: usize = 4096;
 
-/// Returns memory that the lists of one record of this scene's traces may take, in bytes: what the polynomials of all
-/// detection passes take that a step can make (collisions.md 4 and 5), within bounds.
+/// Returns the memory that the lists of one record of this scene's traces may take, in bytes: what the polynomials of
+/// all detection passes take that a step can make (collisions.md 4 and 5), within bounds.
 #[must_use]
 pub fn record_memory(scene: &Scene) -> usize {
     let particles = scene.particles.len();
@@ -207,7 +207,7 @@ impl<R: Read> Lenient<R> {
         Ok(())
     }
 
-    /// Returns number of records read.
+    /// Returns the number of records read.
     #[must_use]
     pub fn records(&self) -> u64 {
         self.record

@@ -48,7 +48,7 @@ impl Log {
         }
     }
 
-    /// Returns number of impulses.
+    /// Returns the number of impulses.
     pub(super) fn impulses(&self) -> usize {
         self.impulses.len() / IMPULSE_BYTES
     }

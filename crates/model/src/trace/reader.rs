@@ -129,7 +129,7 @@ impl<R: Read> Reader<R> {
         &self.raw
     }
 
-    /// Returns number of records read.
+    /// Returns the number of records read.
     #[must_use]
     pub fn records(&self) -> u64 {
         self.records.records()

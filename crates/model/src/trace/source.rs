@@ -49,7 +49,7 @@ impl<R: Read> Source<R> {
         self.tape.take().unwrap_or_default()
     }
 
-    /// Returns absolute offset of the next byte.
+    /// Returns the absolute offset of the next byte.
     #[inline]
     pub(crate) fn offset(&self) -> u64 {
         self.offset

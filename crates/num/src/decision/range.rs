@@ -129,7 +129,7 @@ impl Problem {
         })
     }
 
-    /// Returns over how many powers of two the sizes of one polynomial's coefficients spread, at most; zeros do not
+    /// Returns the most powers of two over which the sizes of one polynomial's coefficients spread; zeros do not
     /// count.
     pub(crate) fn spread(&self) -> u64 {
         let spread = |polynomial: &Exactly| {
@@ -183,7 +183,7 @@ pub(crate) fn slack(distance: f64, bound: f64) -> f64 {
 }
 
 impl Exactly {
-    /// Returns l0: by signs (no coefficient is positive, so none of its values after 0 is), or because the positive
+    /// Tries level L0: by signs (no coefficient is positive, so none of its values after 0 is), or because the positive
     /// terms cannot make up for a negative constant.
     #[inline]
     fn range(&self) -> Option<f64> {
@@ -198,7 +198,7 @@ impl Exactly {
         if distance > 0.0 || none_positive { Some(slack(distance, self.bound)) } else { None }
     }
 
-    /// Returns l1: all Bernstein coefficients are negative.
+    /// Tries level L1: all Bernstein coefficients are negative.
     #[inline]
     fn bernstein(&self) -> Option<f64> {
         // Positive at 0: no need to look.

@@ -59,7 +59,7 @@ fn decimate<const N: usize>(moduli: &Coefficients, mut x: f64, steps: &mut u32) 
     }
 }
 
-/// Returns newton's iteration until a step changes less than half a per cent. With `x = 0` the ratio is NaN and none is
+/// Runs Newton's iteration until a step changes less than half a per cent. With `x = 0` the ratio is NaN and none is
 /// made.
 #[inline]
 fn newton<const N: usize>(moduli: &Coefficients, mut x: f64, all_steps: &mut u32) -> Result<f64, DoesNotTerminate> {

@@ -44,7 +44,7 @@ impl Convergence {
     }
 }
 
-/// Returns steps with the fixed factor `z^2 + u z + v` until an iteration started from the estimates succeeds, `limit`
+/// Iterates with the fixed factor `z^2 + u z + v` until an iteration started from the estimates succeeds, `limit`
 /// steps at most. All steps, those of the iterations among them, are added to `steps`.
 pub(super) fn run<const N: usize>(
     polynomial: &Coefficients,

@@ -60,7 +60,7 @@ pub(super) fn run<const N: usize>(
     }
 }
 
-/// Returns horner's scheme: the quotient by `z - s`, and in entry `N` the value at `s`.
+/// Runs Horner's scheme: the quotient by `z - s`, and in entry `N` the value at `s`.
 #[inline(always)]
 fn horner<const N: usize>(polynomial: &Coefficients, s: f64) -> Coefficients {
     let mut q = Coefficients::default();

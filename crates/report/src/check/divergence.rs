@@ -199,7 +199,7 @@ fn polynomials_with(
 /// The powers of a polynomial's coefficients; none has more.
 const POWERS: [&str; 7] = ["1", "t", "t^2", "t^3", "t^4", "t^5", "t^6"];
 
-/// Returns contact normal and time.
+/// Returns the contact normal and time.
 fn collision(expected: Option<LoggedImpulse>, actual: Option<LoggedImpulse>) -> Vec<Row> {
     let row = |name, part: fn(LoggedImpulse) -> f64| match (expected.map(part), actual.map(part)) {
         (Some(expected), Some(actual)) => numbers(name, expected, actual),

@@ -69,7 +69,7 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     parts.join("\n")
 }
 
-/// Returns lines under a heading; nothing without any.
+/// Returns the lines under a heading; nothing without any.
 fn section(heading: &str, mark: &str, lines: &[impl Display], style: Style) -> Option<String> {
     let heading = style.paint(Look::Strong, heading) + "\n";
     let lines: String = lines.iter().map(|line| format!("{mark}{line}\n")).collect();
@@ -261,7 +261,7 @@ fn findings(account: &BookFindings, follow: u64, style: Style) -> String {
     text
 }
 
-/// Returns further notes.
+/// Writes further notes.
 pub(crate) fn notes(check: &Check<'_>) -> Vec<String> {
     let outcome = check.outcome;
     let mut notes = Vec::new();

@@ -96,7 +96,7 @@ pub(crate) fn hardest(grades: &[Grade]) -> (Vec<(&str, SceneShare)>, usize) {
     (wrong, whole.len())
 }
 
-/// Returns likely mistakes with the number of submissions that make them, the most frequent first.
+/// Returns the likely mistakes with the number of submissions that make them, the most frequent first.
 fn frequent(grades: &[Grade]) -> Vec<(String, usize)> {
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
     for (mistake, _) in grades.iter().flat_map(likely_mistakes) {

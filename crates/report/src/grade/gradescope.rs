@@ -165,7 +165,7 @@ fn output(scene: &SceneGrade) -> String {
     lines.join("\n")
 }
 
-/// Returns points with six decimals at most, so that shares of a group add up to what is shown.
+/// Returns the points with six decimals at most, so that shares of a group add up to what is shown.
 fn rounded(value: f64) -> f64 {
     (value * 1e6).round() / 1e6
 }

@@ -61,14 +61,14 @@ pub fn difference(scene: &SceneGrade) -> Option<String> {
     })
 }
 
-/// Returns points without needless digits: `12.5`, `10`.
+/// Returns the points without needless digits: `12.5`, `10`.
 #[must_use]
 pub fn points(value: f64) -> String {
     let text = format!("{value:.2}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// Returns points that may be missing: where the grader failed or was stopped nobody has a zero.
+/// Returns the points that may be missing: where the grader failed or was stopped nobody has a zero.
 #[must_use]
 pub fn reached(value: Option<f64>) -> String {
     value.map_or_else(|| "-".to_owned(), points)

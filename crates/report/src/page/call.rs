@@ -190,7 +190,7 @@ fn coefficients(study: &Study, logged: &[Vec<f64>], nothing: bool) -> String {
     out + "</tbody></table></div>\n"
 }
 
-/// Returns for each power whether the coefficients differ once one is multiplied by the factor that makes most of them
+/// Says for each power whether the coefficients differ once one is multiplied by the factor that makes most of them
 /// agree.
 fn marks(expected: &[f64], own: &[f64]) -> Vec<bool> {
     let differing = differing(expected, own, factor(expected, own));

@@ -228,7 +228,7 @@ fn subject(finding: &Finding) -> String {
     }
 }
 
-/// Returns values side by side: in one notation, and marked from the first digit that differs.
+/// Writes values side by side: in one notation, and marked from the first digit that differs.
 fn values(sides: &SideBySide) -> String {
     let mut out = String::new();
     if !sides.rows.is_empty() {

@@ -338,8 +338,8 @@ fn figures(grades: &[Grade]) -> String {
     format!("<ul class=\"kpi\">{rows}</ul>\n")
 }
 
-/// Returns likely mistakes that several submissions make, the most frequent first, and the numbers of the submissions
-/// that fail without any that is named.
+/// Returns the likely mistakes that several submissions make, the most frequent first, and the numbers of the
+/// submissions that fail without any that is named.
 fn by_mistake(grades: &[Grade]) -> (Vec<SharedMistake>, Vec<usize>) {
     let mut found: BTreeMap<String, SharedMistake> = BTreeMap::new();
     let mut rest = Vec::new();

@@ -16,7 +16,7 @@ pub(super) fn visible(raw: &str) -> String {
     out
 }
 
-/// Returns visible text as it may stand in an element or in a quoted attribute.
+/// Escapes visible text as it may stand in an element or in a quoted attribute.
 pub(super) fn text(raw: &str) -> String {
     let mut out = String::with_capacity(raw.len());
     for c in visible(raw).chars() {
@@ -32,7 +32,7 @@ pub(super) fn text(raw: &str) -> String {
     out
 }
 
-/// Returns JSON as it may stand in a data block: nothing in it ends the element.
+/// Writes JSON as it may stand in a data block: nothing in it ends the element.
 pub(super) fn data(value: &serde_json::Value) -> String {
     value.to_string().replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")
 }

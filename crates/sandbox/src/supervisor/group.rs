@@ -111,7 +111,7 @@ impl Group {
         })
     }
 
-    /// Returns processor time of everybody who is or was in the group.
+    /// Returns the processor time of everybody who is or was in the group.
     pub(super) fn cpu(&self) -> Duration {
         Duration::from_micros(self.unified().and_then(|part| part.number(c"cpu.stat", "usage_usec")).unwrap_or(0))
     }

@@ -25,9 +25,9 @@ pub(super) struct Holdings {
     pub(super) memory: u64,
 }
 
-/// Returns memory and files of these processes (each with one of its threads). `root` is the working folder, the only
-/// place in which they make files. `executed` asks for the files that they run, too, and `page_tables` for the kernel's
-/// books about their memory, which matter where address space is not limited.
+/// Returns the memory and files of these processes (each with one of its threads). `root` is the working folder, the
+/// only place in which they make files. `executed` asks for the files that they run, too, and `page_tables` for the
+/// kernel's books about their memory, which matter where address space is not limited.
 pub(super) fn of(members: &[(i32, i32)], root: &Path, executed: bool, page_tables: bool) -> Holdings {
     let mut holdings = Holdings::default();
     let mut seen = BTreeSet::new();

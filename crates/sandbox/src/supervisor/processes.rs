@@ -28,7 +28,8 @@ impl Stat {
         self.threads > 1 || !matches!(self.state, b'Z' | b'X')
     }
 
-    /// Returns resident memory in pages. A main thread that has left has none; its other threads share the same memory.
+    /// Returns the resident memory in pages. A main thread that has left has none; its other threads share the same
+    /// memory.
     fn resident(&self) -> u64 {
         if self.state != b'Z' || !self.is_alive() {
             return self.resident_pages;

@@ -125,7 +125,7 @@ pub(super) async fn account_of_token(transaction: &mut Transaction, token: &str)
     }
 }
 
-/// Returns whose session it is. One that a token began ends with the token.
+/// Returns the account of a session. One that a token began ends with the token.
 pub(super) async fn account_of_session(
     transaction: &mut Transaction,
     session: &str,

@@ -80,7 +80,7 @@ fn shared<T>(all: &Mutex<HashMap<i64, Arc<T>>>, account: i64, new: impl FnOnce()
 }
 
 impl Member {
-    /// Returns leave to send or receive a file.
+    /// Gives leave to send or receive a file.
     ///
     /// # Errors
     /// When the account, or all together, have as many under way as they may.
@@ -120,8 +120,8 @@ impl Member {
         Ok([kept("student", limits.student)?, kept("course", limits.course)?, kept("server", limits.server)?])
     }
 
-    /// Returns sentences about the room for uploads: to staff about their course, and to everybody about a share that
-    /// is nearly full.
+    /// Returns the sentences about the room for uploads: to staff about their course, and to everybody about a share
+    /// that is nearly full.
     ///
     /// # Errors
     /// When the database does not answer.

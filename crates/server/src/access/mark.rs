@@ -238,7 +238,7 @@ impl Member {
         Ok(transaction.find(statement, values![assignment.id, assignment.id]).await?)
     }
 
-    /// Returns until when this member may hand in.
+    /// Returns the time until which this member may hand in.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -254,7 +254,7 @@ async fn extension(transaction: &mut Transaction, assignment: i64, account: i64)
     row.map(|row| row.int("due_at")).transpose()
 }
 
-/// Returns until when an account may hand in: an extension gives more time, and never less.
+/// Returns the time until which an account may hand in: an extension gives more time, and never less.
 pub(super) async fn due(
     transaction: &mut Transaction,
     assignment: &Assignment,

@@ -40,7 +40,7 @@ impl App {
         Ok((account, seen))
     }
 
-    /// Returns anybody.
+    /// Returns a visitor, who may be anybody.
     pub fn visitor(&self, secrets: Secrets) -> Visitor {
         Visitor { app: self.clone(), secrets }
     }

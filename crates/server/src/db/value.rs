@@ -72,7 +72,7 @@ impl Row {
         })
     }
 
-    /// Returns text.
+    /// Reads text.
     ///
     /// # Errors
     /// When the column holds nothing, or something else.
@@ -80,7 +80,7 @@ impl Row {
         self.maybe_text(column)?.ok_or_else(|| DbError::Other(format!("{column} holds nothing")))
     }
 
-    /// Returns text, or nothing.
+    /// Reads text, or nothing.
     ///
     /// # Errors
     /// When the column holds something else.

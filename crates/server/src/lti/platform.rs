@@ -61,7 +61,7 @@ pub(super) fn address(text: &str, over_http: bool) -> Option<Url> {
     (secure && plain && url.has_host() && text.len() <= 2000).then_some(url)
 }
 
-/// Returns host and port, as it stands in an origin.
+/// Returns the host and port, as they are in an origin.
 fn place(url: &Url) -> String {
     match (url.host_str(), url.port()) {
         (Some(host), Some(port)) => format!("{host}:{port}"),

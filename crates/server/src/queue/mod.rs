@@ -143,7 +143,7 @@ pub struct Claim {
     pub deaths: i64,
 }
 
-/// Returns milliseconds, as the database counts.
+/// Returns a time in milliseconds, as the database counts.
 pub(crate) fn millis(duration: Duration) -> i64 {
     i64::try_from(duration.as_millis()).unwrap_or(i64::MAX)
 }

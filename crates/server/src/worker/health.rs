@@ -90,7 +90,7 @@ impl<G: Grader> Health<G> {
         false
     }
 
-    /// Returns after a fault whether the worker can still grade, so that the fault may be the job's.
+    /// Finds out after a fault whether the worker can still grade, so that the fault may be the job's.
     pub(super) async fn survives(&self, stop: &CancellationToken) -> bool {
         self.is_proven.store(false, Ordering::Release);
         self.prove(stop).await

@@ -61,7 +61,7 @@ impl Follower<'_> {
     }
 }
 
-/// Returns more than the round-off of the largest positions and displacements. Infinite, where that is not known.
+/// Returns a bound above the round-off of the largest positions and displacements. Infinite, where that is not known.
 fn floors(scene: &Scene, q_start: &[f64], q_end: &[f64]) -> Floors {
     let (mut size, mut shift) = (0.0_f64, 0.0_f64);
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);

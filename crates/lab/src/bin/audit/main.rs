@@ -178,7 +178,7 @@ impl Random {
         lo + (hi - lo) * ((self.bits() >> 11) as f64 / (1_u64 << 53) as f64)
     }
 
-    /// Returns ten to a uniform power.
+    /// Returns 10 to a uniform power.
     fn log(&mut self, lo: f64, hi: f64) -> f64 {
         10.0_f64.powf(self.uniform(lo, hi))
     }
@@ -336,7 +336,7 @@ fn grazing(random: &mut Random) -> RandomMotion {
     motion
 }
 
-/// Returns far apart compared with radii and motion.
+/// Returns a motion of bodies that are far apart compared with radii and motion.
 fn far(random: &mut Random) -> RandomMotion {
     let mut motion = wide(random);
     let distance = motion.radius * random.log(0.0, 7.0);

@@ -5,7 +5,7 @@ macro_rules! probes {
     ($($name:literal),*) => { &[$(($name, include_str!(concat!("probes/", $name, ".xml")))),*] };
 }
 
-/// Returns names and texts of those of a milestone.
+/// Returns the names and texts of the probe scenes of a milestone.
 pub(in crate::assignments) const fn of(milestone: Assignment) -> &'static [(&'static str, &'static str)] {
     match milestone {
         Assignment::T1M1 => probes!["two-fields-and-a-fixed-particle"],

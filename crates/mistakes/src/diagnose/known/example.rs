@@ -72,7 +72,7 @@ fn contacts(ours: &[LoggedImpulse], theirs: &[LoggedImpulse]) -> (ExamplePlace, 
     }
 }
 
-/// Returns position and velocity of a particle: four numbers.
+/// Returns the position and velocity of a particle: four numbers.
 fn state(particle: usize, record: StepRecord, ours: &State, theirs: &State) -> (ExamplePlace, Vec<f64>, Vec<f64>) {
     let values = |state: &State| {
         let (x, v) = (at(&state.positions, particle), at(&state.velocities, particle));

@@ -18,7 +18,7 @@ pub(super) enum Correct {
 }
 
 impl Correct {
-    /// Returns such a program with a mistake.
+    /// Returns a correct program of this kind, with a mistake.
     pub(super) fn with(self, mistake: Option<Mistake>) -> Student {
         let student = Student::new(mistake);
         match self {

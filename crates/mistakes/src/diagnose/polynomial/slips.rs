@@ -61,7 +61,7 @@ impl Trial<'_> {
     }
 }
 
-/// Returns one-letter slips that reproduce at least half of the wrong samples.
+/// Returns the one-letter slips that reproduce at least half of the wrong samples.
 pub(super) fn candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     study.formulas().flat_map(|(reading, formula)| in_formula(study, formula, reading)).collect()
 }

@@ -15,7 +15,7 @@ fosssim_model::drops_leading!();
 /// The relative rounding of a single-precision number.
 const SINGLE_ROUNDOFF: f64 = 1.0 / (1_u64 << 24) as f64;
 
-/// Returns structural guesses that reproduce at least half of the wrong samples.
+/// Returns the structural guesses that reproduce at least half of the wrong samples.
 pub(super) fn candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     let mut found = Vec::new();
     properties(study, &mut found);

@@ -122,7 +122,7 @@ impl<'a> PolynomialStudy<'a> {
         }
     }
 
-    /// Returns in how many samples a property holds; `None` if it holds in fewer than half of the wrong ones, not in
+    /// Counts the samples in which a property holds; `None` if it holds in fewer than half of the wrong ones, not in
     /// the first of them, or only in some wrong ones and not in the right ones: what these speak against explains
     /// nothing.
     pub fn count_if(&self, holds: impl Fn(&Case) -> bool) -> Option<usize> {
@@ -241,7 +241,7 @@ impl<'a> PolynomialStudy<'a> {
         self.cases.iter().enumerate().map(agreeing).sum::<usize>() as f64
     }
 
-    /// Returns in how many samples each coefficient differs, one line per coefficient that does, with this name of the
+    /// Says in how many samples each coefficient differs, one line per coefficient that does, with this name of the
     /// polynomial.
     pub fn differences(&self, subject: Option<Subject>) -> Vec<PolynomialDetail> {
         let differs = |case: &&Case, power: usize| {

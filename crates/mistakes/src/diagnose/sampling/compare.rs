@@ -47,7 +47,7 @@ pub const ROUND_OFF: Tolerance = Tolerance {
 };
 
 impl Tolerance {
-    /// Returns round-off, in steps of this scene.
+    /// Returns the round-off, in steps of this scene.
     pub fn for_scene(scene: &Scene) -> Self {
         let is_newton = scene.integrator == Integrator::ImplicitEuler && !Layout::for_scene(scene).polynomials;
         Self { state: if is_newton { KNOWN_NEWTON_STATE } else { KNOWN_STATE }, ..ROUND_OFF }
@@ -79,7 +79,7 @@ impl Logged {
         numbers.copied().chain(self.impulses.iter().flat_map(of_impulse))
     }
 
-    /// Returns memory that it takes, in bytes.
+    /// Returns the memory that it takes, in bytes.
     pub fn bytes(&self) -> usize {
         16 * self.state.positions.len()
             + size_of::<LoggedImpulse>() * self.impulses.len()

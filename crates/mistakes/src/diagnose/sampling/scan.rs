@@ -75,8 +75,8 @@ impl Scan {
         self.right.truncate(MOST_RIGHT);
     }
 
-    /// Returns wrong steps to be tried first: one of each sort, the cheapest first. The first difference is among them,
-    /// which has to be reproduced, whatever it is.
+    /// Returns the wrong steps to be tried first: one of each sort, the cheapest first. The first difference is among
+    /// them, which has to be reproduced, whatever it is.
     pub fn probes(&self) -> Vec<&KeptStep> {
         let mut signatures = BTreeSet::new();
         let is_probe = |kept: &&KeptStep| signatures.insert(kept.signature);
@@ -162,7 +162,7 @@ impl Scanner {
         if difference.is_some() { self.scan.wrong.push(kept) } else { self.scan.right.push(kept) }
     }
 
-    /// Returns steps with the same number look alike: the same events in the reference, the same first difference.
+    /// Returns a number that steps share which look alike: the same events, and the same first difference.
     fn signature(&self, difference: Option<StepDifference>, actual: &StepRecords) -> u64 {
         let first = match difference {
             None => 0,

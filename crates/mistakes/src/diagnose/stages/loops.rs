@@ -45,7 +45,7 @@ pub(super) fn geometric(facts: &[StepFacts]) -> Option<Explanation> {
     Some(observation(StageFault::Geometric(wrong), Vec::new(), count))
 }
 
-/// Returns steps whose polynomials are right as far as they go, but of which there are too many or too few.
+/// Returns the steps whose polynomials are right as far as they go, but of which there are too many or too few.
 fn rounds(wrong: &[&StepFacts], max_iterations: i32) -> Option<Explanation> {
     let mut seen: Vec<(usize, usize)> = Vec::new();
     for facts in wrong {
@@ -75,7 +75,7 @@ fn rounds(wrong: &[&StepFacts], max_iterations: i32) -> Option<Explanation> {
     Some(observation(StageFault::Rounds(number), details, seen.len()))
 }
 
-/// Returns steps whose later rounds look at the integrator's positions, which the first round has left.
+/// Returns the steps whose later rounds look at the integrator's positions, which the first round has left.
 fn of_prediction(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let mut count = 0;
     for facts in wrong {
@@ -100,7 +100,7 @@ fn differs(ours: &[f64], theirs: &[f64]) -> Option<usize> {
     ours.iter().zip(theirs).position(|(ours, theirs)| !((ours - theirs).abs() <= within * (1.0 + ours.abs())))
 }
 
-/// Returns steps whose polynomials are all right, but not the state behind the loop.
+/// Returns the steps whose polynomials are all right, but not the state behind the loop.
 fn handed_over(wrong: &[&StepFacts], responses: &Responses) -> Option<Explanation> {
     let (mut ran_out, mut ended, mut positions, mut velocities) = (0, 0, false, false);
     let mut or_response = false;
@@ -166,7 +166,7 @@ impl SecondPass {
     }
 }
 
-/// Returns steps whose later rounds are wrong though their first one is right.
+/// Returns the steps whose later rounds are wrong though their first one is right.
 fn later(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let reaches = |passes: usize| {
         let is_right = |facts: &&StepFacts| facts.right_polynomials >= passes * facts.pass_size();

@@ -145,7 +145,7 @@ fn is_final(scene: &Scene, facts: &StepFacts, hit: &Hit) -> bool {
             .all(|pass| facts.detects(scene, pass, &middle.state.positions, |pair| pair == hit.pair))
 }
 
-/// Returns steps with several contacts, all of which are right though the state is not.
+/// Returns the steps with several contacts, all of which are right though the state is not.
 fn of_many(facts: &[StepFacts]) -> Option<Explanation> {
     let is_right = |facts: &&StepFacts| {
         facts.is_wrong

@@ -114,7 +114,7 @@ fn rounds(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     Some(observation(StageFault::ZoneRounds(rounds), Vec::new(), wrong.len()))
 }
 
-/// Returns steps whose polynomials are all right, but not their end: the velocities of zones, where positions are
+/// Returns the steps whose polynomials are all right, but not their end: the velocities of zones, where positions are
 /// right.
 fn velocities(scene: &Scene, ends: &[&StepFacts]) -> Explanation {
     let mut measured = MotionErrors::default();

@@ -230,7 +230,7 @@ impl<'a> FirstRound<'a> {
         None
     }
 
-    /// Returns particles of no zone that moved all the same.
+    /// Returns the particles of no zone that moved all the same.
     fn foreign(&self) -> Vec<usize> {
         if self.rounds > 1 {
             return Vec::new();

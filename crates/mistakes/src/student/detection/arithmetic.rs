@@ -74,7 +74,7 @@ fn at<N: Number>(body: &MovingBody, t: f64) -> Vector<N> {
     plus(vector(body.start), N::from(t), vector(body.displacement))
 }
 
-/// Returns overlap and approach of two particles.
+/// Returns the overlap and approach of two particles.
 pub fn particle_particle<N: Number>(one: &MovingBody, two: &MovingBody) -> Vec<Vec<f64>> {
     let x: Vector<N> = minus(vector(two.start), vector(one.start));
     let d: Vector<N> = minus(vector(two.displacement), vector(one.displacement));
@@ -85,7 +85,7 @@ pub fn particle_particle<N: Number>(one: &MovingBody, two: &MovingBody) -> Vec<V
     vec![rounded(&overlap), rounded(&[negative(square), negative(along)])]
 }
 
-/// Returns overlap and approach of a particle and a half-plane.
+/// Returns the overlap and approach of a particle and a half-plane.
 pub fn particle_half_plane<N: Number>(one: &MovingBody, point: Vec2, normal: Vec2) -> Vec<Vec<f64>> {
     let q: Vector<N> = vector(normal);
     let s = dot(vector(one.displacement), q);

@@ -51,7 +51,7 @@ fn interpolated(degree: usize, value: impl Fn(f64) -> f64) -> Vec<f64> {
     p
 }
 
-/// Returns overlap and approach of two particles, from values.
+/// Returns the overlap and approach of two particles, from values.
 pub fn particle_particle(one: &MovingBody, two: &MovingBody) -> Vec<Vec<f64>> {
     let n = |t| two.at(t) - one.at(t);
     let reach = one.radius + two.radius;
@@ -59,7 +59,7 @@ pub fn particle_particle(one: &MovingBody, two: &MovingBody) -> Vec<Vec<f64>> {
     vec![interpolated(2, |t| reach * reach - n(t).dot(&n(t))), interpolated(1, |t| closing.dot(&n(t)))]
 }
 
-/// Returns overlap and approach of a particle and a half-plane, from values.
+/// Returns the overlap and approach of a particle and a half-plane, from values.
 pub fn particle_half_plane(one: &MovingBody, point: Vec2, normal: Vec2) -> Vec<Vec<f64>> {
     let away = |t| (point - one.at(t)).dot(&normal);
     let reach = one.radius * one.radius * normal.dot(&normal);

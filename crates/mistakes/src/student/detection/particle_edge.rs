@@ -16,7 +16,7 @@ use crate::student::{
 /// The parts of the assignment whose mistakes are made in the polynomials.
 const FORMULAS: &[Area] = &[Area::ParticleEdge, Area::Handover, Area::ContactVector];
 
-/// Returns overlap (quartic), alpha > 0 (quadratic), alpha < 1 (quadratic), approach (quintic).
+/// Returns the overlap (quartic), alpha > 0 (quadratic), alpha < 1 (quadratic), approach (quintic).
 pub fn polynomials(student: Student, bodies: &[MovingBody; 3], edge_radius: f64) -> Vec<Vec<f64>> {
     let mistake = student.mistake_in(FORMULAS);
     match mistake {

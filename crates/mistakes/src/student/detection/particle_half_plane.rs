@@ -12,7 +12,7 @@ use crate::student::{Area, Mistake, author::Student};
 /// The parts of the assignment whose mistakes are made in the polynomials.
 const FORMULAS: &[Area] = &[Area::ParticleHalfPlane, Area::Handover, Area::ContactVector];
 
-/// Returns overlap (quadratic) and approach (linear).
+/// Returns the overlap (quadratic) and approach (linear).
 pub fn polynomials(student: Student, one: &MovingBody, point: Vec2, normal: Vec2) -> Vec<Vec<f64>> {
     let mistake = student.mistake_in(FORMULAS);
     let q = if mistake == Some(Mistake::HalfPlaneUnitNormal) { unit(normal) } else { normal };

@@ -12,7 +12,7 @@ use crate::student::{Area, Mistake, author::Student};
 /// The parts of the assignment whose mistakes are made in the polynomials.
 const FORMULAS: &[Area] = &[Area::ParticleParticle, Area::Handover, Area::ContactVector];
 
-/// Returns overlap (quadratic) and approach (linear).
+/// Returns the overlap (quadratic) and approach (linear).
 pub fn polynomials(student: Student, one: &MovingBody, two: &MovingBody) -> Vec<Vec<f64>> {
     let mistake = student.mistake_in(FORMULAS);
     match mistake {

@@ -74,7 +74,7 @@ impl Detector {
         self.passes = 0;
     }
 
-    /// Returns number of passes in this step so far, hence the index of the next one.
+    /// Returns the number of passes in this step so far, hence the index of the next one.
     pub fn passes(&self) -> u32 {
         self.passes
     }

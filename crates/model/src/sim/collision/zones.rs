@@ -22,7 +22,7 @@ pub(super) struct Zones {
 const NONE: u32 = u32::MAX;
 
 impl Zones {
-    /// Returns number of zones.
+    /// Returns the number of zones.
     pub fn len(&self) -> usize {
         self.ends.len()
     }

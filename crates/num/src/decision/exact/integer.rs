@@ -224,7 +224,7 @@ impl Integer {
     }
 }
 
-/// Returns euclid's algorithm, not negative.
+/// Returns the greatest common divisor by Euclid's algorithm, not negative.
 fn common_divisor(mut a: BigInt, mut b: BigInt) -> BigInt {
     while b.sign() != Sign::NoSign {
         let rest = &a % &b;

@@ -165,7 +165,7 @@ const fn look(verdict: Verdict) -> Look {
     }
 }
 
-/// Returns lines of program output, marked so that they can't be taken for ours.
+/// Returns the lines of program output, marked so that they can't be taken for ours.
 fn output(output: &str, most: usize) -> String {
     let output = printed(output);
     let mut lines: Vec<String> = output.lines().take(most).map(|line| format!("      | {line}")).collect();

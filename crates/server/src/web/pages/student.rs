@@ -97,7 +97,7 @@ pub(super) async fn page(staff: Staff, At { course: slug, assignment, login, .. 
     show(&StudentPage { frame, slug, assignment, work, changes })
 }
 
-/// Returns points; a number with a decimal comma, `7,5`, with a point. Three digits behind a comma may be thousands.
+/// Reads points; a number with a decimal comma, `7,5`, with a point. Three digits behind a comma may be thousands.
 /// Nothing where the field is empty.
 fn points(field: &str) -> Option<String> {
     match field.split_once(',') {

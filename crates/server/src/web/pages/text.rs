@@ -16,7 +16,7 @@ pub(super) fn field(milliseconds: &Option<i64>) -> String {
     milliseconds.map(|at| calendar::minute(at).replace(' ', "T")).unwrap_or_default()
 }
 
-/// Returns points of the most that could be had, to two digits as in reports; a dash where there are none.
+/// Returns the points of the most that could be had, to two digits as in reports; a dash where there are none.
 pub(super) fn points(points: &Option<String>, most: &Option<String>) -> String {
     match (points, most) {
         (Some(points), Some(most)) => format!("{} / {}", rounded(points), rounded(most)),

@@ -125,7 +125,7 @@ impl Lists {
         &own[own.partition_point(|&edge| edge < from)..]
     }
 
-    /// Returns position, displacement and radius of one particle, in all lanes.
+    /// Returns the position, displacement and radius of one particle, in all lanes.
     #[inline(always)]
     pub fn particle<S: Simd>(&self, simd: S, index: usize) -> Five<S> {
         let [x, y, dx, dy, radius] = &self.particles;

@@ -136,7 +136,7 @@ fn sort(boxes: &mut Vec<BodyExtent>, count: usize, make: impl Fn(u32) -> BodyExt
 }
 
 impl BodyExtent {
-    /// Returns around what is between two places, with this radius.
+    /// Returns the extent around all that is between two places, with this radius.
     fn around(body: u32, [one, other]: [Vec2; 2], radius: f64, has_four_axes: bool) -> Self {
         let mut own = Self { body, ..Self::default() };
         let mut extend = |axis: usize, one: f64, other: f64, radius: f64| {
