@@ -13,8 +13,10 @@ use std::{
 const SUITE: &str = "schema = 1\nname = \"killed\"\n[build]\ncommand = [\"sh\", \"build.sh\"]\nprogram = \"FOSSSim\"\n\
                      [[group]]\nname = \"scenes\"\nscenes = [\"asset:ImpulsesTests/o*\"]\npoints = 10\n";
 const SUBMISSIONS: usize = 3;
+const SCENES: usize = 2;
 
 /// Submissions `class/*`, a suite that builds them, and an empty temporary folder `tmp`. Each build leaves a daemon.
+/// The first two programs are equal.
 fn class() -> Option<Workspace> {
     let workspace = Workspace::new();
     let doctor = workspace.run(["doctor"]);
@@ -28,7 +30,7 @@ fn class() -> Option<Workspace> {
     for number in 0..SUBMISSIONS {
         let folder = format!("class/student{number}");
         // Not the sample's very bytes, which are refused.
-        workspace.write(format!("{folder}/ready"), [&sample[..], format!("{number}").as_bytes()].concat());
+        workspace.write(format!("{folder}/ready"), [&sample[..], format!("{}", number / 2).as_bytes()].concat());
         let build = "(setsid sleep 987654 &)\ncp ready FOSSSim && chmod 755 FOSSSim\n";
         workspace.write(format!("{folder}/build.sh"), build);
     }
@@ -62,6 +64,10 @@ fn assert_undisturbed(workspace: &Workspace, output: &str, run: &Run) {
     let different: BTreeSet<_> = keys.iter().collect();
     assert_eq!(different.len(), keys.len(), "a result twice");
     assert_eq!(keys.len(), journal("whole").len());
+    assert_eq!(keys.len(), (SUBMISSIONS - 1) * SCENES, "equal programs are run once");
+    let grades = String::from_utf8(workspace.read(format!("{output}/grades.csv"))).expect("text");
+    let same = |name: &str| grades.lines().any(|line| line.contains(&format!(",{name},")));
+    assert!(same("student0") && same("student1") && !same("student2"), "{grades}");
 }
 
 /// Processes that have to do with the folder, by their environment or what they run.

@@ -9,7 +9,7 @@ use super::{
 };
 use fosssim_model::assignments::Assignment;
 use serde::{Deserialize, Serialize};
-use std::{ops::Deref, time::Duration};
+use std::{collections::BTreeMap, ops::Deref, time::Duration};
 
 /// The visibility of a group's results, in Gradescope's words.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -24,6 +24,9 @@ pub enum Visibility {
     /// Students, after grades are published.
     AfterPublished,
 }
+
+/// A grade names no more submissions with the same program: a class of equal programs must not grow by its square.
+const MOST_NAMED: usize = 20;
 
 /// The grade of one submission on one suite.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -61,6 +64,10 @@ pub struct Grade {
     /// The common properties of the scenes in which the program crashes or runs into a limit, where hints let them
     /// through.
     pub located: Option<LocatedFailure>,
+    /// The digest of the program; none where there is no program that can be run.
+    pub program: Option<String>,
+    /// Other submissions of the class whose programs are equal, byte for byte, at most 20; for staff only.
+    pub same_program: Vec<String>,
 }
 
 impl Grade {
@@ -84,6 +91,21 @@ impl Grade {
         let extra = || self.groups.iter().filter(|group| group.extra);
         let reached: Option<f64> = extra().map(|group| group.points).sum();
         extra().next().and(reached).map(|reached| (reached, extra().map(|group| group.max_points).sum()))
+    }
+
+    /// Notes in each grade of a class which other submissions have the same program.
+    pub fn note_same_programs(grades: &mut [Self]) {
+        let mut owners: BTreeMap<String, Vec<String>> = BTreeMap::new();
+        for grade in grades.iter() {
+            if let Some(program) = &grade.program {
+                owners.entry(program.clone()).or_default().push(grade.submission.clone());
+            }
+        }
+        for grade in grades {
+            let same = grade.program.as_ref().map(|program| owners[program].iter());
+            let others = same.into_iter().flatten().filter(|other| **other != grade.submission);
+            grade.same_program = others.take(MOST_NAMED).cloned().collect();
+        }
     }
 
     /// Returns whether all groups are for students' eyes.

@@ -29,7 +29,7 @@ use fosssim_sandbox::Backend;
 use std::{
     collections::BTreeSet,
     path::{Path, PathBuf},
-    sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError},
+    sync::{Arc, Condvar, Mutex, MutexGuard, OnceLock, PoisonError},
     time::{Duration, Instant},
 };
 
@@ -118,8 +118,13 @@ pub(super) struct SharedGrading<'a> {
     folders: Folders,
     /// The parts of keys besides program and scene.
     words: Vec<String>,
-    /// Kept by this very grading: equal programs of two submissions are both run, whatever the number of jobs.
+    /// The results that this very grading has kept.
     kept: Mutex<BTreeSet<Key>>,
+    /// The results at which jobs are at work. Equal programs of two submissions are run once: a job waits for the
+    /// other's result.
+    claimed: Mutex<BTreeSet<Key>>,
+    /// Rings when a job has given a claim back.
+    released: Condvar,
     /// Why results can't be kept any more.
     pub(super) full: OnceLock<KeepError>,
     /// The contents of the plan's scenes, once somebody has asked.
@@ -130,8 +135,18 @@ pub(super) struct SharedGrading<'a> {
 
 impl<'a> SharedGrading<'a> {
     pub(super) fn new(grader: &Grader<'_>, results: Option<&'a dyn Results>, cancellation: &'a Cancellation) -> Self {
-        let (folders, kept, full, contents) = (Folders::default(), Mutex::default(), OnceLock::new(), OnceLock::new());
-        Self { cancellation, results, folders, words: grader.words(), kept, full, contents, reference: OnceLock::new() }
+        Self {
+            cancellation,
+            results,
+            folders: Folders::default(),
+            words: grader.words(),
+            kept: Mutex::default(),
+            claimed: Mutex::default(),
+            released: Condvar::new(),
+            full: OnceLock::new(),
+            contents: OnceLock::new(),
+            reference: OnceLock::new(),
+        }
     }
 
     /// Returns the contents of the reference's run of each scene. A scene without an end has none.
@@ -151,27 +166,47 @@ impl<'a> SharedGrading<'a> {
         Key::from_program(digest, &scene.xml, &words)
     }
 
-    /// Finds an earlier result. Where traces or cards are wanted, one without them does not count.
-    fn find(&self, key: &Key, trace: Option<&Place>, cards: Option<Cards<'_>>, students: Hints) -> Option<Done> {
-        let results = self.results?;
-        if lock(&self.kept).contains(key) {
-            return None;
-        }
-        let result = results.find(key)?;
+    /// Finds an earlier result, or that of an equal program in this grading. Where traces or cards are wanted, one
+    /// without them does not count.
+    fn find<'s>(
+        &self,
+        key: &Key,
+        trace: Option<&Place>,
+        cards: Option<Cards<'_>>,
+        students: Hints,
+    ) -> Option<Done<'s>> {
+        let result = self.results?.find(key)?;
         let lacks_trace = trace.is_some_and(|trace| !result.verdict.is_accepted() && !trace.is_file());
         let lacks_card = cards.is_some_and(|cards| cards.lack(&result, students));
-        (!lacks_trace && !lacks_card).then_some(Done { result, cached: true, key: None })
+        let cached = !lock(&self.kept).contains(key);
+        (!lacks_trace && !lacks_card).then_some(Done { result, cached, claim: None })
+    }
+
+    /// Claims the key of a result, once no other job is at work on it; the result, if there is one then.
+    fn claim<'s>(&'s self, key: Key, find: impl Fn(&Key) -> Option<Done<'s>>) -> Result<KeyClaim<'s>, Box<Done<'s>>> {
+        let mut claimed = lock(&self.claimed);
+        // Where nothing is kept there is no result to wait for.
+        while self.results.is_some() && claimed.contains(&key) {
+            claimed = self.released.wait(claimed).unwrap_or_else(PoisonError::into_inner);
+        }
+        match find(&key) {
+            Some(done) => Err(Box::new(done)),
+            None => {
+                claimed.insert(key.clone());
+                Ok(KeyClaim { shared: self, key })
+            }
+        }
     }
 
     /// Keeps a result. When that fails, grading is stopped: what can't be kept would be done in vain. Faults of ours
     /// and scenes that were not run are tried again instead.
-    pub(super) fn keep(&self, key: Key, submission: &Submission, result: &SceneResult) {
+    pub(super) fn keep(&self, key: &Key, submission: &Submission, result: &SceneResult) {
         let Some(results) = self.results else { return };
         if self.full.get().is_some() || matches!(result.verdict, Verdict::JudgeError | Verdict::NotRun) {
             return;
         }
         lock(&self.kept).insert(key.clone());
-        let kept = guarded(|| results.keep(&key, &submission.name, result));
+        let kept = guarded(|| results.keep(key, &submission.name, result));
         if let Err(error) = kept.unwrap_or_else(|fault| Err(KeepError(fault.to_string()))) {
             let _ = self.full.set(error);
             self.cancellation.cancel();
@@ -179,18 +214,31 @@ impl<'a> SharedGrading<'a> {
     }
 }
 
+/// The right of one job to make the result of a key. Others that need it wait until this is dropped.
+struct KeyClaim<'s> {
+    shared: &'s SharedGrading<'s>,
+    key: Key,
+}
+
+impl Drop for KeyClaim<'_> {
+    fn drop(&mut self) {
+        lock(&self.shared.claimed).remove(&self.key);
+        self.shared.released.notify_all();
+    }
+}
+
 /// A scene that has its result.
-struct Done {
+struct Done<'s> {
     result: SceneResult,
     /// Taken from an earlier run.
     cached: bool,
     /// Under what it is to be kept; what was found needs no keeping.
-    key: Option<Key>,
+    claim: Option<KeyClaim<'s>>,
 }
 
-impl Done {
+impl Done<'_> {
     fn unkept(result: SceneResult) -> Self {
-        Self { result, cached: false, key: None }
+        Self { result, cached: false, claim: None }
     }
 }
 
@@ -243,15 +291,15 @@ impl<'a> SubmissionGrading<'a> {
         let done = guarded(|| self.find_or_run(number, scene, tell)).unwrap_or_else(|fault| {
             Done::unkept(scene.failed(Failure::Panic { stage: None, fault: fault.to_string(), trace: None }))
         });
-        let Done { result, cached, key } = done;
+        let Done { result, cached, claim } = done;
         self.note(number, &result);
-        if let Some(key) = key {
-            self.shared.keep(key, self.submission, &result);
+        if let Some(claim) = claim {
+            self.shared.keep(&claim.key, self.submission, &result);
         }
         tell(SceneNews::Done(Box::new(result), cached));
     }
 
-    fn find_or_run(&self, number: usize, scene: &SceneTask, tell: &mut dyn FnMut(SceneNews)) -> Done {
+    fn find_or_run(&self, number: usize, scene: &SceneTask, tell: &mut dyn FnMut(SceneNews)) -> Done<'a> {
         let without_run = |verdict, why| Done::unkept(scene.without_run(verdict, why));
         if let Some(why) = self.left_out(number) {
             return Done::unkept(patience::left_out(scene, why));
@@ -261,11 +309,12 @@ impl<'a> SubmissionGrading<'a> {
         let trace = grader.traces.map(|path| path(submission, scene));
         let students = grader.plan.student_hints(&scene.name);
         let find = |key: &Key| shared.find(key, trace.as_ref(), grader.cards, students);
+        // Found or claimed before anything is copied, where the program is known as it lies there.
         let known = self.digest().map(|digest| shared.key(&digest, scene, &submission.called(), students));
-        let found = known.as_ref().and_then(find);
-        if let Some(done) = found {
-            return done;
-        }
+        let known = match known.map(|key| shared.claim(key, find)).transpose() {
+            Ok(claim) => claim,
+            Err(done) => return *done,
+        };
         match &*self.staged() {
             Err(message) => Done::unkept(scene.failed(Failure::Machine(message.clone()))),
             Ok(Staged { refused: Some(why), .. }) => without_run(Verdict::Unusable, Reason::Unusable(why.clone())),
@@ -277,10 +326,20 @@ impl<'a> SubmissionGrading<'a> {
             }
             Ok(staged) => {
                 let key = shared.key(&staged.digest, scene, &called(&staged.program), students);
-                find(&key).unwrap_or_else(|| {
-                    let result = self.run(staged, scene, trace.as_ref(), tell);
-                    Done { result, cached: false, key: Some(key) }
-                })
+                let claim = match known {
+                    Some(claim) if claim.key == key => Ok(claim),
+                    other => {
+                        drop(other);
+                        shared.claim(key, find)
+                    }
+                };
+                match claim {
+                    Err(done) => *done,
+                    Ok(claim) => {
+                        let result = self.run(staged, scene, trace.as_ref(), tell);
+                        Done { result, cached: false, claim: Some(claim) }
+                    }
+                }
             }
         }
     }
@@ -338,7 +397,7 @@ impl<'a> SubmissionGrading<'a> {
     }
 
     /// Returns the digest of a program that needs no build and no copy to be known.
-    fn digest(&self) -> Option<blake3::Hash> {
+    pub(super) fn digest(&self) -> Option<blake3::Hash> {
         *self.digest.get_or_init(|| match &self.submission.program {
             _ if self.builds() => None,
             Some(program) => staging::digest_in(&self.submission.path, program, self.submission.file.as_ref()),

@@ -72,6 +72,8 @@ pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Ve
         wall: Duration::ZERO,
         looks_like: None,
         located: None,
+        program: None,
+        same_program: Vec::new(),
     }
 }
 

@@ -53,7 +53,7 @@ impl SubmissionGrading<'_> {
         if let (Some(_), Ok(staged)) = (&result.timing, &*self.staged()) {
             let students = self.grader.plan.student_hints(&scene.name);
             let key = self.shared.key(&staged.digest, scene, &called(&staged.program), students);
-            self.shared.keep(key, self.submission, result);
+            self.shared.keep(&key, self.submission, result);
         }
     }
 

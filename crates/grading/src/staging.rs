@@ -133,6 +133,12 @@ impl Staged {
     pub(super) fn refused(path: &Path, why: Unusable) -> Self {
         Self { refused: Some(why), ..Self::nothing(path) }
     }
+
+    /// Returns the digest of the program's bytes; `None` where nothing can be run.
+    pub(super) fn program_digest(&self) -> Option<blake3::Hash> {
+        let is_built = self.build.as_ref().is_none_or(|build| build.end.is_success());
+        (is_built && self.refused.is_none()).then_some(self.digest)
+    }
 }
 
 /// Copies an open program, unless it is the grader itself.

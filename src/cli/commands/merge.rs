@@ -62,6 +62,7 @@ pub(super) fn run(arguments: &Merge) -> Result<u8> {
     let mut grades: Vec<Grade> = parts.into_iter().flat_map(|(_, part)| part.grades).collect();
     let place = |grade: &Grade| order.iter().position(|name| *name == grade.submission);
     grades.sort_by_key(place);
+    Grade::note_same_programs(&mut grades);
     grade::warn_of(&mut grades, &passed_over);
     let pages = Pages::new(Some(&output), false)?;
     LastRun::open(Some(&output), &[], &suite).remember(&grades);

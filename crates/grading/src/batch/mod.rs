@@ -95,7 +95,8 @@ pub fn run(
             telling.get_or_insert(panic);
         }
     };
-    let grades = share_out(grader, &gradings, &mut tell);
+    let mut grades = share_out(grader, &gradings, &mut tell);
+    Grade::note_same_programs(&mut grades);
     drop(gradings);
     // Once more: what killed graders had begun may have needed a moment to end.
     temporary::sweep();

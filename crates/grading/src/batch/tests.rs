@@ -97,6 +97,36 @@ fn an_interrupted_grading_has_no_points_and_goes_on_where_it_stopped_and_ends_th
 }
 
 #[test]
+fn equal_programs_of_a_class_are_run_once_and_shown_to_staff_alone() {
+    for jobs in [1, 2, 8] {
+        let stage = Stage::new();
+        let (plan, never) = (small_plan(), Cancellation::default());
+        let submissions: Vec<Submission> = [("ada", "wrong"), ("bob", "wrong"), ("eve", "half")]
+            .into_iter()
+            .map(|(name, program)| {
+                let path = stage.folder.path().join(name);
+                std::fs::create_dir(&path).expect("a folder");
+                std::fs::write(path.join(program), program).expect("a program");
+                Submission { name: name.to_owned(), path, program: Some(program.to_owned()), file: None }
+            })
+            .collect();
+        let mut grader = stage.grader(&plan);
+        grader.options.jobs = jobs;
+        let results = tempfile::tempdir().expect("folder");
+        let grade = || run(&grader, &submissions, Some(&journal(&results)), &never, &mut |_| {}).grades;
+        let grades = grade();
+        assert_eq!(stage.started(), 2 * plan.scenes().count(), "{jobs} jobs");
+        assert!(grades.iter().all(|grade| grade.taken_over() == 0), "nothing is from an earlier run");
+        assert!(grades[0].scenes().map(|scene| &scene.result).eq(grades[1].scenes().map(|scene| &scene.result)));
+        for grades in [&grades, &grade()] {
+            let same: Vec<_> = grades.iter().map(|grade| grade.same_program.as_slice()).collect();
+            assert_eq!(same, [&["bob".to_owned()][..], &["ada".to_owned()], &[]]);
+            assert!(grades.iter().all(|grade| told_to_students(grade).same_program.is_empty()));
+        }
+    }
+}
+
+#[test]
 fn a_changed_program_is_graded_anew() {
     let stage = Stage::new();
     let (plan, never) = (small_plan(), Cancellation::default());

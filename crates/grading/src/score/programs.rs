@@ -32,9 +32,11 @@ impl SubmissionGrading<'_> {
         let looks_like = self.looks_like(&results);
         let wall = results.iter().map(|(result, _)| result.measured.wall).sum();
         // The submission's copy goes away.
-        let build = match lock(&self.staged).take().as_deref() {
-            Some(Ok(staged)) => staged.build.clone(),
-            _ => None,
+        let staged = lock(&self.staged).take();
+        let (program, build) = match staged.as_deref() {
+            Some(Ok(staged)) => (staged.program_digest(), staged.build.clone()),
+            Some(Err(_)) => (None, None),
+            None => (self.digest(), None),
         };
         let mut warnings = self.grader.backend.weaknesses();
         if self.submission.file.as_ref().is_some_and(|file| file.is_shared && !file.is_anothers) {
@@ -50,6 +52,7 @@ impl SubmissionGrading<'_> {
             layers: active.map(|report| report.layer.name().to_owned()).collect(),
             wall,
             looks_like,
+            program: program.map(|digest| digest.to_string()),
             ..score::grade(plan, self.submission.name.clone(), true, results)
         };
         if plan.staff_hints.explains() {

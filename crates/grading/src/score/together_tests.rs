@@ -56,6 +56,8 @@ fn grade(scenes: Vec<Vec<Explanation>>) -> Grade {
         refuted: Vec::new(),
         looks_like: None,
         located: None,
+        program: None,
+        same_program: Vec::new(),
     };
     settle(&mut grade);
     grade

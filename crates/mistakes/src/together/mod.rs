@@ -11,14 +11,18 @@ use told::cut_result;
 
 pub mod told;
 
-/// Returns the grade with no more of its scenes than hints tell students. Groups that students do not see are in it,
-/// too.
+/// Returns the grade with no more of its scenes than hints tell students, and nothing of other submissions. Groups that
+/// students do not see are in it, too.
 #[must_use]
 pub fn told_to_students(grade: &Grade) -> Cow<'_, Grade> {
-    if grade.groups.iter().all(|group| group.hints == Hints::Full) {
+    let is_all_told = grade.groups.iter().all(|group| group.hints == Hints::Full);
+    if is_all_told && grade.same_program.is_empty() {
         return Cow::Borrowed(grade);
     }
-    let mut told = grade.clone();
+    let mut told = Grade { same_program: Vec::new(), ..grade.clone() };
+    if is_all_told {
+        return Cow::Owned(told);
+    }
     for group in &mut told.groups {
         for scene in &mut group.scenes {
             cut_result(group.hints, &mut scene.result);

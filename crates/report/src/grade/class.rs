@@ -1,5 +1,5 @@
 //! A class in numbers: how many points, which scenes few have right, which mistakes many make.
-use super::{likely_mistakes, points};
+use super::{likely_mistakes, points, shortened};
 use crate::foreign::one_line;
 use crate::{
     number::counted,
@@ -17,7 +17,7 @@ pub(crate) struct SceneShare {
     pub(crate) run: usize,
 }
 
-/// Returns the class, with at most this number of scenes and mistakes.
+/// Returns the class, with at most this number of scenes, mistakes and names of one program's submissions.
 #[must_use]
 pub fn class(grades: &[Grade], most: usize, style: Style) -> String {
     let mut text = format!("{}: {}\n", style.paint(Look::Strong, "Class"), head(grades));
@@ -50,7 +50,29 @@ pub fn class(grades: &[Grade], most: usize, style: Style) -> String {
         }
         text += &table.render(style);
     }
+    let same = same_programs(grades);
+    if !same.is_empty() {
+        let _ = writeln!(text, "{}", style.paint(Look::Strong, "The same program, byte for byte"));
+        for members in &same {
+            let name = |&number: &usize| shortened(&one_line(&grades[number].submission));
+            let names: Vec<String> = members.iter().take(most).map(name).collect();
+            let more = members.len() - names.len();
+            let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+            let _ = writeln!(text, "  {}{more}", names.join(", "));
+        }
+    }
     text
+}
+
+/// Returns the numbers of the submissions that have the same program as others, each group once.
+pub(crate) fn same_programs(grades: &[Grade]) -> Vec<Vec<usize>> {
+    let mut found: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    for (number, grade) in grades.iter().enumerate().filter(|(_, grade)| !grade.same_program.is_empty()) {
+        found.entry(grade.program.as_deref().unwrap_or_default()).or_default().push(number);
+    }
+    let mut groups: Vec<Vec<usize>> = found.into_values().collect();
+    groups.sort();
+    groups
 }
 
 /// Returns `30 submissions, 12 accepted; mean 63.2, median 71, from 0 to 100 of 100 points; 2 without points`.
@@ -109,13 +131,41 @@ fn frequent(grades: &[Grade]) -> Vec<(String, usize)> {
 
 #[cfg(test)]
 mod tests {
-    use super::{super::samples, *};
+    use super::{
+        super::{csv_of_submissions, samples},
+        *,
+    };
+    use crate::{
+        formats::Format,
+        page::{Audience, GradePage},
+    };
 
     #[test]
     fn a_class_is_summed_up() {
         let grades = [samples::good(), samples::bad(), samples::fault(), samples::stopped()];
         insta::assert_snapshot!(class(&grades, 3, Style::Plain));
         assert!(class(&grades, usize::MAX, Style::Plain).contains("Rest/SV"), "the whole list");
+    }
+
+    #[test]
+    fn staff_sees_which_submissions_have_the_same_program_and_students_do_not() {
+        let with = |name: &str, program: &str, same: &[&str]| Grade {
+            submission: name.to_owned(),
+            program: Some(program.to_owned()),
+            same_program: same.iter().map(|name| (*name).to_owned()).collect(),
+            ..samples::good()
+        };
+        let grades = [with("zoe", "1", &["kim"]), with("ann", "2", &[]), with("kim", "1", &["zoe"])];
+        assert!(class(&grades, 3, Style::Plain).ends_with("The same program, byte for byte\n  zoe, kim\n"));
+        let shown = |reader| {
+            let told: Vec<Grade> =
+                grades.iter().map(|grade| Format::Json.told(grade, reader, false).into_owned()).collect();
+            let page = GradePage { grade: &grades[0], card: &|_| None, class: None, reader }.html();
+            let table = csv_of_submissions(&told, &[]).contains(",kim,");
+            (Format::Json.render(&told).contains("same_program"), page.contains("kim"), table)
+        };
+        assert_eq!(shown(Audience::Staff), (true, true, true));
+        assert_eq!(shown(Audience::Student), (false, false, false));
     }
 
     #[test]

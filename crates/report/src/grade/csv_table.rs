@@ -35,14 +35,13 @@ pub(crate) fn scenes(grades: &[Grade], passed_over: &[PassedOver]) -> String {
 
 /// Returns one row per submission, with a column per group; `rules_differ` counts scenes that the rule books judge
 /// differently. Points are empty where the grader failed or was stopped; `reason` says in one sentence why not
-/// everything is accepted. Entries that are no submissions have rows with nothing but that.
+/// everything is accepted, and `same_program` names the others with the same program. Entries that are no submissions
+/// have rows with nothing but the reason.
 #[must_use]
 pub fn submissions(grades: &[Grade], passed_over: &[PassedOver]) -> String {
-    let mut head: Vec<String> =
-        "submission,verdict,points,max_points,accepted_scenes,scenes,wall_seconds,rules_differ,likely_mistake,reason"
-            .split(',')
-            .map(str::to_owned)
-            .collect();
+    let head = "submission,verdict,points,max_points,accepted_scenes,scenes,wall_seconds,rules_differ,likely_mistake,\
+                reason,same_program";
+    let mut head: Vec<String> = head.split(',').map(str::to_owned).collect();
     if let Some(first) = grades.first() {
         head.extend(first.groups.iter().map(|group| safe(&group.name)));
         let timed = first.groups.iter().filter(|group| group.speed.is_some());
@@ -62,6 +61,7 @@ pub fn submissions(grades: &[Grade], passed_over: &[PassedOver]) -> String {
             grade.differing().to_string(),
             safe(&mistakes.join(" ")),
             safe(&no_points(grade).or_else(|| words::reason(grade)).unwrap_or_default()),
+            safe(&grade.same_program.join(", ")),
         ];
         row.extend(grade.groups.iter().map(|group| group.points.map(points).unwrap_or_default()));
         row.extend(grade.groups.iter().filter_map(|group| group.speed.as_ref()).map(|speed| match &speed.source {

@@ -77,6 +77,9 @@ view! {
         #[schemars(length(max = 3))]
         likely_mistakes: Vec<ExplanationView> =
             likely_mistakes(grade).iter().map(|(mistake, _)| ExplanationView::from(mistake)).collect(),
+        /// Other submissions with the same program, byte for byte, at most 20; left out where there are none.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        same_program: Vec<String> = grade.same_program.iter().map(|name| plain(name)).collect(),
         /// The groups in the suite's order.
         groups: Vec<GroupView> = grade.groups.iter().map(GroupView::from).collect(),
     }

@@ -25,7 +25,7 @@ pub fn json(grades: &[Grade]) -> String {
 }
 
 pub use class::class;
-pub(crate) use class::hardest;
+pub(crate) use class::{hardest, same_programs};
 pub use csv_table::submissions as csv_of_submissions;
 pub(crate) use json::GradeDocument;
 pub use json::lines as json_lines;

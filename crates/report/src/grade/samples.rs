@@ -52,6 +52,8 @@ fn grade(submission: &str, groups: Vec<GroupGrade>) -> Grade {
         refuted: Vec::new(),
         looks_like: None,
         located: None,
+        program: None,
+        same_program: Vec::new(),
         shows_output: groups.iter().all(|group| group.visibility == Visibility::Visible),
         groups,
         build: None,

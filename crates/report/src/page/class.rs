@@ -6,7 +6,7 @@ use super::{
 };
 use crate::foreign::one_line;
 use crate::{
-    grade::{hardest, likely_mistakes, points, reached},
+    grade::{hardest, likely_mistakes, points, reached, same_programs},
     number::counted,
     words,
 };
@@ -50,6 +50,7 @@ impl ClassPage<'_> {
         body += &histogram(self.grades);
         body += &self.clusters();
         body += "</div>\n";
+        body += &self.same_programs();
         body += &self.table();
         body += &self.not_graded();
         body += &self.scenes();
@@ -161,6 +162,16 @@ impl ClassPage<'_> {
             );
         }
         out + "</section>\n"
+    }
+
+    /// Returns the submissions with the same program, group by group.
+    fn same_programs(&self) -> String {
+        let groups = same_programs(self.grades);
+        if groups.is_empty() {
+            return String::new();
+        }
+        let groups: String = groups.iter().map(|members| self.members(members)).collect();
+        format!("<section class=\"card\"><h2>The same program, byte for byte</h2>\n{groups}</section>\n")
     }
 
     /// Returns the members of a cluster: folded where they are many, and to be copied into a letter.

@@ -96,6 +96,10 @@ impl GradePage<'_> {
         for warning in &grade.warnings {
             let _ = writeln!(out, "<p class=\"bad\">Warning: {}</p>", text(warning));
         }
+        if !grade.same_program.is_empty() {
+            let names = one_line(&grade.same_program.join(", "));
+            let _ = writeln!(out, "<p>The same program, byte for byte: {}</p>", text(&names));
+        }
         if let Some(build) = grade.failed_build() {
             let _ = writeln!(out, "<h2>The build</h2>\n<p>{}</p>", text(&words::build(&build.end)));
             out += &printed("What it printed", &build.output, &mut OUTPUTS.clone());
