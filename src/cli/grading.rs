@@ -36,6 +36,7 @@ Example:
   fosssim-oracle grade ./FOSSSim --scene 'GeometricTests/*' --hints full
   fosssim-oracle grade submissions/ --suite course.toml --output grades --for student
   fosssim-oracle grade ./FOSSSim --failed
+  fosssim-oracle grade submissions/ --output grades --compare grades
 
 A folder holds one submission per entry: a program, an archive (.zip, .tar.gz, .tar), or a folder with a program of \
 the name that --program gives. A folder that holds such a program itself is one submission, and with --single it is \
@@ -106,6 +107,10 @@ pub(super) struct Grade {
     /// A folder is one submission, not a folder of submissions.
     #[arg(long)]
     pub(super) single: bool,
+    /// An earlier grading, to tell what became right and what broke since: its output folder, its grades.jsonl, or
+    /// what --format json wrote.
+    #[arg(long, value_name = "OLD")]
+    pub(super) compare: Option<PathBuf>,
     /// Forget earlier results.
     #[arg(long)]
     pub(super) fresh: bool,

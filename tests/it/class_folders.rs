@@ -314,6 +314,39 @@ fn traces_are_reached_by_no_link() {
     }
 }
 
+#[test]
+fn a_class_is_compared_with_its_earlier_grading() {
+    let workspace = workspace();
+    let bytes = trace_of(BOUNCE);
+    let hand_in = |alice: &[u8], bob: &[u8]| {
+        workspace.write("alice/bounce.bin", alice);
+        workspace.write("bob/bounce.bin", bob);
+    };
+    let traces = ["--traces", "alice", "bob", "--output", "grades"];
+    hand_in(&bytes[..bytes.len() - 8], &bytes);
+    assert_eq!(grade(&workspace, &traces).code, Some(1));
+    hand_in(&bytes, &bytes[..bytes.len() - 8]);
+    let compared = |words: &[&str]| grade(&workspace, &[&traces[..], words].concat());
+    let run = compared(&["--compare", "grades"]);
+    let text = run.out();
+    let rows: Vec<Vec<&str>> = text.lines().take(3).map(|line| line.split_whitespace().collect()).collect();
+    assert_eq!(rows[0], ["submission", "points", "verdict", "before", "right", "broke", "own", "seconds"]);
+    assert_eq!((&rows[1][..2], &rows[1][3..6]), (&["alice", "10"][..], &["0", "+1", "-0"][..]), "{}", run.shown());
+    assert_eq!(rows[2][rows[2].len() - 6..][..3], ["10", "+0", "-1"], "{}", run.shown());
+    let page = String::from_utf8(workspace.read("grades/reports/bob.html")).expect("text");
+    assert!(
+        page.contains("<li>10 points before, 0 now</li><li>1 scene broke: scenes/bounce (BT)</li>"),
+        "{page:.3000}"
+    );
+    // The folder holds this grading now: any file of grades will do.
+    let run = compared(&["--compare", "grades/grades.jsonl", "--format", "json"]);
+    let json: serde_json::Value = serde_json::from_str(&run.out()).expect("JSON");
+    let expected = serde_json::json!({ "points": 10.0, "max_points": 10.0, "right": [], "broke": [], "others": [] });
+    assert_eq!(json["grades"][0]["changes"], expected, "{}", run.shown());
+    let refused = compared(&["--compare", "suite.toml"]);
+    assert!(refused.code == Some(2) && refused.err().contains("suite.toml holds no grades"), "{}", refused.shown());
+}
+
 /// The files that a grading of a class leaves, whose names everybody knows.
 const RESULTS: [&str; 6] = ["grades.csv", "scenes.csv", "grades.jsonl", "class.txt", "index.html", "last-run.json"];
 

@@ -1,6 +1,7 @@
 //! The grade: what one submission got, scene by scene.
 use super::{
     Hints, Rules,
+    earlier::EarlierGrade,
     explanation::Explanation,
     located::LocatedFailure,
     result::{BuildEnd, SceneResult},
@@ -68,6 +69,9 @@ pub struct Grade {
     pub program: Option<String>,
     /// Other submissions of the class whose programs are equal, byte for byte, at most 20; for staff only.
     pub same_program: Vec<String>,
+    /// The earlier grade with which this one is compared.
+    #[serde(default)]
+    pub before: Option<EarlierGrade>,
 }
 
 impl Grade {

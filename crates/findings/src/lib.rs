@@ -20,8 +20,10 @@
 
 mod book_findings;
 mod cause;
+pub mod changes;
 pub mod counts;
 pub mod disclosure;
+pub mod earlier;
 pub mod explanation;
 pub mod fair;
 pub mod finding;

@@ -79,6 +79,12 @@ impl Verdict {
         self.texts().0
     }
 
+    /// Returns the verdict of a code.
+    #[must_use]
+    pub fn from_code(code: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|verdict| verdict.code() == code)
+    }
+
     /// Returns the words, as reports and JSON write them.
     #[must_use]
     pub const fn words(self) -> &'static str {

@@ -82,7 +82,8 @@ pub use self::{
     temporary::Folders,
 };
 pub use fosssim_findings::{
-    Build, Grade, GroupGrade, PassedOver, Reason, SceneGrade, SceneResult, SubmissionFault, Verdict, disclosure, result,
+    Build, Grade, GroupGrade, PassedOver, Reason, SceneGrade, SceneResult, SubmissionFault, Verdict, disclosure,
+    earlier::EarlierGrade, result,
 };
 use fosssim_findings::{grade, verdict};
 pub use guard::{Fault, guarded};

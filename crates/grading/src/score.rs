@@ -74,6 +74,7 @@ pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Ve
         located: None,
         program: None,
         same_program: Vec::new(),
+        before: None,
     }
 }
 

@@ -1,6 +1,7 @@
 //! `grade`: runs programs on a suite in the sandbox, keeps every result, and writes the reports.
 use super::{
     closer::Closer,
+    compare,
     display::{Counter, LiveDisplay},
     ending::{HARDEST, exit_code, file_name, file_of_scene, shown, text},
     last_run::LastRun,
@@ -23,16 +24,14 @@ use crate::{
     report::{
         explain,
         foreign::{plain, printed},
-        formats::Format,
         grade,
         number::counted,
         page::Audience,
-        style::Style,
         words,
     },
     sandbox::{Backend, Supervisor},
     suite::{
-        Cancellation, Grade, Grader, PassedOver, SceneTask, Submission, Verdict,
+        Cancellation, EarlierGrade, Grade, Grader, PassedOver, SceneTask, Submission, Verdict,
         batch::{self, Graded},
         cards::Judged,
         config::Visibility,
@@ -69,8 +68,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
         (Some(hints), Audience::Student) => plan.tell_students(hints),
     }
     let reports = reports(&arguments.format)?;
+    // Read before anything is written: it may be the folder for results.
+    let earlier = arguments.compare.as_deref().map(compare::read).transpose()?.unwrap_or_default();
     if arguments.traces {
-        return traces::run(arguments, plan, &reports);
+        return traces::run(arguments, plan, &reports, &earlier);
     }
     let output = arguments.output.clone().unwrap_or_else(|| PathBuf::from(DEFAULT_OUTPUT));
     if arguments.output.is_none() && output.is_symlink() {
@@ -119,9 +120,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     let session =
         GradingSession { arguments, plan, backend, cancellation, folder, pages, is_part, sharding, passed_over };
     if arguments.watch {
-        return session.watch(&submissions, &reports, &mut last_run);
+        return session.watch(&submissions, &reports, &mut last_run, earlier);
     }
-    session.grade_and_report(&submissions, &reports, &mut last_run).map(|(_, code)| code)
+    session.grade_and_report(&submissions, &reports, &mut last_run, &earlier).map(|(_, code)| code)
 }
 
 /// Returns the sandbox, or a refusal that says what is missing.
@@ -158,8 +159,10 @@ impl GradingSession<'_> {
         submissions: &[Submission],
         reports: &[Report],
         last_run: &mut LastRun,
+        earlier: &[EarlierGrade],
     ) -> Result<(Vec<Grade>, u8)> {
-        let (grades, fault) = self.grade(submissions, self.arguments.fresh)?;
+        let (mut grades, fault) = self.grade(submissions, self.arguments.fresh)?;
+        compare::add(earlier, &mut grades);
         last_run.remember(&grades);
         self.report(&grades, submissions, reports)?;
         self.say_what_was_kept(&grades);
@@ -297,22 +300,21 @@ impl GradingSession<'_> {
     }
 
     /// Grades, waits for a change of any program, grades again; until interrupted.
-    fn watch(&self, submissions: &[Submission], reports: &[Report], last_run: &mut LastRun) -> Result<u8> {
-        let mut before: Option<Vec<Grade>> = None;
+    fn watch(
+        &self,
+        submissions: &[Submission],
+        reports: &[Report],
+        last_run: &mut LastRun,
+        earlier: Vec<EarlierGrade>,
+    ) -> Result<u8> {
+        let mut earlier = earlier;
         loop {
             let seen = stamps(submissions);
-            let (grades, code) = self.grade_and_report(submissions, reports, last_run)?;
-            if let Some(before) = &before {
-                let printed = reports.iter().any(|report| report.file.is_none() && report.format == Format::Text);
-                match printed {
-                    true => console::report(&grade::changes(before, &grades, console::style()))?,
-                    false => console::complain(grade::changes(before, &grades, Style::Plain)),
-                }
-            }
+            let (grades, code) = self.grade_and_report(submissions, reports, last_run, &earlier)?;
             if self.cancellation.is_cancelled() {
                 return Ok(code);
             }
-            before = Some(grades);
+            earlier = grades.iter().map(EarlierGrade::from).collect();
             console::complain("waiting for a change; Ctrl-C ends\n");
             // A file is graded when it has stopped changing: a linker writes in several goes.
             let mut last = seen.clone();

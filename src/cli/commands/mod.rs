@@ -2,6 +2,7 @@
 
 mod check;
 mod closer;
+mod compare;
 mod detect;
 mod display;
 mod ending;

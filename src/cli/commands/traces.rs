@@ -1,6 +1,7 @@
 //! `grade --traces`: judges traces that are there already, a folder of them for each submission. Nothing is run, so
 //! that no sandbox is needed; how long a program took, and that it ended well, nobody knows.
 use super::{
+    compare,
     ending::{HARDEST, exit_code, shown, text},
     pages::{self, Pages},
     results::{Report, Results, refuse_several, wanted_pages},
@@ -10,7 +11,7 @@ use crate::{
     cli::{console, grading::Grade as Arguments, input::unpacked, selection::Selection},
     files::{FileError, Folder},
     report::{foreign::one_line, number::counted},
-    suite::{Grade, SceneResult, SceneTask, cards::Judged, guarded, plan::Plan, result::Failure, traces},
+    suite::{EarlierGrade, Grade, SceneResult, SceneTask, cards::Judged, guarded, plan::Plan, result::Failure, traces},
 };
 use anyhow::{Context, Result, bail};
 use rayon::prelude::*;
@@ -20,7 +21,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report]) -> Result<u8> {
+pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report], earlier: &[EarlierGrade]) -> Result<u8> {
     let names: Vec<&str> = plan.scenes().map(|task| task.name.as_str()).collect();
     let selection = Selection::new(&arguments.scene, &names)?;
     let names: Vec<String> = names.into_iter().map(str::to_owned).collect();
@@ -42,7 +43,8 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report]) -> Resu
     let pages = wanted_pages(arguments, folder, arguments.programs.len() > 1, reports)?;
     let paths: Vec<&Path> = arguments.programs.iter().map(PathBuf::as_path).collect();
     let named = paths.iter().zip(distinct_names(&paths));
-    let grades: Vec<Grade> = named.map(|(folder, name)| grade(&plan, folder, name, pages.as_ref())).collect();
+    let mut grades: Vec<Grade> = named.map(|(folder, name)| grade(&plan, folder, name, pages.as_ref())).collect();
+    compare::add(earlier, &mut grades);
     for folder in &paths {
         if let Some(strays) = Folder::open(folder).ok().and_then(|folder| strays(&folder, &names)) {
             console::remark(format!("warning: {}\n", one_line(&format!("{}: {strays}", folder.display()))));

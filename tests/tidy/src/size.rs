@@ -14,7 +14,8 @@ const HUNDREDS: [(&str, usize); 20] = [
     ("evidence", 9),
     ("examples", 2),
     ("files", 6),
-    ("findings", 28),
+    // Changes since an earlier grading are values here; the comparison in `report` for --watch went.
+    ("findings", 29),
     ("grading", 46),
     ("intake", 5),
     ("judge", 45),

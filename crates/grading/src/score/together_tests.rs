@@ -58,6 +58,7 @@ fn grade(scenes: Vec<Vec<Explanation>>) -> Grade {
         located: None,
         program: None,
         same_program: Vec::new(),
+        before: None,
     };
     settle(&mut grade);
     grade

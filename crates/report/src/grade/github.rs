@@ -1,5 +1,7 @@
 //! GitHub Actions: one annotation per scene that is not accepted, and a summary in Markdown.
-use super::{super::explain, difference, head_lines, no_points, phrases::NOT_GRADED, points, reached, wrong_first};
+use super::{
+    super::explain, change_lines, difference, head_lines, no_points, phrases::NOT_GRADED, points, reached, wrong_first,
+};
 use crate::annotation::{annotation, annotation_of};
 use crate::foreign::{one_line, printed};
 use crate::words;
@@ -62,6 +64,10 @@ pub(crate) fn summary(grades: &[Grade]) -> String {
         let _ = writeln!(text, "### {}: {} ({})\n", cell(&grade.submission), grade.verdict, cell(&score(grade)));
         for line in head_lines(grade) {
             let _ = writeln!(text, "{}\n", cell(&line));
+        }
+        let changes: Vec<String> = change_lines(grade).into_iter().map(|(_, line)| cell(&line)).collect();
+        if !changes.is_empty() {
+            let _ = writeln!(text, "Since the earlier grading: {}\n", changes.join("; "));
         }
         for warning in &grade.warnings {
             let _ = writeln!(text, "**Warning:** {}\n", cell(warning));

@@ -9,6 +9,7 @@ use crate::{
 use fosssim_findings::Verdict;
 use fosssim_findings::{
     Book, Build, Grade, GroupGrade, PassedOver, Rules, SceneGrade, Visibility,
+    changes::Changes,
     located::LocatedFailure,
     speed::{SpeedGrade, SpeedRatio, SpeedSource},
 };
@@ -80,8 +81,28 @@ view! {
         /// Other submissions with the same program, byte for byte, at most 20; left out where there are none.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         same_program: Vec<String> = grade.same_program.iter().map(|name| plain(name)).collect(),
+        /// The changes since an earlier grading; left out where none was given.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        changes: Option<ChangesView> = grade.changes().as_ref().map(ChangesView::from),
         /// The groups in the suite's order.
         groups: Vec<GroupView> = grade.groups.iter().map(GroupView::from).collect(),
+    }
+}
+
+view! {
+    /// The changes since an earlier grading of the same submission.
+    #[schemars(deny_unknown_fields)]
+    struct ChangesView from changes: Changes<'_> {
+        /// Points in the earlier grading; null where it had none.
+        points: Option<f64> = changes.points,
+        /// Points that could be reached then.
+        max_points: f64 = changes.max_points,
+        /// Scenes that became right.
+        right: Vec<String> = changes.right.iter().map(|scene| plain(&scene.scene)).collect(),
+        /// Scenes that are no longer right.
+        broke: Vec<String> = changes.broke.iter().map(|scene| plain(&scene.scene)).collect(),
+        /// Scenes that fail with another verdict than before.
+        others: Vec<String> = changes.others.iter().map(|(scene, _)| plain(&scene.scene)).collect(),
     }
 }
 

@@ -4,6 +4,7 @@
 //! characters out of them, and escapes what its own syntax gives a meaning; a test sends hostile words through every
 //! format.
 
+mod changes;
 mod class;
 pub(crate) mod csv_table;
 pub(crate) mod github;
@@ -24,6 +25,7 @@ pub fn json(grades: &[Grade]) -> String {
     json::render(grades, &[])
 }
 
+pub(crate) use changes::lines as change_lines;
 pub use class::class;
 pub(crate) use class::{hardest, same_programs};
 pub use csv_table::submissions as csv_of_submissions;
@@ -34,7 +36,7 @@ pub(crate) use phrases::wrong_scenes;
 pub use phrases::{difference, head_lines, likely_mistakes, no_points, points, reached};
 use phrases::{see_above, wrong_first};
 pub(crate) use speed::speed_words;
-pub use text::{Advice, Text, TextDetail, changes, extra, score, shortened, table as text_table};
+pub use text::{Advice, Text, TextDetail, extra, score, shortened, table as text_table};
 
 #[cfg(test)]
 pub(crate) mod samples;

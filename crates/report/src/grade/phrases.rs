@@ -1,5 +1,5 @@
 //! The sentences about a grade that several formats have in common.
-use crate::{number::counted, words};
+use crate::{foreign::one_line, number::counted, words};
 use fosssim_findings::{Grade, GroupGrade, SceneGrade, Verdict};
 use fosssim_mistakes::diagnose::Explanation;
 pub use fosssim_mistakes::together::likely_mistakes;
@@ -59,6 +59,13 @@ pub fn difference(scene: &SceneGrade) -> Option<String> {
         };
         format!("the rule books differ: {verdicts}: {cause}")
     })
+}
+
+/// Returns the first of some names: `a, b, c and 2 more`.
+pub(super) fn some(names: &[impl AsRef<str>], most: usize) -> String {
+    let shown: Vec<_> = names.iter().take(most).map(|name| one_line(name.as_ref())).collect();
+    let more = if names.len() > most { format!(" and {} more", names.len() - most) } else { String::new() };
+    shown.join(", ") + &more
 }
 
 /// Returns the points without needless digits: `12.5`, `10`.

@@ -54,6 +54,7 @@ fn grade(submission: &str, groups: Vec<GroupGrade>) -> Grade {
         located: None,
         program: None,
         same_program: Vec::new(),
+        before: None,
         shows_output: groups.iter().all(|group| group.visibility == Visibility::Visible),
         groups,
         build: None,

@@ -9,7 +9,9 @@ use super::{
 };
 use crate::foreign::{one_line, without_codes};
 use crate::{
-    grade::{difference, extra, likely_mistakes, no_points, points, reached, score, speed_words, wrong_scenes},
+    grade::{
+        change_lines, difference, extra, likely_mistakes, no_points, points, reached, score, speed_words, wrong_scenes,
+    },
     number::counted,
     words,
 };
@@ -109,6 +111,10 @@ impl GradePage<'_> {
         if self.reader == Audience::Student && grade.groups.len() < self.grade.groups.len() {
             out += "<p class=\"hint\">Points, verdict and likely mistakes are those of the groups on this page. The grade has \
                     others, too.</p>\n";
+        }
+        let changes: String = change_lines(grade).iter().map(|(_, line)| format!("<li>{}</li>", text(line))).collect();
+        if !changes.is_empty() {
+            let _ = writeln!(out, "<h2>Since the earlier grading</h2>\n<ul class=\"card\">{changes}</ul>");
         }
         out.extend(grade.located.as_ref().map(located));
         out += "<div class=\"split halves\">\n";

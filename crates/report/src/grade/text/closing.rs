@@ -2,7 +2,7 @@
 use super::{Text, look};
 use crate::foreign::{one_line, plain};
 use crate::{
-    grade::{likely_mistakes, points, reached, speed_words, wrong_scenes},
+    grade::{change_lines, likely_mistakes, points, reached, speed_words, wrong_scenes},
     number::counted,
     style::Look,
     table::{Align, Cell, Table},
@@ -22,6 +22,12 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
         text += &options.circumstances(grade);
     }
     text += &groups(options, grade);
+    for (number, (look, line)) in change_lines(grade).into_iter().enumerate() {
+        if number == 0 {
+            let _ = writeln!(text, "{}", style.paint(Look::Strong, "Since the earlier grading"));
+        }
+        let _ = writeln!(text, "  - {}", style.paint(look, &one_line(&line)));
+    }
     if let Some(located) = &grade.located {
         let heading = style.paint(Look::Strong, "Where it fails");
         let _ = writeln!(text, "{heading}\n  - {}", one_line(&words::located(located)));

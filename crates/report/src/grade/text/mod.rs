@@ -1,11 +1,9 @@
 //! Grades for people at a terminal: what went wrong, and at the end, where a terminal shows it, what it comes to.
 
-mod changes;
 mod closing;
 mod scenes;
 mod table;
 
-pub use changes::changes;
 pub use table::{shortened, table};
 
 use super::{super::style::Style, no_points, points};
@@ -147,13 +145,6 @@ fn rules(grade: &Grade) -> String {
             format!(", by the original's rules (the fair rules differ in {})", counted(differing, "scene"))
         }
     }
-}
-
-/// Returns the first of some names: `a, b, c and 2 more`.
-fn some(names: &[impl AsRef<str>], most: usize) -> String {
-    let shown: Vec<_> = names.iter().take(most).map(|name| one_line(name.as_ref())).collect();
-    let more = if names.len() > most { format!(" and {} more", names.len() - most) } else { String::new() };
-    shown.join(", ") + &more
 }
 
 /// Returns the look of a scene's verdict.

@@ -1,6 +1,6 @@
 //! The scenes of a submission, group by group. Accepted scenes are counted. Scenes that fail for the same cause are
 //! described once.
-use super::{Text, TextDetail, look, output, some};
+use super::{super::phrases::some, Text, TextDetail, look, output};
 use crate::foreign::one_line;
 use crate::{
     explain,

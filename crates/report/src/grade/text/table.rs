@@ -5,7 +5,7 @@ use crate::{
     style::{Look, Style},
     wrap::columns,
 };
-use fosssim_findings::{Grade, GroupGrade};
+use fosssim_findings::{Grade, GroupGrade, changes::Changes};
 
 /// A column's cells, its heading first, and where they stand.
 struct TextColumn {
@@ -25,6 +25,12 @@ pub fn table(grades: &[Grade], width: Option<usize>, style: Style) -> String {
     let score = of("points", true, &|grade| reached(grade.points));
     let verdict = of("verdict", false, &|grade| grade.verdict.words().to_owned());
     let seconds = of("seconds", true, &|grade| format!("{:.2}", grade.wall.as_secs_f64()));
+    let since = |heading: &str, cell: &dyn Fn(Changes<'_>) -> String| {
+        of(heading, true, &|grade| grade.changes().map(cell).unwrap_or_default())
+    };
+    let before = since("before", &|changes| reached(changes.points));
+    let right = since("right", &|changes| format!("+{}", changes.right.len()));
+    let broke = since("broke", &|changes| format!("-{}", changes.broke.len()));
     let groups = grades.first().map_or(0, |grade| grade.groups.len());
     let groups: Vec<TextColumn> = (0..groups)
         .map(|number| {
@@ -36,10 +42,14 @@ pub fn table(grades: &[Grade], width: Option<usize>, style: Style) -> String {
         let accepted = grade.scenes().filter(|scene| scene.verdict.is_accepted()).count();
         format!("{accepted}/{}", grade.scenes().count())
     });
-    let base = [&name, &score, &verdict];
-    let whole: Vec<&TextColumn> = base.into_iter().chain(&groups).chain([&seconds]).collect();
-    let without_time: Vec<&TextColumn> = base.into_iter().chain(&groups).collect();
-    let short: Vec<&TextColumn> = base.into_iter().chain([&scenes]).collect();
+    let mut base = vec![&name, &score, &verdict];
+    if grades.iter().any(|grade| grade.before.is_some()) {
+        base.extend([&before, &right, &broke]);
+    }
+    let base = || base.iter().copied();
+    let whole: Vec<&TextColumn> = base().chain(&groups).chain([&seconds]).collect();
+    let without_time: Vec<&TextColumn> = base().chain(&groups).collect();
+    let short: Vec<&TextColumn> = base().chain([&scenes]).collect();
     let fits = |columns: &[&TextColumn]| width.is_none_or(|width| total(columns) <= width);
     let chosen = [whole, without_time].into_iter().find(|columns| fits(columns)).unwrap_or(short);
     rows(&chosen, grades, style)

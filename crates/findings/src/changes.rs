@@ -1,0 +1,68 @@
+//! The changes of a submission since an earlier grading.
+use super::{
+    earlier::{EarlierGrade, EarlierGroup, EarlierScene},
+    grade::{Grade, SceneGrade},
+    verdict::Verdict,
+};
+use std::collections::BTreeMap;
+
+impl From<&Grade> for EarlierGrade {
+    fn from(grade: &Grade) -> Self {
+        let scene =
+            |scene: &SceneGrade| EarlierScene { scene: scene.scene.clone(), code: scene.verdict.code().to_owned() };
+        let groups = grade.groups.iter().map(|group| EarlierGroup {
+            name: group.name.clone(),
+            points: group.points,
+            max_points: group.max_points,
+            extra: group.extra,
+            scenes: group.scenes.iter().map(scene).collect(),
+        });
+        Self { submission: grade.submission.clone(), groups: groups.collect() }
+    }
+}
+
+/// The changes of a submission since an earlier grading, in the groups that its grade holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Changes<'a> {
+    /// Points of these groups in the earlier grading, without extra ones; `None` where it had none.
+    pub points: Option<f64>,
+    /// Points that could be reached in them.
+    pub max_points: f64,
+    /// Scenes that became right.
+    pub right: Vec<&'a SceneGrade>,
+    /// Scenes that are no longer right.
+    pub broke: Vec<&'a SceneGrade>,
+    /// Scenes that fail with another verdict than before, with that verdict.
+    pub others: Vec<(&'a SceneGrade, Verdict)>,
+}
+
+impl Grade {
+    /// Returns the changes since the earlier grading, where there is one. Scenes that were not run, now or then, have
+    /// not changed. Of groups that are left out of this grade it says nothing.
+    #[must_use]
+    pub fn changes(&self) -> Option<Changes<'_>> {
+        let before = self.before.as_ref()?;
+        let is_here = |group: &&EarlierGroup| self.groups.iter().any(|own| own.name == group.name);
+        let groups: Vec<&EarlierGroup> = before.groups.iter().filter(is_here).collect();
+        let counted = || groups.iter().filter(|group| !group.extra);
+        let scenes = groups.iter().flat_map(|group| &group.scenes);
+        let verdicts: BTreeMap<&str, &str> = scenes.map(|scene| (&*scene.scene, &*scene.code)).collect();
+        let mut changes = Changes {
+            points: counted().map(|group| group.points).sum(),
+            max_points: counted().map(|group| group.max_points).sum(),
+            right: Vec::new(),
+            broke: Vec::new(),
+            others: Vec::new(),
+        };
+        for scene in self.scenes().filter(|scene| scene.verdict != Verdict::NotRun) {
+            let then = verdicts.get(&*scene.scene).and_then(|code| Verdict::from_code(code));
+            match then.filter(|then| ![Verdict::NotRun, scene.verdict].contains(then)) {
+                None => {}
+                Some(_) if scene.verdict.is_accepted() => changes.right.push(scene),
+                Some(Verdict::Accepted) => changes.broke.push(scene),
+                Some(then) => changes.others.push((scene, then)),
+            }
+        }
+        Some(changes)
+    }
+}

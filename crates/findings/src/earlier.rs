@@ -1,0 +1,30 @@
+//! The grade of an earlier grading, as far as a later one is compared with it.
+use serde::{Deserialize, Serialize};
+
+/// The part of an earlier grade with which a later one is compared. It reads `grade --format json` of any version.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EarlierGrade {
+    /// The submission's name.
+    pub submission: String,
+    /// Groups in the suite's order.
+    pub groups: Vec<EarlierGroup>,
+}
+
+/// A group of an earlier grade.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EarlierGroup {
+    pub(crate) name: String,
+    pub(crate) points: Option<f64>,
+    pub(crate) max_points: f64,
+    #[serde(default)]
+    pub(crate) extra: bool,
+    pub(crate) scenes: Vec<EarlierScene>,
+}
+
+/// A scene of an earlier grade.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EarlierScene {
+    pub(crate) scene: String,
+    /// The verdict's code.
+    pub(crate) code: String,
+}

@@ -1,0 +1,64 @@
+//! The changes of a submission since an earlier grading, in words.
+use super::{phrases::some, points, reached};
+use crate::{number::counted, style::Look};
+use fosssim_findings::{Grade, SceneGrade, Verdict, changes::Changes};
+
+/// The greatest number of scenes that are named.
+const NAMED: usize = 5;
+
+/// Returns the lines about the changes, with the look of each: points, and scenes by what became of them.
+pub(crate) fn lines(grade: &Grade) -> Vec<(Look, String)> {
+    let Some(changes) = grade.changes() else { return Vec::new() };
+    let name = |scene: &&SceneGrade| scene.scene.clone();
+    let now = |scene: &&SceneGrade| format!("{} ({})", scene.scene, scene.verdict.code());
+    let both = |(scene, then): &(&SceneGrade, Verdict)| {
+        format!("{} ({}, was {})", scene.scene, scene.verdict.code(), then.code())
+    };
+    let Changes { right, broke, others, .. } = &changes;
+    let kinds: [(Look, &str, Vec<String>); 3] = [
+        (Look::Good, "became right", right.iter().map(name).collect()),
+        (Look::Bad, "broke", broke.iter().map(now).collect()),
+        (
+            Look::Notice,
+            if others.len() == 1 { "fails otherwise" } else { "fail otherwise" },
+            others.iter().map(both).collect(),
+        ),
+    ];
+    let named = kinds.into_iter().filter(|(_, _, names)| !names.is_empty());
+    let mut lines: Vec<(Look, String)> = named
+        .map(|(look, verb, names)| {
+            (look, format!("{} {verb}: {}", counted(names.len() as u64, "scene"), some(&names, NAMED)))
+        })
+        .collect();
+    if lines.is_empty() {
+        lines.push((Look::Faint, "no scene changed".to_owned()));
+    }
+    let then = match points(changes.max_points) == points(grade.max_points) {
+        true => reached(changes.points),
+        false => format!("{} of {}", reached(changes.points), points(changes.max_points)),
+    };
+    lines.insert(0, (Look::Strong, format!("{then} points before, {} now", reached(grade.points))));
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{super::samples, *};
+    use fosssim_mistakes::together::for_students;
+
+    #[test]
+    fn changes_of_hidden_groups_are_not_told_to_students() {
+        let mut then = samples::good();
+        then.groups[1].points = Some(0.0);
+        then.groups[1].scenes[0].result.verdict = Verdict::TimeLimit;
+        let mut now = samples::good();
+        now.groups[0].points = Some(5.0);
+        now.groups[0].scenes[0].result.verdict = Verdict::WrongAnswer;
+        (now.points, now.before) = (Some(15.0), Some((&then).into()));
+        let words = |grade: &Grade| lines(grade).into_iter().map(|(_, line)| line).collect::<Vec<_>>();
+        let expected =
+            ["10 points before, 15 now", "1 scene became right: Impulses/a", "1 scene broke: Detection/a (WA)"];
+        assert_eq!(words(&now), expected);
+        assert_eq!(words(&for_students(&now)), ["10 points before, 5 now", expected[2]]);
+    }
+}

@@ -1,0 +1,58 @@
+//! `grade --compare`: reads an earlier grading, and adds its grades to those of this one.
+use crate::{
+    cli::{console, input},
+    files::Place,
+    report::{foreign::plain, number::counted},
+    suite::{EarlierGrade, Grade},
+};
+use anyhow::{Context, Result, bail};
+use serde::Deserialize;
+use std::path::Path;
+
+/// The file of grades in a folder for results.
+const FILE: &str = "grades.jsonl";
+
+/// A larger one is not read: 10,000 submissions of 120 wrong scenes write less.
+const LARGEST: u64 = 4 << 30;
+
+/// The document of `--format json`.
+#[derive(Deserialize)]
+struct GradesFile {
+    grades: Vec<EarlierGrade>,
+}
+
+/// Reads the grades of an earlier grading, from its folder or from a file of grades.
+///
+/// # Errors
+/// When it can't be read, or holds no grade.
+pub(super) fn read(place: &Path) -> Result<Vec<EarlierGrade>> {
+    let file = if place.is_dir() { Place::new(place, FILE) } else { Place::new("", place) };
+    let shown = input::shown(&file.path()).to_string();
+    let text = file.read(LARGEST).with_context(|| format!("cannot read the earlier grading {shown}"))?;
+    let grades = match serde_json::from_slice(&text) {
+        Ok(GradesFile { grades }) => grades,
+        // Lines without groups are entries that were no submissions.
+        Err(_) => text.split(|&byte| byte == b'\n').filter_map(|line| serde_json::from_slice(line).ok()).collect(),
+    };
+    if grades.is_empty() {
+        bail!("{shown} holds no grades: give --compare an output folder, its {FILE}, or what --format json wrote");
+    }
+    Ok(grades)
+}
+
+/// Adds to each grade the earlier one of the same name. Where there is one of each, names do not matter.
+pub(super) fn add(earlier: &[EarlierGrade], grades: &mut [Grade]) {
+    if let ([before], [grade]) = (earlier, &mut *grades) {
+        grade.before = Some(before.clone());
+        return;
+    }
+    for grade in &mut *grades {
+        let name = plain(&grade.submission);
+        grade.before = earlier.iter().find(|before| before.submission == name).cloned();
+    }
+    let new: Vec<&str> = grades.iter().filter(|one| one.before.is_none()).map(|one| one.submission.as_str()).collect();
+    if let (false, [first, ..]) = (earlier.is_empty(), &new[..]) {
+        let new = counted(new.len() as u64, "submission");
+        console::remark(format!("{new} without an earlier grade; the first is {}\n", plain(first)));
+    }
+}
