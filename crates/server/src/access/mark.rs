@@ -7,7 +7,7 @@ use crate::{
     calendar,
     db::{DbError, Row, Transaction, from_row},
     lti::score,
-    problem::Problem,
+    problem::{Problem, ensure},
     values,
 };
 
@@ -54,11 +54,15 @@ from_row! { Request { submission, login, text = "request" } }
 
 fn check_words(what: &str, text: &str, least: usize) -> Result<(), Problem> {
     let length = text.chars().count();
-    if (least..=LONGEST).contains(&length) && !text.chars().any(|c| c.is_control() && !matches!(c, '\n' | '\r' | '\t'))
-    {
-        return Ok(());
+    let is_hidden = |c| identity::is_control(c) && !matches!(c, '\n' | '\r' | '\t');
+    if let Some(hidden) = text.chars().find(|c| is_hidden(*c)) {
+        return Err(Problem::invalid(format!(
+            "{what} must not hold the invisible character {}",
+            hidden.escape_unicode()
+        )));
     }
-    Err(Problem::invalid(format!("{what} has {least} to {LONGEST} characters")))
+    let is_fit = (least..=LONGEST).contains(&length);
+    ensure(is_fit, Problem::invalid(format!("{what} must have {least} to {LONGEST} characters")))
 }
 
 impl Staff {
@@ -169,8 +173,8 @@ impl Staff {
     /// Lets a student hand in until another moment than the others, or until the same again.
     ///
     /// # Errors
-    /// When there is no such student.
-    pub async fn extend(&self, slug: &str, login: &str, due_at: Option<i64>) -> Result<(), Problem> {
+    /// When there is no such student, or somebody changed it since the event that was `seen`.
+    pub async fn extend(&self, slug: &str, login: &str, due_at: Option<i64>, seen: Option<i64>) -> Result<(), Problem> {
         identity::check_slug("a login", login)?;
         if due_at.is_some_and(|due| !calendar::is_plausible(due)) {
             return Err(Problem::invalid(
@@ -180,6 +184,8 @@ impl Staff {
         let mut transaction = self.begin().await?;
         let assignment = self.find_assignment(&mut transaction, slug).await?;
         let account = self.student(&mut transaction, &assignment, login).await?.int("id")?;
+        let beginning = format!("{login} hands in ");
+        self.check_seen(&mut transaction, ("extension", Some(assignment.id)), &beginning, seen).await?;
         let statement = "DELETE FROM extension WHERE assignment = ? AND account = ?";
         transaction.execute(statement, values![assignment.id, account]).await?;
         if let Some(due) = due_at {

@@ -74,7 +74,7 @@ impl Staff {
     pub async fn set_member(&self, login: &str, name: &str, role: &str, seen: Option<i64>) -> Result<Link, Problem> {
         check_member(login, name, role)?;
         let mut transaction = self.app.0.database.begin().await?;
-        self.check_seen(&mut transaction, login, seen).await?;
+        self.check_seen(&mut transaction, ("member", None), &format!("{login} is "), seen).await?;
         let link = self.add(&mut transaction, login, name, role).await?;
         transaction.commit().await?;
         Ok(Link { link })
@@ -90,16 +90,22 @@ impl Staff {
         Ok(transaction.one(statement, values![self.course]).await?.int("id")?)
     }
 
-    /// Refuses a change of a member whom somebody else changed meanwhile, and says who, and what.
-    async fn check_seen(&self, transaction: &mut Transaction, login: &str, seen: Option<i64>) -> Result<(), Problem> {
+    /// Refuses a change of what somebody else changed since the event that was `seen`, and says who, and what: there is
+    /// a later event of this kind, of an assignment or of none, whose text begins so.
+    pub(super) async fn check_seen(
+        &self,
+        transaction: &mut Transaction,
+        (kind, assignment): (&str, Option<i64>),
+        beginning: &str,
+        seen: Option<i64>,
+    ) -> Result<(), Problem> {
         let Some(seen) = seen else { return Ok(()) };
         let statement = "SELECT account.login, event.text FROM event LEFT JOIN account ON account.id = event.actor
-            WHERE event.course = ? AND event.id > ? AND event.kind = 'member' AND event.text IN (?, ?, ?)
+            WHERE event.course = ? AND event.id > ? AND event.kind = ? AND coalesce(event.assignment, 0) = ?
+               AND {strpos}(event.text, ?) = 1
             ORDER BY event.id DESC LIMIT 1";
-        let [out, student, staff] = ["out", "student", "staff"].map(|role| format!("{login} is {role}"));
-        let Some(row) = transaction.row(statement, values![self.course, seen, out, student, staff]).await? else {
-            return Ok(());
-        };
+        let values = values![self.course, seen, kind, assignment.unwrap_or(0), beginning];
+        let Some(row) = transaction.row(statement, values).await? else { return Ok(()) };
         let (who, what) = (row.maybe_text("login")?.unwrap_or_default(), row.text("text")?);
         Err(Problem::conflict(
             format!("{who} changed it meanwhile: {what}"),
@@ -186,7 +192,7 @@ impl Staff {
     /// When they are no member, or somebody changed them since the event that was `seen`.
     pub async fn remove_member(&self, login: &str, seen: Option<i64>) -> Result<(), Problem> {
         let mut transaction = self.app.0.database.begin().await?;
-        self.check_seen(&mut transaction, login, seen).await?;
+        self.check_seen(&mut transaction, ("member", None), &format!("{login} is "), seen).await?;
         self.check_left(&mut transaction, login, "out").await?;
         let statement = "DELETE FROM member WHERE course = ? AND account = (SELECT id FROM account WHERE login = ?)";
         let removed = transaction.execute(statement, values![self.course, login]).await?;

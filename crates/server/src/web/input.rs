@@ -8,6 +8,7 @@ use futures_util::StreamExt;
 use serde::{Deserialize, Deserializer, de::DeserializeOwned};
 use serde_json::{Map, Value};
 use std::time::Instant;
+use utoipa::IntoParams;
 
 /// A body in JSON.
 pub(super) struct Body<T>(pub(super) T);
@@ -44,6 +45,23 @@ impl Before {
     /// Returns the number before which it ends.
     pub(super) fn number(&self) -> Option<i64> {
         self.before.map(|before| i64::try_from(before).unwrap_or(i64::MAX))
+    }
+}
+
+/// What the sender of a change has seen, as a query.
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub(super) struct Seen {
+    /// The last event of the audit log that the sender has seen: with it a change is refused when there is a later one
+    /// of what it changes.
+    #[param(maximum = 9_007_199_254_740_991_i64)]
+    seen: Option<u64>,
+}
+
+impl Seen {
+    /// Returns the number of that event.
+    pub(super) fn event(&self) -> Option<i64> {
+        self.seen.map(|seen| i64::try_from(seen).unwrap_or(i64::MAX))
     }
 }
 

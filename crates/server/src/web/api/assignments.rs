@@ -1,6 +1,6 @@
 //! Assignments, and how a class stands in them.
 use super::super::{
-    input::{Asked, At, Body, whole_numbers},
+    input::{Asked, At, Body, Seen, whole_numbers},
     look, upload,
 };
 use crate::{
@@ -68,6 +68,10 @@ pub(super) struct Extension {
     #[serde(deserialize_with = "moment")]
     #[schema(schema_with = moment_schema, required = true)]
     due_at: Option<i64>,
+    /// The last event of the audit log that the sender has seen: with it a change is refused when there is a later one
+    /// of this extension.
+    #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
+    seen: Option<i64>,
 }
 
 /// Uploads an archive (zip, tar, tar.gz) with a `suite.toml` at its top as the assignment's suite.
@@ -199,11 +203,12 @@ deeds! { NO_CONTENT:
     /// Lets a student hand in until another moment than the others.
     put "/api/v1/courses/{course}/assignments/{assignment}/extensions/{login}" "assignments"
         extend(staff: Staff, { assignment, login }, wish: Extension) -> "Set":
-            staff.extend(&assignment, &login, wish.due_at);
+            staff.extend(&assignment, &login, wish.due_at, wish.seen);
     /// Removes an assignment with all submissions to it, for ever.
     delete "/api/v1/courses/{course}/assignments/{assignment}" "assignments"
         remove_assignment(staff: Staff, { assignment }) -> "Removed": staff.remove_assignment(&assignment);
     /// Lets them hand in as long as the others again.
     delete "/api/v1/courses/{course}/assignments/{assignment}/extensions/{login}" "assignments"
-        extend_no_more(staff: Staff, { assignment, login }) -> "Set": staff.extend(&assignment, &login, None);
+        extend_no_more(staff: Staff, { assignment, login }, ?asked: Seen) -> "Set":
+            staff.extend(&assignment, &login, None, asked.event());
 }

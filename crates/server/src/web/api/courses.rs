@@ -1,5 +1,5 @@
 //! Courses and their members.
-use super::super::input::{Asked, At, Before, Body, PlainBody};
+use super::super::input::{Asked, At, Before, Body, PlainBody, Seen};
 use crate::{
     access::{Admin, Course, CourseOf, Event, Link, MemberInfo, MemberLine, Person, Staff},
     problem::Problem,
@@ -113,5 +113,6 @@ answers! { OK:
 deeds! { NO_CONTENT:
     /// Takes somebody out of the course; what they handed in stays.
     delete "/api/v1/courses/{course}/members/{login}" "courses"
-        remove_member(staff: Staff, { login }) -> "The member is removed": staff.remove_member(&login, None);
+        remove_member(staff: Staff, { login }, ?asked: Seen) -> "The member is removed":
+            staff.remove_member(&login, asked.event());
 }

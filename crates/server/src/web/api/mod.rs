@@ -20,13 +20,13 @@ macro_rules! answers {
 /// The routes of handlers that only do something: the answer says in words what was done.
 macro_rules! deeds {
     ($status:ident: $($(#[doc = $doc:literal])* $method:ident $path:tt $tag:tt
-        $name:ident($who:ident: $role:ty $(, { $($at:ident),* })? $(, $wish:ident: $body:ty)?)
-            -> $done:tt: $do:expr;)*) => {
+        $name:ident($who:ident: $role:ty $(, { $($at:ident),* })? $(, ?$asked:ident: $query:ty)?
+            $(, $wish:ident: $body:ty)?) -> $done:tt: $do:expr;)*) => {
         $($(#[doc = $doc])*
-        #[utoipa::path($method, path = $path, tag = $tag $(, request_body = $body)?,
+        #[utoipa::path($method, path = $path, tag = $tag $(, params($query))? $(, request_body = $body)?,
             responses((status = $status, description = $done)))]
         pub(super) async fn $name(
-            $who: $role $(, At { $($at,)* .. }: At)? $(, Body($wish): Body<$body>)?
+            $who: $role $(, At { $($at,)* .. }: At)? $(, Asked($asked): Asked<$query>)? $(, Body($wish): Body<$body>)?
         ) -> Result<StatusCode, Problem> {
             $do.await?;
             Ok(StatusCode::$status)

@@ -27,6 +27,8 @@ struct StudentPage {
     work: Work,
     /// The changes that attempts have made, by the numbers of their submissions.
     changes: BTreeMap<i64, String>,
+    /// The last event of the course that the page shows.
+    seen: i64,
 }
 
 impl StudentPage {
@@ -61,6 +63,7 @@ pub(super) struct NewExtension {
     due: String,
     #[serde(default)]
     due_zone: String,
+    seen: Option<i64>,
 }
 
 #[derive(Deserialize)]
@@ -81,6 +84,8 @@ pub(super) struct ImportedTable {
 
 pub(super) async fn page(staff: Staff, At { course: slug, assignment, login, .. }: At) -> Page {
     let assignment = staff.assignment(&assignment).await?;
+    // Before the work: what somebody changes in between is not seen.
+    let seen = staff.last_event().await?;
     let work = staff.work(&assignment.slug, &login).await?;
     let address = format!("/c/{slug}/a/{}/students/{login}", assignment.slug);
     let frame = grades::frame(&staff, &assignment).then(address, &work.name);
@@ -94,7 +99,7 @@ pub(super) async fn page(staff: Staff, At { course: slug, assignment, login, .. 
         Some((later.id, scenes::change(&change)))
     };
     let changes = graded.windows(2).filter_map(change).collect();
-    show(&StudentPage { frame, slug, assignment, work, changes })
+    show(&StudentPage { frame, slug, assignment, work, changes, seen })
 }
 
 /// Reads points; a number with a decimal comma, `7,5`, with a point. Three digits behind a comma may be thousands.
@@ -148,7 +153,7 @@ pub(super) async fn import_table(staff: Staff, Fields(form): Fields<ImportedTabl
 deeds! {
     extend(staff: Staff, { course, assignment, login }, form: NewExtension): {
         let before = staff.work(&assignment, &login).await?.extended_to;
-        staff.extend(&assignment, &login, moment(&form.due, &form.due_zone, before)?)
+        staff.extend(&assignment, &login, moment(&form.due, &form.due_zone, before)?, form.seen)
     } => "/c/{course}/a/{assignment}/students/{login}";
     mark(staff: Staff, { course, id }, form: NewMark):
         async {

@@ -107,12 +107,28 @@ async fn nothing_is_overwritten_unseen(fresh: Fresh) {
     let wish = format!(r#"{{"name": "Bob", "role": "student", "seen": {seen}}}"#);
     admin.send("PUT", "/api/v1/courses/physics/members/bob", JSON, wish.as_bytes()).expect(409);
     assert!(members().contains("<td>staff</td>"));
+    admin.send("DELETE", &format!("/api/v1/courses/physics/members/bob?seen={seen}"), &[], b"").expect(409);
     admin.post_form("/c/physics/members", &format!("login=eve&name=Eve&role=student&seen={seen}")).expect(200);
     admin.post_form("/c/physics/members/bob/remove", "").expect(303);
-    // A mark, too.
+    // More time, too.
     let ada = server.member(&admin, "physics", "ada", "student");
+    let page = admin.get("/c/physics/a/m1/students/ada").expect(200).text();
+    let seen = page.split_once("name=\"seen\" value=\"").expect("a field").1.split('"').next().expect("a number");
+    let extension = "/api/v1/courses/physics/assignments/m1/extensions/ada";
+    colleague.send("PUT", extension, JSON, br#"{"due_at": "2026-12-08T22:59Z"}"#).expect(204);
+    let form = format!("due=2026-12-03T12:00&due_zone=0&seen={seen}");
+    let refused = admin.post_form("/c/physics/a/m1/students/ada/extension", &form).expect(409).text();
+    assert!(refused.contains("colleague changed it meanwhile: ada hands in until 2026-12-08 22:59"), "{refused}");
+    let wish = format!(r#"{{"due_at": null, "seen": {seen}}}"#);
+    admin.send("PUT", extension, JSON, wish.as_bytes()).expect(409);
+    admin.send("DELETE", &format!("{extension}?seen={seen}"), &[], b"").expect(409);
+    admin.send("DELETE", extension, &[], b"").expect(204);
+    // A mark, too.
     let id = ada.submit("physics", b"#!grade WA 1\n");
     let mark = format!("/api/v1/courses/physics/submissions/{id}/mark");
+    let hidden = r#"{"comment": "well\u200bdone"}"#;
+    let refused = colleague.send("PUT", &mark, JSON, hidden.as_bytes()).expect(400).text();
+    assert!(refused.contains("must not hold the invisible character \\\\u{200b}"), "{refused}");
     let seen = colleague.send("PUT", &mark, JSON, br#"{"comment": "well done"}"#).expect(200).json();
     let seen = seen["mark"]["marked_at"].as_i64().expect("a moment");
     let other = format!(r#"{{"comment": "poor", "marked_at": {}}}"#, seen - 1);
