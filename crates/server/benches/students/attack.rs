@@ -2,6 +2,7 @@
 use super::{
     Bench,
     client::{Client, connect},
+    ladder::UPLOADS,
     measure::{Times, forget_peak, load, peak},
     stage::Stage,
 };
@@ -28,8 +29,7 @@ pub(super) async fn slow_readers(arguments: &Bench) -> Result<String> {
     let mut requests = Vec::new();
     for number in 1..=2 {
         let mut student = stage.student(number).await?;
-        let path = "/api/v1/courses/bench/assignments/m1/submissions?name=FOSSSim";
-        let answer = student.request(Method::POST, path, Bytes::from(file.clone())).await?;
+        let answer = student.request(Method::POST, UPLOADS, Bytes::from(file.clone())).await?;
         let submission: serde_json::Value = serde_json::from_slice(&answer.body)?;
         let Some(id) = submission["id"].as_i64() else { bail!("the upload was not taken: {}", answer.status) };
         requests.push(format!(

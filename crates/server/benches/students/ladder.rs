@@ -1,8 +1,9 @@
-//! The ladder of Artemis's load tests: more and more students who never stop to think.
+//! The ladder of Artemis's load tests: more and more students who never stop to think, and a deadline at its end.
 use super::{
     Bench,
     client::{Answer, Client},
     measure::{Spent, Times, forget_peak, load, peak},
+    rush::rush,
     stage::Stage,
 };
 use anyhow::Result;
@@ -11,6 +12,9 @@ use axum::{
     http::{Method, StatusCode},
 };
 use std::time::{Duration, Instant};
+
+/// Where students hand in.
+pub(super) const UPLOADS: &str = "/api/v1/courses/bench/assignments/m1/submissions?name=FOSSSim";
 
 /// How often a student looks whether there is a grade, as a page does that hears nothing.
 const LOOK_EVERY: Duration = Duration::from_millis(500);
@@ -70,6 +74,8 @@ pub(super) async fn climb(arguments: &Bench) -> Result<String> {
         }
         empty(&mut stage).await?;
     }
+    let students = students.into_iter().map(|student| (student.number, student.client)).collect();
+    rush(arguments, &mut stage, students, &program(arguments)?).await?;
     stage.say(&format!("\nload average at the end: {}", load()));
     stage.finish().await
 }
@@ -131,8 +137,7 @@ impl LadderStudent {
         self.round += 1;
         let body = Bytes::from([program, own.as_bytes()].concat());
         let start = Instant::now();
-        let path = "/api/v1/courses/bench/assignments/m1/submissions?name=FOSSSim";
-        let answer = self.client.request(Method::POST, path, body).await?;
+        let answer = self.client.request(Method::POST, UPLOADS, body).await?;
         if answer.status != StatusCode::CREATED {
             times.failed("upload", answer.status);
             return Ok(());

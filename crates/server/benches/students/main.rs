@@ -9,6 +9,7 @@ mod client;
 mod ladder;
 mod measure;
 mod million;
+mod rush;
 mod stage;
 
 use anyhow::Result;
@@ -51,7 +52,7 @@ pub(crate) struct Bench {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Measurement {
     /// 50 to 2,000 students who sign in, look at the course, hand in, wait for the grade and read the report, without
-    /// a pause between.
+    /// a pause between. At the end all hand in within the last seconds before a deadline.
     Ladder,
     /// 40 connections that read an upload of 120 MiB slowly.
     SlowReaders,

@@ -60,7 +60,7 @@ impl Stage {
     }
 
     /// Has the administrator do something.
-    async fn done(&mut self, method: Method, path: &str, body: &str) -> Result<Bytes> {
+    pub(super) async fn done(&mut self, method: Method, path: &str, body: &str) -> Result<Bytes> {
         let answer = self.admin.request(method, path, Bytes::copy_from_slice(body.as_bytes())).await?;
         if !answer.status.is_success() {
             bail!("{path}: {} {}", answer.status, String::from_utf8_lossy(&answer.body));

@@ -16,6 +16,7 @@ fn climbs(database: &[&str]) {
         let row = said.lines().find(|line| line.starts_with(&format!("| {students} |"))).expect("a row");
         let cells: Vec<&str> = row.split('|').map(str::trim).collect();
         assert_eq!(cells[8], "0", "errors: {said}");
+        assert!(said.contains("refused 0, late 0"), "the deadline: {said}");
         assert!(cells[2..8].iter().all(|cell| cell.contains(" / ")), "every step was done: {said}");
     }
 }
