@@ -4,6 +4,7 @@
 //! Small by default; `scripts/crash-test` runs them at full size and prints the table of docs/server/measurements.md.
 
 mod arena;
+mod deeds;
 mod grader;
 mod servers;
 mod weather;

@@ -1,6 +1,7 @@
 //! Two servers with their workers on one database and one store, and workers over HTTP of which one lies about its
 //! health and one has no room: killed and frozen while students hand in, some of it poison. The store's disk is full
-//! for a while, and the pooler is killed, where there is one.
+//! for a while, and the pooler is killed, where there is one. Meanwhile staff regrades, publishes and removes, and
+//! archive bombs come in.
 use crate::support::{
     disk::SmallDisk,
     engines::{Fresh, on_all_engines},
@@ -16,7 +17,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use super::weather::Size;
+use super::{deeds::Noise, weather::Size};
 
 on_all_engines!(two_servers_lose_nothing);
 
@@ -170,6 +171,7 @@ async fn two_servers_lose_nothing(mut fresh: Fresh) {
         Worker::start(&servers[1], token, &folder.path().join("machine-2"), &good),
     ];
     machines.extend(disk.as_ref().map(|disk| Worker::start(&servers[1], token, &disk.path().join("data"), &good)));
+    let mut noise = Noise::begin(&servers[0], &admin);
     let seed = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).expect("a clock").as_nanos();
     let mut dice = Dice(u64::try_from(seed).expect("a date") | 1);
     let (start, mut kills, mut freezes, mut full, mut poolers) = (Instant::now(), 0, 0, Vec::new(), 0);
@@ -188,6 +190,7 @@ async fn two_servers_lose_nothing(mut fresh: Fresh) {
             pooler.kill_for(Duration::from_millis(u64::try_from(dice.roll(1500)).expect("short")));
             poolers += 1;
         }
+        noise.act(&servers[dice.roll(2)]);
         let victim = dice.roll(2);
         if dice.roll(8) == 0 && freezes * 8 <= kills {
             freezes += 1;
@@ -208,9 +211,10 @@ async fn two_servers_lose_nothing(mut fresh: Fresh) {
     let full = full.into_iter().map(|filling| filling.join().expect("room again")).count();
     let Grades { wrong, buried, doubled, all } = grades(&servers[0], &students, &expected);
     println!(
-        "| {} | {} | {kills} | {freezes} | {full} | {poolers} | {} | {} | {} | {buried} | {:.0} s |",
+        "| {} | {} | {kills} | {freezes} | {full} | {poolers} | {} | {} | {} | {} | {buried} | {:.0} s |",
         engine(&fresh),
         expected.len(),
+        noise.deeds(),
         expected.len() - all.min(expected.len()),
         doubled.len() + all.saturating_sub(expected.len()),
         wrong.len(),

@@ -436,3 +436,14 @@ impl Answer {
         serde_json::from_slice(&self.body).unwrap_or_else(|error| panic!("{error}: {}", self.text()))
     }
 }
+
+/// An archive that holds so many MiB of zeros.
+pub(crate) fn bomb(mebibytes: usize) -> Vec<u8> {
+    let mut tar = tar::Builder::new(flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best()));
+    let mut header = tar::Header::new_gnu();
+    header.set_size((mebibytes as u64) << 20);
+    header.set_mode(0o644);
+    let zeros = std::io::Read::take(std::io::repeat(0), (mebibytes as u64) << 20);
+    tar.append_data(&mut header, "zeros", zeros).expect("an entry");
+    tar.into_inner().expect("a tar").finish().expect("an archive")
+}

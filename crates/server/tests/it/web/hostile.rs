@@ -1,7 +1,7 @@
 //! Requests of somebody with bad intentions.
 use crate::support::{
     engines::{Fresh, on_sqlite, run},
-    server::{Answer, Client, JSON, Server, program},
+    server::{Answer, Client, JSON, Server, bomb, program},
 };
 use std::{
     io::{Cursor, Write},
@@ -396,17 +396,6 @@ fn the_page_that_checks_traces_is_the_graders_and_has_a_policy_of_its_own() {
         assert_eq!(page.header("content-security-policy"), Some("default-src 'none'"));
         assert_eq!(page.header("x-content-type-options"), Some("nosniff"));
     });
-}
-
-/// An archive that unpacks to far more than it has, as one finds them.
-fn bomb(mebibytes: usize) -> Vec<u8> {
-    let mut tar = tar::Builder::new(flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best()));
-    let mut header = tar::Header::new_gnu();
-    header.set_size((mebibytes as u64) << 20);
-    header.set_mode(0o644);
-    let zeros = std::io::Read::take(std::io::repeat(0), (mebibytes as u64) << 20);
-    tar.append_data(&mut header, "zeros", zeros).expect("an entry");
-    tar.into_inner().expect("a tar").finish().expect("an archive")
 }
 
 /// A bomb is refused before it is unpacked whole, and a program is taken beside many of them; refused archives count.
