@@ -115,8 +115,8 @@ impl Staff {
     /// Makes all members of a table, if nothing is wrong with any line; with `preview` only reads it.
     ///
     /// # Errors
-    /// When it is no table.
-    pub async fn import(&self, text: &str, preview: bool) -> Result<Vec<MemberLine>, Problem> {
+    /// When it is no table, or somebody changed one of its members since the event that was `seen`.
+    pub async fn import(&self, text: &str, preview: bool, seen: Option<i64>) -> Result<Vec<MemberLine>, Problem> {
         let mut lines = read(text)?;
         if preview || lines.iter().any(|line| line.error.is_some()) {
             return Ok(lines);
@@ -126,6 +126,7 @@ impl Staff {
         let mut in_order: Vec<&mut MemberLine> = lines.iter_mut().collect();
         in_order.sort_by(|one, other| one.login.cmp(&other.login));
         for line in in_order {
+            self.check_seen(&mut transaction, ("member", None), &format!("{} is ", line.login), seen).await?;
             line.link = self.add(&mut transaction, &line.login, &line.name, &line.role).await?;
         }
         transaction.commit().await?;

@@ -70,15 +70,16 @@ pub(super) struct Preview {
 /// Makes all members of a table: `name,login,email,role`, or as its first line names them. If anything is wrong with a
 /// line, nothing is done.
 #[utoipa::path(post, path = "/api/v1/courses/{course}/members", tag = "courses",
-    params(("preview" = Option<bool>, Query, description = "Only look at the table")),
+    params(("preview" = Option<bool>, Query, description = "Only look at the table"), Seen),
     request_body(content = String, content_type = "text/csv"),
     responses((status = 200, body = Vec<MemberLine>)))]
 pub(super) async fn import(
     staff: Staff,
     Asked(asked): Asked<Preview>,
+    Asked(seen): Asked<Seen>,
     PlainBody(table): PlainBody,
 ) -> Result<Json<Vec<MemberLine>>, Problem> {
-    Ok(Json(staff.import(&table, asked.preview).await?))
+    Ok(Json(staff.import(&table, asked.preview, seen.event()).await?))
 }
 
 /// Returns the events of the course, latest first, 200 at a time.

@@ -48,6 +48,8 @@ struct ImportPage {
     is_done: bool,
     /// All links as a table, as an address.
     download: String,
+    /// The last event of the course that the page shows.
+    seen: i64,
 }
 
 /// A line of the table, and the link to be handed on.
@@ -80,6 +82,7 @@ pub(super) struct NewMark {
 pub(super) struct ImportedTable {
     table: String,
     import: Option<String>,
+    seen: Option<i64>,
 }
 
 pub(super) async fn page(staff: Staff, At { course: slug, assignment, login, .. }: At) -> Page {
@@ -111,7 +114,7 @@ fn points(field: &str) -> Option<String> {
     }
 }
 
-fn import_page(staff: &Staff, table: String, lines: Vec<Line>, is_done: bool) -> Page {
+async fn import_page(staff: &Staff, table: String, lines: Vec<Line>, is_done: bool) -> Page {
     let slug = staff.slug.clone();
     let frame = PageFrame::course(staff)
         .then(format!("/c/{slug}/members"), "Members")
@@ -123,8 +126,9 @@ fn import_page(staff: &Staff, table: String, lines: Vec<Line>, is_done: bool) ->
         writer.write_record(cells).map_err(|_| Problem::fault())?;
     }
     let bytes = writer.into_inner().map_err(|_| Problem::fault())?;
+    let seen = staff.last_event().await?;
     let download = format!("data:text/csv;charset=utf-8,{}", percent(&bytes));
-    show(&ImportPage { frame, slug, table, lines, is_wrong, is_done: is_done && !is_wrong, download })
+    show(&ImportPage { frame, slug, table, lines, is_wrong, is_done: is_done && !is_wrong, download, seen })
 }
 
 /// Bytes as part of an address.
@@ -140,14 +144,14 @@ fn line(course: &str, of: MemberLine) -> Line {
 }
 
 pub(super) async fn import(staff: Staff) -> Page {
-    import_page(&staff, String::new(), Vec::new(), false)
+    import_page(&staff, String::new(), Vec::new(), false).await
 }
 
 pub(super) async fn import_table(staff: Staff, Fields(form): Fields<ImportedTable>) -> Page {
     let is_meant = form.import.is_some();
-    let lines = staff.import(&form.table, !is_meant).await?;
+    let lines = staff.import(&form.table, !is_meant, form.seen).await?;
     let lines = lines.into_iter().map(|one| line(&staff.title, one)).collect();
-    import_page(&staff, form.table, lines, is_meant)
+    import_page(&staff, form.table, lines, is_meant).await
 }
 
 deeds! {

@@ -108,6 +108,10 @@ async fn nothing_is_overwritten_unseen(fresh: Fresh) {
     admin.send("PUT", "/api/v1/courses/physics/members/bob", JSON, wish.as_bytes()).expect(409);
     assert!(members().contains("<td>staff</td>"));
     admin.send("DELETE", &format!("/api/v1/courses/physics/members/bob?seen={seen}"), &[], b"").expect(409);
+    let table = format!("table=Bob,bob,,student%0A&import=yes&seen={seen}");
+    admin.post_form("/c/physics/members/import", &table).expect(409);
+    let csv = [("Content-Type", "text/csv")];
+    admin.send("POST", &format!("/api/v1/courses/physics/members?seen={seen}"), &csv, b"Bob,bob\n").expect(409);
     admin.post_form("/c/physics/members", &format!("login=eve&name=Eve&role=student&seen={seen}")).expect(200);
     admin.post_form("/c/physics/members/bob/remove", "").expect(303);
     // More time, too.
