@@ -24,7 +24,7 @@ fn now() -> Result<u64> {
     Ok(SystemTime::now().duration_since(UNIX_EPOCH)?.as_millis().try_into()?)
 }
 
-/// What became of an upload that began before the deadline.
+/// An upload in a hurry, and its answer.
 struct RushUpload {
     begun: u64,
     status: StatusCode,

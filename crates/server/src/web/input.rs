@@ -48,17 +48,17 @@ impl Before {
     }
 }
 
-/// What the sender of a change has seen, as a query.
+/// The event that the sender of a change has seen, as a query.
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
-pub(super) struct Seen {
+pub(super) struct SeenEvent {
     /// The last event of the audit log that the sender has seen: with it a change is refused when there is a later one
     /// of what it changes.
     #[param(maximum = 9_007_199_254_740_991_i64)]
     seen: Option<u64>,
 }
 
-impl Seen {
+impl SeenEvent {
     /// Returns the number of that event.
     pub(super) fn event(&self) -> Option<i64> {
         self.seen.map(|seen| i64::try_from(seen).unwrap_or(i64::MAX))

@@ -1,6 +1,6 @@
 //! Assignments, and how a class stands in them.
 use super::super::{
-    input::{Asked, At, Body, Seen, whole_numbers},
+    input::{Asked, At, Body, SeenEvent, whole_numbers},
     look, upload,
 };
 use crate::{
@@ -209,6 +209,6 @@ deeds! { NO_CONTENT:
         remove_assignment(staff: Staff, { assignment }) -> "Removed": staff.remove_assignment(&assignment);
     /// Lets them hand in as long as the others again.
     delete "/api/v1/courses/{course}/assignments/{assignment}/extensions/{login}" "assignments"
-        extend_no_more(staff: Staff, { assignment, login }, ?asked: Seen) -> "Set":
+        extend_no_more(staff: Staff, { assignment, login }, ?asked: SeenEvent) -> "Set":
             staff.extend(&assignment, &login, None, asked.event());
 }

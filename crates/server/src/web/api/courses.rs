@@ -1,5 +1,5 @@
 //! Courses and their members.
-use super::super::input::{Asked, At, Before, Body, PlainBody, Seen};
+use super::super::input::{Asked, At, Before, Body, PlainBody, SeenEvent};
 use crate::{
     access::{Admin, Course, CourseOf, Event, Link, MemberInfo, MemberLine, Person, Staff},
     problem::Problem,
@@ -70,13 +70,13 @@ pub(super) struct Preview {
 /// Makes all members of a table: `name,login,email,role`, or as its first line names them. If anything is wrong with a
 /// line, nothing is done.
 #[utoipa::path(post, path = "/api/v1/courses/{course}/members", tag = "courses",
-    params(("preview" = Option<bool>, Query, description = "Only look at the table"), Seen),
+    params(("preview" = Option<bool>, Query, description = "Only look at the table"), SeenEvent),
     request_body(content = String, content_type = "text/csv"),
     responses((status = 200, body = Vec<MemberLine>)))]
 pub(super) async fn import(
     staff: Staff,
     Asked(asked): Asked<Preview>,
-    Asked(seen): Asked<Seen>,
+    Asked(seen): Asked<SeenEvent>,
     PlainBody(table): PlainBody,
 ) -> Result<Json<Vec<MemberLine>>, Problem> {
     Ok(Json(staff.import(&table, asked.preview, seen.event()).await?))
@@ -114,6 +114,6 @@ answers! { OK:
 deeds! { NO_CONTENT:
     /// Takes somebody out of the course; what they handed in stays.
     delete "/api/v1/courses/{course}/members/{login}" "courses"
-        remove_member(staff: Staff, { login }, ?asked: Seen) -> "The member is removed":
+        remove_member(staff: Staff, { login }, ?asked: SeenEvent) -> "The member is removed":
             staff.remove_member(&login, asked.event());
 }

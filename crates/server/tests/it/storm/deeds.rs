@@ -1,4 +1,4 @@
-//! What staff and bad uploads do during a storm, in a course of their own: regrades, publishing, settings, removals and
+//! Deeds of staff and bad uploads during a storm, in a course of their own: regrades, publishing, settings, removals and
 //! archive bombs. Requests that find no server are given up.
 use crate::support::server::{Client, JSON, Server, bomb, program};
 
@@ -45,13 +45,13 @@ impl Noise {
                 match regrades.as_array().expect("a list").iter().find(|regrade| regrade["state"] == "open") {
                     None => send(&admin, "POST", &base, JSON, br#"{"reason": "another look", "settings": {}}"#),
                     Some(open) => {
-                        let end = if number % 2 == 0 { "apply" } else { "discard" };
+                        let end = if number.is_multiple_of(2) { "apply" } else { "discard" };
                         send(&admin, "POST", &format!("{base}/{}/{end}", open["id"]), &[], b"")
                     }
                 };
             }
             1 => {
-                let method = if number % 2 == 0 { "PUT" } else { "DELETE" };
+                let method = if number.is_multiple_of(2) { "PUT" } else { "DELETE" };
                 send(&admin, method, &format!("{m1}/published"), &[], b"");
             }
             2 => {

@@ -437,7 +437,7 @@ impl Answer {
     }
 }
 
-/// An archive that holds so many MiB of zeros.
+/// An archive that holds zeros, and how many MiB.
 pub(crate) fn bomb(mebibytes: usize) -> Vec<u8> {
     let mut tar = tar::Builder::new(flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best()));
     let mut header = tar::Header::new_gnu();
