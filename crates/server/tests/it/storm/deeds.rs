@@ -1,5 +1,5 @@
-//! Deeds of staff and bad uploads during a storm, in a course of their own: regrades, publishing, settings, removals and
-//! archive bombs. Requests that find no server are given up.
+//! Deeds of staff and bad uploads during a storm, in a course of their own: regrades, publishing, settings, removals
+//! and archive bombs. Requests that find no server are given up.
 use crate::support::server::{Client, JSON, Server, bomb, program};
 
 const COURSE: &str = "/api/v1/courses/noise";
