@@ -8,7 +8,8 @@ use crate::{
     words,
 };
 use fosssim_findings::{Grade, Verdict};
-use std::{collections::BTreeMap, fmt::Write};
+use fosssim_mistakes::diagnose::Explanation;
+use std::{cmp::Ordering, collections::BTreeMap, fmt::Write};
 
 /// How many submissions were run on a scene, and how many of these it was accepted for.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -45,8 +46,9 @@ pub fn class(grades: &[Grade], most: usize, style: Style) -> String {
     if !mistakes.is_empty() {
         let _ = writeln!(text, "{}", style.paint(Look::Strong, "Most frequent mistakes"));
         let mut table = Table::new([Align::Right, Align::Left]);
-        for (what, count) in mistakes.iter().take(most) {
-            table.row([counted(*count as u64, "submission").into(), one_line(what).into()]);
+        for SharedMistake { mistake, members } in mistakes.iter().take(most) {
+            let what = words::explanation::what_or(mistake);
+            table.row([counted(members.len() as u64, "submission").into(), one_line(&what).into()]);
         }
         text += &table.render(style);
     }
@@ -75,25 +77,75 @@ pub(crate) fn same_programs(grades: &[Grade]) -> Vec<Vec<usize>> {
     groups
 }
 
-/// Returns `30 submissions, 12 accepted; mean 63.2, median 71, from 0 to 100 of 100 points; 2 without points`.
-fn head(grades: &[Grade]) -> String {
-    let accepted = grades.iter().filter(|grade| grade.verdict.is_accepted()).count();
-    let mut text = format!("{}, {accepted} accepted", counted(grades.len() as u64, "submission"));
-    let mut reached: Vec<f64> = grades.iter().filter_map(|grade| grade.points).collect();
-    reached.sort_by(f64::total_cmp);
-    if let ([lowest, ..], [.., highest], Some(grade)) = (&reached[..], &reached[..], grades.first()) {
+/// The figures of a class: of the points, those of the submissions that ran.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct ClassFigures {
+    pub(crate) submissions: usize,
+    /// Submissions of which a scene was run.
+    pub(crate) ran: usize,
+    pub(crate) accepted: usize,
+    /// Submissions that ran and have no points.
+    pub(crate) without_points: usize,
+    /// Mean, median, the fewest and the most points.
+    pub(crate) points: Option<[f64; 4]>,
+    /// Points that can be reached.
+    pub(crate) max_points: f64,
+    /// Submissions with more points than in the earlier grading, and with fewer.
+    pub(crate) since: Option<(usize, usize)>,
+}
+
+impl ClassFigures {
+    pub(crate) fn from_grades(grades: &[Grade]) -> Self {
+        let ran = || grades.iter().filter(|grade| !never_ran(grade));
+        let mut reached: Vec<f64> = ran().filter_map(|grade| grade.points).collect();
+        reached.sort_by(f64::total_cmp);
         #[expect(clippy::cast_precision_loss, reason = "classes are small")]
         let mean = reached.iter().sum::<f64>() / reached.len() as f64;
-        let middle = f64::midpoint(reached[(reached.len() - 1) / 2], reached[reached.len() / 2]);
-        let (mean, middle, lowest, highest) = (points(mean), points(middle), points(*lowest), points(*highest));
-        let most = points(grade.max_points);
-        let _ = write!(text, "; mean {mean}, median {middle}, from {lowest} to {highest} of {most} points");
+        let middle = || f64::midpoint(reached[(reached.len() - 1) / 2], reached[reached.len() / 2]);
+        let points = match &reached[..] {
+            [] => None,
+            [lowest, .., highest] => Some([mean, middle(), *lowest, *highest]),
+            [one] => Some([*one; 4]),
+        };
+        let change = |grade: &Grade| Some(grade.points?.total_cmp(&grade.changes()?.points?));
+        let changed = |wanted: Ordering| grades.iter().filter(|grade| change(grade) == Some(wanted)).count();
+        let is_compared = grades.iter().any(|grade| grade.before.is_some());
+        Self {
+            submissions: grades.len(),
+            ran: ran().count(),
+            accepted: grades.iter().filter(|grade| grade.verdict.is_accepted()).count(),
+            without_points: ran().count() - reached.len(),
+            points,
+            max_points: grades.first().map_or(0.0, |grade| grade.max_points),
+            since: is_compared.then(|| (changed(Ordering::Greater), changed(Ordering::Less))),
+        }
     }
-    let without = grades.len() - reached.len();
-    if without > 0 {
-        let _ = write!(text, "; {without} without points");
+}
+
+/// Returns `30 submissions, 28 ran, 12 accepted; of those that ran mean 63.2, median 71, from 0 to 100 of 100 points`.
+fn head(grades: &[Grade]) -> String {
+    let figures = ClassFigures::from_grades(grades);
+    let all = counted(figures.submissions as u64, "submission");
+    let mut text = format!("{all}, {} ran, {} accepted", figures.ran, figures.accepted);
+    if let Some(reached) = figures.points {
+        let ([mean, middle, lowest, highest], most) = (reached.map(points), points(figures.max_points));
+        let _ = write!(
+            text,
+            "; of those that ran mean {mean}, median {middle}, from {lowest} to {highest} of {most} points"
+        );
+    }
+    if figures.without_points > 0 {
+        let _ = write!(text, "; {} without points", figures.without_points);
+    }
+    if let Some((more, fewer)) = figures.since {
+        let _ = write!(text, "; {more} with more points than before, {fewer} with fewer");
     }
     text
+}
+
+/// Returns whether no scene of it was run: no program is in it, or it does not build.
+pub(crate) fn never_ran(grade: &Grade) -> bool {
+    grade.scenes().all(|scene| matches!(scene.verdict, Verdict::NotRun | Verdict::Unusable | Verdict::CompileError))
 }
 
 /// Returns the scenes that are not accepted for everybody, those that fewest have right first, and how many others
@@ -118,14 +170,23 @@ pub(crate) fn hardest(grades: &[Grade]) -> (Vec<(&str, SceneShare)>, usize) {
     (wrong, whole.len())
 }
 
-/// Returns the likely mistakes with the number of submissions that make them, the most frequent first.
-fn frequent(grades: &[Grade]) -> Vec<(String, usize)> {
-    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
-    for (mistake, _) in grades.iter().flat_map(likely_mistakes) {
-        *counts.entry(words::explanation::what_or(&mistake)).or_default() += 1;
+/// A likely mistake, and the numbers of the submissions that make it.
+pub(crate) struct SharedMistake {
+    pub(crate) mistake: Explanation,
+    pub(crate) members: Vec<usize>,
+}
+
+/// Returns the likely mistakes with the submissions that make them, the most frequent first.
+pub(crate) fn frequent(grades: &[Grade]) -> Vec<SharedMistake> {
+    let mut found: BTreeMap<String, SharedMistake> = BTreeMap::new();
+    for (number, grade) in grades.iter().enumerate() {
+        for (mistake, _) in likely_mistakes(grade) {
+            let new = || SharedMistake { mistake: mistake.clone(), members: Vec::new() };
+            found.entry(mistake.said()).or_insert_with(new).members.push(number);
+        }
     }
-    let mut sorted: Vec<(String, usize)> = counts.into_iter().collect();
-    sorted.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+    let mut sorted: Vec<_> = found.into_values().collect();
+    sorted.sort_by_key(|one| std::cmp::Reverse(one.members.len()));
     sorted
 }
 

@@ -27,7 +27,7 @@ pub fn json(grades: &[Grade]) -> String {
 
 pub(crate) use changes::lines as change_lines;
 pub use class::class;
-pub(crate) use class::{hardest, same_programs};
+pub(crate) use class::{ClassFigures, SharedMistake, frequent, hardest, never_ran, same_programs};
 pub use csv_table::submissions as csv_of_submissions;
 pub(crate) use json::GradeDocument;
 pub use json::lines as json_lines;

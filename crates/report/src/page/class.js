@@ -1,5 +1,5 @@
 "use strict";
-// Sorts tables by a click on a column's head, and shows only the rows that hold some words.
+// Sorts tables by a click on a column's head, and shows only the rows with some words, a verdict or a mistake.
 (() => {
   const value = (row, column) => {
     const cell = row.cells[column];
@@ -67,18 +67,28 @@
       location.href = `${link.href}#${new URLSearchParams({ scene: under(event) })}`;
     });
   }
-  const filter = document.querySelector("p.filter > label");
+  const filter = document.querySelector("p.filter.rows");
   if (filter) {
     const rows = [...document.querySelector("table.sortable").tBodies[0].rows];
-    filter.querySelector("input").addEventListener("input", (event) => {
-      const wanted = event.target.value.trim().toLowerCase();
-      let shown = 0;
-      for (const row of rows) {
-        row.hidden = !row.textContent.toLowerCase().includes(wanted);
-        shown += row.hidden ? 0 : 1;
-      }
-      filter.parentElement.querySelector("output").textContent = `${shown} of ${rows.length}`;
-    });
+    const search = filter.querySelector("input");
+    const choices = [...filter.querySelectorAll("select")];
+    const show = () => {
+      const wanted = search.value.trim().toLowerCase();
+      const isWanted = (row) =>
+        row.textContent.toLowerCase().includes(wanted) &&
+        choices.every(({ value, dataset }) => !value || (row.dataset[dataset.by] ?? "").split(" ").includes(value));
+      for (const row of rows) row.hidden = !isWanted(row);
+      const shown = rows.filter((row) => !row.hidden).length;
+      filter.querySelector("output").textContent = `${shown} of ${rows.length}`;
+    };
+    filter.addEventListener("input", show);
+    for (const button of document.querySelectorAll("[data-only]")) {
+      button.addEventListener("click", () => {
+        choices.find((choice) => choice.dataset.by === "mistakes").value = button.dataset.only;
+        show();
+        filter.scrollIntoView();
+      });
+    }
   }
   document.documentElement.dataset.ready = "yes";
 })();

@@ -6,12 +6,14 @@ use super::{
 };
 use crate::foreign::one_line;
 use crate::{
-    grade::{hardest, likely_mistakes, points, reached, same_programs},
+    grade::{
+        ClassFigures, SharedMistake, frequent, hardest, likely_mistakes, never_ran, points, reached, same_programs,
+    },
     number::counted,
     words,
 };
 use fosssim_findings::{Grade, PassedOver, SceneGrade, Verdict};
-use fosssim_mistakes::diagnose::{Explanation, is_named_in};
+use fosssim_mistakes::diagnose::is_named_in;
 use std::{collections::BTreeMap, fmt::Write};
 
 const SCRIPT: &str = include_str!("class.js");
@@ -20,10 +22,10 @@ const SCRIPT: &str = include_str!("class.js");
 const BARS: usize = 10;
 
 /// The greatest number of characters of a likely mistake or a summary in a table.
-const SHORT: usize = 160;
+const SHORT: usize = 120;
 
-/// A cluster of no more members is not folded.
-const FEW: usize = 6;
+/// The greatest number of shared mistakes that are not folded: the table begins on the first screen.
+const FEW: usize = 5;
 
 /// The greatest number of names listed of a cluster.
 const NAMES: usize = 400;
@@ -46,13 +48,13 @@ impl ClassPage<'_> {
         let suite = self.grades.first().map_or("", |grade| grade.suite.as_str());
         let mut body = format!("<h1>Class: {}</h1>\n", text(&one_line(suite)));
         body += &figures(self.grades);
+        let mistakes = frequent(self.grades);
         body += "<div class=\"split halves\">\n";
         body += &histogram(self.grades);
-        body += &self.clusters();
+        body += &self.clusters(&mistakes);
         body += "</div>\n";
+        body += &self.table(&mistakes);
         body += &self.same_programs();
-        body += &self.table();
-        body += &self.not_graded();
         body += &self.scenes();
         body += &self.differing();
         document(&format!("Class: {suite}"), &body, SCRIPT)
@@ -63,103 +65,144 @@ impl ClassPage<'_> {
         format!("<a href=\"{}\"><bdi>{}</bdi></a>", text(&(self.page)(grade)), text(&one_line(&grade.submission)))
     }
 
-    fn not_graded(&self) -> String {
-        if self.passed_over.is_empty() {
-            return String::new();
-        }
-        let row = |entry: &PassedOver| {
-            let (name, why) = (text(&one_line(&entry.name)), text(&one_line(&entry.why)));
-            format!("<tr><th scope=\"row\"><bdi>{name}</bdi></th><td>{why}</td></tr>\n")
-        };
-        let rows: String = self.passed_over.iter().map(row).collect();
-        let head = table("card scroll", "Not graded", "", &["entry", "why"]);
-        format!("<h2>Not graded</h2>\n{head}{rows}</tbody></table></div>\n")
-    }
-
     fn links(&self, members: &[usize]) -> String {
         let shown: Vec<String> = members.iter().take(NAMES).map(|&number| self.link(&self.grades[number])).collect();
         let more = members.len().saturating_sub(NAMES);
         shown.join(", ") + &if more > 0 { format!(" and {more} more") } else { String::new() }
     }
 
-    fn table(&self) -> String {
+    /// Returns the search, and the filters by verdict and by mistake.
+    fn filters(&self, mistakes: &[SharedMistake]) -> String {
+        let count = |wanted: &str| self.grades.iter().filter(|grade| state(grade) == wanted).count();
+        let states = [
+            ("good", "accepted", count("good")),
+            ("bad", "not accepted", count("bad")),
+            ("none", "never ran", count("none")),
+            ("left", "not graded", self.passed_over.len()),
+        ];
+        let option =
+            |value: &str, words: &str, count: usize| format!("<option value=\"{value}\">{words} ({count})</option>");
+        let states = states.iter().filter(|(.., count)| *count > 0);
+        let states: String = states.map(|(value, words, count)| option(value, words, *count)).collect();
+        let named = mistakes.iter().enumerate().map(|(number, one)| {
+            let words = short(&one_line(&words::explanation::what_or(&one.mistake)));
+            option(&format!("m{number}"), &text(&words), one.members.len())
+        });
+        let named: String = named.collect();
+        format!(
+            "<p class=\"filter rows\" hidden><label>Filter <input type=\"search\"></label> \
+             <label>Verdict <select data-by=\"state\"><option value=\"\">any</option>{states}</select></label> \
+             <label>Mistake <select data-by=\"mistakes\"><option value=\"\">any</option>{named}</select></label> \
+             <output></output></p>\n"
+        )
+    }
+
+    fn table(&self, mistakes: &[SharedMistake]) -> String {
         let names: Vec<&str> =
             self.grades.first().iter().flat_map(|grade| grade.scenes()).map(|one| one.scene.as_str()).collect();
         let mut out = format!(
-            "<h2>Submissions</h2>\n<p class=\"filter\" hidden><label>Filter <input type=\"search\"></label> \
-             <output></output></p>\n\
-             <p class=\"hint keys\">Scenes in the order of the suite: <span><span class=\"h h-r\"></span> accepted</span> \
-             <span><span class=\"h h-w\"></span> wrong</span> <span><span class=\"h h-e\"></span> crashed, too slow or \
-             unreadable</span> <span><span class=\"h h-n\"></span> not run</span> <output class=\"pointed\"></output></p>\n\
+            "<h2>Submissions</h2>\n{}<p class=\"hint keys\">Scenes in the order of the suite: \
+             <span><span class=\"h h-r\"></span> accepted</span> <span><span class=\"h h-w\"></span> wrong</span> \
+             <span><span class=\"h h-e\"></span> crashed, too slow or unreadable</span> \
+             <span><span class=\"h h-n\"></span> not run</span> <output class=\"pointed\"></output></p>\n\
              <script type=\"application/json\" id=\"scenes\">{}</script>\n",
+            self.filters(mistakes),
             data(&serde_json::json!(names))
         );
-        let why = "likely mistakes, or the reason";
-        let headings = ["submission", "verdict", "#points", "#accepted", "scenes", why, "#rule books differ"];
-        out += &table("card scroll", "Submissions", "sortable stack", &headings);
-        for grade in self.grades {
-            let look = if grade.verdict.is_accepted() { "good" } else { "bad" };
-            let sort = grade.points.map_or_else(String::new, |points| format!("{points}"));
-            let (accepted, all) = (grade.count(Verdict::Accepted), grade.scenes().count());
-            let mistakes = likely_mistakes(grade).into_iter().map(|(mistake, _)| words::explanation::what_or(&mistake));
-            let likely: Vec<String> = grade.located.iter().map(words::located).chain(mistakes).collect();
-            let words = if likely.is_empty() { words::reason(grade).unwrap_or_default() } else { likely.join(" ") };
+        let (is_compared, differ) = (
+            self.grades.iter().any(|grade| grade.before.is_some()),
+            self.grades.iter().any(|grade| grade.differing() > 0),
+        );
+        let mut headings = vec!["submission", "verdict", "#points", "#before"];
+        headings.truncate(if is_compared { 4 } else { 3 });
+        headings.extend(["#accepted", "scenes", "likely mistakes, or the reason", "#rule books differ"]);
+        headings.truncate(headings.len() - usize::from(!differ));
+        out += &table("card scroll", "Submissions", "sortable stack class", &headings);
+        for (number, grade) in self.grades.iter().enumerate() {
+            out += &self.row(number, grade, mistakes, (is_compared, differ));
+        }
+        for entry in self.passed_over {
+            let (name, why) = (text(&one_line(&entry.name)), text(&one_line(&entry.why)));
+            let blank = |is_there: bool| if is_there { "<td data-sort=\"\"></td>" } else { "" };
             let _ = writeln!(
                 out,
-                "<tr><th scope=\"row\">{}</th><td><span class=\"chip {look}\">{}</span></td>\
-                 <td class=\"num\" data-label=\"points\" data-sort=\"{sort}\">{} of {}</td>\
-                 <td class=\"num\" data-label=\"accepted\" data-sort=\"{accepted}\">{accepted} of {all}</td>\
-                 <td class=\"heat\" data-sort=\"{accepted}\">{}</td><td class=\"words\">{}</td>\
-                 <td class=\"num\" data-label=\"rule books differ\" data-sort=\"{6}\">{6}</td></tr>",
-                self.link(grade),
-                grade.verdict.words(),
-                reached(grade.points),
-                points(grade.max_points),
-                heat(grade),
-                text(&short(&words)),
-                grade.differing()
+                "<tr data-state=\"left\"><th scope=\"row\"><bdi>{name}</bdi></th>\
+                 <td><span class=\"chip none\">not graded</span></td>{0}{1}{0}{0}\
+                 <td class=\"words\">{why}</td>{2}</tr>",
+                blank(true),
+                blank(is_compared),
+                blank(differ)
             );
         }
         out + "</tbody></table></div>\n"
     }
 
-    fn clusters(&self) -> String {
-        let mut out = String::from("<section class=\"card\"><h2>The same mistake</h2>\n");
-        let (named, rest) = by_mistake(self.grades);
-        let signed = by_signature(self.grades, &rest);
-        if named.is_empty() && signed.is_empty() {
-            return out + "<p>No two submissions make the same mistake.</p></section>\n";
-        }
-        for SharedMistake { mistake, members } in &named {
-            let first = &self.grades[members[0]];
-            let scene = first.scenes().find(|scene| is_named_in(mistake, &scene.explanations));
-            let look = scene.map_or_else(String::new, |scene| {
-                let (page, key, name) = (text(&(self.page)(first)), key(&scene.scene), text(&one_line(&scene.scene)));
-                format!("<p class=\"hint\">To show it: <a href=\"{page}#scene-{key}\">{name}</a></p>")
-            });
-            let _ = writeln!(
-                out,
-                "<section class=\"cluster\"><h3>{}</h3>\n{}{look}</section>",
-                text(&one_line(&words::explanation::what_or(mistake))),
-                self.members(members)
-            );
-        }
-        for members in &signed {
-            let grade = &self.grades[members[0]];
-            let wrong: Vec<&SceneGrade> = grade.scenes().filter(|scene| is_failed(scene)).collect();
+    fn row(&self, number: usize, grade: &Grade, mistakes: &[SharedMistake], shown: (bool, bool)) -> String {
+        let sort = |points: Option<f64>| points.map_or_else(String::new, |points| points.to_string());
+        let (accepted, all) = (grade.count(Verdict::Accepted), grade.scenes().count());
+        let made = mistakes.iter().enumerate().filter(|(_, one)| one.members.contains(&number));
+        let made: Vec<String> = made.map(|(place, _)| format!("m{place}")).collect();
+        let likely = likely_mistakes(grade).into_iter().map(|(mistake, _)| words::explanation::what_or(&mistake));
+        let likely: Vec<String> = grade.located.iter().map(words::located).chain(likely).collect();
+        let words = if likely.is_empty() { words::reason(grade).unwrap_or_default() } else { likely.join(" ") };
+        let before = grade.changes().and_then(|changes| changes.points);
+        let before =
+            format!("<td class=\"num\" data-label=\"before\" data-sort=\"{}\">{}</td>", sort(before), reached(before));
+        let differing =
+            format!("<td class=\"num\" data-label=\"rule books differ\" data-sort=\"{0}\">{0}</td>", grade.differing());
+        format!(
+            "<tr data-state=\"{0}\" data-mistakes=\"{1}\"><th scope=\"row\">{2}</th>\
+             <td><span class=\"chip {0}\">{3}</span></td>\
+             <td class=\"num\" data-label=\"points\" data-sort=\"{4}\">{5} of {6}</td>{7}\
+             <td class=\"num\" data-label=\"accepted\" data-sort=\"{accepted}\">{accepted} of {all}</td>\
+             <td class=\"heat\" data-sort=\"{accepted}\">{8}</td><td class=\"words\">{9}</td>{10}</tr>\n",
+            state(grade),
+            made.join(" "),
+            self.link(grade),
+            grade.verdict.words(),
+            sort(grade.points),
+            reached(grade.points),
+            points(grade.max_points),
+            if shown.0 { &*before } else { "" },
+            heat(grade),
+            text(&short(&words)),
+            if shown.1 { &*differing } else { "" },
+        )
+    }
+
+    /// Returns the mistakes that several submissions make, the most frequent first.
+    fn clusters(&self, mistakes: &[SharedMistake]) -> String {
+        let named = mistakes.iter().enumerate().filter(|(_, one)| one.members.len() > 1);
+        let mut found: Vec<String> = named
+            .map(|(number, SharedMistake { mistake, members })| {
+                let first = &self.grades[members[0]];
+                let scene = first.scenes().find(|scene| is_named_in(mistake, &scene.explanations));
+                let look = scene.map_or_else(String::new, |scene| {
+                    let (page, key, name) = ((self.page)(first), key(&scene.scene), one_line(&scene.scene));
+                    format!("To show it: <a href=\"{}#scene-{key}\">{}</a>. ", text(&page), text(&name))
+                });
+                let heading = text(&one_line(&words::explanation::what_or(mistake)));
+                self.cluster(&heading, members, &look, Some(number))
+            })
+            .collect();
+        found.extend(by_signature(self.grades).iter().map(|members| {
+            let wrong: Vec<&SceneGrade> = self.grades[members[0]].scenes().filter(|scene| is_failed(scene)).collect();
             let first =
                 wrong.first().map_or(String::new(), |scene| format!("{}: {}", scene.scene, words::summary(scene)));
-            let _ = writeln!(
-                out,
-                "<section class=\"cluster\"><h3>No mistake is named, but {} in the same words</h3>\n{}\
-                 <p class=\"hint\">The first: {}</p></section>",
-                match wrong.len() {
-                    1 => "the same scene fails".to_owned(),
-                    count => format!("the same {count} scenes fail"),
-                },
-                self.members(members),
-                text(&short(&one_line(&first)))
-            );
+            let heading = match wrong.len() {
+                1 => "No mistake is named, but the same scene fails in the same words".to_owned(),
+                count => format!("No mistake is named, but the same {count} scenes fail in the same words"),
+            };
+            self.cluster(&heading, members, &format!("The first: {}. ", text(&short(&one_line(&first)))), None)
+        }));
+        let rest = found.split_off(found.len().min(FEW)).concat();
+        let mut out = String::from("<section class=\"card\"><h2>The same mistake</h2>\n");
+        if found.is_empty() {
+            out += "<p>No two submissions make the same mistake.</p>";
+        }
+        out += &found.concat();
+        if !rest.is_empty() {
+            let _ = write!(out, "<details class=\"table\"><summary>More of them</summary>\n{rest}</details>");
         }
         out + "</section>\n"
     }
@@ -170,19 +213,24 @@ impl ClassPage<'_> {
         if groups.is_empty() {
             return String::new();
         }
-        let groups: String = groups.iter().map(|members| self.members(members)).collect();
+        let name = |&number: &usize| one_line(&self.grades[number].submission);
+        let heading = |members: &Vec<usize>| text(&short(&members.iter().map(name).collect::<Vec<_>>().join(", ")));
+        let groups: String = groups.iter().map(|members| self.cluster(&heading(members), members, "", None)).collect();
         format!("<section class=\"card\"><h2>The same program, byte for byte</h2>\n{groups}</section>\n")
     }
 
-    /// Returns the members of a cluster: folded where they are many, and to be copied into a letter.
-    fn members(&self, members: &[usize]) -> String {
+    /// Returns submissions with something in common: folded, with a link to each, to be copied into a letter and, by
+    /// the number of their mistake, to be shown alone.
+    fn cluster(&self, heading: &str, members: &[usize], look: &str, mistake: Option<usize>) -> String {
         let names: Vec<String> = members.iter().map(|&number| one_line(&self.grades[number].submission)).collect();
+        let only = mistake.map_or_else(String::new, |number| {
+            format!(" <button type=\"button\" data-only=\"m{number}\">Show only these</button>")
+        });
         format!(
-            "<details{}><summary>{}</summary><p>{}</p>\
-             <p class=\"filter\" hidden><button type=\"button\" data-copy=\"{}\">Copy the \
-                 names</button></p></details>\n",
-            if members.len() <= FEW { " open" } else { "" },
-            counted(members.len() as u64, "submission"),
+            "<details class=\"cluster\"><summary><b>{}</b> {heading}</summary>\n<p>{look}{}</p>\
+             <p class=\"filter\" hidden><button type=\"button\" data-copy=\"{}\">Copy the names</button>{only}</p>\
+             </details>\n",
+            members.len(),
             self.links(members),
             text(&names.join(", "))
         )
@@ -270,10 +318,13 @@ fn is_failed(scene: &SceneGrade) -> bool {
     !matches!(scene.verdict, Verdict::Accepted | Verdict::NotRun | Verdict::JudgeError)
 }
 
-/// A likely mistake, and the numbers of the submissions that make it.
-struct SharedMistake {
-    mistake: Explanation,
-    members: Vec<usize>,
+/// Returns the state of a submission by which rows are filtered and coloured.
+fn state(grade: &Grade) -> &'static str {
+    match grade {
+        _ if grade.verdict.is_accepted() => "good",
+        _ if never_ran(grade) => "none",
+        _ => "bad",
+    }
 }
 
 /// Returns the scenes of a submission in a row: those that are not accepted are drawn, each kind in a colour of its
@@ -315,7 +366,7 @@ fn heat(grade: &Grade) -> String {
 fn kind_of(scene: &SceneGrade) -> Option<&'static str> {
     match scene.verdict {
         Verdict::Accepted => None,
-        Verdict::NotRun => Some("n"),
+        Verdict::NotRun | Verdict::Unusable | Verdict::CompileError => Some("n"),
         verdict if verdict.is_wrong_trace() => Some("w"),
         _ => Some("e"),
     }
@@ -323,62 +374,36 @@ fn kind_of(scene: &SceneGrade) -> Option<&'static str> {
 
 /// Returns the class in a few numbers.
 fn figures(grades: &[Grade]) -> String {
-    let mut shares: Vec<f64> = grades
-        .iter()
-        .filter_map(|grade| Some(100.0 * grade.points? / grade.max_points))
-        .filter(|it| it.is_finite())
-        .collect();
-    shares.sort_by(f64::total_cmp);
-    #[expect(clippy::cast_precision_loss, reason = "a class")]
-    let mean = shares.iter().sum::<f64>() / shares.len().max(1) as f64;
-    let at = |place: usize| shares.get(place).copied().unwrap_or_default();
-    let median = (at(shares.len() / 2) + at(shares.len().saturating_sub(1) / 2)) / 2.0;
-    let unfit = grades.iter().filter(|grade| grade.unfit().is_some()).count();
+    let figures = ClassFigures::from_grades(grades);
+    let [mean, median, ..] = figures.points.map_or([None; 4], |all| all.map(Some)).map(reached);
     let unsolved = hardest(grades).0.iter().filter(|(_, share)| share.accepted == 0).count();
-    let accepted = grades.iter().filter(|grade| grade.verdict.is_accepted()).count();
     let rows = [
-        (grades.len().to_string(), if grades.len() == 1 { "submission" } else { "submissions" }),
-        (format!("{mean:.0} %"), "mean of the points"),
-        (format!("{median:.0} %"), "median"),
-        (accepted.to_string(), "accepted"),
-        (unfit.to_string(), "could not be run"),
-        (unsolved.to_string(), "scenes that nobody has right"),
+        (format!("{} of {}", figures.ran, figures.submissions), "ran".to_owned()),
+        (figures.accepted.to_string(), "accepted".to_owned()),
+        (mean, format!("mean of {} points", points(figures.max_points))),
+        (median, "median, both of those that ran".to_owned()),
+        (unsolved.to_string(), "scenes that nobody has right".to_owned()),
     ];
-    let rows: String =
-        rows.iter().map(|(number, words)| format!("<li class=\"card\"><b>{number}</b>{words}</li>")).collect();
+    let since =
+        figures.since.map(|(more, fewer)| (format!("{more} / {fewer}"), "more / fewer points than before".to_owned()));
+    let rows: String = rows
+        .iter()
+        .chain(&since)
+        .map(|(number, words)| format!("<li class=\"card\"><b>{number}</b>{words}</li>"))
+        .collect();
     format!("<ul class=\"kpi\">{rows}</ul>\n")
 }
 
-/// Returns the likely mistakes that several submissions make, the most frequent first, and the numbers of the
-/// submissions that fail without any that is named.
-fn by_mistake(grades: &[Grade]) -> (Vec<SharedMistake>, Vec<usize>) {
-    let mut found: BTreeMap<String, SharedMistake> = BTreeMap::new();
-    let mut rest = Vec::new();
-    for (number, grade) in grades.iter().enumerate() {
-        let likely = likely_mistakes(grade);
-        if likely.is_empty() && grade.scenes().any(is_failed) {
-            rest.push(number);
-        }
-        for (mistake, _) in likely {
-            found
-                .entry(mistake.said())
-                .or_insert_with(|| SharedMistake { mistake, members: Vec::new() })
-                .members
-                .push(number);
-        }
-    }
-    let mut several: Vec<_> = found.into_values().filter(|one| one.members.len() > 1).collect();
-    several.sort_by_key(|one| std::cmp::Reverse(one.members.len()));
-    (several, rest)
-}
-
-/// Submissions that fail the same scenes in the same words, the largest cluster first.
-fn by_signature(grades: &[Grade], among: &[usize]) -> Vec<Vec<usize>> {
+/// Returns submissions without a likely mistake that fail the same scenes in the same words, the largest cluster first.
+fn by_signature(grades: &[Grade]) -> Vec<Vec<usize>> {
     let mut found: BTreeMap<Vec<(&str, Verdict, String)>, Vec<usize>> = BTreeMap::new();
-    for &number in among {
-        let failed = grades[number].scenes().filter(|scene| is_failed(scene));
-        let signature = failed.map(|scene| (scene.scene.as_str(), scene.verdict, words::summary(scene))).collect();
-        found.entry(signature).or_default().push(number);
+    for (number, grade) in grades.iter().enumerate().filter(|(_, grade)| likely_mistakes(grade).is_empty()) {
+        let failed = grade.scenes().filter(|scene| is_failed(scene));
+        let signature: Vec<_> =
+            failed.map(|scene| (scene.scene.as_str(), scene.verdict, words::summary(scene))).collect();
+        if !signature.is_empty() {
+            found.entry(signature).or_default().push(number);
+        }
     }
     let mut several: Vec<_> = found.into_values().filter(|members| members.len() > 1).collect();
     several.sort_by_key(|members| std::cmp::Reverse(members.len()));
@@ -506,8 +531,8 @@ mod tests {
         ];
         let html = page(&grades);
         let cluster = html.split("class=\"cluster\"").nth(1).expect("one cluster");
-        let cluster = &cluster[..cluster.find("</section>").expect("its end")];
-        assert!(cluster.contains("the same 9 scenes fail") && cluster.contains("2 submissions"), "{cluster}");
+        let cluster = &cluster[..cluster.find("</details>").expect("its end")];
+        assert!(cluster.contains("the same 9 scenes fail") && cluster.contains("<b>2</b>"), "{cluster}");
         assert!(cluster.contains("eve") && cluster.contains("&lt;b&gt;kim") && !cluster.contains("bob"), "{cluster}");
         assert!(html.contains("<td class=\"num\" data-sort=\"3\">3</td>"), "three fail the last scenes");
         let last = key("Group/a-scene-of-number-75");
