@@ -28,6 +28,8 @@ pub fn run(folder: &Path, suite: &str, supervisor: Supervisor) -> Result<String,
         faults: &Place::new(folder, "faults"),
         traces: None,
         cards: None,
+        finish: None,
+        timings: None,
         reference: None,
     };
     let graded = batch::run(&grader, &submissions, None, &Cancellation::default(), &mut |_| {});

@@ -128,6 +128,9 @@ pub(super) struct Grade {
     /// go to the folder shard-I-of-N in the output folder.
     #[arg(long, value_name = "I/N", conflicts_with_all = ["watch", "failed", "scene"])]
     pub(super) shard: Option<Shard>,
+    /// Print at the end where the processor time went: programs, sandbox, judging, explaining, reports.
+    #[arg(long, conflicts_with_all = ["watch", "traces"])]
+    pub(super) timings: bool,
     /// Judge traces that exist already, and run no program. Every path is a folder with Group/name.bin, or name.bin,
     /// for each scene.
     #[arg(long, conflicts_with_all = ["watch", "failed", "shard", "recorded", "keep_traces", "fail_fast", "single"])]

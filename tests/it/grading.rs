@@ -55,9 +55,17 @@ fn rows(csv: &[u8]) -> Vec<(String, String, String)> {
 fn a_right_and_a_wrong_program_get_their_reports() {
     let Some(workspace) = workspace() else { return };
     submit(&workspace, &["", "pe-square-no-eh"]);
-    let run = workspace.run(["grade", "submissions/fosssim-sample", "--suite", "suite.toml", "--format", "csv"]);
+    let program = "submissions/fosssim-sample";
+    let run = workspace.run(["grade", program, "--suite", "suite.toml", "--format", "csv", "--timings"]);
     assert_eq!(run.code, Some(0), "{}", run.shown());
     assert!(run.out().lines().skip(1).all(|line| line.contains(",AC,")), "{}", run.shown());
+    let seconds = |part: &str| -> f64 {
+        let row = run.err().lines().find_map(|line| line.trim().strip_prefix(part)).expect("a row").to_owned();
+        row.split_whitespace().next().and_then(|cell| cell.parse().ok()).expect("seconds")
+    };
+    let parts =
+        ["programs", "the sandbox's processes", "starting runs", "judging", "reports and all else"].map(seconds);
+    assert!(parts[0] > 0.0 && parts[3] > 0.0 && parts.iter().sum::<f64>() <= seconds("together") + 0.01, "{parts:?}");
     let run = workspace.run([
         "grade",
         "submissions/fosssim-sample.pe-square-no-eh",

@@ -152,8 +152,9 @@ impl Grade {
         }
         let first = self.scenes().next()?;
         let is_unfit = matches!(first.verdict, Verdict::Unusable | Verdict::CompileError | Verdict::Unwritten);
-        let why = |scene: &SceneGrade| (scene.verdict, scene.reason.clone(), scene.ended.clone());
-        let same = |scene: &SceneGrade| why(scene) == why(first);
+        let same = |scene: &SceneGrade| {
+            (scene.verdict, &scene.reason, &scene.ended) == (first.verdict, &first.reason, &first.ended)
+        };
         (is_unfit && self.scenes().all(same)).then(|| {
             self.failed_build()
                 .map_or(SubmissionFault::Scene(&first.result), |build| SubmissionFault::Build(&build.end))

@@ -52,4 +52,4 @@ pub use parity::{Overall, Residuals};
 pub use result::{Reason, SceneResult};
 pub use rules::{Book, Rules, Ruling};
 pub use verdict::Verdict;
-pub use words::{PairWords, PassWords, Power, WithoutResult, passes};
+pub use words::{PairWords, PassWords, Power, WithoutResult, is_visible_ascii, passes};

@@ -211,6 +211,13 @@ pub fn passes(expected: usize, actual: usize, per_pass: usize) -> Option<(usize,
         .then(|| (difference / per_pass, actual > expected))
 }
 
+/// Returns whether a text has nothing but visible ASCII characters and blanks. Reports ask this of each of their texts,
+/// and their own crate is compiled without optimisation.
+#[must_use]
+pub fn is_visible_ascii(text: &str) -> bool {
+    text.bytes().all(|byte| (b' '..=b'~').contains(&byte))
+}
+
 impl Display for PolynomialPlace {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         write!(f, "{} polynomial of {} ({})", self.role, PairWords(self.pair), PassWords(self.pass))

@@ -168,6 +168,8 @@ impl Stage {
             faults,
             traces: None,
             cards: None,
+            finish: None,
+            timings: None,
             reference,
         }
     }

@@ -10,6 +10,7 @@ use super::{
     staging::Staged,
     task::SceneTask,
     temporary::{Folders, Temporary},
+    timings::{RunPart, Stopwatch, Timings},
     verdict::Verdict,
 };
 use fosssim_evidence::StepRulings;
@@ -63,6 +64,8 @@ pub struct Runner<'a> {
     pub trace: Option<&'a Place>,
     /// Draws and keeps cards of traces that are not simply right, when somebody wants to look at them.
     pub cards: Option<Cards<'a>>,
+    /// Adds up the processor time of runs, when somebody asks where it goes.
+    pub timings: Option<&'a Timings>,
 }
 
 impl Runner<'_> {
@@ -85,11 +88,16 @@ impl Runner<'_> {
 
     fn attempt(&self, program: &Staged, task: &SceneTask, on_step: &mut dyn FnMut(u32)) -> Result<SceneResult, String> {
         let begin = Instant::now();
+        let mut watch = Stopwatch::new(self.timings);
         let (running, folder) = self.start(&program.program, program.identity, task)?;
         let is_untouched = running.is_in_memory();
         let registered = self.cancellation.register(running.canceller());
         let (outcome, left) = running.wait_with_folder().map_err(|error| error.to_string())?;
         drop(registered);
+        if let Some(timings) = self.timings {
+            timings.add(RunPart::Program, outcome.cpu);
+        }
+        watch.end(RunPart::Start);
         let (trace, trace_bytes) = self.trace_in(&left)?;
         // Not within the judging, which may panic: its trace is put aside then.
         let mut kept = KeptTrace::new(LONGEST);
@@ -97,11 +105,13 @@ impl Runner<'_> {
         let mut told = ToldSteps(on_step);
         let heard = &mut BothObservers(&mut rulings, &mut told);
         let judged = self.judge_trace(program, task, &mut kept, trace, heard);
+        watch.end(RunPart::Judging);
         drop(left);
         match is_untouched {
             true => self.folders.keep(folder),
             false => drop(folder),
         }
+        watch.end(RunPart::CleanUp);
         let failed = |stage, fault: &Fault| fault::result(task, self.faults, stage, fault, kept.bytes());
         let judged = match judged {
             Ok(judged) => judged?,
@@ -120,6 +130,7 @@ impl Runner<'_> {
             Ok(result) => result,
             Err((activity, fault)) => return Ok(failed(activity, &fault)),
         };
+        watch.end(RunPart::Explaining);
         result.measured.judging = begin.elapsed().saturating_sub(result.measured.wall);
         if let Some(cards) = self.cards
             && !(result.verdict.is_accepted() && result.differs.is_none())
@@ -144,6 +155,7 @@ impl Runner<'_> {
         if let Some(place) = self.trace.filter(|_| !result.verdict.is_accepted()) {
             place.write(kept.bytes()).map_err(|error| format!("its trace can't be kept: {error}"))?;
         }
+        watch.end(RunPart::Drawing);
         Ok(result)
     }
 

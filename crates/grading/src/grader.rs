@@ -8,6 +8,7 @@ use super::{
     cards::Cards,
     config::Hints,
     execute::Runner,
+    grade::Grade,
     guard::guarded,
     key::Key,
     located::{ContentIndex, Contents},
@@ -20,6 +21,7 @@ use super::{
     staging::{self, Staged},
     task::SceneTask,
     temporary::Folders,
+    timings::Timings,
     verdict::Verdict,
 };
 use fosssim_files::Place;
@@ -86,6 +88,10 @@ pub struct Grader<'a> {
     pub traces: Option<&'a TraceFile<'a>>,
     /// Draws and keeps cards of traces that are not simply right, when somebody wants to look at them.
     pub cards: Option<Cards<'a>>,
+    /// Does what a grade needs, on the job that has drawn it.
+    pub finish: Option<&'a (dyn Fn(&Grade) + Sync + 'a)>,
+    /// Adds up the processor time of all runs, when somebody asks where it goes.
+    pub timings: Option<&'a Timings>,
     /// The program whose speed is the measure: the original, or one that does as it does when it is called so. Without
     /// one no speed is measured.
     pub reference: Option<&'a Path>,
@@ -135,18 +141,9 @@ pub(super) struct SharedGrading<'a> {
 
 impl<'a> SharedGrading<'a> {
     pub(super) fn new(grader: &Grader<'_>, results: Option<&'a dyn Results>, cancellation: &'a Cancellation) -> Self {
-        Self {
-            cancellation,
-            results,
-            folders: Folders::default(),
-            words: grader.words(),
-            kept: Mutex::default(),
-            claimed: Mutex::default(),
-            released: Condvar::new(),
-            full: OnceLock::new(),
-            contents: OnceLock::new(),
-            reference: OnceLock::new(),
-        }
+        let (folders, words, kept, claimed) = (Folders::default(), grader.words(), Mutex::default(), Mutex::default());
+        let (full, contents, reference, released) = (OnceLock::new(), OnceLock::new(), OnceLock::new(), Condvar::new());
+        Self { cancellation, results, folders, words, kept, claimed, released, full, contents, reference }
     }
 
     /// Returns the contents of the reference's run of each scene. A scene without an end has none.
@@ -168,13 +165,7 @@ impl<'a> SharedGrading<'a> {
 
     /// Finds an earlier result, or that of an equal program in this grading. Where traces or cards are wanted, one
     /// without them does not count.
-    fn find<'s>(
-        &self,
-        key: &Key,
-        trace: Option<&Place>,
-        cards: Option<Cards<'_>>,
-        students: Hints,
-    ) -> Option<Done<'s>> {
+    fn find(&self, key: &Key, trace: Option<&Place>, cards: Option<Cards<'_>>, students: Hints) -> Option<FoundResult> {
         let result = self.results?.find(key)?;
         let lacks_trace = trace.is_some_and(|trace| !result.verdict.is_accepted() && !trace.is_file());
         let lacks_card = cards.is_some_and(|cards| cards.lack(&result, students));
@@ -183,7 +174,11 @@ impl<'a> SharedGrading<'a> {
     }
 
     /// Claims the key of a result, once no other job is at work on it; the result, if there is one then.
-    fn claim<'s>(&'s self, key: Key, find: impl Fn(&Key) -> Option<Done<'s>>) -> Result<KeyClaim<'s>, Box<Done<'s>>> {
+    fn claim<'s>(
+        &'s self,
+        key: Key,
+        find: impl Fn(&Key) -> Option<FoundResult>,
+    ) -> Result<KeyClaim<'s>, Box<FoundResult>> {
         let mut claimed = lock(&self.claimed);
         // Where nothing is kept there is no result to wait for.
         while self.results.is_some() && claimed.contains(&key) {
@@ -236,6 +231,9 @@ struct Done<'s> {
     claim: Option<KeyClaim<'s>>,
 }
 
+/// A result that was found, for which nobody needs a claim.
+type FoundResult = Done<'static>;
+
 impl Done<'_> {
     fn unkept(result: SceneResult) -> Self {
         Self { result, cached: false, claim: None }
@@ -249,7 +247,9 @@ pub(super) enum SceneNews {
     /// Steps have been judged up to this one; not every step is told.
     Step(u32),
     /// The scene has its result, and whether that was taken from an earlier run.
-    Done(Box<SceneResult>, bool),
+    Done(bool),
+    /// The submission has its grade, with its last scene.
+    Graded(Box<Grade>),
 }
 
 /// One submission at work. Any number of jobs may take its scenes: it is staged once, by the first job that has to run
@@ -270,23 +270,29 @@ struct Known {
     done: Vec<Option<(Verdict, Duration)>>,
     /// The first scene that is not run any more, and why.
     end: Option<(usize, NotRunReason)>,
+    /// The results that are told, each with the word whether it was found.
+    told: Vec<Option<(SceneResult, bool)>>,
+    /// The number of results that are still missing there.
+    missing: usize,
 }
 
 impl<'a> SubmissionGrading<'a> {
     /// Creates a submission of which nothing is known yet.
     pub(super) fn new(grader: &'a Grader<'a>, shared: &'a SharedGrading<'a>, submission: &'a Submission) -> Self {
-        let done = vec![None; grader.plan.scenes().count()];
+        let missing = grader.plan.scenes().count();
+        let (done, told) = (vec![None; missing], vec![None; missing]);
         Self {
             grader,
             shared,
             submission,
             digest: OnceLock::new(),
             staged: Mutex::default(),
-            known: Mutex::new(Known { done, end: None }),
+            known: Mutex::new(Known { done, end: None, told, missing }),
         }
     }
 
-    /// Finds or makes the result of a scene, by its number in the plan, keeps it, and tells it.
+    /// Finds or makes the result of a scene, by its number in the plan, keeps it, and tells it; with the last one, the
+    /// grade.
     pub(super) fn scene(&self, number: usize, scene: &SceneTask, tell: &mut dyn FnMut(SceneNews)) {
         let done = guarded(|| self.find_or_run(number, scene, tell)).unwrap_or_else(|fault| {
             Done::unkept(scene.failed(Failure::Panic { stage: None, fault: fault.to_string(), trace: None }))
@@ -296,7 +302,19 @@ impl<'a> SubmissionGrading<'a> {
         if let Some(claim) = claim {
             self.shared.keep(&claim.key, self.submission, &result);
         }
-        tell(SceneNews::Done(Box::new(result), cached));
+        tell(SceneNews::Done(cached));
+        let mut known = lock(&self.known);
+        known.told[number] = Some((result, cached));
+        known.missing -= 1;
+        if known.missing == 0 {
+            let results = std::mem::take(&mut known.told).into_iter().flatten().collect();
+            drop(known);
+            let grade = Box::new(self.grade(results));
+            if let Some(finish) = self.grader.finish {
+                finish(&grade);
+            }
+            tell(SceneNews::Graded(grade));
+        }
     }
 
     fn find_or_run(&self, number: usize, scene: &SceneTask, tell: &mut dyn FnMut(SceneNews)) -> Done<'a> {
@@ -326,14 +344,7 @@ impl<'a> SubmissionGrading<'a> {
             }
             Ok(staged) => {
                 let key = shared.key(&staged.digest, scene, &called(&staged.program), students);
-                let claim = match known {
-                    Some(claim) if claim.key == key => Ok(claim),
-                    other => {
-                        drop(other);
-                        shared.claim(key, find)
-                    }
-                };
-                match claim {
+                match known.filter(|claim| claim.key == key).map_or_else(|| shared.claim(key, find), Ok) {
                     Err(done) => *done,
                     Ok(claim) => {
                         let result = self.run(staged, scene, trace.as_ref(), tell);
@@ -378,6 +389,7 @@ impl<'a> SubmissionGrading<'a> {
             faults: grader.faults,
             trace,
             cards: grader.cards,
+            timings: grader.timings,
         }
     }
 

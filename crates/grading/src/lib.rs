@@ -36,7 +36,6 @@ mod form;
 pub mod grader;
 mod guard;
 #[cfg(target_os = "linux")]
-#[cfg(target_os = "linux")]
 mod key;
 pub mod library;
 #[cfg(target_os = "linux")]
@@ -68,6 +67,8 @@ mod staging;
 mod task;
 #[cfg(target_os = "linux")]
 mod temporary;
+#[cfg(target_os = "linux")]
+pub mod timings;
 pub mod traces;
 #[cfg(target_os = "linux")]
 mod upload;

@@ -1,5 +1,6 @@
 //! Somebody else's words: names, and the output of programs. Control characters become visible, and what nobody sees is
 //! replaced, before any format escapes what its own syntax gives a meaning.
+use fosssim_findings::is_visible_ascii;
 use std::borrow::Cow;
 
 /// Removes a terminal's codes for colours, cursors and titles, which a log of FOSSSim's own holds in every line. Only
@@ -64,6 +65,10 @@ pub(crate) const fn is_unseen(c: char) -> bool {
 /// tabs stay, characters that XML 1.0 forbids and those that nobody sees are replaced.
 #[must_use]
 pub fn plain(text: &str) -> String {
+    // Nearly every text, which a class has by the ten thousand.
+    if is_visible_ascii(text) {
+        return text.to_owned();
+    }
     let mut plain = String::with_capacity(text.len());
     for c in text.chars() {
         match c {
@@ -99,5 +104,8 @@ mod tests {
             assert_eq!(plain(&format!("a{hidden}b")), "a\u{fffd}b", "{hidden:?}");
         }
         assert_eq!(one_line("a\nb"), "a b");
+        for c in (0..128_u8).map(char::from) {
+            assert_eq!(plain(&format!("a{c}b")) + "\u{e9}", plain(&format!("a{c}b\u{e9}")), "{c:?}");
+        }
     }
 }

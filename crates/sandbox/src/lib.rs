@@ -62,6 +62,27 @@ pub use supervisor::supervisor_main;
 #[doc(hidden)]
 pub use wire::read_messages;
 
+/// Whose processor time is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TimeOf {
+    /// This thread.
+    Thread,
+    /// This process.
+    Process,
+    /// The processes of all runs that have ended, and their supervisors.
+    Children,
+}
+
+/// Returns a processor time, in user mode and in the kernel together.
+#[must_use]
+pub fn processor_time(of: TimeOf) -> std::time::Duration {
+    match of {
+        TimeOf::Thread => sys::processor_time(true),
+        TimeOf::Process => sys::processor_time(false),
+        TimeOf::Children => sys::children_usage().map_or(std::time::Duration::ZERO, |(time, _)| time),
+    }
+}
+
 /// Has this process's own writes beyond its limit of file sizes (`ulimit -f`) fail with an error, as on a full disk,
 /// instead of ending it. The programs that it runs keep the signal, which then ends them.
 pub fn let_large_writes_fail() {

@@ -434,6 +434,12 @@ pub(super) fn is_waiting(listener: BorrowedFd<'_>, id: u64) -> bool {
     unsafe { libc::ioctl(listener.as_raw_fd(), libc::SECCOMP_IOCTL_NOTIF_ID_VALID, &raw const id) == 0 }
 }
 
+/// Returns the processor time of this process, or of this thread alone.
+pub(super) fn processor_time(of_thread: bool) -> Duration {
+    let time = rustix::time::clock_gettime(if of_thread { ClockId::ThreadCPUTime } else { ClockId::ProcessCPUTime });
+    Duration::new(time.tv_sec.unsigned_abs(), time.tv_nsec.unsigned_abs() as u32)
+}
+
 /// Returns the time since the clock's beginning: the calendar's clock, or the one that always goes on.
 pub(super) fn time_by(calendar: bool) -> Duration {
     let time = rustix::time::clock_gettime(if calendar { ClockId::Realtime } else { ClockId::Monotonic });

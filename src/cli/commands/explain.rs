@@ -164,6 +164,7 @@ fn program_on_probes(
         faults: &nowhere,
         trace: None,
         cards: None,
+        timings: None,
     };
     let assignment = arguments.suite.map_or_else(|| own_milestone(&runner, &program), Ok)?;
     let plan = plan::find(assignment.key())?;

@@ -9,7 +9,7 @@ use super::{
     results::{Report, Results, refuse_several, reports, wanted_pages},
     shard::Sharding,
     submissions::{Found, Search},
-    traces,
+    timings, traces,
 };
 use crate::{
     cli::{
@@ -36,15 +36,18 @@ use crate::{
         cards::Judged,
         config::Visibility,
         grader::Options,
+        guarded,
         plan::{self, Plan},
         results::FolderResults,
+        timings::Timings,
     },
 };
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
 use std::{
     fs,
     num::NonZeroUsize,
     path::{Path, PathBuf},
+    sync::OnceLock,
     time::{Duration, SystemTime},
 };
 
@@ -55,6 +58,16 @@ const DEFAULT_OUTPUT: &str = "fosssim-grades";
 const FAULTS: &str = "fosssim-faults";
 
 pub(super) fn run(arguments: &Arguments) -> Result<u8> {
+    let times = Timings::default();
+    let code = grade(arguments, &times)?;
+    if arguments.timings {
+        timings::print(&times);
+    }
+    Ok(code)
+}
+
+/// Grades, and adds up the times of runs. The sandbox's processes have ended when this returns.
+fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
     let mut plan = plan::find(&arguments.suite)?;
     if let Some(rules) = arguments.rules {
         plan.rules = rules;
@@ -118,7 +131,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     let pages = wanted_pages(arguments, folder.as_deref(), submissions.len() > 1, &reports)?;
     let (plan, backend, cancellation) = (&plan, &backend, &cancellation);
     let session =
-        GradingSession { arguments, plan, backend, cancellation, folder, pages, is_part, sharding, passed_over };
+        GradingSession { arguments, plan, backend, cancellation, folder, pages, is_part, sharding, passed_over, times };
     if arguments.watch {
         return session.watch(&submissions, &reports, &mut last_run, earlier);
     }
@@ -151,6 +164,8 @@ struct GradingSession<'a> {
     sharding: Option<Sharding>,
     /// The entries that are no submissions.
     passed_over: Vec<PassedOver>,
+    /// Where the processor time of runs is added up, if it is asked for.
+    times: &'a Timings,
 }
 
 impl GradingSession<'_> {
@@ -225,6 +240,14 @@ impl GradingSession<'_> {
             pages.forget();
         }
         let draw = |judged: &Judged<'_>| pages::draw(judged, self.arguments.recorded);
+        let log_error = OnceLock::new();
+        let finish = |grade: &Grade| {
+            if let (Some(folder), None) = (&self.folder, log_error.get())
+                && let Err(error) = guarded(|| write_logs(folder, grade)).unwrap_or_else(|fault| Err(anyhow!(fault)))
+            {
+                let _ = log_error.set(error);
+            }
+        };
         // Called as the original, this program does what that does.
         let reference = std::env::current_exe().ok();
         let grader = Grader {
@@ -236,29 +259,24 @@ impl GradingSession<'_> {
             faults: &faults,
             traces: if self.arguments.keep_traces { Some(&trace) } else { None },
             cards: self.pages.as_ref().map(|pages| pages.drawing(&draw)),
+            finish: Some(&finish),
+            timings: self.arguments.timings.then_some(self.times),
             reference: reference.as_deref(),
         };
         let mut display = LiveDisplay::new(self.plan, submissions);
         let mut counter = self.arguments.progress.as_deref().map(|file| self.counter(file, submissions)).transpose()?;
-        let mut log_error = None;
         let mut on_event = |event: batch::Event<'_>| {
             still_at_work();
             display.event(&event);
             if let Some(counter) = &mut counter {
                 counter.event(&event);
             }
-            if let (Some(folder), batch::Event::Graded { grade, .. }) = (&self.folder, &event)
-                && log_error.is_none()
-                && let Err(error) = write_logs(folder, grade)
-            {
-                log_error = Some(error);
-            }
         };
         let results = kept.as_ref().map(|kept| kept as &dyn crate::suite::results::Results);
         let Graded { mut grades, fault } = batch::run(&grader, submissions, results, self.cancellation, &mut on_event);
         drop(display);
         grade::warn_of(&mut grades, self.passed_over());
-        Ok((grades, fault.map(anyhow::Error::from).or(log_error)))
+        Ok((grades, fault.map(anyhow::Error::from).or(log_error.into_inner())))
     }
 
     /// Returns the counter of scenes for `--progress`: those that the reader of the pages sees.

@@ -100,6 +100,8 @@ pub(super) fn demo(arguments: &Demo) -> Result<u8> {
             faults: &Place::new("", "fosssim-faults"),
             traces: None,
             cards: Some(pages.drawing(&draw)),
+            finish: None,
+            timings: None,
             reference: None,
         };
         let grades = batch::run(&grader, &[submission], None, &cancellation, &mut |_| {}).grades;

@@ -25,6 +25,7 @@ mod submissions;
 mod suite;
 mod suite_report;
 mod suite_sight;
+mod timings;
 mod trace;
 mod traces;
 

@@ -17,6 +17,7 @@ use crate::{
     },
 };
 use anyhow::{Context, Result};
+use rayon::prelude::*;
 use std::{
     ffi::OsString,
     path::{Path, PathBuf},
@@ -88,18 +89,18 @@ impl Pages {
             output::write_at(&place, page.as_bytes()).map(|()| Some(place.path()))
         };
         if reader == Audience::Student || grades.len() > 1 {
-            for grade in grades {
+            grades.par_iter().try_for_each(|grade| {
                 let name = format!("students/{}.html", file_name(&grade.submission));
-                write(&name, &self.of_one(grade, None, Audience::Student))?;
-            }
+                write(&name, &self.of_one(grade, None, Audience::Student)).map(drop)
+            })?;
         }
         if let [grade] = grades {
             return write("report.html", &self.of_one(grade, None, Audience::Staff));
         }
-        for grade in grades {
+        grades.par_iter().try_for_each(|grade| {
             let name = format!("reports/{}.html", file_name(&grade.submission));
-            write(&name, &self.of_one(grade, Some("../index.html"), Audience::Staff))?;
-        }
+            write(&name, &self.of_one(grade, Some("../index.html"), Audience::Staff)).map(drop)
+        })?;
         // Names of files hold nothing that an address would have to write otherwise, but blanks.
         let page = |grade: &Grade| format!("reports/{}.html", file_name(&grade.submission).replace(' ', "%20"));
         write("index.html", &ClassPage { grades, passed_over, page: &page }.html())

@@ -7,6 +7,7 @@ use crate::{
     suite::{Grade, PassedOver, guarded},
 };
 use anyhow::{Context, Result, bail};
+use rayon::prelude::*;
 use std::{
     borrow::Cow,
     fs,
@@ -124,29 +125,30 @@ impl Results<'_> {
                 "a part of the suite is not a grade: grades.csv and the other tables are left as they are\n",
             );
         } else if let Some(folder) = self.folder {
+            let by_submission = || grade::csv_of_submissions(grades, passed_over);
+            let by_scene = || Format::Csv.render_class(grades, passed_over);
             let lines = || grade::json_lines(grades, passed_over);
-            keep(write_in(folder, "grades.csv", || grade::csv_of_submissions(grades, passed_over)));
-            keep(write_in(folder, "scenes.csv", || Format::Csv.render_class(grades, passed_over)));
-            keep(write_in(folder, "grades.jsonl", lines));
-            if grades.len() > 1 {
-                let text = || {
-                    grade::class(grades, usize::MAX, Style::Plain)
-                        + &grade::not_graded(grades, passed_over, Style::Plain)
-                };
-                let class = || wrap::wrapped(&text(), CLASS_WIDTH);
-                keep(write_in(folder, "class.txt", class));
-            }
-            if let Some(pages) = self.pages {
-                keep(
-                    made("the pages", || pages.write(grades, passed_over, self.reader))
-                        .and_then(|written| written)
-                        .map(|first| {
-                            if let Some(first) = first {
-                                console::remark(format!("to look at: {}\n", first.display()));
-                            }
-                        }),
-                );
-            }
+            let class = || {
+                let missing = grade::not_graded(grades, passed_over, Style::Plain);
+                wrap::wrapped(&(grade::class(grades, usize::MAX, Style::Plain) + &missing), CLASS_WIDTH)
+            };
+            let tables: [(&str, &(dyn Fn() -> String + Sync)); 4] = [
+                ("grades.csv", &by_submission),
+                ("scenes.csv", &by_scene),
+                ("grades.jsonl", &lines),
+                ("class.txt", &class),
+            ];
+            // All cores write: of a large class this is what the jobs would wait for.
+            let written = tables.par_iter().take(if grades.len() > 1 { 4 } else { 3 });
+            let write_tables = || written.map(|(name, text)| write_in(folder, name, text)).collect::<Vec<_>>();
+            let write_pages = |pages: &Pages| made("the pages", || pages.write(grades, passed_over, self.reader));
+            let (tables, first) = rayon::join(write_tables, || self.pages.map_or(Ok(Ok(None)), write_pages));
+            tables.into_iter().for_each(&mut keep);
+            keep(first.and_then(|first| first).map(|first| {
+                if let Some(first) = first {
+                    console::remark(format!("to look at: {}\n", first.display()));
+                }
+            }));
         }
         if let (Some(file), Some(pages), [grade]) = (self.staff_page, self.pages, grades) {
             keep(write(file, || pages.of_one(grade, None, Audience::Staff)));

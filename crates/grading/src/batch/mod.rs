@@ -7,7 +7,6 @@ use super::{
     grade::Grade,
     grader::{Grader, SceneNews, SharedGrading, Submission, SubmissionGrading},
     guard::{Fault, guarded},
-    result::SceneResult,
     results::{KeepError, Results},
     task::SceneTask,
     temporary,
@@ -42,8 +41,6 @@ pub enum Event<'a> {
         submission: usize,
         /// The scene's number in the plan.
         scene: usize,
-        /// The result.
-        result: &'a SceneResult,
         /// Whether it was taken from an earlier run.
         cached: bool,
     },
@@ -104,14 +101,12 @@ pub fn run(
     Graded { grades, fault }
 }
 
-/// Jobs take scene after scene; this thread hears of them, and draws each grade with its submission's last result.
+/// Jobs take scene after scene, and the one with a submission's last result draws its grade; this thread hears of them.
 fn share_out(grader: &Grader<'_>, gradings: &[SubmissionGrading<'_>], tell: &mut dyn FnMut(Event<'_>)) -> Vec<Grade> {
     let scenes: Vec<&SceneTask> = grader.plan.scenes().collect();
     let tasks = gradings.len() * scenes.len();
     let next = AtomicUsize::new(0);
     let (sender, receiver) = mpsc::channel();
-    let mut results: Vec<Vec<Option<(SceneResult, bool)>>> =
-        gradings.iter().map(|_| vec![None; scenes.len()]).collect();
     let mut grades: Vec<Option<Grade>> = gradings.iter().map(|_| None).collect();
     std::thread::scope(|scope| {
         for _ in 0..grader.options.jobs.clamp(1, tasks.max(1)) {
@@ -133,16 +128,10 @@ fn share_out(grader: &Grader<'_>, gradings: &[SubmissionGrading<'_>], tell: &mut
             match news {
                 SceneNews::Begins => tell(Event::SceneBegins { submission, scene }),
                 SceneNews::Step(step) => tell(Event::Step { submission, scene, step }),
-                SceneNews::Done(result, cached) => {
-                    tell(Event::SceneDone { submission, scene, result: &result, cached });
-                    let results = &mut results[submission];
-                    results[scene] = Some((*result, cached));
-                    if results.iter().all(Option::is_some) {
-                        let results = std::mem::take(results).into_iter().flatten().collect();
-                        let grade = gradings[submission].grade(results);
-                        tell(Event::Graded { submission, grade: &grade });
-                        grades[submission] = Some(grade);
-                    }
+                SceneNews::Done(cached) => tell(Event::SceneDone { submission, scene, cached }),
+                SceneNews::Graded(grade) => {
+                    tell(Event::Graded { submission, grade: &grade });
+                    grades[submission] = Some(*grade);
                 }
             }
         }

@@ -5,7 +5,7 @@ use crate::{
     grader::Options,
     located::Failing,
     plan::{self, Plan},
-    result::{Activity, BadTrace, Failure, NotRunReason, Reason, SavedTrace, Wrong},
+    result::{Activity, BadTrace, Failure, NotRunReason, Reason, SavedTrace, SceneResult, Wrong},
     results::FolderResults,
     verdict::Verdict,
 };

@@ -46,8 +46,8 @@ fn grade(
     let mut told = Vec::new();
     let submission = std::slice::from_ref(submission);
     let Graded { grades, fault } = run(grader, submission, Some(results), &Cancellation::default(), &mut |event| {
-        if let Event::SceneDone { submission: 0, result, cached, .. } = event {
-            told.push(format!("{} {cached}", result.scene));
+        if let Event::SceneDone { submission: 0, scene, cached } = event {
+            told.push(format!("{scene} {cached}"));
         }
     });
     (grades.into_iter().next().expect("a grade"), fault, told)

@@ -1,5 +1,5 @@
 //! A class in numbers: how many points, which scenes few have right, which mistakes many make.
-use super::{likely_mistakes, points, shortened};
+use super::{likely_mistakes, phrases::some, points, shortened};
 use crate::foreign::one_line;
 use crate::{
     number::counted,
@@ -56,11 +56,8 @@ pub fn class(grades: &[Grade], most: usize, style: Style) -> String {
     if !same.is_empty() {
         let _ = writeln!(text, "{}", style.paint(Look::Strong, "The same program, byte for byte"));
         for members in &same {
-            let name = |&number: &usize| shortened(&one_line(&grades[number].submission));
-            let names: Vec<String> = members.iter().take(most).map(name).collect();
-            let more = members.len() - names.len();
-            let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-            let _ = writeln!(text, "  {}{more}", names.join(", "));
+            let names: Vec<String> = members.iter().map(|&number| shortened(&grades[number].submission)).collect();
+            let _ = writeln!(text, "  {}", some(&names, most));
         }
     }
     text

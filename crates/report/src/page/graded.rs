@@ -58,10 +58,13 @@ impl GradePage<'_> {
         let grade = shown.as_ref();
         let told = self.told(grade);
         let mut body = self.head(grade, &told);
-        if grade.unfit().is_none() {
+        let has_scenes = grade.unfit().is_none();
+        if has_scenes {
             body += &scenes(grade, &told);
         }
-        document(&format!("{}: {}", grade.submission, grade.verdict.words()), &body, script())
+        // The viewer is most of a page without cards.
+        let script = if has_scenes && !told.is_empty() { script() } else { "" };
+        document(&format!("{}: {}", grade.submission, grade.verdict.words()), &body, script)
     }
 
     /// Returns the scenes that have something to tell, the most telling one first and the others in their order.

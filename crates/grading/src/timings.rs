@@ -1,0 +1,76 @@
+//! Where the processor time of runs goes, for `grade --timings`.
+use fosssim_sandbox::{TimeOf, processor_time};
+use std::{
+    collections::BTreeMap,
+    sync::{Mutex, PoisonError},
+    time::Duration,
+};
+
+/// A part of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum RunPart {
+    /// The grader starts the program in its sandbox, and waits for it.
+    Start,
+    /// The program itself.
+    Program,
+    /// The grader judges the trace.
+    Judging,
+    /// The working folder is emptied.
+    CleanUp,
+    /// The grader looks for the mistake.
+    Explaining,
+    /// The grader draws what pages show.
+    Drawing,
+}
+
+impl RunPart {
+    /// The parts that the grader's own process does, with their names.
+    pub const OWN: [(Self, &str); 5] = [
+        (Self::Start, "starting runs"),
+        (Self::Judging, "judging"),
+        (Self::Explaining, "explaining"),
+        (Self::Drawing, "drawing for pages"),
+        (Self::CleanUp, "cleaning up"),
+    ];
+}
+
+/// The processor time of all runs so far, and how many there were, by their parts.
+#[derive(Debug, Default)]
+pub struct Timings(Mutex<BTreeMap<RunPart, (Duration, u32)>>);
+
+impl Timings {
+    /// Returns the time that a part of the runs took, and the number of runs.
+    #[must_use]
+    pub fn total(&self, part: RunPart) -> (Duration, u32) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).get(&part).copied().unwrap_or_default()
+    }
+
+    /// Adds a run's part.
+    pub(super) fn add(&self, part: RunPart, time: Duration) {
+        let mut parts = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let (total, runs) = parts.entry(part).or_default();
+        (*total, *runs) = (*total + time, *runs + 1);
+    }
+}
+
+/// Measures the parts of one run on its thread; without somebody who asks it reads no clock.
+pub(super) struct Stopwatch<'a> {
+    timings: Option<&'a Timings>,
+    last: Duration,
+}
+
+impl<'a> Stopwatch<'a> {
+    /// Begins a run.
+    pub(super) fn new(timings: Option<&'a Timings>) -> Self {
+        Self { timings, last: timings.map_or(Duration::ZERO, |_| processor_time(TimeOf::Thread)) }
+    }
+
+    /// Adds what was taken since the last part to this one.
+    pub(super) fn end(&mut self, part: RunPart) {
+        if let Some(timings) = self.timings {
+            let now = processor_time(TimeOf::Thread);
+            timings.add(part, now.saturating_sub(self.last));
+            self.last = now;
+        }
+    }
+}

@@ -1,0 +1,29 @@
+//! The table of `grade --timings`: where the processor time of a grading went.
+use crate::{
+    cli::console,
+    report::{
+        style::Style,
+        table::{Align, Table},
+    },
+    sandbox::{TimeOf, processor_time},
+    suite::timings::{RunPart, Timings},
+};
+
+/// Prints the table. The sandbox's processes must have ended, or their time is not in it.
+pub(super) fn print(timings: &Timings) {
+    let own = processor_time(TimeOf::Process);
+    let others = processor_time(TimeOf::Children);
+    let (programs, runs) = timings.total(RunPart::Program);
+    let mut rows = vec![("programs", programs), ("the sandbox's processes", others.saturating_sub(programs))];
+    rows.extend(RunPart::OWN.map(|(part, name)| (name, timings.total(part).0)));
+    let rest = own.saturating_sub(rows[2..].iter().map(|(_, time)| *time).sum());
+    rows.extend([("reports and all else", rest), ("together", own + others)]);
+    let mut table = Table::new([Align::Left, Align::Right, Align::Right]);
+    table.heading(["processor time", "seconds", "ms a run"]);
+    for (name, time) in rows {
+        let seconds = time.as_secs_f64();
+        let each = if runs == 0 { String::new() } else { format!("{:.2}", 1000.0 * seconds / f64::from(runs)) };
+        table.row([name.into(), format!("{seconds:.3}").into(), each.into()]);
+    }
+    console::complain(table.render(Style::Plain));
+}
