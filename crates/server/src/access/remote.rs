@@ -194,6 +194,11 @@ impl Remote {
         self.held(lease).await?;
         let artefact = self.app.0.store.put_file(file).await?;
         let mut transaction = self.app.0.database.first().begin().await?;
+        // Whoever takes the job away meanwhile waits for this, or this finds the job taken.
+        let statement = "SELECT id FROM job WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running'
+            {for update}";
+        let held = transaction.row(statement, values![lease.job, lease.attempt, &lease.key]).await?;
+        ensure(held.is_some(), Problem::not_found("job of yours"))?;
         let size = i64::try_from(artefact.size).unwrap_or(i64::MAX);
         let statement = "INSERT INTO job_file (job, attempt, digest, size) VALUES (?, ?, ?, ?)
             ON CONFLICT (job, attempt, digest) DO NOTHING";

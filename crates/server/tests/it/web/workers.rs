@@ -1,8 +1,9 @@
 //! Workers on other machines: processes that know nothing but an address and a token.
 use crate::support::{
-    engines::{Fresh, on_sqlite},
+    engines::{Fresh, on_sqlite, run},
     server::{Client, JSON, Server, program},
 };
+use fosssim_server::values;
 use std::{
     fs,
     process::{Child, Command, Stdio},
@@ -266,4 +267,36 @@ async fn a_worker_whose_token_is_revoked_says_so_and_ends(fresh: Fresh) {
     let said =
         log.lines().filter(|line| line.starts_with("error: ") && line.contains("its token is unknown or revoked"));
     assert_eq!(said.count(), 2, "{log}");
+}
+
+/// What is stored while the job is taken away would keep the job's row from being removed.
+#[test]
+fn a_report_waits_for_whoever_takes_the_job_away() {
+    run(async {
+        let Some(fresh) = Fresh::postgres().await else { return };
+        let mut server = Server::start(&fresh, &["--workers", "0"]);
+        let admin = server.admin();
+        server.course(&admin, "physics");
+        server.member(&admin, "physics", "ada", "student").submit("physics", &program("WA", 1));
+        let worker = server.with_token(&worker_token(&admin));
+        let lease = worker.post_json("/api/v1/worker/claim", "{}").expect(200).json()["lease"].take();
+        let shown = format!("{}:{}:{}", lease["job"], lease["attempt"], lease["key"].as_str().expect("a key"));
+        let path = format!("/api/v1/worker/files/{}", fosssim_server::store::Digest::of(b"a report"));
+        let mut taking = fresh.database.begin().await.expect("a transaction");
+        let statement = "UPDATE job SET state = 'cancelled', lease_key = NULL, lease_until = NULL";
+        taking.execute(statement, values![]).await.expect("a statement");
+        let storing = std::thread::spawn(move || worker.send("PUT", &path, &[("Fosssim-Lease", &shown)], b"a report"));
+        let is_waiting = async || {
+            let mut transaction = fresh.database.read().await.expect("a transaction");
+            let statement = "SELECT count(*) AS n FROM pg_stat_activity
+                WHERE datname = current_database() AND wait_event_type = 'Lock'";
+            transaction.one(statement, values![]).await.expect("a row").int("n").expect("a number") > 0
+        };
+        while !storing.is_finished() && !is_waiting().await {
+            std::thread::yield_now();
+        }
+        taking.commit().await.expect("commit");
+        storing.join().expect("an answer").expect(404);
+        admin.send("DELETE", "/api/v1/courses/physics/assignments/m1", &[], b"").expect(204);
+    });
 }
