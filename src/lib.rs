@@ -22,6 +22,8 @@ pub use fosssim_sandbox as sandbox;
 
 pub use fosssim_mistakes::{diagnose, together};
 
+pub use fosssim_shrink as shrink;
+
 pub use fosssim_grading as suite;
 
 pub use fosssim_report as report;

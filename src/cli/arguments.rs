@@ -55,6 +55,8 @@ pub(super) enum Command {
     Check(CheckArguments),
     /// Names the likely mistake of a program, from its trace or by running it.
     Explain(Explain),
+    /// Makes the smallest scene on which a program is still wrong for the same reason.
+    Shrink(Shrink),
     /// Computes one pair: polynomials, zeros, intervals, decision, time of impact, normal.
     Detect(Box<DetectArguments>),
     /// Draws a scene's motion: a picture per step, a GIF, or a movie.
@@ -232,6 +234,45 @@ pub(super) struct Explain {
     /// Where to write the report, instead of to standard output.
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
+    /// Run the program without the sandbox where its layers are missing. Never do this with programs of others.
+    #[arg(long)]
+    pub(super) unsafe_no_sandbox: bool,
+    #[command(flatten)]
+    pub(super) quiet: Quiet,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  fosssim-oracle shrink ./FOSSSim --output small.xml
+  fosssim-oracle shrink ./FOSSSim scenes/test00.xml --step 14
+  fosssim-oracle shrink ./FOSSSim --suite t2m1 --format html > small.html
+
+The program runs in the sandbox. Without a scene there is one smallest scene for each cause; further ones go to \
+small-2.xml and so on. The exit code is 0 when nothing is wrong, else 1.")]
+pub(super) struct Shrink {
+    /// The program to run.
+    pub(super) program: PathBuf,
+    /// The scene to begin with, a file or asset:Group/name. By default the suite's, or small scenes of the milestone.
+    pub(super) scene: Option<PathBuf>,
+    /// The suite whose scenes are tried. By default the program's milestone is found out.
+    #[arg(long, value_name = "SUITE")]
+    pub(super) suite: Option<String>,
+    /// The wrong step of the scene to begin with, from 1; by default the first one that shows the cause alone.
+    #[arg(long, value_name = "N", requires = "scene", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(super) step: Option<u32>,
+    /// Where to write the scene.
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: Option<PathBuf>,
+    /// The most runs for one cause.
+    #[arg(long, value_name = "N", default_value_t = 2_000)]
+    pub(super) runs: u32,
+    /// The most processor time for one cause, in seconds.
+    #[arg(long, value_name = "N", default_value_t = 20)]
+    pub(super) seconds: u32,
+    /// How the report is written.
+    #[arg(long, value_enum, default_value_t = ExplainFormat::Text)]
+    pub(super) format: ExplainFormat,
     /// Run the program without the sandbox where its layers are missing. Never do this with programs of others.
     #[arg(long)]
     pub(super) unsafe_no_sandbox: bool,

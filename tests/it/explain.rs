@@ -255,7 +255,19 @@ fn a_program_at_hand_is_asked_on_probe_scenes() {
         assert_eq!(report["accepted"], accepted, "{name}: {}", run.err());
         let common = report["common"]["key"].as_str().unwrap_or_default();
         assert_eq!(common, id, "{name}");
+        assert_eq!(report["smallest"].as_array().expect("a list").is_empty(), accepted, "{name}");
     }
+    let program = "./fosssim-sample.pe-linear-one-sh";
+    let run = workspace.run(["shrink", program, SPINNING, "--output", "small.xml"]);
+    assert!(run.code == Some(1) && run.out().contains("The smallest scene: 3 bodies, 1 step"), "{}", run.shown());
+    assert!(run.out().contains("overlap: differs"), "{}", run.shown());
+    // It is wrong for the same reason when it is run again.
+    let again = workspace.run(["shrink", program, "small.xml", "--format", "json"]);
+    let again = schemas::valid("explain", &again.stdout);
+    assert_eq!(again["common"]["key"], "pe-linear-one-sh");
+    assert_eq!(again["smallest"][0]["scene"], std::fs::read_to_string(workspace.path("small.xml")).expect("a scene"));
+    let run = workspace.run(["shrink", "./fosssim-sample", "small.xml"]);
+    assert!(run.code == Some(0) && run.out().contains("Nothing is wrong"), "{}", run.shown());
 }
 
 #[test]

@@ -61,6 +61,8 @@ pub mod scene_files;
 pub mod score;
 mod shape;
 #[cfg(target_os = "linux")]
+pub mod smallest;
+#[cfg(target_os = "linux")]
 mod speed;
 #[cfg(target_os = "linux")]
 mod staging;

@@ -1,7 +1,9 @@
 //! The report of `explain`: what is likely wrong with a program, trace by trace and all together.
 use super::{
+    case::Case,
     explain::{ExplanationView, lines},
     number::counted,
+    smallest::{SmallestReport, SmallestView},
     style::{Look, Style},
     view::{FindingView, document, view},
     words::{first_divergence, located},
@@ -12,27 +14,10 @@ use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 use std::fmt::Write;
 
 /// The version of the JSON report's schema (`schemas/explain.schema.json`).
-const SCHEMA: u32 = 2;
-
-/// A trace, and all that is to be said of it.
-#[derive(Debug, Clone)]
-pub struct Case {
-    /// The scene's name.
-    pub scene: String,
-    /// Where the trace comes from.
-    pub trace: String,
-    /// Whether the fair rules accept it.
-    pub accepted: bool,
-    /// A further remark, such as how its program ended, or why it can't be read.
-    pub note: Option<String>,
-    /// The first thing that is wrong, as far as it may be told.
-    pub first: Option<DisclosedFinding>,
-    /// Likely mistakes, the likeliest first.
-    pub explanations: Vec<Explanation>,
-}
+const SCHEMA: u32 = 3;
 
 /// The whole report.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Diagnosis {
     /// The traces, in the order in which they were asked about.
     pub cases: Vec<Case>,
@@ -40,6 +25,8 @@ pub struct Diagnosis {
     pub common: Vec<Explanation>,
     /// The common properties of the scenes in which the program crashes or runs into a limit.
     pub located: Option<LocatedFailure>,
+    /// The smallest scene for each cause, where these were looked for.
+    pub smallest: Vec<SmallestReport>,
 }
 
 impl Diagnosis {
@@ -52,8 +39,9 @@ impl Diagnosis {
     /// Renders the report for people.
     #[must_use]
     pub fn text(&self, style: Style) -> String {
+        let smallest = self.smallest.iter().map(|one| format!("\n{}", one.text(style))).collect::<String>();
         if let [case] = &self.cases[..] {
-            return alone(case, style);
+            return alone(case, style) + &smallest;
         }
         let mut text = String::new();
         let wrong = self.cases.iter().filter(|case| !case.accepted).count();
@@ -91,7 +79,7 @@ impl Diagnosis {
                 text += &indented(std::slice::from_ref(other));
             }
         }
-        text
+        text + &smallest
     }
 
     fn is_common(&self, explanation: &Explanation) -> bool {
@@ -165,6 +153,8 @@ view! {
         likely: Vec<ExplanationView> = diagnosis.common.iter().map(ExplanationView::from).collect(),
         /// The traces, in the order in which they were asked about.
         traces: Vec<CaseView<'a>> = diagnosis.cases.iter().map(CaseView::from).collect(),
+        /// The smallest scene for each cause, where a program is at hand.
+        smallest: Vec<SmallestView> = diagnosis.smallest.iter().map(SmallestView::from).collect(),
     }
 }
 

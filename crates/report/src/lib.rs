@@ -14,6 +14,7 @@
 #![forbid(unsafe_code)]
 
 pub(crate) mod annotation;
+pub mod case;
 pub mod check;
 pub mod describe;
 pub mod detect;
@@ -28,6 +29,7 @@ pub mod problems;
 pub mod scene;
 pub mod schemas;
 pub mod simulate;
+pub mod smallest;
 pub mod style;
 pub mod table;
 pub mod trace;

@@ -13,6 +13,7 @@ mod last_run;
 mod merge;
 mod page;
 mod pages;
+mod probes;
 mod record;
 mod render;
 mod results;
@@ -20,6 +21,7 @@ mod scene;
 mod serve;
 mod shard;
 mod shell;
+mod shrink;
 mod simulate;
 mod submissions;
 mod suite;
@@ -45,6 +47,7 @@ pub(super) fn run(command: &Command) -> Result<u8> {
         // The exit code of these tells a verdict.
         Command::Check(arguments) => return check::run(arguments),
         Command::Explain(arguments) => return explain::run(arguments),
+        Command::Shrink(arguments) => return shrink::run(arguments),
         Command::Render(arguments) => return render::run(arguments),
         Command::Trace(Trace::Info(arguments)) => return trace::info(arguments),
         Command::Record(arguments) => return record::run(arguments),
@@ -74,6 +77,7 @@ fn is_quiet(command: &Command) -> bool {
         Command::Check(arguments) => arguments.quiet.quiet,
         Command::Explain(arguments) => arguments.quiet.quiet,
         Command::Record(arguments) => arguments.quiet.quiet,
+        Command::Shrink(arguments) => arguments.quiet.quiet,
         _ => false,
     }
 }

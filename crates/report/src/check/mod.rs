@@ -101,6 +101,12 @@ impl Check<'_> {
         text::render(self, style)
     }
 
+    /// Renders the steps that were asked for, with expected and actual values; nothing where none is wrong.
+    #[must_use]
+    pub fn steps_text(&self, style: Style) -> Option<String> {
+        steps::render(self, style)
+    }
+
     /// Annotations for GitHub Actions: the verdict with the likely mistakes, if it is not accepted, and where the rule
     /// books differ.
     #[must_use]

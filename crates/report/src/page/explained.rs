@@ -7,10 +7,7 @@ use super::{
     markup::text,
     script,
 };
-use crate::{
-    diagnosis::{Case, Diagnosis},
-    words::first_divergence,
-};
+use crate::{case::Case, diagnosis::Diagnosis, words::first_divergence};
 use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 use std::fmt::Write;
 
@@ -29,7 +26,7 @@ fn telling((case, card): ExplainedCase<'_>, common: &[Explanation]) -> (bool, us
 pub struct ExplainedPage<'a> {
     /// All that is to be said.
     pub diagnosis: &'a Diagnosis,
-    /// The card of each of its traces, in their order.
+    /// The card of each of its traces, in their order, then that of each of its smallest scenes.
     pub cards: &'a [Option<Card>],
 }
 
@@ -37,10 +34,11 @@ impl ExplainedPage<'_> {
     /// Renders the file.
     #[must_use]
     pub fn html(&self) -> String {
-        let Diagnosis { cases, common, located } = self.diagnosis;
+        let Diagnosis { cases, common, located, smallest } = self.diagnosis;
         let wrong = cases.iter().filter(|case| !case.accepted).count();
         let look = if wrong == 0 { "good" } else { "bad" };
         let title = match (&cases[..], wrong) {
+            ([], _) => "The smallest scenes on which it is wrong".to_owned(),
             ([case], 0) => format!("{}: nothing to explain", case.scene),
             ([case], _) => format!("{}: what is wrong", case.scene),
             (_, 1) => format!("1 of {} traces is wrong", cases.len()),
@@ -58,6 +56,10 @@ impl ExplainedPage<'_> {
             cases.iter().zip(self.cards).map(|(case, card)| (case, card.as_ref())).collect();
         let first =
             (0..all.len()).filter(|&number| !cases[number].accepted).min_by_key(|&number| telling(all[number], common));
+        for (number, (small, card)) in smallest.iter().zip(&self.cards[cases.len()..]).enumerate() {
+            let _ = write!(body, "<h2>{}</h2>\n<pre>{}</pre>\n", text(&small.title()), text(&small.xml()));
+            body += &article((&small.case, card.as_ref()), cases.len() + number, true);
+        }
         for (number, &one) in all.iter().enumerate() {
             body += &article(one, number, first == Some(number));
         }

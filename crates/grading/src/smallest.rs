@@ -1,0 +1,208 @@
+//! The smallest scene for each cause of a program's mistakes: runs the program in the sandbox on ever smaller scenes.
+use super::{execute::Runner, located::Failing, task::SceneTask};
+use fosssim_evidence::{KeptPart, examine};
+use fosssim_judge::{kept::LONGEST, replay::Options};
+use fosssim_mistakes::diagnose::{Explanation, is_named_in};
+use fosssim_model::{
+    assignments::Assignment,
+    scene::{self, Scene},
+};
+use fosssim_sandbox::Ended;
+use fosssim_shrink::{Observation, Reducer, SceneSize, SmallScene, WrongReason, beginnings};
+use std::{
+    path::Path,
+    sync::{
+        OnceLock,
+        atomic::{AtomicU64, Ordering},
+    },
+    time::{Duration, Instant},
+};
+
+/// Scenes that are tried for one cause, the smallest first.
+const MOST_SCENES: usize = 4;
+/// Causes without a name of which a scene is made.
+const MOST_UNNAMED: usize = 2;
+
+/// The most that may be spent on one cause.
+#[derive(Debug, Clone, Copy)]
+pub struct ShrinkLimits {
+    /// Runs of the program.
+    pub runs: u32,
+    /// Processor time of these runs and of judging them.
+    pub time: Duration,
+    /// Runs at one time.
+    pub jobs: usize,
+}
+
+/// A cause, and the scenes on which a program is wrong because of it.
+#[derive(Debug, Clone)]
+pub struct WrongScenes<'a> {
+    /// The reason, if it is known before a run is looked at.
+    pub reason: Option<WrongReason>,
+    /// The scenes.
+    pub scenes: Vec<&'a SceneTask>,
+    /// The wrong step to begin with; by default the first ones.
+    pub step: Option<u32>,
+}
+
+/// The smallest scene for a cause.
+#[derive(Debug, Clone)]
+pub struct Smallest {
+    /// Why the program is wrong on it.
+    pub reason: WrongReason,
+    /// The scene that it is made of.
+    pub origin: String,
+    /// The scene.
+    pub small: SmallScene,
+    /// The program's run on it.
+    pub seen: Observation,
+    /// The processor time that was spent.
+    pub time: Duration,
+}
+
+/// A program's run on a scene on which it is wrong.
+#[derive(Debug, Clone, Copy)]
+pub struct WrongScene<'a> {
+    /// The scene.
+    pub task: &'a SceneTask,
+    /// The explanations of its trace.
+    pub explanations: &'a [Explanation],
+    /// How the program ended.
+    pub ended: &'a Ended,
+}
+
+/// Returns the causes of wrong scenes: the likely mistakes, the ways in which the program does not end well, and a few
+/// of the scenes that nothing explains.
+#[must_use]
+pub fn causes<'a>(likely: &[Explanation], wrong: &[WrongScene<'a>]) -> Vec<WrongScenes<'a>> {
+    let mut left: Vec<WrongScene<'a>> = wrong.to_vec();
+    let mut all = Vec::new();
+    let mut take = |reason: Option<WrongReason>, is_of: &dyn Fn(&WrongScene<'a>) -> bool| {
+        let scenes: Vec<_> = wrong.iter().filter(|one| is_of(one)).map(|one| one.task).collect();
+        left.retain(|one| !is_of(one));
+        if !scenes.is_empty() {
+            all.push(WrongScenes { reason, scenes, step: None });
+        }
+    };
+    for one in likely.iter().filter(|one| one.is_vote() || one.is_not_finite()) {
+        let is_of = |wrong: &WrongScene<'_>| {
+            Failing::from_end(wrong.ended).is_none()
+                && match one.is_not_finite() {
+                    true => wrong.explanations.iter().any(Explanation::is_not_finite),
+                    false => is_named_in(one, wrong.explanations),
+                }
+        };
+        let reason =
+            if one.is_not_finite() { WrongReason::NotFinite } else { WrongReason::Mistake(one.clone().into()) };
+        take(Some(reason), &is_of);
+    }
+    let mut ends: Vec<&Ended> = Vec::new();
+    for one in wrong {
+        if Failing::from_end(one.ended).is_some() && !ends.contains(&one.ended) {
+            ends.push(one.ended);
+        }
+    }
+    for end in ends {
+        take(Some(WrongReason::Ended(end.clone())), &|wrong| wrong.ended == end);
+    }
+    all.extend(left.into_iter().take(MOST_UNNAMED).map(|one| WrongScenes {
+        reason: None,
+        scenes: vec![one.task],
+        step: None,
+    }));
+    all
+}
+
+/// Runs a program on ever smaller scenes.
+pub struct Shrinker<'a> {
+    /// How the program is run.
+    pub runner: Runner<'a>,
+    /// The program.
+    pub program: &'a Path,
+    /// The milestone whose programs' scenes are made.
+    pub assignment: Assignment,
+    /// The most that may be spent on one cause.
+    pub limits: ShrinkLimits,
+}
+
+impl Shrinker<'_> {
+    /// Returns the smallest scene for a cause that is found; nothing where neither a step nor some steps show it again.
+    /// `progress` hears the size of each smaller scene.
+    ///
+    /// # Errors
+    /// Faults of ours or of the machine, in words.
+    pub fn smallest(
+        &self,
+        cause: &WrongScenes<'_>,
+        progress: &mut dyn FnMut(&SceneSize),
+    ) -> Result<Option<Smallest>, String> {
+        let mut tasks = cause.scenes.clone();
+        tasks.sort_by_key(|task| (task.scene.particles.len(), task.scene.steps()));
+        let spent = AtomicU64::new(0);
+        for task in tasks.into_iter().take(MOST_SCENES) {
+            let seen = self.observe(&task.scene, &spent)?;
+            let Some(reason) = cause.reason.clone().or_else(|| WrongReason::first(&task.scene, &seen)) else {
+                continue;
+            };
+            let steps = cause.step.map_or_else(|| wrong_steps(&task.scene, &seen), |step| vec![step]);
+            let begin = beginnings(&task.scene, &seen.trace, &steps);
+            let found = self.reduced(&reason, begin, &spent, progress)?;
+            let Some(small) = found else { continue };
+            let seen = self.observe(&small.scene, &spent)?;
+            // A program that does another thing each time shows nothing.
+            if reason.holds(&small.scene, &seen) {
+                let time = Duration::from_nanos(spent.into_inner());
+                return Ok(Some(Smallest { reason, origin: task.name.clone(), small, seen, time }));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Makes one of these scenes smaller.
+    fn reduced(
+        &self,
+        reason: &WrongReason,
+        begin: Vec<Scene>,
+        spent: &AtomicU64,
+        progress: &mut dyn FnMut(&SceneSize),
+    ) -> Result<Option<SmallScene>, String> {
+        let fault = OnceLock::new();
+        let is_over = || Duration::from_nanos(spent.load(Ordering::Relaxed)) >= self.limits.time;
+        let holds = |scene: &Scene| {
+            if is_over() || self.runner.cancellation.is_cancelled() {
+                return None;
+            }
+            let seen = self.observe(scene, spent).map_err(|words| fault.set(words)).ok()?;
+            let begin = Instant::now();
+            let holds = reason.holds(scene, &seen);
+            add(spent, begin.elapsed());
+            Some(holds)
+        };
+        let reducer = Reducer::new(reason, self.assignment, &holds);
+        let found = reducer.with_jobs(self.limits.jobs).with_runs(self.limits.runs).reduce(begin, progress);
+        fault.into_inner().map_or(Ok(found), Err)
+    }
+
+    /// Runs the program on a scene.
+    fn observe(&self, scene: &Scene, spent: &AtomicU64) -> Result<Observation, String> {
+        let xml = scene::write(scene).into_bytes();
+        let task = SceneTask { name: "smallest".to_owned(), xml, scene: scene.clone(), recording: None };
+        let (trace, outcome) = self.runner.collect(self.program, &task, LONGEST)?;
+        add(spent, outcome.cpu);
+        Ok(Observation { trace, ended: outcome.ended })
+    }
+}
+
+fn add(spent: &AtomicU64, time: Duration) {
+    spent.fetch_add(u64::try_from(time.as_nanos()).unwrap_or(u64::MAX / 2), Ordering::Relaxed);
+}
+
+/// Returns the steps of a run that are wrong; of a program that did not end well, the one behind its last record.
+fn wrong_steps(scene: &Scene, seen: &Observation) -> Vec<u32> {
+    let options = Options { threads: 1, fair: true, ..Options::default() };
+    let examined = examine(scene, &seen.trace[..], KeptPart::Nothing, &options, &mut ());
+    let ended = Failing::from_end(&seen.ended).is_some() || examined.outcome.stop.is_some();
+    let behind = (ended && examined.outcome.steps_judged < scene.steps()).then_some(examined.outcome.steps_judged + 1);
+    let wrong = examined.rulings.iter().zip(1..).filter(|(ruling, _)| ruling.wrong_by_fair && !ended);
+    behind.into_iter().chain(wrong.map(|(_, step)| step)).collect()
+}

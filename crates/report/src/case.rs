@@ -1,0 +1,20 @@
+//! One trace of a program, and all that is to be said of it.
+use fosssim_findings::disclosure::DisclosedFinding;
+use fosssim_mistakes::diagnose::Explanation;
+
+/// A trace, and all that is to be said of it.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// The scene's name.
+    pub scene: String,
+    /// Where the trace comes from.
+    pub trace: String,
+    /// Whether the fair rules accept it.
+    pub accepted: bool,
+    /// A further remark, such as how its program ended, or why it can't be read.
+    pub note: Option<String>,
+    /// The first thing that is wrong, as far as it may be told.
+    pub first: Option<DisclosedFinding>,
+    /// Likely mistakes, the likeliest first.
+    pub explanations: Vec<Explanation>,
+}

@@ -1,0 +1,50 @@
+//! The smallest scene on which a program is still wrong for the same reason.
+//!
+//! Every step is judged from the submission's own state, so any wrong step is a scene of one step ([`beginnings`]).
+//! From there a [`Reducer`] removes bodies, edges, half-planes and forces, simplifies features, and takes rounder
+//! numbers, as long as the program stays wrong for its [`WrongReason`]. The order of attempts is fixed, and the result
+//! is 1-minimal: no single attempt makes it smaller (delta debugging, Zeller and Hildebrandt 2002).
+//!
+//! It runs no program and reads no clock: its caller does, and says with each answer whether to go on.
+//!
+//! ```
+//! use fosssim_mistakes::student::{self, Mistake, Student};
+//! use fosssim_model::{assignments::Assignment, scene};
+//! use fosssim_shrink::{Observation, Reducer, WrongReason, beginnings};
+//!
+//! let text = br#"<scene>
+//!   <duration time="0.5"/> <integrator type="explicit-euler" dt="0.125"/> <collision type="none"/>
+//!   <simplegravity fx="0.3" fy="-9.81"/>
+//!   <particle m="2.5" px="0.37" py="1.25" vx="2.7" vy="-0.31" fixed="0"/>
+//!   <particle m="1.5" px="-3.1" py="0.5" vx="-1.4" vy="0.62" fixed="0"/>
+//! </scene>"#;
+//! let scene = scene::read("two balls", text)?.scene;
+//! let row = student::find("gravity-no-mass").expect("a row");
+//! let run = |scene: &_| Observation::from_trace(student::trace(scene, Student::new(Some(row.mistake))).unwrap());
+//!
+//! let reason = WrongReason::first(&scene, &run(&scene)).expect("it is wrong");
+//! let holds = |scene: &_| Some(reason.holds(scene, &run(scene)));
+//! let begin = beginnings(&scene, &run(&scene).trace, &[1]);
+//! let found = Reducer::new(&reason, Assignment::T1M1, &holds).reduce(begin, &mut |_| {}).expect("a scene");
+//! assert_eq!((found.scene.steps(), found.scene.particles.len()), (1, 1));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+#![forbid(unsafe_code)]
+#![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
+
+mod beginnings;
+mod clear;
+mod features;
+mod guesses;
+mod numbers;
+mod parts;
+mod reason;
+mod reducer;
+mod size;
+#[cfg(test)]
+mod tests;
+
+pub use beginnings::beginnings;
+pub use reason::{Observation, WrongReason};
+pub use reducer::{Reducer, SmallScene};
+pub use size::SceneSize;

@@ -1,0 +1,141 @@
+//! Why a program is wrong on a scene, and whether it is wrong for the same reason on another.
+use fosssim_ended::Ended;
+use fosssim_findings::{FindingDetail, FindingKind, explanation::Explanation, fair::FairVerdict, located::Failing};
+use fosssim_judge::replay::{Options, judge};
+use fosssim_mistakes::{
+    diagnose::{self, is_named_in, shows},
+    student::find,
+};
+use fosssim_model::{scene::Scene, sim::PairKind};
+
+/// A difference is plain if it is at least this part of the value: more than the round-off of any program.
+const PLAIN: f64 = 1e-6;
+
+/// The trace and the end of a program's run on a scene.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Observation {
+    /// The trace, as far as it was written.
+    pub trace: Vec<u8>,
+    /// How the program ended.
+    pub ended: Ended,
+}
+
+impl Observation {
+    /// Returns the observation of a program that ended well.
+    #[must_use]
+    pub const fn from_trace(trace: Vec<u8>) -> Self {
+        Self { trace, ended: Ended::Exited(0) }
+    }
+}
+
+/// Why a program is wrong.
+#[derive(Debug, Clone, PartialEq)]
+pub enum WrongReason {
+    /// The program does not end well: by this signal, with this exit code, or at this limit.
+    Ended(Ended),
+    /// The trace can't be read to its end.
+    BrokenTrace,
+    /// From some step on there are values that are no numbers.
+    NotFinite,
+    /// A likely mistake.
+    Mistake(Box<Explanation>),
+    /// A finding that nothing explains: its kind, and the kind of its pair.
+    Finding(FindingKind, Option<PairKind>),
+}
+
+impl WrongReason {
+    /// Returns the reason why a program is wrong on a scene; nothing where it is right, or where only round-off
+    /// decides that.
+    #[must_use]
+    pub fn first(scene: &Scene, seen: &Observation) -> Option<Self> {
+        if Failing::from_end(&seen.ended).is_some() {
+            return Some(Self::Ended(seen.ended.clone()));
+        }
+        let finding = match findings(scene, &seen.trace)? {
+            TraceFault::Broken => return Some(Self::BrokenTrace),
+            TraceFault::Wrong(detail) => Self::Finding(detail.kind, detail.pair),
+        };
+        let explanations = diagnose::explain(scene, &seen.trace);
+        if explanations.iter().any(Explanation::is_not_finite) {
+            return Some(Self::NotFinite);
+        }
+        let is_told = |one: &&Explanation| one.is_vote() && (one.is_complete() || one.is_of_stage());
+        Some(explanations.iter().find(is_told).map_or(finding, |one| Self::Mistake(Box::new(one.clone()))))
+    }
+
+    /// Returns whether a program is wrong on a scene for this reason, and plainly: not by round-off, and not by a
+    /// decision that round-off may flip.
+    #[must_use]
+    pub fn holds(&self, scene: &Scene, seen: &Observation) -> bool {
+        match (self, Failing::from_end(&seen.ended)) {
+            (Self::Ended(Ended::Signalled(signal)), _) => seen.ended == Ended::Signalled(*signal),
+            (Self::Ended(ended), failing) => failing.is_some() && Failing::from_end(ended) == failing,
+            (_, Some(_)) => false,
+            (reason, None) => match (reason, findings(scene, &seen.trace)) {
+                (Self::BrokenTrace, fault) => fault == Some(TraceFault::Broken),
+                (_, None | Some(TraceFault::Broken)) => false,
+                (Self::Mistake(mistake), Some(_)) => is_named_in(mistake, &diagnose::explain(scene, &seen.trace)),
+                (Self::Finding(kind, pair), Some(TraceFault::Wrong(first))) => {
+                    (first.kind, first.pair) == (*kind, *pair)
+                }
+                (_, Some(_)) => diagnose::explain(scene, &seen.trace).iter().any(Explanation::is_not_finite),
+            },
+        }
+    }
+
+    /// Returns whether the reference with the named mistake is plainly wrong on a scene; nothing where no mistake of
+    /// the catalogue is named.
+    pub(crate) fn shows(&self, scene: &Scene) -> Option<bool> {
+        let Self::Mistake(mistake) = self else { return None };
+        let keys = std::iter::once(&mistake.key).chain(&mistake.same_as);
+        let mut rows = keys.take(1 + 2 * usize::from(mistake.is_unfinished())).filter(|key| find(key).is_some());
+        let first = rows.next()?;
+        Some(shows(scene, first) || rows.any(|key| shows(scene, key)))
+    }
+}
+
+/// A fault of a trace by the fair rules.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum TraceFault {
+    Broken,
+    Wrong(FirstFinding),
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct FirstFinding {
+    kind: FindingKind,
+    pair: Option<PairKind>,
+}
+
+/// Returns what is plainly wrong with a trace.
+fn findings(scene: &Scene, trace: &[u8]) -> Option<TraceFault> {
+    let options = Options { threads: 1, fair: true, ..Options::default() };
+    let outcome = judge(scene, trace, &options, &mut ());
+    let fair = outcome.fair.as_ref()?;
+    if outcome.stop.is_some() || outcome.damage.is_some() || outcome.trailing_bytes {
+        return Some(TraceFault::Broken);
+    }
+    let first = fair.findings.first_divergence.filter(|_| fair.verdict == FairVerdict::Rejected)?;
+    let pair = first.detail.pair().map(|pair| pair.kind);
+    (fair.borderline == 0 && is_plain(&first.detail))
+        .then_some(TraceFault::Wrong(FirstFinding { kind: first.kind(), pair }))
+}
+
+/// Returns whether a finding is about more than round-off.
+fn is_plain(detail: &FindingDetail) -> bool {
+    let is_large = |residual: f64, of: &[f64]| {
+        // A NaN is plain, too.
+        let bound = PLAIN * of.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+        !(residual <= bound)
+    };
+    match detail {
+        FindingDetail::Position { residual, expected, .. } | FindingDetail::Velocity { residual, expected, .. } => {
+            is_large(*residual, expected)
+        }
+        FindingDetail::Coefficient { residual, expected_polynomial, .. } => {
+            is_large(*residual, expected_polynomial.coefficients())
+        }
+        FindingDetail::WrongNormal { residual, expected, .. } => is_large(*residual, expected.normal.as_slice()),
+        _ => true,
+    }
+}

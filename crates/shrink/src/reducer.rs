@@ -1,0 +1,233 @@
+//! The search: attempts in a fixed order, until a whole pass of them helps nothing.
+use crate::{
+    clear::clear_decisions,
+    features::plainer,
+    guesses::guesses,
+    numbers::{rounder, transformed, turned},
+    parts::PartKind,
+    reason::WrongReason,
+    size::SceneSize,
+};
+use fosssim_model::{
+    assignments::Assignment,
+    scene::{self, Scene},
+};
+use std::{collections::BTreeSet, thread};
+
+/// Passes after which the search ends even if the last one helped.
+const MOST_PASSES: u32 = 8;
+
+/// A scene on which a program is wrong, made as small as it gets.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SmallScene {
+    /// The scene.
+    pub scene: Scene,
+    /// How often the program was run.
+    pub runs: u32,
+    /// Whether no single attempt makes it smaller; else the search was stopped.
+    pub is_minimal: bool,
+}
+
+/// Whether the program is wrong on a scene for the reason; nothing stops the search.
+pub type Holds<'a> = dyn Fn(&Scene) -> Option<bool> + Sync + 'a;
+
+/// Makes scenes smaller on which a program stays wrong for the same reason.
+pub struct Reducer<'a> {
+    reason: &'a WrongReason,
+    assignment: Assignment,
+    holds: &'a Holds<'a>,
+    jobs: usize,
+    most_runs: u32,
+}
+
+impl<'a> Reducer<'a> {
+    /// The runs that a search makes at most, unless another number is asked for.
+    pub const MOST_RUNS: u32 = 2_000;
+
+    /// Creates a search that asks `holds` about each attempt, of a program of this assignment.
+    #[must_use]
+    pub fn new(reason: &'a WrongReason, assignment: Assignment, holds: &'a Holds<'a>) -> Self {
+        Self { reason, assignment, holds, jobs: 1, most_runs: Self::MOST_RUNS }
+    }
+
+    /// Asks about this number of attempts at a time. The result is the same.
+    #[must_use]
+    pub fn with_jobs(self, jobs: usize) -> Self {
+        Self { jobs: jobs.max(1), ..self }
+    }
+
+    /// Runs the program at most this often.
+    #[must_use]
+    pub fn with_runs(self, most_runs: u32) -> Self {
+        Self { most_runs, ..self }
+    }
+
+    /// Begins with the first of these scenes on which the program is wrong for the reason, and makes it smaller;
+    /// nothing where it is so on none. `progress` hears the size of each smaller scene.
+    #[must_use]
+    pub fn reduce(self, beginnings: Vec<Scene>, progress: &mut dyn FnMut(&SceneSize)) -> Option<SmallScene> {
+        let mut runs = 0;
+        for scene in beginnings {
+            if runs >= self.most_runs {
+                return None;
+            }
+            runs += 1;
+            if (self.holds)(&scene)? {
+                let mut search = Search::new(&self, scene, runs, progress);
+                let is_minimal = search.run();
+                return Some(SmallScene { scene: search.best, runs: search.runs, is_minimal });
+            }
+        }
+        None
+    }
+}
+
+/// A search under way.
+struct Search<'a, 'p> {
+    reducer: &'a Reducer<'a>,
+    progress: &'p mut dyn FnMut(&SceneSize),
+    best: Scene,
+    size: SceneSize,
+    traits: SceneTraits,
+    refuted: BTreeSet<String>,
+    runs: u32,
+    is_stopped: bool,
+}
+
+/// Properties of a scene that smaller ones keep.
+#[derive(Clone, Copy, Default)]
+struct SceneTraits {
+    /// Nothing hangs on round-off.
+    is_clear: bool,
+    /// The reference with the named mistake is wrong on it.
+    shows: bool,
+    /// The number of warnings, and of parts that the assignment's library does not know.
+    oddities: usize,
+}
+
+impl<'a, 'p> Search<'a, 'p> {
+    fn new(reducer: &'a Reducer<'a>, best: Scene, runs: u32, progress: &'p mut dyn FnMut(&SceneSize)) -> Self {
+        let traits = SceneTraits {
+            is_clear: clear_decisions(&best).is_some(),
+            shows: reducer.reason.shows(&best) == Some(true),
+            oddities: oddities(&best, reducer.assignment).unwrap_or(usize::MAX),
+        };
+        let size = SceneSize::from_scene(&best);
+        Self { reducer, progress, best, size, traits, refuted: BTreeSet::new(), runs, is_stopped: false }
+    }
+
+    /// Searches until a whole pass helps nothing; returns whether that was so.
+    fn run(&mut self) -> bool {
+        for _ in 0..MOST_PASSES {
+            let before = self.size;
+            PartKind::ALL.into_iter().for_each(|kind| self.remove(kind));
+            while self.take(plainer(&self.best, self.reducer.assignment)) {}
+            while self.take(transformed(&self.best)) {}
+            let drawn = guesses(&self.best, self.size, |scene| self.is_like(scene));
+            self.take(drawn);
+            self.round();
+            while self.take(turned(&self.best)) {}
+            if self.is_stopped || self.size == before {
+                break;
+            }
+        }
+        !self.is_stopped
+    }
+
+    /// Removes halves of the parts, then quarters, down to single ones.
+    fn remove(&mut self, kind: PartKind) {
+        let mut length = kind.count(&self.best).div_ceil(2).max(1);
+        loop {
+            let count = kind.count(&self.best);
+            // From the end, so that what is left keeps its number as long as possible.
+            let starts = (0..count).step_by(length).rev();
+            let without = starts.map(|start| kind.removed(&self.best, &(start..(start + length).min(count))));
+            if self.take(without.collect()) {
+                continue;
+            }
+            if length == 1 || self.is_stopped {
+                return;
+            }
+            length /= 2;
+        }
+    }
+
+    /// Takes rounder numbers, one by one.
+    fn round(&mut self) {
+        let mut index = 0;
+        while let Some(candidates) = rounder(&self.best, index) {
+            if self.is_stopped {
+                return;
+            }
+            // Behind one that was taken there may be a rounder one still.
+            if !self.take(candidates) {
+                index += 1;
+            }
+        }
+    }
+
+    /// Takes the first of these scenes that is smaller and on which the program is wrong for the reason.
+    fn take(&mut self, candidates: Vec<Scene>) -> bool {
+        let mut waiting = candidates.into_iter();
+        while !self.is_stopped {
+            let fitting = waiting.by_ref().filter(|scene| self.fits(scene));
+            let batch: Vec<Scene> = fitting.take(self.reducer.jobs).collect();
+            if batch.is_empty() {
+                return false;
+            }
+            let answers = self.answers(&batch);
+            for (scene, answer) in batch.into_iter().zip(answers) {
+                if self.runs >= self.reducer.most_runs || answer.is_none() {
+                    self.is_stopped = true;
+                    return false;
+                }
+                self.runs += 1;
+                if answer == Some(true) {
+                    self.accept(scene);
+                    return true;
+                }
+                self.refuted.insert(scene::write(&scene));
+            }
+        }
+        false
+    }
+
+    fn answers(&self, batch: &[Scene]) -> Vec<Option<bool>> {
+        let holds = self.reducer.holds;
+        match batch {
+            [one] => vec![holds(one)],
+            all => thread::scope(|scope| {
+                let jobs: Vec<_> = all.iter().map(|one| scope.spawn(move || holds(one))).collect();
+                jobs.into_iter().map(|job| job.join().unwrap_or(Some(false))).collect()
+            }),
+        }
+    }
+
+    fn accept(&mut self, scene: Scene) {
+        self.size = SceneSize::from_scene(&scene);
+        self.traits.is_clear |= clear_decisions(&scene).is_some();
+        self.traits.shows |= self.reducer.reason.shows(&scene) == Some(true);
+        self.traits.oddities = oddities(&scene, self.reducer.assignment).unwrap_or(self.traits.oddities);
+        self.best = scene;
+        (self.progress)(&self.size);
+    }
+
+    /// Returns whether it is worth a run.
+    fn fits(&self, scene: &Scene) -> bool {
+        SceneSize::from_scene(scene) < self.size && self.is_like(scene) && !self.refuted.contains(&scene::write(scene))
+    }
+
+    /// Returns whether a scene has what smaller ones keep.
+    fn is_like(&self, scene: &Scene) -> bool {
+        oddities(scene, self.reducer.assignment).is_some_and(|count| count <= self.traits.oddities)
+            && (!self.traits.is_clear || clear_decisions(scene).is_some())
+            && (!self.traits.shows || self.reducer.reason.shows(scene) != Some(false))
+    }
+}
+
+/// Counts the warnings about a scene, and what programs of the assignment do not know of it; nothing where it is not
+/// sound.
+fn oddities(scene: &Scene, assignment: Assignment) -> Option<usize> {
+    let loaded = scene::read("", scene::write(scene).as_bytes()).ok().filter(|loaded| loaded.scene == *scene)?;
+    Some(loaded.warnings.len() + scene.unknown_to(assignment).count())
+}

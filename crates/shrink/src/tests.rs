@@ -1,0 +1,87 @@
+use super::*;
+use fosssim_mistakes::{
+    assignments::probe_scenes,
+    student::{Student, find, trace_within},
+};
+use fosssim_model::{
+    assignments::Assignment,
+    scene::{self, Scene},
+};
+
+/// Returns what the simulator with mistakes makes of a scene.
+fn run(scene: &Scene, student: Student) -> Observation {
+    Observation::from_trace(trace_within(scene, student, 10_000).unwrap_or_else(|(trace, _)| trace))
+}
+
+/// Shrinks a probe scene on which a program with this mistake is wrong.
+fn smallest(assignment: Assignment, mistake: &str, jobs: usize) -> (WrongReason, SmallScene) {
+    let student = Student::new(Some(find(mistake).expect("a row").mistake));
+    for (_, scene) in probe_scenes(assignment) {
+        let seen = run(&scene, student);
+        let Some(reason) = WrongReason::first(&scene, &seen) else { continue };
+        let steps: Vec<u32> = (1..=scene.steps()).collect();
+        let holds = |scene: &Scene| Some(reason.holds(scene, &run(scene, student)));
+        let reducer = Reducer::new(&reason, assignment, &holds).with_jobs(jobs);
+        let found = reducer.reduce(beginnings(&scene, &seen.trace, &steps), &mut |_| {}).expect("a scene");
+        return (reason, found);
+    }
+    panic!("{mistake} shows on no probe scene");
+}
+
+#[test]
+fn a_named_mistake_is_shown_by_one_step_of_few_bodies_and_round_numbers() {
+    use Assignment::{T1M1, T1M2, T1M3, T2M1, T2M2};
+    for (assignment, mistake, bodies) in [
+        (T1M1, "gravity-no-mass", 1),
+        (T1M2, "spring-sign", 2),
+        (T1M3, "jacobian-spring-missing", 2),
+        (T2M1, "penalty-edges-missing", 3),
+        (T2M1, "respond-half-planes-missing", 1),
+        (T2M2, "pp-radius-not-squared", 2),
+        (T2M2, "pe-square-no-eh", 3),
+    ] {
+        let (reason, small) = smallest(assignment, mistake, 1);
+        let (scene, student) = (&small.scene, Student::new(Some(find(mistake).expect("a row").mistake)));
+        assert!(small.is_minimal, "{mistake}");
+        assert_eq!((scene.steps(), scene.particles.len()), (1, bodies), "{mistake}: {}", scene::write(scene));
+        assert!(SceneSize::most_digits(scene) <= 2, "{mistake}: {}", scene::write(scene));
+        assert!(reason.holds(scene, &run(scene, student)), "{mistake}");
+        assert!(scene.unknown_to(assignment).next().is_none(), "{mistake}");
+        for right in [Student::default(), Student::default().with_right_approach()] {
+            assert_eq!(WrongReason::first(scene, &run(scene, right)), None, "{mistake}");
+        }
+    }
+}
+
+#[test]
+fn the_result_does_not_depend_on_the_number_of_jobs() {
+    let one = smallest(Assignment::T2M2, "pp-next-radius", 1);
+    assert_eq!(smallest(Assignment::T2M2, "pp-next-radius", 3), one);
+}
+
+#[test]
+fn a_search_that_is_stopped_keeps_the_best_so_far() {
+    let scene = &probe_scenes(Assignment::T1M1)[0].1;
+    let student = Student::new(Some(find("gravity-doubled").expect("a row").mistake));
+    let reason = WrongReason::first(scene, &run(scene, student)).expect("wrong");
+    let holds = |scene: &Scene| Some(reason.holds(scene, &run(scene, student)));
+    let begin = beginnings(scene, &run(scene, student).trace, &[1]);
+    let all = Reducer::new(&reason, Assignment::T1M1, &holds).reduce(begin.clone(), &mut |_| {}).expect("a scene");
+    let some = Reducer::new(&reason, Assignment::T1M1, &holds).with_runs(2).reduce(begin, &mut |_| {}).expect("one");
+    assert!(all.is_minimal && !some.is_minimal && some.runs <= 2);
+    assert!(SceneSize::from_scene(&all.scene) < SceneSize::from_scene(&some.scene));
+    assert!(reason.holds(&some.scene, &run(&some.scene, student)));
+}
+
+#[test]
+fn a_crash_is_the_same_by_its_signal_and_a_loop_by_its_limit() {
+    use fosssim_ended::Ended::{CpuLimit, MemoryLimit, Signalled, WallLimit};
+    let scene = &probe_scenes(Assignment::T1M1)[0].1;
+    let seen = |ended| Observation { trace: Vec::new(), ended };
+    let reason = |ended| WrongReason::first(scene, &seen(ended)).expect("wrong");
+    assert!(reason(Signalled(11)).holds(scene, &seen(Signalled(11))));
+    assert!(!reason(Signalled(11)).holds(scene, &seen(Signalled(8))));
+    assert!(reason(CpuLimit).holds(scene, &seen(WallLimit)));
+    assert!(!reason(CpuLimit).holds(scene, &seen(MemoryLimit)));
+    assert_eq!(WrongReason::first(scene, &Observation::from_trace(Vec::new())), Some(WrongReason::BrokenTrace));
+}

@@ -1,0 +1,303 @@
+//! A program that is run on many small scenes: what is wrong on each, and what is likely wrong with the program.
+use super::{grade::backend, pages};
+use crate::{
+    assignments::{Assignment, Definition},
+    cli::{console, input, interrupt::cancelled_by_signals},
+    diagnose::{self, Explanation},
+    evidence::{KeptPart, examine},
+    files::Place,
+    judge::{Rules, fair::FairVerdict, kept::LONGEST, replay::Options},
+    report::{
+        case::Case,
+        check::stopped,
+        diagnosis::Diagnosis,
+        foreign::{one_line, printed},
+        number::counted,
+        page::Card,
+    },
+    sandbox::{Backend, Ended},
+    scene::{self, Scene},
+    suite::{
+        Cancellation, Folders, Runner, SceneTask,
+        cards::Judged,
+        config::{Hints, RunLimits},
+        located::{ContentIndex, Contents, Failing, LocatedFailure, TriedScene, locate},
+        milestone,
+        plan::{self, Plan},
+    },
+    together::told::cut,
+};
+use anyhow::{Context, Result, bail};
+use std::{
+    io::Read,
+    path::{Path, PathBuf},
+    sync::Arc,
+    time::Duration,
+};
+
+/// The time on the processor and on the clock for a program on scenes of which a right one needs some milliseconds.
+const PATIENT: [Duration; 2] = [Duration::from_secs(4), Duration::from_secs(10)];
+
+/// The time after a run that has ended at a limit. What the program has recorded until then is read all the same.
+const IMPATIENT: [Duration; 2] = [Duration::from_millis(500), Duration::from_secs(2)];
+
+/// The number of runs that may end at a limit at all: the other scenes would say the same.
+const MOST_STOPPED: usize = 4;
+
+/// How much is told, and whether pictures are drawn.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Drawing {
+    pub(super) hints: Hints,
+    pub(super) has_pictures: bool,
+}
+
+/// A program at hand, and what its runs need.
+pub(super) struct ProgramUnderTest {
+    pub(super) program: PathBuf,
+    pub(super) assignment: Assignment,
+    pub(super) cancellation: Arc<Cancellation>,
+    plan: Plan,
+    backend: Backend,
+    folders: Folders,
+    nowhere: Place,
+}
+
+/// A program's runs, with all that is to be said of them.
+pub(super) struct ExaminedProgram {
+    pub(super) diagnosis: Diagnosis,
+    /// The card of each case.
+    pub(super) cards: Vec<Option<Card>>,
+    /// The scene of each case.
+    pub(super) tasks: Vec<SceneTask>,
+    /// How the program ended on each, and the number of complete steps.
+    pub(super) ends: Vec<(Ended, u32)>,
+}
+
+impl ProgramUnderTest {
+    /// Makes a program ready to be run. Without a suite it is of the milestone that it looks like.
+    pub(super) fn new(program: &Path, suite: Option<&str>, unsafe_no_sandbox: bool) -> Result<Self> {
+        let mut ready = Self {
+            program: placed(program),
+            assignment: Assignment::DEFAULT,
+            cancellation: cancelled_by_signals(),
+            plan: plan::find(suite.unwrap_or(Assignment::DEFAULT.key()))?,
+            backend: backend(unsafe_no_sandbox)?,
+            folders: Folders::default(),
+            nowhere: Place::new("", ""),
+        };
+        if suite.is_some() {
+            ready.assignment = ready.plan.assignment();
+        } else {
+            ready.assignment = own_milestone(&ready.runner(&ready.plan.limits), &ready.program)?;
+            ready.plan = plan::find(ready.assignment.key())?;
+        }
+        Ok(ready)
+    }
+
+    /// Runs it under these limits.
+    pub(super) fn runner<'a>(&'a self, limits: &'a RunLimits) -> Runner<'a> {
+        Runner {
+            folders: &self.folders,
+            backend: &self.backend,
+            run: &self.plan.run,
+            limits,
+            rules: Rules::Fair,
+            hints: Hints::Full,
+            student_hints: Hints::Full,
+            recorded: false,
+            cancellation: &self.cancellation,
+            faults: &self.nowhere,
+            trace: None,
+            cards: None,
+            timings: None,
+        }
+    }
+
+    /// Returns the suite's limits, or less time where a right program needs some milliseconds.
+    pub(super) fn limits(&self, is_patient: bool) -> RunLimits {
+        let [cpu, wall] = if is_patient { PATIENT } else { IMPATIENT };
+        let limits = self.plan.limits;
+        RunLimits { cpu: limits.cpu.min(cpu), wall: limits.wall.min(wall), ..limits }
+    }
+
+    /// Returns the scenes to run: the probe scenes of the milestone, its suite's where these show what the probe scenes
+    /// do not, and those that are named.
+    pub(super) fn tasks(&self, scenes: &[PathBuf]) -> Result<Vec<SceneTask>> {
+        let mut tasks = Vec::new();
+        for (name, scene) in diagnose::probe_scenes(self.assignment) {
+            let xml = scene::write(&scene).into_bytes();
+            tasks.push(SceneTask { name: format!("probe {name}"), xml, scene, recording: None });
+        }
+        // The default milestone's probe scenes show every term of every formula.
+        tasks.extend(self.suite_tasks().into_iter().filter(|_| self.assignment != Assignment::DEFAULT));
+        tasks.extend(named_tasks(scenes)?);
+        if tasks.is_empty() { Err(anyhow::anyhow!("no scene to run")).context("explain --program") } else { Ok(tasks) }
+    }
+
+    /// Returns the scenes of the suite.
+    pub(super) fn suite_tasks(&self) -> Vec<SceneTask> {
+        self.plan.scenes().cloned().collect()
+    }
+
+    /// Runs it on these scenes. Nothing when it was interrupted.
+    pub(super) fn examine(&self, mut tasks: Vec<SceneTask>, drawing: Drawing) -> Result<Option<ExaminedProgram>> {
+        let (long, short) = (self.limits(true), self.limits(false));
+        let (mut cases, mut cards, mut ends, mut stopped) = (Vec::new(), Vec::new(), Vec::new(), 0);
+        let bar = console::Bar::of_runs(tasks.len() as u64);
+        for task in &tasks {
+            if stopped >= MOST_STOPPED {
+                break;
+            }
+            bar.next_run(&task.name);
+            let limits = if stopped == 0 { &long } else { &short };
+            let run = self.runner(limits).collect(&self.program, task, LONGEST);
+            let (trace, outcome) = run.map_err(anyhow::Error::msg)?;
+            if self.cancellation.is_cancelled() {
+                return Ok(None);
+            }
+            if let Ended::CouldNotStart(problem) = &outcome.ended {
+                bail!("{}: {problem}", self.program.display());
+            }
+            let failing = Failing::from_end(&outcome.ended);
+            stopped += usize::from(matches!(failing, Some(Failing::Time | Failing::Memory | Failing::Output)));
+            let note = note(&outcome.ended, trace.is_empty(), &outcome.stderr.bytes);
+            let names = (task.name.clone(), self.program.display().to_string());
+            let (case, card, steps) = case(names, false, &task.scene, &trace[..], note, drawing);
+            cases.push(case);
+            cards.push(card);
+            ends.push((outcome.ended, steps));
+        }
+        drop(bar);
+        let left_out = tasks.len() - cases.len();
+        tasks.truncate(cases.len());
+        if left_out > 0 {
+            let scenes = counted(left_out as u64, "scene");
+            console::remark(format!(
+                "the program ran into its limits on {stopped} scenes, so it was not run on {scenes} more: look for \
+                 the loop that does not end\n"
+            ));
+        }
+        let (common, refuted) = likely(self.assignment, &cases, &tasks);
+        for case in &mut cases {
+            case.explanations = diagnose::settled(&case.explanations, &common, &refuted).explanations;
+        }
+        let located = located(&tasks, &ends);
+        Ok(Some(ExaminedProgram {
+            diagnosis: Diagnosis { cases, common, located, smallest: Vec::new() },
+            cards,
+            tasks,
+            ends,
+        }))
+    }
+}
+
+/// Judges a trace by the fair rules, and explains it if they reject it; for a page it is drawn as well.
+pub(super) fn case(
+    (name, trace): (String, String),
+    has_trace: bool,
+    scene: &Scene,
+    bytes: impl Read + Send,
+    note: Option<String>,
+    drawing: Drawing,
+) -> (Case, Option<Card>, u32) {
+    let Drawing { hints, has_pictures } = drawing;
+    let options = Options { fair: true, ..Options::default() };
+    let examined = examine(scene, bytes, KeptPart::All, &options, &mut ());
+    let outcome = &examined.outcome;
+    // How the program ended tells more than how its trace did.
+    let note = note.or_else(|| outcome.stop.as_ref().map(|stop| stopped(stop, outcome)));
+    let fair = outcome.fair.clone().unwrap_or_default();
+    let accepted = fair.verdict == FairVerdict::Accepted && note.is_none();
+    // Of what breaks off and is right so far there is nothing to explain.
+    let is_wrong = outcome.stop.is_none() || fair.findings.first_divergence.is_some();
+    let is_explained = fair.verdict != FairVerdict::Accepted && is_wrong && hints.explains();
+    let explanations = if is_explained { examined.explain() } else { Vec::new() };
+    let first = fair.findings.first_divergence.as_ref().and_then(|first| hints.finding(first));
+    let explanations = cut(hints, explanations);
+    let draws = has_pictures && !accepted;
+    let card = draws.then(|| {
+        let judged = Judged {
+            scene,
+            name: &name,
+            explanations: &explanations,
+            outcome,
+            rulings: &examined.rulings,
+            trace: examined.trace.bytes(),
+            is_cut: !examined.trace.is_whole() || examined.trace.bytes().len() >= LONGEST,
+            rules: Rules::Fair,
+            hints,
+        };
+        pages::card(&judged, has_trace.then_some(trace.as_str()), 2)
+    });
+    (Case { scene: name, trace, accepted, note, first, explanations }, card.flatten(), outcome.steps_judged)
+}
+
+/// Reads the scenes that are named.
+pub(super) fn named_tasks(scenes: &[PathBuf]) -> Result<Vec<SceneTask>> {
+    let read = |path: &PathBuf| {
+        let scene = input::scene(path)?;
+        let xml = scene::write(&scene.scene).into_bytes();
+        Ok(SceneTask { name: scene.name, xml, scene: scene.scene, recording: None })
+    };
+    scenes.iter().map(read).collect()
+}
+
+/// Returns a program's path from the root, without `..`, which means another folder in a sandbox. Its own name stays,
+/// also that of a link: programs may go by the name that they are called.
+fn placed(program: &Path) -> PathBuf {
+    let folder = program.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    match (folder.canonicalize(), program.file_name()) {
+        (Ok(folder), Some(name)) => folder.join(name),
+        _ => program.to_owned(),
+    }
+}
+
+/// Returns the remark on how a program ended, unless it ended well.
+fn note(ended: &Ended, is_traceless: bool, stderr: &[u8]) -> Option<String> {
+    match (ended, is_traceless) {
+        (Ended::Exited(0), false) => None,
+        (ended, false) => Some(format!("the program {ended}")),
+        (ended, true) => Some(format!("the program {ended} and wrote no trace{}", said(stderr))),
+    }
+}
+
+/// Finds out of which milestone a program is, and says so where that is not the default.
+fn own_milestone(runner: &Runner<'_>, program: &Path) -> Result<Assignment> {
+    let found = milestone::looks_like(runner, program).map_err(anyhow::Error::msg)?.unwrap_or(Assignment::DEFAULT);
+    if found != Assignment::DEFAULT {
+        let Definition { title, key, .. } = found.definition();
+        console::remark(format!("it looks like a program of {title} (--suite {key})\n"));
+    }
+    Ok(found)
+}
+
+/// Returns the last line of a program's error output, where it wrote one.
+fn said(stderr: &[u8]) -> String {
+    let text = printed(&String::from_utf8_lossy(stderr));
+    let last = text.lines().rev().map(str::trim).find(|line| !line.is_empty());
+    last.map(|line| format!("; its standard error ends with: {}", one_line(line))).unwrap_or_default()
+}
+
+/// Returns the properties that the failing scenes have in common, by the end of the program in each and the number of
+/// complete steps.
+fn located(tasks: &[SceneTask], ends: &[(Ended, u32)]) -> Option<LocatedFailure> {
+    let ends: Vec<_> = ends.iter().map(|(ended, steps)| (Failing::from_end(ended), *steps)).collect();
+    if ends.iter().all(|(failing, _)| failing.is_none()) {
+        return None;
+    }
+    let contents: Vec<Contents> = tasks.iter().map(|task| ContentIndex::for_scene(&task.scene)).collect();
+    let tried = tasks.iter().zip(&contents).zip(&ends);
+    let tried =
+        tried.map(|((task, contents), &(failing, steps))| TriedScene { scene: &task.name, failing, steps, contents });
+    locate(&tried.collect::<Vec<_>>())
+}
+
+/// Returns the likely mistakes of the wrong traces together, and the keys of those that are ruled out.
+fn likely(whose: Assignment, cases: &[Case], tasks: &[SceneTask]) -> (Vec<Explanation>, Vec<String>) {
+    let (right, wrong): (Vec<_>, Vec<_>) = cases.iter().zip(tasks).partition(|(case, _)| case.accepted);
+    let wrong: Vec<(&Scene, &[Explanation])> =
+        wrong.into_iter().map(|(case, task)| (&task.scene, case.explanations.as_slice())).collect();
+    let right: Vec<&Scene> = right.into_iter().map(|(_, task)| &task.scene).collect();
+    let refuted = diagnose::refuted(Some(whose), &wrong, &right);
+    (diagnose::several(wrong.into_iter().map(|(_, explanations)| explanations), &refuted), refuted)
+}
