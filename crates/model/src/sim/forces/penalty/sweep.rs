@@ -153,8 +153,10 @@ impl BodyExtent {
         own
     }
 
-    /// Returns whether boxes overlap or touch on all axes.
+    /// Returns whether boxes overlap or touch on all axes: x last, on which a search has found them near.
     fn overlaps(&self, other: &Self) -> bool {
-        (0..4).all(|axis| !(self.low[axis] > other.high[axis]) && !(other.low[axis] > self.high[axis]))
+        [1, 2, 3, 0]
+            .into_iter()
+            .all(|axis| !(self.low[axis] > other.high[axis]) && !(other.low[axis] > self.high[axis]))
     }
 }
