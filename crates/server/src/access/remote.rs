@@ -194,7 +194,7 @@ impl Remote {
         self.held(lease).await?;
         let artefact = self.app.0.store.put_file(file).await?;
         let mut transaction = self.app.0.database.first().begin().await?;
-        // Whoever takes the job away meanwhile waits for this, or this finds the job taken.
+        // A request that takes the job away meanwhile waits for this one, or this one finds the job taken.
         let statement = "SELECT id FROM job WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running'
             {for update}";
         let held = transaction.row(statement, values![lease.job, lease.attempt, &lease.key]).await?;

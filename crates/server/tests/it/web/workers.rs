@@ -269,7 +269,7 @@ async fn a_worker_whose_token_is_revoked_says_so_and_ends(fresh: Fresh) {
     assert_eq!(said.count(), 2, "{log}");
 }
 
-/// What is stored while the job is taken away would keep the job's row from being removed.
+/// A report that is stored while the job is taken away would keep the row of the job from being removed.
 #[test]
 fn a_report_waits_for_whoever_takes_the_job_away() {
     run(async {
