@@ -41,10 +41,11 @@ Exit codes:
   0  accepted, or done
   1  graded and not accepted; traces or recordings that differ
   2  wrong usage, an input that can't be used, or the program's own fault
+  130  stopped by Ctrl-C or SIGTERM; what was kept is kept
 
 SUITE is a file, or a milestone of the course: t1m1, t1m2, t1m3, t2m1, t2m2 or t2m3.
 SCENE is a file, or asset:Group/name for a scene that comes with the program.
-TRACE is a file (.zst files are unpacked), - for standard input, or asset:Group/name for its recording.";
+TRACE is a file (.zst and .gz files are unpacked), - for standard input, or asset:Group/name for its recording.";
 
 // Help's sentence about each among the others stands here, all else with its arguments.
 #[derive(Debug, Subcommand)]

@@ -97,6 +97,16 @@ test("a right trace is recognised and accepted", async () => {
   await close();
 });
 
+test("who has no trace at hand sees the report on a wrong one", async () => {
+  const { page, complaints, close } = await opened(browser, html);
+  assert.ok(await page.locator("#judge").isDisabled());
+  await page.getByRole("button", { name: "See a wrong trace" }).click();
+  await page.waitForFunction(() => document.documentElement.dataset.checked === "1");
+  assert.match(await said(page), /^flawed\.bin: wrong answer/);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
 for (const [name, mistake, words] of [
   [...WRONG, /angular momentum is overwritten/],
   ["ContinuousTimeTests/spinning-edge-sweeps-balls", "pe-linear-one-ab", /likely mistake/],

@@ -289,12 +289,8 @@ fn an_audit_finds_no_disagreement() {
 #[test]
 fn the_bundled_trace_of_the_readme_shows_its_mistake() {
     let workspace = Workspace::new();
-    let trace = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/traces/flawed.bin");
-    let run = workspace.run([
-        "check".as_ref(),
-        "asset:ContinuousTimeTests/spinning-edge-sweeps-balls".as_ref(),
-        trace.as_os_str(),
-    ]);
+    let scene = "asset:ContinuousTimeTests/spinning-edge-sweeps-balls";
+    let run = workspace.run(["check", scene, &format!("{scene}/flawed")]);
     assert_eq!(run.code, Some(1), "{}", run.shown());
     let out = run.out();
     assert!(out.starts_with("WRONG ANSWER") && out.contains("coefficient of t^2"), "{out}");

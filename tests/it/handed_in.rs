@@ -86,6 +86,14 @@ fn traces_that_are_there_already_are_graded_without_running_anything() {
     let damaged = grade("right", &[]);
     assert!(damaged.code == Some(1) && damaged.out().contains("the zstd data is cut short"), "{}", damaged.shown());
     std::fs::remove_file(workspace.path(format!("{name}.zst"))).expect("removed");
+    let mut packer = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+    std::io::Write::write_all(&mut packer, &bytes).expect("packed");
+    let packed = packer.finish().expect("packed");
+    workspace.write(format!("{name}.gz"), &packed);
+    assert_eq!(grade("right", &["--format", "json"]).out(), plain);
+    workspace.write(format!("{name}.gz"), &packed[..packed.len() / 2]);
+    assert!(grade("right", &[]).out().contains("the gzip data is cut short"));
+    std::fs::remove_file(workspace.path(format!("{name}.gz"))).expect("removed");
     workspace.write(&name, &bytes);
     // A file that is missing, cut or a link is no trace.
     let first = workspace.path(format!("right/{}.bin", scenes[0]));

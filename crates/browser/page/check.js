@@ -33,6 +33,7 @@ async function takeFiles(items, scene = null) {
   } catch (error) {
     if (!check.trace) return failed(error);
   }
+  $("judge").disabled = !check.trace;
   if (check.trace) return judge();
   if (check.own) say("Now drop the trace.");
 }
@@ -159,6 +160,12 @@ $("save-html").addEventListener("click", () => save(`${check.report.name}.html`,
 $("save-json").addEventListener("click", () =>
   save(`${check.report.name}.json`, check.report.json, "application/json"),
 );
+$("example").addEventListener("click", async () => {
+  const answer = await check.oracle.ask({ do: "example" });
+  if (!answer) return;
+  $("scene").value = "";
+  takeFiles([{ file: new File([answer.parts[0]], "flawed.bin") }], sceneOf(answer.value.scene));
+});
 $("pick").addEventListener("change", async ({ target }) => {
   await takeFiles([...target.files].map((file) => ({ file })));
   target.value = "";

@@ -76,8 +76,6 @@ function beginning(names) {
   return "";
 }
 
-const rounded = (points) => (points === null ? "none" : Number(points.toFixed(2)).toString());
-
 async function mark_all() {
   marks.oracle.stop();
   $("marks-stop").hidden = $("marks-bar").hidden = false;
@@ -123,7 +121,7 @@ async function mark_all() {
       [...marks.files.keys()].filter((path) => !taken.has(path)),
     );
     $("marks-said").textContent =
-      `${marks.name}: ${rounded(answer.value.points)} of ${rounded(answer.value.of)} points by ${begun.value.suite}, in ${((performance.now() - started) / 1000).toFixed(1)} s.`;
+      `${marks.name}: ${answer.value.points} of ${answer.value.of} points by ${begun.value.suite}, in ${((performance.now() - started) / 1000).toFixed(1)} s.`;
   } catch (error) {
     $("marks-said").textContent = error.message;
   } finally {
@@ -163,41 +161,37 @@ function showMarks(suite, grade, rows, strange) {
         ),
       ]
     : [];
+  const look = ({ scene, file }, words) =>
+    file ? el("button", { type: "button", class: "plain", onclick: () => lookAt(scene, file) }, words) : words;
   const mistakes = new Map();
-  for (const { likely, accepted } of rows)
-    if (likely && !accepted) mistakes.set(likely, (mistakes.get(likely) ?? 0) + 1);
+  for (const row of rows)
+    if (row.likely && !row.accepted) mistakes.set(row.likely, [...(mistakes.get(row.likely) ?? []), row]);
   const likely = [...mistakes]
-    .sort((a, b) => b[1] - a[1])
-    .slice(0, 5)
-    .map(([words, count]) =>
+    .sort((a, b) => b[1].length - a[1].length)
+    .map(([words, own]) =>
       el(
-        "div",
-        { class: "mistake" },
-        el("p", {}, words, el("span", { class: "hint" }, ` (${counted(count, "scene")})`)),
+        "details",
+        { class: "card mistake", open: mistakes.size === 1 },
+        el("summary", {}, words, el("span", { class: "hint" }, ` (${counted(own.length, "scene")})`)),
+        el("ul", {}, ...own.map((row) => el("li", {}, look(row, row.scene)))),
       ),
     );
   const groups = suite.groups.map(({ name, scenes }, number) => {
     const own = rows.filter((row) => row.group === name),
       good = own.filter((row) => row.accepted).length;
-    const line = ({ scene, verdict, accepted, right, steps, likely, points, of, file, isMissing }) =>
+    const line = ({ scene, verdict, accepted, right, steps, why, points, of, file, isMissing }) =>
       el(
         "tr",
         {},
         el(
           "th",
           { scope: "row" },
-          file
-            ? el(
-                "button",
-                { type: "button", class: "plain", onclick: () => lookAt(scene, file) },
-                scene.split("/").pop(),
-              )
-            : scene.split("/").pop(),
+          look({ scene, file }, scene.split("/").pop()),
         ),
         el("td", { class: accepted ? "good" : isMissing ? "" : "bad" }, isMissing ? "no trace" : verdict),
         el("td", { class: "num", "data-label": "steps right" }, isMissing ? "" : `${right} of ${steps}`),
-        el("td", { class: "num", "data-label": "points" }, `${rounded(points)} of ${rounded(of)}`),
-        el("td", { class: "words" }, likely && !accepted ? likely : ""),
+        el("td", { class: "num", "data-label": "points" }, `${points} of ${of}`),
+        el("td", { class: "words" }, accepted || isMissing ? "" : why),
       );
     // What is wrong comes first, and what is right needs a look only if somebody asks.
     const wrong = own.filter((row) => !row.accepted && !row.isMissing),
@@ -224,7 +218,7 @@ function showMarks(suite, grade, rows, strange) {
             el(
               "tr",
               {},
-              ...["scene", "verdict", "steps right", "points", "likely mistake"].map((head) =>
+              ...["scene", "verdict", "steps right", "points", "what is wrong"].map((head) =>
                 el("th", { scope: "col", class: /steps|points/.test(head) ? "num" : "" }, head),
               ),
             ),
@@ -241,7 +235,7 @@ function showMarks(suite, grade, rows, strange) {
         el(
           "h2",
           {},
-          `${name}: ${good} of ${scenes.length} right, ${rounded(grade.groups[number].points)} of ${rounded(grade.groups[number].of)} points`,
+          `${name}: ${good} of ${scenes.length} right, ${grade.groups[number].points} of ${grade.groups[number].of} points`,
         ),
       ),
       wrong.length ? table(wrong) : "",

@@ -7,7 +7,7 @@ use crate::{
     scenes,
     submission::{DroppedSubmission, SceneRequest, SuiteRequest},
 };
-use fosssim_grading::plan;
+use fosssim_grading::{library, plan};
 use serde::Deserialize;
 use serde_json::json;
 
@@ -19,6 +19,8 @@ enum PageRequest {
     Scenes,
     /// The XML of one of them.
     Scene { name: String },
+    /// A wrong trace to look at, with its scene.
+    Example,
     /// Reads the scene of the second part: whether its strict reader takes it.
     Read { name: String },
     /// The scenes inside with whose start the dropped trace begins, and the kind of file that it seems to be instead.
@@ -75,6 +77,10 @@ impl PageSession {
                 Ok((json!({ "assignments": scenes::list(), "suites": suites }), Vec::new()))
             }
             PageRequest::Scene { name } => Ok((json!({}), vec![scenes::xml(&name)?.to_vec()])),
+            PageRequest::Example => {
+                let (scene, trace) = library::FLAWED;
+                Ok((json!({ "scene": scene }), vec![trace.to_vec()]))
+            }
             PageRequest::Read { name } => check::read_scene(&name, xml).map(|_| (json!({}), Vec::new())),
             PageRequest::Recognise { file } => scenes::beginning(file, host),
             PageRequest::Check(request) => check::answer(&request, xml, host),

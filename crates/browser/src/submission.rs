@@ -97,6 +97,7 @@ impl DroppedSubmission {
             "right": result.right_steps,
             "steps": result.steps,
             "likely": likely,
+            "why": words::summary(&result),
         });
         self.results[asked.number] = Some(result);
         Ok((value, Vec::new()))
@@ -107,13 +108,12 @@ impl DroppedSubmission {
         let results: Option<Vec<SceneResult>> = self.results.iter().cloned().collect();
         let results = results.ok_or("not all scenes have been judged")?;
         let graded = traces::grade(&self.plan, name.to_owned(), results, Vec::new());
-        let scenes: Vec<Value> =
-            graded.scenes().map(|scene| json!({ "points": scene.points, "of": scene.max_points })).collect();
-        let groups: Vec<Value> =
-            graded.groups.iter().map(|group| json!({ "points": group.points, "of": group.max_points })).collect();
+        let points = |reached, most| json!({ "points": grade::reached(reached), "of": grade::points(most) });
+        let scenes: Vec<Value> = graded.scenes().map(|scene| points(scene.points, scene.max_points)).collect();
+        let groups: Vec<Value> = graded.groups.iter().map(|group| points(group.points, group.max_points)).collect();
         let value = json!({
-            "points": graded.points,
-            "of": graded.max_points,
+            "points": grade::reached(graded.points),
+            "of": grade::points(graded.max_points),
             "verdict": graded.verdict.words(),
             "unfit": words::unfit(&graded),
             "scenes": scenes,

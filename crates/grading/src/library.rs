@@ -14,6 +14,12 @@ static ASSETS: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/../../assets");
 #[cfg(target_os = "linux")]
 static REFERENCES: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/../../references");
 
+/// A wrong trace to look at: its scene, and what the sample wrote with the mistake `pe-linear-one-ab`.
+pub const FLAWED: (&str, &[u8]) = (
+    "ContinuousTimeTests/spinning-edge-sweeps-balls",
+    include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/traces/flawed.bin")),
+);
+
 /// The assignment of scenes that are made.
 const MADE_OF: Assignment = Assignment::T2M3;
 

@@ -93,7 +93,7 @@ fn strays(folder: &Folder, scenes: &[String]) -> Option<String> {
         found.extend(inner.into_iter().map(|name| format!("{group}/{name}")));
     }
     let is_stray = |name: &&String| {
-        let trace = name.strip_suffix(".zst").unwrap_or(name).strip_suffix(".bin");
+        let trace = [".zst", ".gz"].iter().find_map(|end| name.strip_suffix(end)).unwrap_or(name).strip_suffix(".bin");
         let is_of = |scene: &String, trace: &str| scene == trace || scene.rsplit('/').next() == Some(trace);
         trace.is_some_and(|trace| !scenes.iter().any(|scene| is_of(scene, trace)))
     };
@@ -149,7 +149,7 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) 
 fn read(folder: &Folder, scene: &str, most: u64) -> io::Result<(Vec<u8>, Option<String>)> {
     let mut passed_over = None;
     let last = scene.rsplit('/').next().unwrap_or(scene);
-    let names = ["bin", "bin.zst"].map(|end| [scene, last].map(|name| format!("{name}.{end}")));
+    let names = ["bin", "bin.zst", "bin.gz"].map(|end| [scene, last].map(|name| format!("{name}.{end}")));
     for name in names.into_iter().flatten() {
         match folder.file(OsStr::new(&name), u64::MAX) {
             Ok((file, _)) => match unpacked(file, most)? {

@@ -66,7 +66,8 @@ impl Failure {
     }
 }
 
-/// Opens a trace: a path, `-` for standard input, or `asset:Group/name` for an embedded recording.
+/// Opens a trace: a path, `-` for standard input, `asset:Group/name` for an embedded recording, or
+/// `asset:Group/name/flawed` for the wrong trace that comes with one scene.
 ///
 /// # Errors
 /// When it can't be opened. Damage shows only while it is read.
@@ -74,7 +75,10 @@ pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
     let shown = shown(name);
     let failure = Failure::default();
     let watched = |reader| WatchedReader { reader, failure: failure.clone() };
-    let (mut reader, identity): (Box<dyn Read + Send>, _) = if let Some(asset) = asset(name) {
+    let is_flawed = |asset: &&str| asset.strip_suffix("/flawed") == Some(library::FLAWED.0);
+    let (mut reader, identity): (Box<dyn Read + Send>, _) = if asset(name).filter(is_flawed).is_some() {
+        (Box::new(library::FLAWED.1), None)
+    } else if let Some(asset) = asset(name) {
         let recording = library::recording(asset).with_context(|| no_asset("recording", asset))?;
         (decompressed(Box::new(Cursor::new(recording)), &[], &failure)?, None)
     } else if name == Path::new("-") {
@@ -136,12 +140,21 @@ pub(super) const ZSTD_MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 /// latter, with which recordings are packed.
 const ZSTD_WINDOW: u32 = 23;
 
-/// Returns the reader, decompressed when it starts like a zstd file.
+/// Returns whether a file begins as gzip files do, whose flags are below 32.
+const fn is_gzip(start: &[u8]) -> bool {
+    matches!(start, [0x1f, 0x8b, 8, 0..32])
+}
+
+/// Returns the reader, decompressed when it starts like a zstd or gzip file.
 fn maybe_packed(mut reader: Box<dyn Read + Send>, must: bool, failure: &Failure) -> Result<Box<dyn Read + Send>> {
     let mut start = Vec::new();
     reader.by_ref().take(ZSTD_MAGIC.len() as u64).read_to_end(&mut start)?;
     if start == ZSTD_MAGIC {
         return decompressed(reader, &start, failure);
+    }
+    if is_gzip(&start) {
+        let decoder = flate2::read::MultiGzDecoder::new(Cursor::new(start).chain(reader));
+        return Ok(Box::new(Unpacked { decoder, format: "gzip", failure: failure.clone() }));
     }
     if must {
         bail!("it is not zstd data although its name ends in .zst; rename it, or compress it with zstd");
@@ -171,17 +184,18 @@ fn decompressed(reader: Box<dyn Read + Send>, start: &[u8], failure: &Failure) -
     let packed = BufReader::with_capacity(1 << 16, Cursor::new(start.to_vec()).chain(reader));
     let mut decoder = zstd::stream::read::Decoder::with_buffer(packed)?;
     decoder.window_log_max(ZSTD_WINDOW)?;
-    Ok(Box::new(Unpacked { decoder, failure: failure.clone() }))
+    Ok(Box::new(Unpacked { decoder, format: "zstd", failure: failure.clone() }))
 }
 
 /// A decoder whose errors say what is wrong with the file, and are remembered: a copy that was damaged on its way says
 /// nothing about the trace. Bytes behind the last zstd frame that do not begin another one are damage, too.
-struct Unpacked<R: io::BufRead> {
-    decoder: zstd::stream::read::Decoder<'static, R>,
+struct Unpacked<R> {
+    decoder: R,
+    format: &'static str,
     failure: Failure,
 }
 
-impl<R: io::BufRead> Read for Unpacked<R> {
+impl<R: Read> Read for Unpacked<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         self.decoder.read(buffer).map_err(|error| {
             // The operating system's words have been remembered already, and are the better explanation.
@@ -189,13 +203,13 @@ impl<R: io::BufRead> Read for Unpacked<R> {
                 return error;
             }
             let text = if error.kind() == io::ErrorKind::UnexpectedEof {
-                "the zstd data is cut short; copy it again"
+                format!("the {} data is cut short; copy it again", self.format)
             } else if error.to_string().contains("too much memory") {
-                "its zstd window is larger than 8 MiB; compress it again without --long or --ultra"
+                "its zstd window is larger than 8 MiB; compress it again without --long or --ultra".to_owned()
             } else {
-                "the zstd data is damaged; copy it again"
+                format!("the {} data is damaged; copy it again", self.format)
             };
-            self.failure.set(text);
+            self.failure.set(&text);
             io::Error::new(error.kind(), text)
         })
     }

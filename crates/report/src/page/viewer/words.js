@@ -13,7 +13,9 @@ class Words extends Drawing {
           ? "from where it should be, given your own state before the step"
           : "from the reference's run";
       const none = this.isExact()
-        ? "Every position is the same to the last bit as expected."
+        ? !this.classWords().startsWith("wrong")
+          ? "Every position is the same to the last bit as expected."
+          : "What differs is in the tables: its positions are still the expected ones, to the last bit."
         : "No position differs by more than the rounding of this page.";
       parts.push(apart.most > 0 ? `The furthest particle is ${short(apart.most)} ${what}.` : none);
     }
