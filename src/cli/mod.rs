@@ -3,6 +3,7 @@
 mod arguments;
 mod commands;
 mod console;
+mod defaults;
 pub mod exit;
 mod grading;
 mod input;
@@ -16,7 +17,8 @@ mod selection;
 mod values;
 
 use crate::report::foreign::plain;
-use clap::Parser;
+use anyhow::Result;
+use clap::{CommandFactory, FromArgMatches};
 use std::{ffi::OsString, os::unix::ffi::OsStrExt, process::ExitCode};
 
 /// Runs the command that the program's arguments ask for.
@@ -35,7 +37,12 @@ fn run(words: Vec<OsString>) -> ExitCode {
     // A half-written output is then removed like after any other failure.
     crate::sandbox::let_large_writes_fail();
     let program = words.first().cloned().unwrap_or_default();
-    let arguments = match arguments::Arguments::try_parse_from(words) {
+    let command = match command(&words) {
+        Ok(command) => command,
+        Err(error) => return fault(&error),
+    };
+    let parsed = command.try_get_matches_from(words);
+    let arguments = match parsed.and_then(|mut found| arguments::Arguments::from_arg_matches_mut(&mut found)) {
         Ok(arguments) => arguments,
         Err(error) => {
             // Help and version come this way, too. A closed pipe does not change the exit code.
@@ -49,10 +56,21 @@ fn run(words: Vec<OsString>) -> ExitCode {
         let name = [program.as_bytes(), b" original"].concat();
         return crate::original::main(&name, &original.words, &original::Program);
     }
-    let code = commands::run(&arguments.command).unwrap_or_else(|error| {
-        // Names of files are a stranger's words, too.
-        console::complain(plain(&format!("error: {error:#}\n")));
-        exit::FAULT
-    });
-    ExitCode::from(code)
+    commands::run(&arguments.command).map_or_else(|error| fault(&error), ExitCode::from)
+}
+
+/// Returns the command line, with the defaults that hold in the working folder.
+fn command(words: &[OsString]) -> Result<clap::Command> {
+    let command = arguments::Arguments::command();
+    match std::env::current_dir() {
+        Ok(working) if words.iter().any(|word| word == "grade") => defaults::add(command, &working),
+        _ => Ok(command),
+    }
+}
+
+/// Says what went wrong.
+fn fault(error: &anyhow::Error) -> ExitCode {
+    // Names of files are a stranger's words, too.
+    console::complain(plain(&format!("error: {error:#}\n")));
+    ExitCode::from(exit::FAULT)
 }

@@ -347,6 +347,20 @@ fn a_class_is_compared_with_its_earlier_grading() {
     assert!(refused.code == Some(2) && refused.err().contains("suite.toml holds no grades"), "{}", refused.shown());
 }
 
+#[test]
+fn a_folder_has_defaults_of_its_own() {
+    let workspace = workspace();
+    workspace.write("alice/bounce.bin", trace_of(BOUNCE));
+    workspace.write("fosssim.toml", "suite = 'suite.toml'\noutput = 'results'\n");
+    let run = workspace.run(["grade", "--traces", "alice", "--quiet"]);
+    assert!(run.code == Some(0) && workspace.exists("results/grades.csv"), "{}", run.shown());
+    let typed = workspace.run(["grade", "--traces", "alice", "--suite", "t1m1"]);
+    assert!(typed.out().contains("suite Theme 1, Milestone 1"), "{}", typed.shown());
+    workspace.write("fosssim.toml", "suit = 'suite.toml'\n");
+    let wrong = workspace.run(["grade", "--traces", "alice"]);
+    assert!(wrong.code == Some(2) && wrong.err().contains("unknown field `suit`"), "{}", wrong.shown());
+}
+
 /// The files that a grading of a class leaves, whose names everybody knows.
 const RESULTS: [&str; 6] = ["grades.csv", "scenes.csv", "grades.jsonl", "class.txt", "index.html", "last-run.json"];
 

@@ -1,0 +1,62 @@
+//! Defaults of `grade`: `fosssim.toml` in the working folder, or in the nearest folder above it.
+use crate::files::{FileError, Place};
+use anyhow::{Context, Result};
+use clap::Command;
+use serde::Deserialize;
+use std::{fs, os::unix::fs::MetadataExt, path::Path};
+
+const FILE: &str = "fosssim.toml";
+
+/// A larger file is refused.
+const LARGEST: u64 = 1 << 16;
+
+/// The contents of the file. Paths are seen from its folder.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Defaults {
+    suite: Option<String>,
+    output: Option<String>,
+    hints: Option<String>,
+    jobs: Option<u16>,
+}
+
+/// Adds the defaults to the options of `grade`, as seen from a working folder. What is typed wins over them.
+///
+/// # Errors
+/// When the file can't be read, or holds something else.
+pub(super) fn add(command: Command, working: &Path) -> Result<Command> {
+    for folder in working.ancestors() {
+        let text = match Place::new(folder, FILE).read(LARGEST) {
+            Ok(text) => text,
+            Err(FileError::Missing { .. }) => continue,
+            Err(error) => return Err(error).with_context(|| format!("cannot read {}", folder.join(FILE).display())),
+        };
+        if !is_trusted(&folder.join(FILE)) {
+            continue;
+        }
+        let context = || format!("{}: suite, output, hints and jobs may be in it", folder.join(FILE).display());
+        let read: Defaults = toml::from_str(&String::from_utf8_lossy(&text)).with_context(context)?;
+        let below = |name: &String| {
+            let path = if folder == working { name.into() } else { folder.join(name) };
+            path.to_string_lossy().into_owned()
+        };
+        let is_file = |suite: &String| folder.join(suite).is_file();
+        let suite = read.suite.map(|suite| if is_file(&suite) { below(&suite) } else { suite });
+        let jobs = read.jobs.map(|jobs| jobs.to_string());
+        let output = read.output.as_ref().map(below);
+        let all = [("suite", suite), ("output", output), ("hints", read.hints), ("jobs", jobs)];
+        return Ok(command.mut_subcommand("grade", |grade| {
+            let given = all.into_iter().filter_map(|(name, value)| Some((name, value?)));
+            // It lives as long as the program, as texts of help do.
+            given.fold(grade, |grade, (name, value)| grade.mut_arg(name, |arg| arg.default_value(&*value.leak())))
+        }));
+    }
+    Ok(command)
+}
+
+/// Returns whether a file is this user's or the system's: in a folder that all may write to, it may be anybody's.
+fn is_trusted(file: &Path) -> bool {
+    let owner = |path: &Path| fs::metadata(path).map(|data| data.uid()).ok();
+    let found = owner(file);
+    found.is_some() && (found == Some(0) || found == owner(Path::new("/proc/self")))
+}
