@@ -20,6 +20,8 @@ use std::{
 
 /// Scenes that are tried for one cause, the smallest first.
 const MOST_SCENES: usize = 4;
+/// Scenes with more bodies are not made smaller: their traces are too long to be kept whole.
+const MOST_BODIES: usize = 400;
 /// Causes without a name of which a scene is made.
 const MOST_UNNAMED: usize = 2;
 
@@ -137,6 +139,7 @@ impl Shrinker<'_> {
         progress: &mut dyn FnMut(&SceneSize),
     ) -> Result<Option<Smallest>, String> {
         let mut tasks = cause.scenes.clone();
+        tasks.retain(|task| task.scene.particles.len() <= MOST_BODIES);
         tasks.sort_by_key(|task| (task.scene.particles.len(), task.scene.steps()));
         let spent = AtomicU64::new(0);
         for task in tasks.into_iter().take(MOST_SCENES) {

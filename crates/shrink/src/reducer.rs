@@ -141,8 +141,10 @@ impl<'a, 'p> Search<'a, 'p> {
             let count = kind.count(&self.best);
             // From the end, so that what is left keeps its number as long as possible.
             let starts = (0..count).step_by(length).rev();
-            let without = starts.map(|start| kind.removed(&self.best, &(start..(start + length).min(count))));
-            if self.take(without.collect()) {
+            // One at a time: a scene of thousands of bodies has as many parts, and each attempt is a copy.
+            let best = self.best.clone();
+            let without = starts.map(|start| kind.removed(&best, &(start..(start + length).min(count))));
+            if self.take(without) {
                 continue;
             }
             if length == 1 || self.is_stopped {
@@ -167,7 +169,7 @@ impl<'a, 'p> Search<'a, 'p> {
     }
 
     /// Takes the first of these scenes that is smaller and on which the program is wrong for the reason.
-    fn take(&mut self, candidates: Vec<Scene>) -> bool {
+    fn take(&mut self, candidates: impl IntoIterator<Item = Scene>) -> bool {
         let mut waiting = candidates.into_iter();
         while !self.is_stopped {
             let fitting = waiting.by_ref().filter(|scene| self.fits(scene));
