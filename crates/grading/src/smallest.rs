@@ -7,15 +7,15 @@ use fosssim_model::{
     assignments::Assignment,
     scene::{self, Scene},
 };
-use fosssim_sandbox::Ended;
-use fosssim_shrink::{Observation, Reducer, SceneSize, SmallScene, WrongReason, beginnings};
+use fosssim_sandbox::{Ended, TimeOf, processor_time};
+use fosssim_shrink::{EndTest, Observation, Reducer, SceneSize, SmallScene, WrongReason, beginnings};
 use std::{
     path::Path,
     sync::{
         OnceLock,
         atomic::{AtomicU64, Ordering},
     },
-    time::{Duration, Instant},
+    time::Duration,
 };
 
 /// Scenes that are tried for one cause, the smallest first.
@@ -30,7 +30,7 @@ const MOST_UNNAMED: usize = 2;
 pub struct ShrinkLimits {
     /// Runs of the program.
     pub runs: u32,
-    /// Processor time of these runs and of judging them.
+    /// Processor time of these runs, and of this process meanwhile.
     pub time: Duration,
     /// Runs at one time.
     pub jobs: usize,
@@ -142,20 +142,25 @@ impl Shrinker<'_> {
         tasks.retain(|task| task.scene.particles.len() <= MOST_BODIES);
         tasks.sort_by_key(|task| (task.scene.particles.len(), task.scene.steps()));
         let spent = AtomicU64::new(0);
+        let begun = processor_time(TimeOf::Process);
+        let time = || Duration::from_nanos(spent.load(Ordering::Relaxed)) + (processor_time(TimeOf::Process) - begun);
         for task in tasks.into_iter().take(MOST_SCENES) {
+            if time() >= self.limits.time {
+                break;
+            }
             let seen = self.observe(&task.scene, &spent)?;
             let Some(reason) = cause.reason.clone().or_else(|| WrongReason::first(&task.scene, &seen)) else {
                 continue;
             };
             let steps = cause.step.map_or_else(|| wrong_steps(&task.scene, &seen), |step| vec![step]);
             let begin = beginnings(&task.scene, &seen.trace, &steps);
-            let found = self.reduced(&reason, begin, &spent, progress)?;
+            let is_over = || time() >= self.limits.time || self.runner.cancellation.is_cancelled();
+            let found = self.reduced(&reason, begin, &spent, &is_over, progress)?;
             let Some(small) = found else { continue };
             let seen = self.observe(&small.scene, &spent)?;
             // A program that does another thing each time shows nothing.
             if reason.holds(&small.scene, &seen) {
-                let time = Duration::from_nanos(spent.into_inner());
-                return Ok(Some(Smallest { reason, origin: task.name.clone(), small, seen, time }));
+                return Ok(Some(Smallest { reason, origin: task.name.clone(), small, seen, time: time() }));
             }
         }
         Ok(None)
@@ -167,21 +172,18 @@ impl Shrinker<'_> {
         reason: &WrongReason,
         begin: Vec<Scene>,
         spent: &AtomicU64,
+        is_over: &EndTest<'_>,
         progress: &mut dyn FnMut(&SceneSize),
     ) -> Result<Option<SmallScene>, String> {
         let fault = OnceLock::new();
-        let is_over = || Duration::from_nanos(spent.load(Ordering::Relaxed)) >= self.limits.time;
         let holds = |scene: &Scene| {
-            if is_over() || self.runner.cancellation.is_cancelled() {
+            if is_over() {
                 return None;
             }
             let seen = self.observe(scene, spent).map_err(|words| fault.set(words)).ok()?;
-            let begin = Instant::now();
-            let holds = reason.holds(scene, &seen);
-            add(spent, begin.elapsed());
-            Some(holds)
+            Some(reason.holds(scene, &seen))
         };
-        let reducer = Reducer::new(reason, self.assignment, &holds);
+        let reducer = Reducer::new(reason, self.assignment, &holds).until(is_over);
         let found = reducer.with_jobs(self.limits.jobs).with_runs(self.limits.runs).reduce(begin, progress);
         fault.into_inner().map_or(Ok(found), Err)
     }
@@ -191,13 +193,9 @@ impl Shrinker<'_> {
         let xml = scene::write(scene).into_bytes();
         let task = SceneTask { name: "smallest".to_owned(), xml, scene: scene.clone(), recording: None };
         let (trace, outcome) = self.runner.collect(self.program, &task, LONGEST)?;
-        add(spent, outcome.cpu);
+        spent.fetch_add(u64::try_from(outcome.cpu.as_nanos()).unwrap_or(u64::MAX / 2), Ordering::Relaxed);
         Ok(Observation { trace, ended: outcome.ended })
     }
-}
-
-fn add(spent: &AtomicU64, time: Duration) {
-    spent.fetch_add(u64::try_from(time.as_nanos()).unwrap_or(u64::MAX / 2), Ordering::Relaxed);
 }
 
 /// Returns the steps of a run that are wrong; of a program that did not end well, the one behind its last record.

@@ -46,5 +46,5 @@ mod tests;
 
 pub use beginnings::beginnings;
 pub use reason::{Observation, WrongReason};
-pub use reducer::{Reducer, SmallScene};
+pub use reducer::{EndTest, Holds, Reducer, SmallScene};
 pub use size::SceneSize;

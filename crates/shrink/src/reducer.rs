@@ -31,11 +31,15 @@ pub struct SmallScene {
 /// Whether the program is wrong on a scene for the reason; nothing stops the search.
 pub type Holds<'a> = dyn Fn(&Scene) -> Option<bool> + Sync + 'a;
 
+/// Whether the search must end now.
+pub type EndTest<'a> = dyn Fn() -> bool + Sync + 'a;
+
 /// Makes scenes smaller on which a program stays wrong for the same reason.
 pub struct Reducer<'a> {
     reason: &'a WrongReason,
     assignment: Assignment,
     holds: &'a Holds<'a>,
+    is_over: &'a EndTest<'a>,
     jobs: usize,
     most_runs: u32,
 }
@@ -47,7 +51,13 @@ impl<'a> Reducer<'a> {
     /// Creates a search that asks `holds` about each attempt, of a program of this assignment.
     #[must_use]
     pub fn new(reason: &'a WrongReason, assignment: Assignment, holds: &'a Holds<'a>) -> Self {
-        Self { reason, assignment, holds, jobs: 1, most_runs: Self::MOST_RUNS }
+        Self { reason, assignment, holds, is_over: &|| false, jobs: 1, most_runs: Self::MOST_RUNS }
+    }
+
+    /// Ends the search as soon as this is true, also between two runs.
+    #[must_use]
+    pub fn until(self, is_over: &'a EndTest<'a>) -> Self {
+        Self { is_over, ..self }
     }
 
     /// Asks about this number of attempts at a time. The result is the same.
@@ -123,7 +133,7 @@ impl<'a, 'p> Search<'a, 'p> {
             PartKind::ALL.into_iter().for_each(|kind| self.remove(kind));
             while self.take(plainer(&self.best, self.reducer.assignment)) {}
             while self.take(transformed(&self.best)) {}
-            let drawn = guesses(&self.best, self.size, |scene| self.is_like(scene));
+            let drawn = guesses(&self.best, self.size, |scene| !(self.reducer.is_over)() && self.is_like(scene));
             self.take(drawn);
             self.round();
             while self.take(turned(&self.best)) {}
@@ -172,9 +182,11 @@ impl<'a, 'p> Search<'a, 'p> {
     fn take(&mut self, candidates: impl IntoIterator<Item = Scene>) -> bool {
         let mut waiting = candidates.into_iter();
         while !self.is_stopped {
-            let fitting = waiting.by_ref().filter(|scene| self.fits(scene));
+            let is_over = self.reducer.is_over;
+            let fitting = waiting.by_ref().take_while(|_| !is_over()).filter(|scene| self.fits(scene));
             let batch: Vec<Scene> = fitting.take(self.reducer.jobs).collect();
             if batch.is_empty() {
+                self.is_stopped = is_over();
                 return false;
             }
             let answers = self.answers(&batch);
