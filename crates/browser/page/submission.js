@@ -183,11 +183,7 @@ function showMarks(suite, grade, rows, strange) {
       el(
         "tr",
         {},
-        el(
-          "th",
-          { scope: "row" },
-          look({ scene, file }, scene.split("/").pop()),
-        ),
+        el("th", { scope: "row" }, look({ scene, file }, scene.split("/").pop())),
         el("td", { class: accepted ? "good" : isMissing ? "" : "bad" }, isMissing ? "no trace" : verdict),
         el("td", { class: "num", "data-label": "steps right" }, isMissing ? "" : `${right} of ${steps}`),
         el("td", { class: "num", "data-label": "points" }, `${points} of ${of}`),
