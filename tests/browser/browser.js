@@ -41,7 +41,9 @@ export async function opened(browser, html, { scheme = "light", script = true, h
     (request) => /^(file|blob|data):/.test(request.url()) || complaints.push(`request ${request.url()}`),
   );
   await page.goto(pathToFileURL(html).href + hash);
-  if (script) await page.waitForSelector("html[data-ready]");
+  // A page without scenes to look at has no script that would be ready.
+  const isScripted = script && (await page.locator("script").count()) > 0;
+  if (isScripted) await page.waitForSelector("html[data-ready]");
   return { page, complaints, close: () => context.close() };
 }
 
