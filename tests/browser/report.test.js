@@ -204,7 +204,10 @@ test("a step whose impulses are wrong opens after its impulses, where its end wo
     /wrong by itself, and shown after its impulses\. The furthest particle is 0\.\d+ from where it should be/,
   );
   await after.uncheck();
-  assert.match(await page.locator(".say").innerText(), /What differs is in the tables: its positions are still the expected ones/);
+  assert.match(
+    await page.locator(".say").innerText(),
+    /What differs is in the tables: its positions are still the expected ones/,
+  );
   assert.deepEqual(complaints, []);
   await close();
 });
