@@ -17,7 +17,7 @@ use std::{
 use tokio::net::{TcpSocket, TcpStream};
 
 /// After so long without an answer a request counts as an error.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_secs(300);
 
 /// Somebody with a browser.
 pub(super) struct Client {
@@ -83,7 +83,7 @@ impl Client {
 
     /// A request whose answer is read to its end.
     pub(super) async fn request(&mut self, method: Method, path: &str, body: Bytes) -> Result<Answer> {
-        tokio::time::timeout(PATIENCE, self.exchange(method, path, body)).await.context("no answer in a minute")?
+        tokio::time::timeout(PATIENCE, self.exchange(method, path, body)).await.context("no answer in five minutes")?
     }
 
     async fn exchange(&mut self, method: Method, path: &str, body: Bytes) -> Result<Answer> {

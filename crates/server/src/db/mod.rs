@@ -30,7 +30,7 @@ use std::{
         Arc,
         atomic::{AtomicBool, Ordering},
     },
-    time::Duration,
+    time::{Duration, Instant},
 };
 use tokio::sync::Semaphore;
 
@@ -191,6 +191,21 @@ impl Database {
                 self.waited(Inner::Sqlite, || writer.begin_with("BEGIN IMMEDIATE"), true).await
             }
             Engine::Postgres(pool) => self.waited(Inner::Postgres, || pool.begin_with(BEGIN), true).await,
+        }
+    }
+
+    /// Begins a transaction that writes, and waits this long for those who came before.
+    ///
+    /// # Errors
+    /// As [`Database::begin`]; at once where it is not others that keep it waiting.
+    pub async fn begin_within(&self, patience: Duration) -> Result<Transaction, DbError> {
+        let begun = Instant::now();
+        loop {
+            let tried = Instant::now();
+            match self.begin().await {
+                Err(error) if error.is_transient() && tried.elapsed() >= PATIENCE && begun.elapsed() < patience => {}
+                other => return other,
+            }
         }
     }
 
