@@ -28,7 +28,7 @@ try {
     ["check", "asset:HolisticTests/balls-in-a-box", "submission.bin", "--format", "html", "--output", html],
     { cwd: folder },
   );
-  const page = await browser.newPage({ viewport: { width: 1180, height: 1456 } });
+  const page = await browser.newPage({ viewport: { width: 1180, height: 800 } });
   await page.goto(pathToFileURL(html).href);
   await page.waitForSelector("html[data-ready]");
   await page.screenshot({ path: join(root, "docs/report.png") });

@@ -8,12 +8,19 @@ const MOST_WORDS: usize = 30;
 /// Four kinds of readers find their commands on one page.
 const MOST_WORDS_OF_README: usize = 1_200;
 
-/// The documents: at the top, in `docs`, and beside files that need one. Those in `docs/spec` describe the original, in
-/// its terms.
+/// A page of `docs` has one kind of reader, who reads it in a few minutes.
+const MOST_WORDS_OF_PAGE: usize = 1_500;
+
+/// Returns the documents at the top, in `docs`, and beside files that need one.
 fn documents() -> Vec<PathBuf> {
     let docs = ["docs", "docs/rules", "docs/sandbox", "docs/server"];
     let beside = [".", "assets", "fuzz", "examples/deploy", "examples/traces"];
-    let folders = docs.into_iter().chain(beside).map(|folder| root().join(folder));
+    documents_in(&docs.into_iter().chain(beside).collect::<Vec<_>>())
+}
+
+/// Returns the documents of these folders. Those in `docs/spec` describe the original, in its terms.
+fn documents_in(folders: &[&str]) -> Vec<PathBuf> {
+    let folders = folders.iter().map(|folder| root().join(folder));
     let entries = folders.flat_map(|folder| std::fs::read_dir(folder).expect("a folder"));
     let paths = entries.map(|entry| entry.expect("an entry").path());
     paths.filter(|path| path.extension().is_some_and(|ending| ending == "md")).collect()
@@ -111,6 +118,15 @@ fn readme_is_one_page() {
     assert!(words <= MOST_WORDS_OF_README, "README.md has {words} words");
 }
 
+/// Only the table of attacks, which a script makes, is longer; `docs/spec` is for looking things up.
+#[test]
+fn pages_are_short() {
+    for page in documents_in(&["docs", "docs/rules", "docs/sandbox", "docs/server"]) {
+        let words = text(&page).split_whitespace().count();
+        assert!(words <= MOST_WORDS_OF_PAGE || page.ends_with("attacks.md"), "{} has {words} words", page.display());
+    }
+}
+
 /// The anchors of a document's headings, as GitHub and mdBook make them.
 fn anchors(text: &str) -> Vec<String> {
     let titles = text.lines().filter(|line| line.starts_with('#')).map(|line| line.trim_start_matches('#').trim());
@@ -122,7 +138,7 @@ fn anchors(text: &str) -> Vec<String> {
 fn links_of_documents_lead_to_files_and_headings() {
     let mut links = 0;
     let mut dead = Vec::new();
-    for document in documents() {
+    for document in documents().into_iter().chain(documents_in(&["docs/spec"])) {
         let folder = document.parent().expect("a folder");
         let text_here = text(&document);
         let inline = text_here.split("](").skip(1).filter_map(|part| part.split(')').next());
@@ -147,7 +163,8 @@ fn links_of_documents_lead_to_files_and_headings() {
 #[test]
 fn the_table_of_contents_has_every_page() {
     let contents = text(&root().join("docs/SUMMARY.md"));
-    for name in documents().iter().filter_map(|path| path.strip_prefix(root().join("docs")).ok()) {
+    let pages = documents().into_iter().chain(documents_in(&["docs/spec"]));
+    for name in pages.filter_map(|path| path.strip_prefix(root().join("docs")).map(Path::to_path_buf).ok()) {
         let name = name.to_string_lossy();
         assert!(name == "SUMMARY.md" || contents.contains(&format!("({name})")), "docs/SUMMARY.md has no {name}");
     }

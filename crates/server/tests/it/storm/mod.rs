@@ -1,7 +1,7 @@
 //! Storms: real workers, killed, frozen and cut off at random moments while submissions come in, on both engines. What
 //! was accepted is graded, once, and as in calm weather.
 //!
-//! Small by default; `scripts/crash-test` runs them at full size and prints the table of docs/server/measurements.md.
+//! Small by default; `scripts/crash-test` runs them at full size and prints the table of docs/server/crash-test.md.
 
 mod arena;
 mod deeds;
