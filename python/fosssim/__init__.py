@@ -263,7 +263,7 @@ Point = Sequence[float]
 class Particles:
     """Two particles."""
 
-    centres: tuple[Point, Point]
+    centers: tuple[Point, Point]
     radii: tuple[float, float]
 
 
@@ -271,7 +271,7 @@ class Particles:
 class Edge:
     """A particle and an edge."""
 
-    centre: Point
+    center: Point
     ends: tuple[Point, Point]
     radii: tuple[float, float]
 
@@ -280,7 +280,7 @@ class Edge:
 class HalfPlane:
     """A particle and a half-plane."""
 
-    centre: Point
+    center: Point
     radius: float
     point: tuple[float, float]
     normal: tuple[float, float]

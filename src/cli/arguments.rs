@@ -14,23 +14,23 @@ use std::{ffi::OsString, num::NonZeroUsize, path::PathBuf};
 #[derive(Debug, Parser)]
 #[command(name = "fosssim-oracle", version, max_term_width = 100, after_help = EXIT_CODES)]
 pub(super) struct Arguments {
-    /// When to use colours; auto: on a terminal without NO_COLOR, and always with CLICOLOR_FORCE.
+    /// When to use colors; auto: on a terminal without NO_COLOR, and always with CLICOLOR_FORCE.
     #[arg(
         long,
         global = true,
         value_enum,
         value_name = "WHEN",
-        default_value_t = ColourChoice::Auto,
+        default_value_t = ColorChoice::Auto,
         display_order = 900
     )]
-    pub(super) color: ColourChoice,
+    pub(super) color: ColorChoice,
     #[command(subcommand)]
     pub(super) command: Command,
 }
 
-/// When colours are used.
+/// When colors are used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum ColourChoice {
+pub(super) enum ColorChoice {
     Auto,
     Always,
     Never,

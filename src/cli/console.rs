@@ -1,7 +1,7 @@
-//! The terminal: standard output that survives a closed pipe, the decision about colours, lines that fit, and progress
+//! The terminal: standard output that survives a closed pipe, the decision about colors, lines that fit, and progress
 //! bars that nothing is written across.
 use super::{
-    arguments::ColourChoice,
+    arguments::ColorChoice,
     interrupt,
     screen::{clear_bars, on_screen, write_above_bars},
     values::TextOrJson,
@@ -23,11 +23,11 @@ use std::{
 use terminal_size::{Width, terminal_size_of};
 
 /// The value of `--color`.
-static COLOUR: OnceLock<ColourChoice> = OnceLock::new();
+static COLOR: OnceLock<ColorChoice> = OnceLock::new();
 
 /// Remembers what `--color` says; the first word counts.
-pub(super) fn choose_colour(colour: ColourChoice) {
-    let _ = COLOUR.set(colour);
+pub(super) fn choose_color(color: ColorChoice) {
+    let _ = COLOR.set(color);
 }
 
 /// Whether `--quiet` was given.
@@ -42,20 +42,20 @@ fn is_quiet() -> bool {
     QUIET.load(Ordering::Relaxed)
 }
 
-/// Returns the style of reports on standard output. Unless `--color` says so, colours only where nobody objects
+/// Returns the style of reports on standard output. Unless `--color` says so, colors only where nobody objects
 /// (`NO_COLOR`), and only where somebody wants them (`CLICOLOR_FORCE`) or a terminal shows them (not `TERM=dumb`, not
 /// `CLICOLOR=0`).
 pub(super) fn style() -> Style {
     let is = |name: &str, value: &str| std::env::var_os(name).is_some_and(|found| found == value);
     let is_set = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
-    let wanted = match COLOUR.get().copied().unwrap_or(ColourChoice::Auto) {
-        ColourChoice::Always => true,
-        ColourChoice::Never => false,
-        ColourChoice::Auto if is_set("NO_COLOR") => false,
-        ColourChoice::Auto if is_set("CLICOLOR_FORCE") && !is("CLICOLOR_FORCE", "0") => true,
-        ColourChoice::Auto => io::stdout().is_terminal() && !is("TERM", "dumb") && !is("CLICOLOR", "0"),
+    let wanted = match COLOR.get().copied().unwrap_or(ColorChoice::Auto) {
+        ColorChoice::Always => true,
+        ColorChoice::Never => false,
+        ColorChoice::Auto if is_set("NO_COLOR") => false,
+        ColorChoice::Auto if is_set("CLICOLOR_FORCE") && !is("CLICOLOR_FORCE", "0") => true,
+        ColorChoice::Auto => io::stdout().is_terminal() && !is("TERM", "dumb") && !is("CLICOLOR", "0"),
     };
-    if wanted { Style::Colour } else { Style::Plain }
+    if wanted { Style::Color } else { Style::Plain }
 }
 
 /// Narrower than this no line is wrapped: a terminal that says so has not been told its size.

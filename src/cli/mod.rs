@@ -50,8 +50,8 @@ fn run(words: Vec<OsString>) -> ExitCode {
             return ExitCode::from(if error.use_stderr() { exit::FAULT } else { exit::ACCEPTED });
         }
     };
-    console::choose_colour(arguments.color);
-    // Options before the command kept it from being recognised above.
+    console::choose_color(arguments.color);
+    // Options before the command kept it from being recognized above.
     if let arguments::Command::Original(original) = &arguments.command {
         let name = [program.as_bytes(), b" original"].concat();
         return crate::original::main(&name, &original.words, &original::Program);

@@ -25,7 +25,7 @@ Example:
   fosssim-oracle render scenes/test00.xml submission.bin --step 14 --output step14.svg
   fosssim-oracle render scenes/creative.xml --format png --output pngs --size 1280x720
 
-Without a trace the reference's own run is drawn. Bodies have the scene's colours, and the scene's viewport is shown; \
+Without a trace the reference's own run is drawn. Bodies have the scene's colors, and the scene's viewport is shown; \
 without one the view holds the whole motion. A folder gets frame00001.png and so on, as the original's -g 1 writes them, \
 or SVG files as its -m does. Films of more than 1500 pictures are thinned out unless --every says how.")]
 pub(super) struct Render {
@@ -85,7 +85,7 @@ The first two are the assignment's worked examples. Their overlap polynomials ar
   -16 t^4 - 68 t^2 + 36 t - 16
 
 A pair is one word: pp, pe or ph (particle with particle, edge, half-plane) and its points behind colons: the \
-particles' centres, the particle and the edge's two ends, or the particle, a point on the boundary and the normal. A \
+particles' centers, the particle and the edge's two ends, or the particle, a point on the boundary and the normal. A \
 moving point is X,Y+DX,DY (start and displacement) or X,Y..X,Y (start and end).")]
 pub(super) struct DetectArguments {
     /// The kind of pair (pp, pe, ph) and its points.

@@ -88,7 +88,7 @@ test("the page is one file of a bounded size, whose policy names no address", (t
   assert.ok(!/<(script|link|img)[^>]*\b(src|href)=/.test(page.replace(/srcdoc/g, "")));
 });
 
-test("a right trace is recognised and accepted", async () => {
+test("a right trace is recognized and accepted", async () => {
   const { page, complaints, close } = await opened(browser, html);
   await drop(page, trace("ContinuousTimeTests/head-on-equal-masses"));
   assert.match(await said(page), /^trace\.bin: accepted, judged in/);
@@ -159,7 +159,7 @@ test("a trace that is cut, one of another scene, a text, an empty file: each has
   await close();
 });
 
-test("each trace is recognised anew, and a scene that its reader chooses or drops stays", async () => {
+test("each trace is recognized anew, and a scene that its reader chooses or drops stays", async () => {
   const { page, complaints, close } = await opened(browser, html);
   const names = [
     "ContinuousTimeTests/head-on-equal-masses",

@@ -135,7 +135,7 @@ fn a_step_without_result_is_a_wrong_answer() {
 }
 
 #[test]
-fn colours_only_decorate() {
+fn colors_only_decorate() {
     let scene = scene::read("scene", BOUNCE.as_bytes()).unwrap().scene;
     let trace = changed(BOUNCE, |frames| scale(&mut frames[2], 0, 2.0));
     let outcome = replay::judge(&scene, &trace[..], &replay::Options::default(), &mut ());
@@ -152,17 +152,17 @@ fn colours_only_decorate() {
         tables: true,
         looks_like: None,
     };
-    let coloured = check.text(Style::Colour);
+    let colored = check.text(Style::Color);
     let mut plain = String::new();
-    for piece in coloured.split('\x1b') {
+    for piece in colored.split('\x1b') {
         // The first piece has no code before it.
-        plain += if plain.is_empty() && !coloured.starts_with('\x1b') {
+        plain += if plain.is_empty() && !colored.starts_with('\x1b') {
             piece
         } else {
             piece.split_once('m').map_or("", |(_, text)| text)
         };
     }
-    assert_ne!(coloured, plain);
+    assert_ne!(colored, plain);
     assert_eq!(check.text(Style::Plain), plain);
 }
 

@@ -1,4 +1,4 @@
-//! The licences of others' packages, and which Rust they ask for: from cargo's own data.
+//! The licenses of others' packages, and which Rust they ask for: from cargo's own data.
 use crate::workspace::root;
 use serde_json::Value;
 use std::{
@@ -9,7 +9,7 @@ use std::{
 /// Programs are run on this platform only; packages of others are not downloaded.
 const PLATFORM: &str = "x86_64-unknown-linux-gnu";
 
-/// Packages with their licences, as cargo tells of them.
+/// Packages with their licenses, as cargo tells of them.
 #[expect(clippy::disallowed_types, reason = "cargo is a program")]
 fn metadata() -> &'static Value {
     static METADATA: OnceLock<Value> = OnceLock::new();
@@ -32,11 +32,11 @@ fn string(value: &'static Value) -> &'static str {
     value.as_str().unwrap_or_default()
 }
 
-/// The licences that `deny.toml` allows, from which this test and cargo-deny take them.
+/// The licenses that `deny.toml` allows, from which this test and cargo-deny take them.
 fn allowed() -> BTreeSet<String> {
     let rules = std::fs::read_to_string(root().join("deny.toml")).expect("rules");
     let list =
-        rules.split_once("\nallow = [").and_then(|(_, rest)| rest.split_once(']')).expect("a list of licences").0;
+        rules.split_once("\nallow = [").and_then(|(_, rest)| rest.split_once(']')).expect("a list of licenses").0;
     list.split('"').skip(1).step_by(2).map(str::to_owned).collect()
 }
 
@@ -45,7 +45,7 @@ fn is_allowed(expression: &str, allowed: &BTreeSet<String>) -> bool {
     // No expression in use nests deeper than `(A OR B) AND C`.
     let any = |group: &str| {
         let group = group.trim_matches(['(', ')', ' ']);
-        group.split(" OR ").any(|licence| licence.split(" AND ").all(|licence| allowed.contains(licence)))
+        group.split(" OR ").any(|license| license.split(" AND ").all(|license| allowed.contains(license)))
     };
     let expression = expression.replace(" / ", " OR ").replace('/', " OR ");
     if expression.contains('(') { expression.split(" AND ").all(any) } else { any(&expression) }
@@ -57,7 +57,7 @@ fn version(text: &str) -> Vec<u32> {
 }
 
 #[test]
-fn licences_are_read_as_choices() {
+fn licenses_are_read_as_choices() {
     let allowed = ["MIT", "Zlib"].map(str::to_owned).into();
     for (expression, expected) in [
         ("MIT", true),
@@ -76,9 +76,9 @@ fn licences_are_read_as_choices() {
 fn everybody_may_use_what_is_compiled() {
     let (packages, allowed) = (packages(), allowed());
     assert!(packages.len() > 100 && !allowed.is_empty(), "{} packages, {allowed:?}", packages.len());
-    let licence = |package: &Value| package["license"].as_str().unwrap_or_default().to_owned();
-    let refused = packages.values().filter(|package| !is_allowed(&licence(package), &allowed));
-    let refused: Vec<_> = refused.map(|package| format!("{} {}", package["name"], licence(package))).collect();
+    let license = |package: &Value| package["license"].as_str().unwrap_or_default().to_owned();
+    let refused = packages.values().filter(|package| !is_allowed(&license(package), &allowed));
+    let refused: Vec<_> = refused.map(|package| format!("{} {}", package["name"], license(package))).collect();
     assert!(refused.is_empty(), "not in deny.toml: {refused:#?}");
 }
 

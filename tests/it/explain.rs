@@ -100,7 +100,7 @@ const SUBMISSIONS: [(&str, &str); 27] = [
     ("d03-", "loop-test-when-zero"),
     ("d05-", "loop-anew"),
     ("d08-", "loop-always-fails"),
-    ("e02-", "failsafe-centre-unweighted"),
+    ("e02-", "failsafe-center-unweighted"),
     ("e05-", "failsafe-fixed-forgotten"),
     ("e08-", "failsafe-velocity-no-step"),
     ("e13-", "geometric-finds-in-vain"),

@@ -1,4 +1,4 @@
-//! Known mistakes are recognised on the built-in scenes. `scripts/explanation-matrix` measures it on all of them.
+//! Known mistakes are recognized on the built-in scenes. `scripts/explanation-matrix` measures it on all of them.
 use fosssim_oracle::{
     diagnose::known,
     scene::{Scene, original},
@@ -31,7 +31,7 @@ fn scenes() -> Vec<(&'static str, Scene, Vec<u8>)> {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Recognised {
+enum Recognized {
     /// No scene shows the mistake by more than round-off.
     Unseen,
     /// It is never named.
@@ -45,31 +45,31 @@ enum Recognised {
 #[test]
 fn most_mistakes_are_named_on_their_best_scene() {
     let scenes = scenes();
-    let recognised: Vec<(&str, Recognised)> = CATALOGUE
+    let recognized: Vec<(&str, Recognized)> = CATALOGUE
         .par_iter()
         .filter(|row| row.kind == RowKind::Wrong)
         .map(|row| {
             let outcomes = scenes.iter().map(|(_, scene, correct)| {
                 let trace = student::trace(scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
                 if trace == *correct {
-                    return Recognised::Unseen;
+                    return Recognized::Unseen;
                 }
                 match known(scene, &trace[..]).into_iter().next() {
-                    None => Recognised::Unseen,
-                    Some(explanation) if explanation.key == row.id => Recognised::First,
-                    Some(explanation) if explanation.same_as.iter().any(|id| id == row.id) => Recognised::Among,
-                    Some(_) => Recognised::Never,
+                    None => Recognized::Unseen,
+                    Some(explanation) if explanation.key == row.id => Recognized::First,
+                    Some(explanation) if explanation.same_as.iter().any(|id| id == row.id) => Recognized::Among,
+                    Some(_) => Recognized::Never,
                 }
             });
-            (row.id, outcomes.max().unwrap_or(Recognised::Unseen))
+            (row.id, outcomes.max().unwrap_or(Recognized::Unseen))
         })
         .collect();
-    let count = |what: Recognised| recognised.iter().filter(|(_, outcome)| *outcome == what).count();
-    let (first, among) = (count(Recognised::First), count(Recognised::Among));
-    let seen = recognised.len() - count(Recognised::Unseen);
-    assert!(seen * 10 >= recognised.len() * 9, "the scenes show only {seen} of {} mistakes", recognised.len());
-    assert_eq!(first + among, seen, "{recognised:#?}");
-    assert!(first * 10 >= seen * 9, "only {first} of {seen} are named first: {recognised:#?}");
+    let count = |what: Recognized| recognized.iter().filter(|(_, outcome)| *outcome == what).count();
+    let (first, among) = (count(Recognized::First), count(Recognized::Among));
+    let seen = recognized.len() - count(Recognized::Unseen);
+    assert!(seen * 10 >= recognized.len() * 9, "the scenes show only {seen} of {} mistakes", recognized.len());
+    assert_eq!(first + among, seen, "{recognized:#?}");
+    assert!(first * 10 >= seen * 9, "only {first} of {seen} are named first: {recognized:#?}");
 }
 
 #[test]

@@ -202,7 +202,7 @@ fn every_wrong_sample_leaves_another_trace_of_some_built_in_scene() {
 
 /// Variants whose own roundings decide whether something touches exactly at the end of a step. In scenes that ask just
 /// that, from numbers with few digits, what follows may be another motion.
-const ROUNDING: [&str; 3] = ["normalised-norm", "through-bernstein", "frame-rotated"];
+const ROUNDING: [&str; 3] = ["normalized-norm", "through-bernstein", "frame-rotated"];
 
 /// Scale and arithmetic change the logged bits, never what happens.
 #[test]

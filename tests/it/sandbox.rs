@@ -369,14 +369,14 @@ fn a_loader_that_is_not_the_systems_is_the_programs_fault() {
 }
 
 #[test]
-fn a_sanitised_program_runs_and_its_memory_is_limited_all_the_same() {
+fn a_sanitized_program_runs_and_its_memory_is_limited_all_the_same() {
     let Some(bench) = Bench::new() else { return };
     let source = "#include <stdlib.h>\n#include <string.h>\nint main(int count, char **words) {\n\
                   int size = atoi(words[1]); memset(malloc(size), 1, size); return 0; }";
     let Some(program) = compiled(bench.folder.path(), source, &["-fsanitize=address"]) else { return };
     let unasked = bench.run(&program, &["1000"]).ended;
-    assert_eq!(unasked, Ended::CouldNotStart(StartProblem::Sanitised), "only by the suite's own word");
-    let run = |size| bench.finish(&bench.job(&program, &[size]).sanitisers(true)).ended;
+    assert_eq!(unasked, Ended::CouldNotStart(StartProblem::Sanitized), "only by the suite's own word");
+    let run = |size| bench.finish(&bench.job(&program, &[size]).sanitizers(true)).ended;
     assert_eq!(run("1000"), Ended::Exited(0));
     assert_eq!(run("200000000"), Ended::MemoryLimit);
 }

@@ -1,4 +1,4 @@
-//! For every embedded scene a readable summary of what the reference does there, as a snapshot: a change of behaviour
+//! For every embedded scene a readable summary of what the reference does there, as a snapshot: a change of behavior
 //! shows as a diff that `cargo insta review` accepts or rejects.
 use fosssim_oracle::{
     scene,

@@ -57,7 +57,7 @@ fn scene(seed: u64) -> String {
         let (column, row) = ((index % wide) as f64, (index / wide) as f64);
         place = match shape {
             0 => [numbers.real() * wide as f64 * 0.25, numbers.real() * wide as f64 * 0.25],
-            // Neighbours of a grid overlap, touch or are apart by round-off.
+            // Neighbors of a grid overlap, touch or are apart by round-off.
             1 => [0.25 * column, 0.25 * row],
             2 => [0.2 * column, 0.2 * row],
             3 => [0.5 * (index % 3) as f64, 0.125 * index as f64],

@@ -1,5 +1,5 @@
 // A trace is checked: the report is the file that the command line writes, in a frame of its own.
-// The list holds what its reader has chosen; with its first choice each trace is recognised anew. `given` comes with a trace.
+// The list holds what its reader has chosen; with its first choice each trace is recognized anew. `given` comes with a trace.
 const check = { oracle: new Oracle(), trace: null, given: null, others: [], own: null, report: null, run: 0 };
 // The strict reader points at a place of its excerpt, which takes letters of one width.
 const say = (words, look = "") => {
@@ -57,7 +57,7 @@ function sceneOf(value) {
 }
 
 // The scene of a trace, where nobody has chosen it: a trace begins with the state of its scene.
-async function recognised(file) {
+async function recognized(file) {
   const name = bare(file.name);
   const own =
     course?.scenes.findIndex(
@@ -68,7 +68,7 @@ async function recognised(file) {
           .pop() === name,
     ) ?? -1;
   if (own >= 0) return sceneOf(`course:${own}`);
-  const answer = await check.oracle.ask({ do: "recognise" }, { files: [file] });
+  const answer = await check.oracle.ask({ do: "recognize" }, { files: [file] });
   if (!answer) return null;
   const { scenes, looks_like } = answer.value;
   const found =
@@ -102,7 +102,7 @@ async function judge() {
   say(`Checking ${check.trace.file.name} ...`);
   try {
     const file = await freshFile(check.trace);
-    const scene = chosen ? sceneOf(chosen) : (check.given ?? (await recognised(file)));
+    const scene = chosen ? sceneOf(chosen) : (check.given ?? (await recognized(file)));
     const request = scene && { do: "check", scene: scene.name, trace: file.name, rules: $("rules").value, html: true };
     const progress = (done, all) => {
       if (done < all) {

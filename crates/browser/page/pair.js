@@ -257,9 +257,9 @@ function command() {
 
 function asked() {
   const { kind, points, radii, plane } = pair.now;
-  if (kind === "pp") return { do: "detect", kind, centres: points, radii };
-  if (kind === "pe") return { do: "detect", kind, centre: points[0], ends: points.slice(1), radii };
-  return { do: "detect", kind, centre: points[0], radius: radii[0], point: plane.slice(0, 2), normal: plane.slice(2) };
+  if (kind === "pp") return { do: "detect", kind, centers: points, radii };
+  if (kind === "pe") return { do: "detect", kind, center: points[0], ends: points.slice(1), radii };
+  return { do: "detect", kind, center: points[0], radius: radii[0], point: plane.slice(0, 2), normal: plane.slice(2) };
 }
 
 // One answer at a time is asked for; the last wish counts.

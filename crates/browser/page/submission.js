@@ -257,7 +257,7 @@ function showMarks(suite, grade, rows, strange) {
   if (hadFocus) $("marks-again").focus();
 }
 
-// The whole report on one scene. It is this trace's alone: the next one is recognised.
+// The whole report on one scene. It is this trace's alone: the next one is recognized.
 function lookAt(scene, file) {
   open("check");
   $("scene").value = "";

@@ -14,13 +14,13 @@ use serde_json::json;
 pub(crate) enum PairRequest {
     /// Two particles.
     #[serde(rename = "pp")]
-    Particles { centres: [[f64; 4]; 2], radii: [f64; 2] },
+    Particles { centers: [[f64; 4]; 2], radii: [f64; 2] },
     /// A particle and an edge.
     #[serde(rename = "pe")]
-    Edge { centre: [f64; 4], ends: [[f64; 4]; 2], radii: [f64; 2] },
+    Edge { center: [f64; 4], ends: [[f64; 4]; 2], radii: [f64; 2] },
     /// A particle and a half-plane.
     #[serde(rename = "ph")]
-    HalfPlane { centre: [f64; 4], radius: f64, point: [f64; 2], normal: [f64; 2] },
+    HalfPlane { center: [f64; 4], radius: f64, point: [f64; 2], normal: [f64; 2] },
 }
 
 impl PairRequest {
@@ -32,21 +32,21 @@ impl PairRequest {
             false => Err("a radius is negative".to_owned()),
         };
         Ok(match self {
-            Self::Particles { centres, radii } => {
+            Self::Particles { centers, radii } => {
                 not_negative(radii)?;
-                PairMotion::Particles { centres: centres.each_ref().map(moving), radii: *radii }
+                PairMotion::Particles { centers: centers.each_ref().map(moving), radii: *radii }
             }
-            Self::Edge { centre, ends, radii } => {
+            Self::Edge { center, ends, radii } => {
                 not_negative(radii)?;
-                PairMotion::Edge { centre: moving(centre), ends: ends.each_ref().map(moving), radii: *radii }
+                PairMotion::Edge { center: moving(center), ends: ends.each_ref().map(moving), radii: *radii }
             }
-            Self::HalfPlane { centre, radius, point, normal } => {
+            Self::HalfPlane { center, radius, point, normal } => {
                 not_negative(&[*radius])?;
                 if *normal == [0.0, 0.0] {
                     return Err("the half-plane's normal is zero".to_owned());
                 }
                 let (point, normal) = (vector(point), vector(normal));
-                PairMotion::HalfPlane { centre: moving(centre), radius: *radius, point, normal }
+                PairMotion::HalfPlane { center: moving(center), radius: *radius, point, normal }
             }
         })
     }

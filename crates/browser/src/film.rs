@@ -176,7 +176,7 @@ impl Film {
         let every = self.steps.div_ceil(LONG_FILM).max(1);
         let pictures = self.steps / every + 1;
         let (mut painter, mut raster, mut bytes) = (self.painter(size), Raster::new(size), Vec::new());
-        let (background, colours) = (painter.background(), painter.colours());
+        let (background, colors) = (painter.background(), painter.colors());
         let mut draw = |take: &mut dyn FnMut(&Raster) -> io::Result<()>| -> io::Result<()> {
             for (number, step) in (0..).zip((0..=self.steps).step_by(every as usize)) {
                 let shapes = painter.picture(step, self.at(step), None);
@@ -186,7 +186,7 @@ impl Film {
             }
             Ok(())
         };
-        let made = Gif::new(&mut bytes, size, rate, &colours).and_then(|mut film| {
+        let made = Gif::new(&mut bytes, size, rate, &colors).and_then(|mut film| {
             draw(&mut |raster| film.picture(raster))?;
             film.finish()
         });

@@ -24,7 +24,7 @@ enum PageRequest {
     /// Reads the scene of the second part: whether its strict reader takes it.
     Read { name: String },
     /// The scenes inside with whose start the dropped trace begins, and the kind of file that it seems to be instead.
-    Recognise {
+    Recognize {
         #[serde(default)]
         file: u32,
     },
@@ -82,7 +82,7 @@ impl PageSession {
                 Ok((json!({ "scene": scene }), vec![trace.to_vec()]))
             }
             PageRequest::Read { name } => check::read_scene(&name, xml).map(|_| (json!({}), Vec::new())),
-            PageRequest::Recognise { file } => scenes::beginning(file, host),
+            PageRequest::Recognize { file } => scenes::beginning(file, host),
             PageRequest::Check(request) => check::answer(&request, xml, host),
             PageRequest::Simulate { scene } => {
                 let (value, film) = film::simulate(&scene, xml.ok_or("the scene is missing")?, host);

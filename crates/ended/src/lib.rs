@@ -176,12 +176,12 @@ pub enum StartProblem {
         /// The path that the program names.
         path: String,
     },
-    /// The program was built with a sanitiser, and nobody has said that such programs may run.
+    /// The program was built with a sanitizer, and nobody has said that such programs may run.
     #[error(
-        "the program was built with a sanitiser (-fsanitize), for which memory can't be limited; build it without, \
+        "the program was built with a sanitizer (-fsanitize), for which memory can't be limited; build it without, \
          or allow it in the suite"
     )]
-    Sanitised,
+    Sanitized,
     /// The file is the grader itself.
     #[error("this is the grader's own program, not a submission; name the submission's program")]
     GradersOwn,

@@ -119,9 +119,9 @@ pub fn gather(
     let layout = Layout::for_scene(scene);
     let wrong = |ruling: &StepRuling| if fair { ruling.wrong_by_fair } else { ruling.wrong_by_parity };
     let first_wrong = (1..).zip(rulings).find(|(_, ruling)| wrong(ruling)).map(|(step, _)| step);
-    let centre = first_wrong.or(focus.first().map(|focus| focus.step)).unwrap_or(0);
+    let center = first_wrong.or(focus.first().map(|focus| focus.step)).unwrap_or(0);
     let close = close_steps(focus, first_wrong, layout);
-    let mut gathering = Gathering::new(scene, Window::around(centre, layout, budget));
+    let mut gathering = Gathering::new(scene, Window::around(center, layout, budget));
     let mut reader = Lenient::new(trace, layout).with_limit(record_memory(scene));
     let (mut mid, mut end) = (LenientFrame::default(), LenientFrame::default());
     if reader.next(&mut end).is_err() {
@@ -294,14 +294,14 @@ fn worse(one: f64, other: f64) -> f64 {
     if one.is_nan() || other <= one { one } else { other }
 }
 
-/// Keeps the state of the synchronisation point.
+/// Keeps the state of the synchronization point.
 #[derive(Default)]
 struct MidState {
     state: Option<State>,
 }
 
 impl Observer for MidState {
-    fn synchronised(&mut self, state: &State) {
+    fn synchronized(&mut self, state: &State) {
         self.state = Some(state.clone());
     }
 }
@@ -343,7 +343,7 @@ impl Observer for PassCount<'_> {
 }
 
 impl Steer for PassCount<'_> {
-    fn synchronise(&mut self, state: &mut State) -> Resume {
+    fn synchronize(&mut self, state: &mut State) -> Resume {
         if let Some(mid) = self.mid {
             self.apart = apart(state, mid);
         }

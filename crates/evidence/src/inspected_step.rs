@@ -304,7 +304,7 @@ fn keep(pairs: &mut Vec<Pair>, pair: Pair) {
 }
 
 impl Steer for Inspector<'_> {
-    fn synchronise(&mut self, state: &mut State) -> Resume {
+    fn synchronize(&mut self, state: &mut State) -> Resume {
         go_on_from(self.mid, state)
     }
 }
@@ -314,7 +314,7 @@ pub(crate) fn go_on_from(mid: Option<&State>, state: &mut State) -> Resume {
     match mid {
         Some(mid) if mid.positions.len() == state.positions.len() => {
             state.clone_from(mid);
-            Resume::Synchronised
+            Resume::Synchronized
         }
         _ => Resume::Own,
     }
@@ -392,7 +392,7 @@ impl Observer for Inspector<'_> {
         Some(self)
     }
 
-    fn synchronised(&mut self, state: &State) {
+    fn synchronized(&mut self, state: &State) {
         self.step.expected_mid = Some(state.clone());
     }
 

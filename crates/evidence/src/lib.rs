@@ -3,7 +3,7 @@
 //!
 //! Judges nothing: its caller knows which steps are wrong ([`StepRulings`]). It goes through the trace once more and
 //! holds no more than [`BUDGET`] says, so that it can be made of a trace of any length. A step starts from the trace's
-//! own state (oracle-behaviour.md 4.2), takes over the trace's mid record, and ends where the reference ends from
+//! own state (oracle-behavior.md 4.2), takes over the trace's mid record, and ends where the reference ends from
 //! there.
 //!
 //! ```

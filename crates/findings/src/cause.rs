@@ -1,6 +1,6 @@
 //! Where the two rule books differ about a trace: which rule of the original is the cause.
 //!
-//! The original's rules are written in oracle-behaviour.md 4 to 6, and why they can't be trusted in numerics.md 1.
+//! The original's rules are written in oracle-behavior.md 4 to 6, and why they can't be trusted in numerics.md 1.
 use serde::{Deserialize, Serialize};
 
 /// The rule of the original that makes the verdicts differ; the original's failures come first.

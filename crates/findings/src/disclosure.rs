@@ -15,7 +15,7 @@ pub struct Disclosure {
     pub parity: DisclosedBook,
     /// The findings of the fair rules, if they were asked.
     pub fair: Option<DisclosedBook>,
-    /// The residuals (oracle-behaviour.md 6.3), which are values: with full hints only.
+    /// The residuals (oracle-behavior.md 6.3), which are values: with full hints only.
     pub residuals: Option<Residuals>,
     /// The first damage that reading passed over.
     pub damage: Option<Damage>,

@@ -2,7 +2,7 @@
 //! results of scenes and grades.
 //!
 //! A fact has one type here, from where it arises to where somebody reads it: `judge` and `mistakes` fill these values,
-//! `grading` keeps them, `report` and `server` read them. They serialise themselves, and read back bit for bit. What
+//! `grading` keeps them, `report` and `server` read them. They serialize themselves, and read back bit for bit. What
 //! stands in the data of an assignment (known mistakes, formulas, letters) is named by its key.
 //!
 //! A finding in words:

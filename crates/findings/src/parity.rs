@@ -1,4 +1,4 @@
-//! The original's rule book on a trace: lock-step comparison (oracle-behaviour.md 4 to 6).
+//! The original's rule book on a trace: lock-step comparison (oracle-behavior.md 4 to 6).
 use super::book_findings::BookFindings;
 use fosssim_model::sim::StepError;
 use fosssim_num::tolerances::{PARITY_ACCUMULATED, PARITY_MAXIMUM};
@@ -17,7 +17,7 @@ pub enum Overall {
     None,
 }
 
-/// The four residuals (oracle-behaviour.md 6.3), in scene units.
+/// The four residuals (oracle-behavior.md 6.3), in scene units.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Residuals {
     /// Sum of all position residuals.
@@ -69,7 +69,7 @@ pub struct Judgement {
 }
 
 impl Judgement {
-    /// Draws the verdict, when nothing ended judging (oracle-behaviour.md 6).
+    /// Draws the verdict, when nothing ended judging (oracle-behavior.md 6).
     pub fn conclude(&mut self, is_stopped: bool, is_complete: bool) {
         self.findings.conclude();
         if is_stopped || self.endless.is_some() {

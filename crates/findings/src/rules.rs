@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Book {
-    /// The original's rules (oracle-behaviour.md 4 to 6).
+    /// The original's rules (oracle-behavior.md 4 to 6).
     #[default]
     Parity,
     /// The rules that round-off, scale and the course's own slip can't change (numerics.md 2).

@@ -212,7 +212,7 @@ pub fn passes(expected: usize, actual: usize, per_pass: usize) -> Option<(usize,
 }
 
 /// Returns whether a text has nothing but visible ASCII characters and blanks. Reports ask this of each of their texts,
-/// and their own crate is compiled without optimisation.
+/// and their own crate is compiled without optimization.
 #[must_use]
 pub fn is_visible_ascii(text: &str) -> bool {
     text.bytes().all(|byte| (b' '..=b'~').contains(&byte))

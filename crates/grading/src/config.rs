@@ -104,7 +104,7 @@ pub struct RunLimits {
     pub folder: u64,
     /// Files in the working folder.
     pub files: u64,
-    /// Whether programs that were built with a sanitiser may run, whose address space can't be limited.
+    /// Whether programs that were built with a sanitizer may run, whose address space can't be limited.
     pub sanitizers: bool,
 }
 

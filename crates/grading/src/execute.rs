@@ -204,7 +204,7 @@ impl Runner<'_> {
             .trace(TRACE_FILE)
             .policy(Policy::Submission)
             .folder_in_memory()
-            .sanitisers(self.limits.sanitizers)
+            .sanitizers(self.limits.sanitizers)
             .staged(identity)
             .limits(self.sandbox_limits());
         Ok((self.backend.start(&job).map_err(|error| error.to_string())?, folder))

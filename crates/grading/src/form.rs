@@ -1,4 +1,4 @@
-//! The one serialised form of results: what every place that keeps results writes.
+//! The one serialized form of results: what every place that keeps results writes.
 //!
 //! [`VERSION`] rises when anything changes its meaning that results are made of: here or in
 //! `fosssim_findings`.

@@ -1,4 +1,4 @@
-//! The common properties of scenes in which a program crashes or runs into a limit: fault localisation by spectra.
+//! The common properties of scenes in which a program crashes or runs into a limit: fault localization by spectra.
 //!
 //! A scene's spectrum is what the reference's run of it contains ([`coverage`](crate::coverage)): kinds of events, and
 //! values of their properties. A value is told where every scene that fails contains it, where it is as good as any

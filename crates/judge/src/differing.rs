@@ -1,7 +1,7 @@
 //! Which coefficients of a wrong polynomial a person would call wrong.
 //!
 //! Any positive factor is right, so the factor on which most coefficients agree is taken out first, 1 before all
-//! others. The original rescales by sums of moduli instead (oracle-behaviour.md 6.2), where one wrong coefficient moves
+//! others. The original rescales by sums of moduli instead (oracle-behavior.md 6.2), where one wrong coefficient moves
 //! all the others; its own comparison stays with [`RescaledCoefficient`](super::finding::RescaledCoefficient).
 
 /// Coefficients agree up to this share of themselves.

@@ -2,7 +2,7 @@
 //! reference first part.
 //!
 //! Knows nothing of processes and reports; it takes a scene and a reader, and yields typed findings. The rules are
-//! those of `oracle-behaviour.md`, sections 4 to 6.
+//! those of `oracle-behavior.md`, sections 4 to 6.
 //!
 //! ```
 //! use fosssim_judge::{Book, Ruling, replay};

@@ -19,7 +19,7 @@ pub struct OverlapStudy {
     pub velocities: [Vec2; 2],
     /// The nearest point of an edge, from 0 at its first end to 1 at its second.
     pub alpha: Option<f64>,
-    /// From the first object to the nearest point of the second, not normalised.
+    /// From the first object to the nearest point of the second, not normalized.
     pub normal: Vec2,
     /// The distance at which the objects touch: the sum of their radii.
     pub reach: f64,
@@ -81,20 +81,20 @@ impl Observer for PairWatch<'_> {
         let (first, second) = (pair.first as usize, pair.second as usize);
         let end = |point: PointMotion| point.start + point.shift;
         let (alpha, normal, reach, other) = match motion {
-            PairMotion::Particles { centres, radii } => {
-                (None, end(centres[1]) - end(centres[0]), radii[0] + radii[1], at(velocities, second))
+            PairMotion::Particles { centers, radii } => {
+                (None, end(centers[1]) - end(centers[0]), radii[0] + radii[1], at(velocities, second))
             }
-            PairMotion::Edge { centre, ends, radii } => {
-                let [x1, x2, x3] = [centre, ends[0], ends[1]].map(end);
+            PairMotion::Edge { center, ends, radii } => {
+                let [x1, x2, x3] = [center, ends[0], ends[1]].map(end);
                 let along = x3 - x2;
                 let alpha = ((x1 - x2).dot(&along) / along.dot(&along)).clamp(0.0, 1.0);
                 let edge = &self.scene.edges[second];
                 let [v2, v3] = [edge.first, edge.second].map(|particle| at(velocities, particle));
                 (Some(alpha), x2 + alpha * along - x1, radii[0] + radii[1], v2 + alpha * (v3 - v2))
             }
-            PairMotion::HalfPlane { centre, radius, point, normal } => {
+            PairMotion::HalfPlane { center, radius, point, normal } => {
                 let out = (1.0 / length(normal)) * normal;
-                (None, (point - end(centre)).dot(&out) * out, radius, Vec2::zeros())
+                (None, (point - end(center)).dot(&out) * out, radius, Vec2::zeros())
             }
         };
         let velocities = [at(velocities, first), other];

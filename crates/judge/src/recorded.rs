@@ -2,7 +2,7 @@
 //!
 //! Unlike lock step, errors accumulate here: after the first difference the two runs are two different runs, and what
 //! follows says little. But nothing is taken over from the submission, so wrong initial states, responses and
-//! integrators show, which the original's rules let pass (oracle-behaviour.md 8.1 to 8.3). Both frames of a step are
+//! integrators show, which the original's rules let pass (oracle-behavior.md 8.1 to 8.3). Both frames of a step are
 //! compared, and the initial record.
 use super::{
     finding::{PolynomialPlace, Role},

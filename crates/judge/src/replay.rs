@@ -1,7 +1,7 @@
 //! Reads the trace step by step, has the steps judged in batches, and puts the results together in their order.
 //!
 //! Once a step's frames are in memory the step depends on nothing else: the reference starts from the submission's own
-//! state (oracle-behaviour.md 4.2). So while one batch is judged, on all threads, the next one is read. What is
+//! state (oracle-behavior.md 4.2). So while one batch is judged, on all threads, the next one is read. What is
 //! reported, and in which order, does not depend on the number of threads.
 mod contest;
 mod workers;
@@ -79,7 +79,7 @@ struct Batch {
 }
 
 /// Judges a trace by both books, as the original does in lock step with the reference: each step starts from the
-/// trace's own state, takes over its mid record, and is compared with its end record (oracle-behaviour.md 4 to 6).
+/// trace's own state, takes over its mid record, and is compared with its end record (oracle-behavior.md 4 to 6).
 /// Memory does not depend on the trace's length. What follows the last record is not read, save for one byte that tells
 /// whether it is there.
 pub fn judge<R: Read + Send>(scene: &Scene, mut trace: R, options: &Options, progress: &mut dyn Progress) -> Outcome {

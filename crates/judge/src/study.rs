@@ -196,10 +196,10 @@ impl From<&PairMotion> for formulas::BoundedPairMotion {
         let way = formulas::BoundedPointMotion::from;
         let sum = |radii: [f64; 2]| Bounded::exact(radii[0]) + Bounded::exact(radii[1]);
         match *motion {
-            PairMotion::Particles { centres, radii } => Self::Particles(centres.map(way), sum(radii)),
-            PairMotion::Edge { centre, ends, radii } => Self::Edge([centre, ends[0], ends[1]].map(way), sum(radii)),
-            PairMotion::HalfPlane { centre, radius, point, normal } => {
-                Self::HalfPlane(way(centre), Bounded::exact(radius), point, normal)
+            PairMotion::Particles { centers, radii } => Self::Particles(centers.map(way), sum(radii)),
+            PairMotion::Edge { center, ends, radii } => Self::Edge([center, ends[0], ends[1]].map(way), sum(radii)),
+            PairMotion::HalfPlane { center, radius, point, normal } => {
+                Self::HalfPlane(way(center), Bounded::exact(radius), point, normal)
             }
         }
     }
@@ -217,7 +217,7 @@ mod tests {
     /// Returns the assignment's first worked example.
     fn first_example() -> PairMotion {
         PairMotion::Edge {
-            centre: point(3.0, 1.0, 4.0, 1.0),
+            center: point(3.0, 1.0, 4.0, 1.0),
             ends: [point(5.0, 9.0, 2.0, 6.0), point(5.0, 3.0, 5.0, 8.0)],
             radii: [1.0, 1.0],
         }
@@ -229,7 +229,7 @@ mod tests {
         assert_eq!(study.curves[0].logged.coefficients(), [-361.0, -304.0, -468.0, -288.0, 0.0]);
         assert!(!study.answer.decision.collides());
         let second = PairMotion::Edge {
-            centre: point(1.0, 4.0, 1.0, 4.0),
+            center: point(1.0, 4.0, 1.0, 4.0),
             ends: [point(2.0, 1.0, 3.0, 5.0), point(6.0, 2.0, 3.0, 7.0)],
             radii: [1.0, 2.0],
         };
@@ -243,7 +243,7 @@ mod tests {
     #[test]
     fn the_common_set_begins_at_the_time_of_impact() {
         let motion = PairMotion::Edge {
-            centre: point(0.0, 1.0, 0.25, -2.0),
+            center: point(0.0, 1.0, 0.25, -2.0),
             ends: [point(-1.0, 0.0, 0.0, 0.5), point(1.0, 0.0, 0.5, 0.125)],
             radii: [0.125, 0.125],
         };
@@ -264,7 +264,7 @@ mod tests {
     #[test]
     fn an_edge_that_only_translates_has_no_other_approach() {
         let motion = PairMotion::Edge {
-            centre: point(0.0, 1.0, 0.0, -0.5),
+            center: point(0.0, 1.0, 0.0, -0.5),
             ends: [point(-1.0, 0.0, 0.0, 0.5), point(1.0, 0.0, 0.0, 0.5)],
             radii: [0.125, 0.125],
         };
@@ -274,7 +274,7 @@ mod tests {
     #[test]
     fn touching_at_the_end_of_the_step_hangs_on_round_off_unless_the_numbers_are_short() {
         let particles = |gap: f64, radius: f64| PairMotion::Particles {
-            centres: [point(0.0, 0.0, 0.0, 0.0), point(gap, 0.0, 2.0 * radius - gap, 0.0)],
+            centers: [point(0.0, 0.0, 0.0, 0.0), point(gap, 0.0, 2.0 * radius - gap, 0.0)],
             radii: [radius; 2],
         };
         assert_eq!(Study::for_motion(&particles(0.7, 0.1)).unwrap().certain, None);
@@ -283,9 +283,9 @@ mod tests {
 
     #[test]
     fn numbers_that_overflow_have_no_answer() {
-        let PairMotion::Edge { centre, ends, radii } = first_example() else { unreachable!() };
-        let huge = PointMotion { start: Vec2::new(1e200, 0.0), ..centre };
-        let refused = Study::for_motion(&PairMotion::Edge { centre: huge, ends, radii }).unwrap_err();
+        let PairMotion::Edge { center, ends, radii } = first_example() else { unreachable!() };
+        let huge = PointMotion { start: Vec2::new(1e200, 0.0), ..center };
+        let refused = Study::for_motion(&PairMotion::Edge { center: huge, ends, radii }).unwrap_err();
         assert_eq!(refused.role, Role::Overlap);
         assert_eq!(refused.to_string(), "the root search of the overlap polynomial does not end");
     }

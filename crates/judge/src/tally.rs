@@ -2,7 +2,7 @@
 //!
 //! [`Tally`] is the observer of that step: every polynomial is compared with the next one of the trace's list at the
 //! end of its pass, so nothing of the reference's log is stored but one pass. Only at the end of the step is it known
-//! whether the two lists have the same length; findings about polynomials count only then (oracle-behaviour.md 6.2).
+//! whether the two lists have the same length; findings about polynomials count only then (oracle-behavior.md 6.2).
 mod pending;
 
 use pending::Pending;
@@ -27,7 +27,7 @@ use fosssim_num::{
 
 /// Below this sum of moduli, coefficients that are equal bit for bit always pass the original's comparison: `(O*s)/s`
 /// differs from `O` by at most two roundings, 2 * 2^-53 * 1e5, which is less than a quarter of
-/// [`PARITY_COEFFICIENT`]. Above it the original may reject even its own output (oracle-behaviour.md 8.10), so the
+/// [`PARITY_COEFFICIENT`]. Above it the original may reject even its own output (oracle-behavior.md 8.10), so the
 /// comparison is made as it is written.
 const SAFE_SUM: f64 = 1e5;
 
@@ -183,7 +183,7 @@ impl<'a> Tally<'a> {
         Finding { step: self.step, frame: self.frame_number, detail }
     }
 
-    /// Compares the impulses: missed, superfluous, wrong normals, printed in this order (oracle-behaviour.md 6.1).
+    /// Compares the impulses: missed, superfluous, wrong normals, printed in this order (oracle-behavior.md 6.1).
     fn compare_impulses(&mut self) {
         let own = std::mem::take(&mut self.buffers.impulses);
         let theirs = &self.frame.impulses;
@@ -214,7 +214,7 @@ impl<'a> Tally<'a> {
         self.buffers.impulses = own;
     }
 
-    /// Settles the findings about polynomials: a wrong number of them is the only finding (oracle-behaviour.md 6.2).
+    /// Settles the findings about polynomials: a wrong number of them is the only finding (oracle-behavior.md 6.2).
     fn settle_polynomials(&mut self) {
         let actual = self.frame.logged;
         if actual != self.polynomials {
@@ -227,7 +227,7 @@ impl<'a> Tally<'a> {
         self.buffers.pending.settle(self.result);
     }
 
-    /// Compares the states by Euclidean residuals per particle (oracle-behaviour.md 6.3).
+    /// Compares the states by Euclidean residuals per particle (oracle-behavior.md 6.3).
     fn compare_states(&mut self, reference: &State) {
         let (mut positions, mut velocities) = (0, 0);
         for particle in 0..reference.positions.len() / 2 {
@@ -255,7 +255,7 @@ impl<'a> Tally<'a> {
         debug_assert_eq!(self.result.counts.get(FindingKind::Velocity), velocities);
     }
 
-    /// Compares the next polynomial of the reference, as oracle-behaviour.md 6.2 does; `place` says where it belongs,
+    /// Compares the next polynomial of the reference, as oracle-behavior.md 6.2 does; `place` says where it belongs,
     /// should that be needed.
     pub(super) fn compare_polynomial(&mut self, expected: &[f64], place: impl Fn() -> PolynomialPlace) {
         let index = self.polynomials;
@@ -323,14 +323,14 @@ impl Observer for Tally<'_> {
         }
     }
 
-    /// Takes over the mid record's state without comparing it (oracle-behaviour.md 4.2).
+    /// Takes over the mid record's state without comparing it (oracle-behavior.md 4.2).
     fn steers(&mut self) -> Option<&mut dyn Steer> {
         Some(self)
     }
 }
 
 impl Steer for Tally<'_> {
-    fn synchronise(&mut self, state: &mut State) -> Resume {
+    fn synchronize(&mut self, state: &mut State) -> Resume {
         if let Some(mid) = self.mid {
             self.identical &= mid.logged == self.polynomials && same_state(state, &mid.state);
             state.clone_from(&mid.state);
@@ -339,7 +339,7 @@ impl Steer for Tally<'_> {
     }
 }
 
-/// Adds one step's residuals in the original's order: particle by particle (oracle-behaviour.md 6.3).
+/// Adds one step's residuals in the original's order: particle by particle (oracle-behavior.md 6.3).
 pub(super) fn accumulate(total: &mut Residuals, step: &[(f64, f64)]) {
     for &(position, velocity) in step {
         total.accumulated_position += position;
@@ -358,7 +358,7 @@ fn same_state(own: &State, other: &State) -> bool {
     same_bits(&own.positions, &other.positions) && same_bits(&own.velocities, &other.velocities)
 }
 
-/// Returns whether the original finds nothing about a polynomial (oracle-behaviour.md 6.2): it is right up to a factor,
+/// Returns whether the original finds nothing about a polynomial (oracle-behavior.md 6.2): it is right up to a factor,
 /// or zero, or holds what is no number.
 fn passes(own: &[f64], actual: &[f64]) -> bool {
     let (sum_actual, sum_own) = (sum_of_moduli(actual), sum_of_moduli(own));

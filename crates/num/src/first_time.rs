@@ -116,7 +116,7 @@ fn counted(coefficients: &[f64], steps: &mut u64) -> Result<PositiveSet, DoesNot
     if evaluate(coefficients, last + 1.0) > 0.0 {
         set.push(Interval { lo: last, hi: f64::INFINITY });
     }
-    set.normalise();
+    set.normalize();
     Ok(set)
 }
 

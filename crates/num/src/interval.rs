@@ -24,7 +24,7 @@ impl Interval {
     }
 }
 
-/// A list of at most `CAPACITY` intervals, normalised unless it is just being filled.
+/// A list of at most `CAPACITY` intervals, normalized unless it is just being filled.
 ///
 /// The positive set of a polynomial of degree six has at most four intervals, that of a parabola two; each further
 /// polynomial of an intersection adds at most one less than it has itself.
@@ -55,9 +55,9 @@ impl<const CAPACITY: usize> Intervals<CAPACITY> {
         self.length += 1;
     }
 
-    /// Sorts by `lo` (stable) and merges neighbours that touch (root-finder.md 15.4).
+    /// Sorts by `lo` (stable) and merges neighbors that touch (root-finder.md 15.4).
     #[inline]
-    pub fn normalise(&mut self) {
+    pub fn normalize(&mut self) {
         if self.length < 2 {
             return;
         }
@@ -98,7 +98,7 @@ impl<const CAPACITY: usize> Intervals<CAPACITY> {
                 }
             }
         }
-        both.normalise();
+        both.normalize();
         both
     }
 
@@ -127,7 +127,7 @@ mod tests {
         for &(lo, hi) in list {
             intervals.push(Interval { lo, hi });
         }
-        intervals.normalise();
+        intervals.normalize();
         intervals
     }
 
@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn normalising_sorts_and_merges_what_touches() {
+    fn normalizing_sorts_and_merges_what_touches() {
         assert_eq!(pairs(&intervals(&[(3.0, 4.0), (0.0, 1.0), (1.0, 2.0)])), [(0.0, 2.0), (3.0, 4.0)]);
         assert_eq!(pairs(&intervals(&[(0.0, 5.0), (1.0, 2.0), (6.0, 7.0)])), [(0.0, 5.0), (6.0, 7.0)]);
     }

@@ -1,4 +1,4 @@
-//! Numbers as C++ streams print them by default, `%g` with six significant digits (`oracle-behaviour.md`, head), and in
+//! Numbers as C++ streams print them by default, `%g` with six significant digits (`oracle-behavior.md`, head), and in
 //! the shortest exact form.
 
 /// The number of significant digits of C++ streams.

@@ -7,19 +7,19 @@ pub const LEADING_COEFFICIENT: f64 = 1e-12;
 /// Zeros whose imaginary part is below this count as real (absolute, strict; root-finder.md 15.3).
 pub const IMAGINARY_PART: f64 = 1e-8;
 
-/// Parity: contact normals may differ by this Euclidean distance (scene length unit; oracle-behaviour.md 6).
+/// Parity: contact normals may differ by this Euclidean distance (scene length unit; oracle-behavior.md 6).
 pub const PARITY_NORMAL: f64 = 1e-9;
 
-/// Parity: a rescaled coefficient may differ by this (absolute, whatever its size; oracle-behaviour.md 6).
+/// Parity: a rescaled coefficient may differ by this (absolute, whatever its size; oracle-behavior.md 6).
 pub const PARITY_COEFFICIENT: f64 = 1e-10;
 
-/// Parity: polynomials whose coefficients' moduli sum to less than this count as zero (oracle-behaviour.md 6).
+/// Parity: polynomials whose coefficients' moduli sum to less than this count as zero (oracle-behavior.md 6).
 pub const PARITY_ZERO_POLYNOMIAL: f64 = 1e-10;
 
-/// Parity: bound of the accumulated position and velocity residuals (strict; oracle-behaviour.md 6).
+/// Parity: bound of the accumulated position and velocity residuals (strict; oracle-behavior.md 6).
 pub const PARITY_ACCUMULATED: f64 = 1e-6;
 
-/// Parity: bound of the maximum position and velocity residuals (strict; oracle-behaviour.md 6).
+/// Parity: bound of the maximum position and velocity residuals (strict; oracle-behavior.md 6).
 pub const PARITY_MAXIMUM: f64 = 1e-10;
 
 /// In the contest bodies that are closer than this leave each other alone (scene length unit; simulation.md 3.1).

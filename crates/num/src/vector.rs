@@ -1,7 +1,7 @@
 //! Two-dimensional vectors with the original's order of operations.
 //!
 //! They are nalgebra's, whose sums, products and inner product are rounded as the specification says (`simulation.md`,
-//! conventions). **Nobody divides or normalises them with nalgebra's operations**: the original multiplies by the
+//! conventions). **Nobody divides or normalizes them with nalgebra's operations**: the original multiplies by the
 //! reciprocal where a library divides each component. Use [`over`] and [`unit`](fn@unit); the lints of the numeric
 //! crates hold this.
 use nalgebra::{MatrixView2xX, Vector2};

@@ -1,4 +1,4 @@
-//! Numbers in serialised values: they read back bit for bit, but for the bits of a NaN.
+//! Numbers in serialized values: they read back bit for bit, but for the bits of a NaN.
 //!
 //! Formats such as JSON have no number for what is not finite, which is written as C++ prints it ([`general`]). Fields
 //! of numbers say `#[serde(with = "fosssim_num::written")]`.
@@ -6,7 +6,7 @@ use super::{printed::general, vector::Vec2};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::DeserializeOwned, de::Error};
 use std::borrow::Cow;
 
-/// A number in its serialised form: `nan`, `-nan`, `inf` and `-inf` are texts.
+/// A number in its serialized form: `nan`, `-nan`, `inf` and `-inf` are texts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Number(pub f64);
 
@@ -49,7 +49,7 @@ impl schemars::JsonSchema for Number {
 
 /// A type that is made of numbers and written as such.
 pub trait Written: Sized {
-    /// The value's serialised form.
+    /// The value's serialized form.
     type Form: Serialize + DeserializeOwned;
     /// Writes the value in its form.
     fn write(&self) -> Self::Form;
@@ -110,7 +110,7 @@ impl<T: Written> Written for Option<T> {
 /// Serializes for serde's `with`.
 ///
 /// # Errors
-/// Those of the serialiser.
+/// Those of the serializer.
 pub fn serialize<T: Written, S: Serializer>(value: &T, serializer: S) -> Result<S::Ok, S::Error> {
     value.write().serialize(serializer)
 }
@@ -118,7 +118,7 @@ pub fn serialize<T: Written, S: Serializer>(value: &T, serializer: S) -> Result<
 /// Deserializes for serde's `with`.
 ///
 /// # Errors
-/// Those of the deserialiser, and where a text is no number.
+/// Those of the deserializer, and where a text is no number.
 pub fn deserialize<'de, T: Written, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
     T::Form::deserialize(deserializer).map(T::read)
 }

@@ -1,4 +1,4 @@
-//! The original's command line (oracle-behaviour.md 1): the parsed arguments, or the words and exit code of an error.
+//! The original's command line (oracle-behavior.md 1): the parsed arguments, or the words and exit code of an error.
 //!
 //! Words are bytes: file names that are not UTF-8 pass through. The rules are those of the argument library that the
 //! original uses: value and flag are separate words, the first word that makes no sense ends the program, `--help` and

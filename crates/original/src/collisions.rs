@@ -1,4 +1,4 @@
-//! The original's words about collisions that do not match (oracle-behaviour.md 6.1).
+//! The original's words about collisions that do not match (oracle-behavior.md 6.1).
 use fosssim_judge::replay::Remark;
 use fosssim_model::trace::LoggedImpulse;
 use fosssim_num::{printed::general, vector::Vec2};

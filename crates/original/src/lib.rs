@@ -1,4 +1,4 @@
-//! The drop-in for the original program: its flags, its output, its files and its exit codes (oracle-behaviour.md).
+//! The drop-in for the original program: its flags, its output, its files and its exit codes (oracle-behavior.md).
 //!
 //! Where the original crashes, hangs or runs out of memory, or needs a window, a clear message goes to standard error
 //! and the exit code is 1. Files are written through, as the original does: a course's script may watch them, link

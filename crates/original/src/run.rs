@@ -1,4 +1,4 @@
-//! Recording and grading as the original does them (oracle-behaviour.md 2).
+//! Recording and grading as the original does them (oracle-behavior.md 2).
 use crate::{
     Outside, Pictures,
     arguments::Arguments,

@@ -1,4 +1,4 @@
-//! The original's standard output as a state machine over events (oracle-behaviour.md 3, 5, 6).
+//! The original's standard output as a state machine over events (oracle-behavior.md 3, 5, 6).
 use crate::{
     collisions, verdict,
     words::{BLUE, GREEN, PINK, PLAIN, RED},
@@ -108,7 +108,7 @@ impl<'a, W: Write> Transcript<'a, W> {
                 self.write(text.as_bytes());
             }
             Some(Stop::Trace { cause: Unreadable::Impulses, .. }) => {
-                // The original never switches this colour off.
+                // The original never switches this color off.
                 let text = format!("{RED}Error while trying to deserialize time step impulses. Exiting.\n");
                 self.write(text.as_bytes());
             }

@@ -1,4 +1,4 @@
-//! The original's closing words about residuals, and the text of `residual.txt` (oracle-behaviour.md 6).
+//! The original's closing words about residuals, and the text of `residual.txt` (oracle-behavior.md 6).
 use crate::words::{PINK, PLAIN};
 use fosssim_judge::{Outcome, Overall, Residuals};
 use fosssim_model::assignments::Definition;

@@ -1,13 +1,13 @@
-//! The original's words on standard error, and its colours, which are part of the text in files and pipes, too.
+//! The original's words on standard error, and its colors, which are part of the text in files and pipes, too.
 
-/// Ends every colour.
+/// Ends every color.
 pub(crate) const PLAIN: &str = "\x1b[m";
 pub(crate) const RED: &str = "\x1b[31;1m";
 pub(crate) const GREEN: &str = "\x1b[32;1m";
 pub(crate) const BLUE: &str = "\x1b[34;1m";
 pub(crate) const PINK: &str = "\x1b[35;1m";
 
-/// Returns the line on standard error when a file, the `input` or the `output`, can't be opened (oracle-behaviour.md
+/// Returns the line on standard error when a file, the `input` or the `output`, can't be opened (oracle-behavior.md
 /// 2).
 pub(crate) fn not_opened(which: &str, name: &[u8]) -> Vec<u8> {
     let start = format!("{RED}ERROR IN INITIALIZATION: {PLAIN}Failed to open binary {which} file:  `");
@@ -18,8 +18,8 @@ pub(crate) fn not_opened(which: &str, name: &[u8]) -> Vec<u8> {
 pub(crate) const NO_VORTEX_HESSIAN: &str =
     "\x1b[31;1mERROR IN VORTEXFORCE: \x1b[mNo addHessXToTotal defined for VortexForce.\n";
 
-/// The line on standard error when the folder for pictures is missing (oracle-behaviour.md 1).
+/// The line on standard error when the folder for pictures is missing (oracle-behavior.md 1).
 pub const NO_PICTURE_FOLDER: &str = "Failure writing SVG file!\n";
 
-/// The line on standard error when a trace is to be graded and recorded at once (oracle-behaviour.md 1).
+/// The line on standard error when a trace is to be graded and recorded at once (oracle-behavior.md 1).
 pub(crate) const INPUT_AND_OUTPUT: &str = "error: arguments i and o -- arguments i and o specified simultaneously\n";

@@ -6,7 +6,7 @@
 //! run time.
 //!
 //! A motion goes `Painter` (positions to [`shape::Shape`]s) to `svg` or `raster`, and from there to a `film`. Plots are
-//! SVG made of numbers; they tell series apart by dash and marker and not by colour alone, and need no script.
+//! SVG made of numbers; they tell series apart by dash and marker and not by color alone, and need no script.
 //!
 //! ```
 //! use fosssim_render::{Extent, Painter, PictureOptions, Size, svg};
@@ -26,7 +26,7 @@
 #![forbid(unsafe_code)]
 
 mod clip;
-pub mod colour;
+pub mod color;
 pub mod detection;
 pub mod film;
 mod font;

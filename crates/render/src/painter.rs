@@ -1,7 +1,7 @@
 //! From the positions of a scene's bodies to the shapes of a picture.
 use crate::{
     clip::ClipRectangle,
-    colour::Colour,
+    color::Rgb,
     number::short,
     shape::{Paint, Point, Shape},
     size::Size,
@@ -38,11 +38,11 @@ pub struct Painter {
     view: View,
     label: bool,
     time_step: f64,
-    background: Colour,
+    background: Rgb,
     radii: Vec<f64>,
-    particles: Vec<Colour>,
-    edges: Vec<([usize; 2], f64, Colour)>,
-    half_planes: Vec<(Vec2, Vec2, Colour)>,
+    particles: Vec<Rgb>,
+    edges: Vec<([usize; 2], f64, Rgb)>,
+    half_planes: Vec<(Vec2, Vec2, Rgb)>,
     trails: Vec<Trail>,
 }
 
@@ -50,7 +50,7 @@ pub struct Painter {
 #[derive(Debug, Clone)]
 struct Trail {
     particle: usize,
-    colour: Colour,
+    color: Rgb,
     duration: f64,
     /// Times and places, oldest first.
     points: VecDeque<(f64, Vec2)>,
@@ -61,33 +61,33 @@ impl Painter {
     #[must_use]
     pub fn new(scene: &Scene, extent: &Extent, options: PictureOptions) -> Self {
         let display = &scene.display;
-        // Later elements win; indices that name nothing are the original's undefined behaviour and colour nothing.
-        let coloured = |count: usize, default: Colour, list: &[(usize, Color)]| {
-            let mut colours = vec![default; count];
-            for &(index, colour) in list {
-                if let Some(place) = colours.get_mut(index) {
-                    *place = colour.into();
+        // Later elements win; indices that name nothing are the original's undefined behavior and color nothing.
+        let colored = |count: usize, default: Rgb, list: &[(usize, Color)]| {
+            let mut colors = vec![default; count];
+            for &(index, color) in list {
+                if let Some(place) = colors.get_mut(index) {
+                    *place = color.into();
                 }
             }
-            colours
+            colors
         };
-        let particles = coloured(scene.particles.len(), Colour::PARTICLE, &display.particle_colors);
-        let edges = coloured(scene.edges.len(), Colour::EDGE, &display.edge_colors);
-        let half_planes = coloured(scene.half_planes.len(), Colour::BLACK, &display.half_plane_colors);
+        let particles = colored(scene.particles.len(), Rgb::PARTICLE, &display.particle_colors);
+        let edges = colored(scene.edges.len(), Rgb::EDGE, &display.edge_colors);
+        let half_planes = colored(scene.half_planes.len(), Rgb::BLACK, &display.half_plane_colors);
         let paths = display.paths.iter().filter(|path| path.particle < scene.particles.len());
         Self {
             view: View::for_scene(scene, extent, options.size),
             label: options.label,
             time_step: scene.time_step,
-            background: display.background.map_or(Colour::WHITE, Colour::from),
+            background: display.background.map_or(Rgb::WHITE, Rgb::from),
             radii: scene.particles.iter().map(|particle| particle.radius).collect(),
             particles,
-            edges: scene.edges.iter().zip(edges).map(|(e, colour)| ([e.first, e.second], e.radius, colour)).collect(),
+            edges: scene.edges.iter().zip(edges).map(|(e, color)| ([e.first, e.second], e.radius, color)).collect(),
             half_planes: scene.half_planes.iter().zip(half_planes).map(|(h, c)| (h.point, h.normal, c)).collect(),
             trails: paths
                 .map(|path| Trail {
                     particle: path.particle,
-                    colour: path.color.into(),
+                    color: path.color.into(),
                     duration: path.duration,
                     points: VecDeque::new(),
                 })
@@ -101,28 +101,28 @@ impl Painter {
         self.view.size()
     }
 
-    /// Returns the colour behind everything.
+    /// Returns the color behind everything.
     #[must_use]
-    pub const fn background(&self) -> Colour {
+    pub const fn background(&self) -> Rgb {
         self.background
     }
 
-    /// Returns all colours that pictures are made of, the background first.
+    /// Returns all colors that pictures are made of, the background first.
     #[must_use]
-    pub fn colours(&self) -> Vec<Colour> {
-        let mut colours = vec![self.background, self.background.ink(), self.overlay_colour()];
-        colours.extend(self.trails.iter().map(|trail| trail.colour));
-        colours.extend(&self.particles);
-        colours.extend(self.edges.iter().map(|edge| edge.2));
-        colours.extend(self.half_planes.iter().map(|half_plane| half_plane.2));
+    pub fn colors(&self) -> Vec<Rgb> {
+        let mut colors = vec![self.background, self.background.ink(), self.overlay_color()];
+        colors.extend(self.trails.iter().map(|trail| trail.color));
+        colors.extend(&self.particles);
+        colors.extend(self.edges.iter().map(|edge| edge.2));
+        colors.extend(self.half_planes.iter().map(|half_plane| half_plane.2));
         let mut seen = std::collections::BTreeSet::new();
-        colours.retain(|&colour| seen.insert(colour));
-        colours
+        colors.retain(|&color| seen.insert(color));
+        colors
     }
 
-    /// Returns the colour of a second motion: it stands out against light and dark backgrounds.
-    fn overlay_colour(&self) -> Colour {
-        if self.background.brightness() > 127 { Colour([178, 0, 110]) } else { Colour([255, 140, 220]) }
+    /// Returns the color of a second motion: it stands out against light and dark backgrounds.
+    fn overlay_color(&self) -> Rgb {
+        if self.background.brightness() > 127 { Rgb([178, 0, 110]) } else { Rgb([255, 140, 220]) }
     }
 
     /// Returns the picture after `step`, at these positions (2N, trace order), with a second motion's on top. Pictures
@@ -134,8 +134,8 @@ impl Painter {
     pub fn picture(&mut self, step: u32, positions: &[f64], overlay: Option<&[f64]>) -> Vec<Shape> {
         let time = f64::from(step) * self.time_step;
         let mut shapes = Vec::new();
-        for &(point, normal, colour) in &self.half_planes {
-            self.half_plane(point, normal, colour, &mut shapes);
+        for &(point, normal, color) in &self.half_planes {
+            self.half_plane(point, normal, color, &mut shapes);
         }
         let (view, frame) = (self.view, self.frame(4.0));
         for trail in &mut self.trails {
@@ -144,7 +144,7 @@ impl Painter {
         }
         self.bodies(positions, None, &mut shapes);
         if let Some(other) = overlay {
-            self.bodies(other, Some(Paint::Dashed(self.overlay_colour())), &mut shapes);
+            self.bodies(other, Some(Paint::Dashed(self.overlay_color())), &mut shapes);
         }
         if self.label {
             self.write(step, time, &mut shapes);
@@ -152,15 +152,15 @@ impl Painter {
         shapes
     }
 
-    /// Edges and particles: in their own colours, or all of them as an overlay's thin outlines.
+    /// Edges and particles: in their own colors, or all of them as an overlay's thin outlines.
     fn bodies(&self, positions: &[f64], overlay: Option<Paint>, shapes: &mut Vec<Shape>) {
-        for &(ends, radius, colour) in &self.edges {
+        for &(ends, radius, color) in &self.edges {
             let [first, second] = ends.map(|end| at(positions, end));
             let radius = if overlay.is_some() { 0.0 } else { radius };
-            self.edge(first, second, radius, overlay.unwrap_or(Paint::Solid(colour)), shapes);
+            self.edge(first, second, radius, overlay.unwrap_or(Paint::Solid(color)), shapes);
         }
-        for (index, (&radius, &colour)) in self.radii.iter().zip(&self.particles).enumerate() {
-            self.disc(at(positions, index), radius, overlay.unwrap_or(Paint::Solid(colour)), shapes);
+        for (index, (&radius, &color)) in self.radii.iter().zip(&self.particles).enumerate() {
+            self.disc(at(positions, index), radius, overlay.unwrap_or(Paint::Solid(color)), shapes);
         }
     }
 
@@ -193,7 +193,7 @@ impl Painter {
         if matches!(paint, Paint::Dashed(_)) {
             return;
         }
-        // Its edge looks straight here, and lies across the way from its centre.
+        // Its edge looks straight here, and lies across the way from its center.
         let points = match distance > 0.0 {
             true => {
                 let unit = [away[0] / distance, away[1] / distance];
@@ -213,7 +213,7 @@ impl Painter {
         }
     }
 
-    fn half_plane(&self, point: Vec2, normal: Vec2, colour: Colour, shapes: &mut Vec<Shape>) {
+    fn half_plane(&self, point: Vec2, normal: Vec2, color: Rgb, shapes: &mut Vec<Shape>) {
         let place = self.view.place(point);
         // In the picture y points down.
         let (x, y) = (normal.x, -normal.y);
@@ -225,7 +225,7 @@ impl Painter {
         let above = |[x, y]: Point| (x - place[0]) * unit[0] + (y - place[1]) * unit[1];
         let points = self.frame(4.0).side(|point| -above(point));
         if points.len() > 2 {
-            shapes.push(Shape::Area { points, paint: Paint::Faint(colour, INSIDE) });
+            shapes.push(Shape::Area { points, paint: Paint::Faint(color, INSIDE) });
         }
         // The boundary, as far as it can be seen: through its point nearest to the middle of the picture.
         let size = self.size();
@@ -236,14 +236,14 @@ impl Painter {
         let along = [-unit[1] * reach, unit[0] * reach];
         let ends = [[near[0] - along[0], near[1] - along[1]], [near[0] + along[0], near[1] + along[1]]];
         if let Some(ends) = self.frame(4.0).line(ends[0], ends[1]) {
-            shapes.push(Shape::Line { points: ends.to_vec(), width: 2.0, paint: Paint::Solid(colour) });
+            shapes.push(Shape::Line { points: ends.to_vec(), width: 2.0, paint: Paint::Solid(color) });
         }
     }
 
     fn write(&self, step: u32, time: f64, shapes: &mut Vec<Shape>) {
         let place = [8.0, f64::from(self.size().height()) - 8.0];
         let text = format!("step {step}  t {}", short(time));
-        shapes.push(Shape::Text { place, text, colour: self.background.ink() });
+        shapes.push(Shape::Text { place, text, color: self.background.ink() });
     }
 }
 
@@ -269,7 +269,7 @@ impl Trail {
         let mut finish = |piece: &mut Vec<Point>| {
             if piece.len() > 1 {
                 let points = std::mem::take(piece);
-                shapes.push(Shape::Line { points, width: THINNEST, paint: Paint::Solid(self.colour) });
+                shapes.push(Shape::Line { points, width: THINNEST, paint: Paint::Solid(self.color) });
             }
             piece.clear();
         };
@@ -307,25 +307,22 @@ mod tests {
     }
 
     #[test]
-    fn bodies_have_the_scenes_own_colours_and_places() {
+    fn bodies_have_the_scenes_own_colors_and_places() {
         let shapes = painter(SCENE).picture(3, &[-1.0, 0.0, 1.0, 0.0], None);
-        let green = Paint::Solid(Colour([0, 255, 0]));
+        let green = Paint::Solid(Rgb([0, 255, 0]));
         assert!(shapes.contains(&Shape::Disc {
             center: [100.0, 200.0],
             radius: 50.0,
-            paint: Paint::Solid(Colour::PARTICLE)
+            paint: Paint::Solid(Rgb::PARTICLE)
         }));
         assert!(shapes.contains(&Shape::Disc { center: [300.0, 200.0], radius: 25.0, paint: green }));
-        let line = Shape::Line {
-            points: vec![[100.0, 200.0], [300.0, 200.0]],
-            width: 20.0,
-            paint: Paint::Solid(Colour::EDGE),
-        };
+        let line =
+            Shape::Line { points: vec![[100.0, 200.0], [300.0, 200.0]], width: 20.0, paint: Paint::Solid(Rgb::EDGE) };
         assert!(shapes.contains(&line), "{shapes:?}");
         // The half-plane's inside is below its boundary, that is where y is larger.
         let Shape::Area { points, .. } = &shapes[0] else { panic!("{shapes:?}") };
         assert!(points.iter().all(|point| point[1] >= 300.0), "{points:?}");
-        let text = Shape::Text { place: [8.0, 392.0], text: "step 3  t 0.3".into(), colour: Colour::WHITE };
+        let text = Shape::Text { place: [8.0, 392.0], text: "step 3  t 0.3".into(), color: Rgb::WHITE };
         assert_eq!(shapes.last(), Some(&text));
     }
 
@@ -341,7 +338,7 @@ mod tests {
     #[test]
     fn paths_last_as_long_as_the_scene_says() {
         let mut painter = painter(SCENE);
-        let yellow = Paint::Solid(Colour([255, 255, 0]));
+        let yellow = Paint::Solid(Rgb([255, 255, 0]));
         let lengths: Vec<usize> = (0..6)
             .map(|step| {
                 let x = 1.0 - 0.1 * f64::from(step);

@@ -1,6 +1,6 @@
 //! Shapes as pixels, by tiny-skia without vector instructions: the same shapes give the same pixels on every run.
 use crate::{
-    colour::Colour,
+    color::Rgb,
     font,
     shape::{Paint, Point, Shape},
     size::Size,
@@ -44,7 +44,7 @@ impl Raster {
     }
 
     /// Replaces the picture by these shapes.
-    pub fn draw(&mut self, background: Colour, shapes: &[Shape]) {
+    pub fn draw(&mut self, background: Rgb, shapes: &[Shape]) {
         let [red, green, blue] = background.0;
         self.pixels.fill(tiny_skia::Color::from_rgba8(red, green, blue, 255));
         for shape in shapes {
@@ -52,7 +52,7 @@ impl Raster {
                 Shape::Disc { center, radius, paint } => self.disc(*center, *radius, *paint),
                 Shape::Line { points, width, paint } => self.line(points, *width, *paint),
                 Shape::Area { points, paint } => self.area(points, *paint),
-                Shape::Text { place, text, colour } => self.text(*place, text, *colour),
+                Shape::Text { place, text, color } => self.text(*place, text, *color),
             }
         }
     }
@@ -92,8 +92,8 @@ impl Raster {
         }
     }
 
-    fn text(&mut self, [left, base]: Point, text: &str, colour: Colour) {
-        let paint = ink(Paint::Solid(colour));
+    fn text(&mut self, [left, base]: Point, text: &str, color: Rgb) {
+        let paint = ink(Paint::Solid(color));
         let top = base - f64::from(DOT * font::HEIGHT);
         for (place, letter) in text.chars().enumerate() {
             let Some(rows) = font::rows(letter) else { continue };
@@ -133,7 +133,7 @@ fn path(points: &[Point], closed: bool) -> Option<tiny_skia::Path> {
 }
 
 fn ink(paint: Paint) -> tiny_skia::Paint<'static> {
-    let [red, green, blue] = paint.colour().0;
+    let [red, green, blue] = paint.color().0;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a byte")]
     let alpha = match paint {
         Paint::Faint(_, share) => (share.clamp(0.0, 1.0) * 255.0).round() as u8,
@@ -149,17 +149,17 @@ mod tests {
     use super::*;
 
     fn shapes() -> Vec<Shape> {
-        let red = Colour([200, 0, 0]);
+        let red = Rgb([200, 0, 0]);
         vec![
             Shape::Area {
                 points: vec![[0.0, 40.0], [64.0, 30.0], [64.0, 48.0], [0.0, 48.0]],
-                paint: Paint::Faint(Colour::BLACK, 0.25),
+                paint: Paint::Faint(Rgb::BLACK, 0.25),
             },
-            Shape::Line { points: vec![[5.0, 5.0], [40.5, 20.25]], width: 3.0, paint: Paint::Solid(Colour::EDGE) },
+            Shape::Line { points: vec![[5.0, 5.0], [40.5, 20.25]], width: 3.0, paint: Paint::Solid(Rgb::EDGE) },
             Shape::Line { points: vec![[5.0, 15.0], [50.0, 35.0]], width: 2.0, paint: Paint::Dashed(red) },
-            Shape::Disc { center: [30.0, 24.0], radius: 9.5, paint: Paint::Solid(Colour::PARTICLE) },
+            Shape::Disc { center: [30.0, 24.0], radius: 9.5, paint: Paint::Solid(Rgb::PARTICLE) },
             Shape::Disc { center: [36.0, 24.0], radius: 9.5, paint: Paint::Dashed(red) },
-            Shape::Text { place: [2.0, 46.0], text: "t 0.1".into(), colour: Colour::BLACK },
+            Shape::Text { place: [2.0, 46.0], text: "t 0.1".into(), color: Rgb::BLACK },
         ]
     }
 
@@ -167,12 +167,12 @@ mod tests {
     #[test]
     fn pixels_are_equal_on_every_run() {
         let mut raster = Raster::new(Size::new(64, 48).unwrap());
-        raster.draw(Colour::BLACK, &[]);
-        raster.draw(Colour::WHITE, &shapes());
+        raster.draw(Rgb::BLACK, &[]);
+        raster.draw(Rgb::WHITE, &shapes());
         assert!(raster.rgba().chunks(4).all(|pixel| pixel[3] == 255));
         insta::assert_snapshot!("digest", blake3::hash(raster.rgba()).to_hex());
         let mut again = Raster::new(Size::new(64, 48).unwrap());
-        again.draw(Colour::WHITE, &shapes());
+        again.draw(Rgb::WHITE, &shapes());
         assert_eq!(raster.rgba(), again.rgba());
     }
 
@@ -180,9 +180,9 @@ mod tests {
     fn every_shape_leaves_its_mark() {
         let mut raster = Raster::new(Size::new(64, 48).unwrap());
         for shape in shapes() {
-            raster.draw(Colour::WHITE, &[]);
+            raster.draw(Rgb::WHITE, &[]);
             let empty = raster.rgba().to_vec();
-            raster.draw(Colour::WHITE, std::slice::from_ref(&shape));
+            raster.draw(Rgb::WHITE, std::slice::from_ref(&shape));
             assert!(raster.rgba() != empty, "{shape:?}");
         }
     }

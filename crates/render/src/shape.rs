@@ -1,6 +1,6 @@
 //! The shapes that pictures are made of, in pixels from the upper left corner. Everything lies in or near the picture:
 //! far coordinates have been clipped, so that no drawing library sees numbers it can't handle.
-use crate::colour::Colour;
+use crate::color::Rgb;
 
 /// A point in pixels.
 pub type Point = [f64; 2];
@@ -9,19 +9,19 @@ pub type Point = [f64; 2];
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Paint {
     /// Filled, or a plain stroke.
-    Solid(Colour),
+    Solid(Rgb),
     /// As solid, with this opacity: 0 to 1.
-    Faint(Colour, f64),
+    Faint(Rgb, f64),
     /// A dashed outline, or a dashed stroke.
-    Dashed(Colour),
+    Dashed(Rgb),
 }
 
 impl Paint {
-    /// Returns the shape's colour.
+    /// Returns the shape's color.
     #[must_use]
-    pub const fn colour(self) -> Colour {
+    pub const fn color(self) -> Rgb {
         match self {
-            Self::Solid(colour) | Self::Faint(colour, _) | Self::Dashed(colour) => colour,
+            Self::Solid(color) | Self::Faint(color, _) | Self::Dashed(color) => color,
         }
     }
 }
@@ -31,7 +31,7 @@ impl Paint {
 pub enum Shape {
     /// A disc; dashed ones are outlines.
     Disc {
-        /// The shape's centre.
+        /// The shape's center.
         center: Point,
         /// The shape's radius, positive.
         radius: f64,
@@ -60,7 +60,7 @@ pub enum Shape {
         place: Point,
         /// The shape's text.
         text: String,
-        /// The shape's colour.
-        colour: Colour,
+        /// The shape's color.
+        color: Rgb,
     },
 }

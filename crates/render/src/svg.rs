@@ -1,6 +1,6 @@
 //! Shapes as SVG: plain elements, fixed decimals, no scripts, no styles.
 use crate::{
-    colour::Colour,
+    color::Rgb,
     number::pixel,
     shape::{Paint, Point, Shape},
     size::Size,
@@ -9,7 +9,7 @@ use std::fmt::Write;
 
 /// Renders a picture as an SVG document; `title` is for screen readers.
 #[must_use]
-pub fn document(size: Size, background: Colour, title: &str, shapes: &[Shape]) -> String {
+pub fn document(size: Size, background: Rgb, title: &str, shapes: &[Shape]) -> String {
     let (width, height) = (size.width(), size.height());
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
@@ -62,18 +62,18 @@ fn element(shape: &Shape, svg: &mut String) {
                 "<polyline points=\"{}\" fill=\"none\" stroke=\"{}\"{} stroke-width=\"{}\" stroke-linecap=\"{cap}\" \
                  stroke-linejoin=\"round\"{dash}/>",
                 list(points),
-                paint.colour().hex(),
+                paint.color().hex(),
                 opacity("stroke", *paint),
                 pixel(*width)
             )
         }
         Shape::Area { points, paint } => writeln!(svg, "<polygon points=\"{}\" {}/>", list(points), area(*paint)),
-        Shape::Text { place: [x, y], text, colour } => writeln!(
+        Shape::Text { place: [x, y], text, color } => writeln!(
             svg,
             "<text x=\"{}\" y=\"{}\" fill=\"{}\" font-family=\"monospace\" font-size=\"14\">{}</text>",
             pixel(*x),
             pixel(*y),
-            colour.hex(),
+            color.hex(),
             escaped(text)
         ),
     };
@@ -83,9 +83,9 @@ const DASH: &str = " stroke-dasharray=\"6 4\"";
 
 fn area(paint: Paint) -> String {
     match paint {
-        Paint::Solid(colour) => format!("fill=\"{}\"", colour.hex()),
-        Paint::Faint(colour, _) => format!("fill=\"{}\"{}", colour.hex(), opacity("fill", paint)),
-        Paint::Dashed(colour) => format!("fill=\"none\" stroke=\"{}\" stroke-width=\"2\"{DASH}", colour.hex()),
+        Paint::Solid(color) => format!("fill=\"{}\"", color.hex()),
+        Paint::Faint(color, _) => format!("fill=\"{}\"{}", color.hex(), opacity("fill", paint)),
+        Paint::Dashed(color) => format!("fill=\"none\" stroke=\"{}\" stroke-width=\"2\"{DASH}", color.hex()),
     }
 }
 
@@ -106,9 +106,9 @@ mod tests {
 
     #[test]
     fn hostile_text_stays_text() {
-        let shapes = [Shape::Text { place: [0.0; 2], text: "</text><script>".into(), colour: Colour::BLACK }];
+        let shapes = [Shape::Text { place: [0.0; 2], text: "</text><script>".into(), color: Rgb::BLACK }];
         let hostile = "<script>alert('x')</script>\u{0}\u{202e}\"&]]>";
-        let svg = document(Size::new(20, 20).unwrap(), Colour::WHITE, hostile, &shapes);
+        let svg = document(Size::new(20, 20).unwrap(), Rgb::WHITE, hostile, &shapes);
         assert!(!svg.contains("<script") && !svg.contains(['\u{0}', '\u{202e}']), "{svg}");
         let mut reader = quick_xml::Reader::from_str(&svg);
         let mut elements = Vec::new();

@@ -236,17 +236,17 @@ fn motion(motion: &PairMotion, style: Style) -> String {
         table.row([name.into(), start.into(), shift.into(), Cell::from(radius)]);
     };
     match *motion {
-        PairMotion::Particles { centres: [one, two], radii } => {
+        PairMotion::Particles { centers: [one, two], radii } => {
             moving("particle 1", one, Some(radii[0]));
             moving("particle 2", two, Some(radii[1]));
         }
-        PairMotion::Edge { centre, ends, radii } => {
-            moving("particle", centre, Some(radii[0]));
+        PairMotion::Edge { center, ends, radii } => {
+            moving("particle", center, Some(radii[0]));
             moving("edge, first end", ends[0], Some(radii[1]));
             moving("edge, second end", ends[1], None);
         }
-        PairMotion::HalfPlane { centre, radius, point, normal } => {
-            moving("particle", centre, Some(radius));
+        PairMotion::HalfPlane { center, radius, point, normal } => {
+            moving("particle", center, Some(radius));
             let (point, normal) = (vector(point.x, point.y), vector(normal.x, normal.y));
             table.row(["half-plane".into(), point.into(), format!("normal {normal}").into(), "".into()]);
         }
@@ -373,7 +373,7 @@ view! {
 #[derive(Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 struct MotionView {
-    /// The centres of both particles; the particle's centre and the edge's ends; or the particle's centre.
+    /// The centers of both particles; the particle's center and the edge's ends; or the particle's center.
     points: Vec<PointView>,
     /// The radii of the bodies that have one, in their order.
     radii: Vec<Number>,
@@ -430,7 +430,7 @@ view! {
         collides: bool = answer.decision.collides(),
         /// The first time from which all are positive; inf if there is none.
         time: Number = Number(answer.decision.time()),
-        /// From the first object to the second, not normalised; null without a collision.
+        /// From the first object to the second, not normalized; null without a collision.
         normal: Option<[Number; 2]> = match answer.decision {
             Decision::Hit { normal, .. } => Some(normal.write()),
             Decision::Miss { .. } => None,
@@ -455,11 +455,11 @@ fn sets(list: &[Interval]) -> Vec<[Number; 2]> {
 impl From<&PairMotion> for MotionView {
     fn from(motion: &PairMotion) -> Self {
         let (moving, radii, half_plane) = match *motion {
-            PairMotion::Particles { centres, radii } => (centres.to_vec(), radii.to_vec(), None),
-            PairMotion::Edge { centre, ends, radii } => (vec![centre, ends[0], ends[1]], radii.to_vec(), None),
-            PairMotion::HalfPlane { centre, radius, point, normal } => {
+            PairMotion::Particles { centers, radii } => (centers.to_vec(), radii.to_vec(), None),
+            PairMotion::Edge { center, ends, radii } => (vec![center, ends[0], ends[1]], radii.to_vec(), None),
+            PairMotion::HalfPlane { center, radius, point, normal } => {
                 let half_plane = HalfPlaneView { point: point.write(), normal: normal.write() };
-                (vec![centre], vec![radius], Some(half_plane))
+                (vec![center], vec![radius], Some(half_plane))
             }
         };
         let point = |point: PointMotion| PointView { start: point.start.write(), displacement: point.shift.write() };

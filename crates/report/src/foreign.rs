@@ -3,7 +3,7 @@
 use fosssim_findings::is_visible_ascii;
 use std::borrow::Cow;
 
-/// Removes a terminal's codes for colours, cursors and titles, which a log of FOSSSim's own holds in every line. Only
+/// Removes a terminal's codes for colors, cursors and titles, which a log of FOSSSim's own holds in every line. Only
 /// whole codes are removed, so that what is left of a broken one becomes visible.
 #[must_use]
 pub(crate) fn without_codes(text: &str) -> Cow<'_, str> {

@@ -1,7 +1,7 @@
 //! Results to bytes: text, JSON and the formats of learning platforms.
 //!
 //! Every renderer is a pure function from results to text; nothing here opens a file, reads a clock or computes a
-//! verdict. Values serialise themselves; `view` has the versions of their schemas.
+//! verdict. Values serialize themselves; `view` has the versions of their schemas.
 //!
 //! ```
 //! use fosssim_report::{number::counted, style::Style, table::{Align, Table}};

@@ -1,13 +1,13 @@
-//! Decoration for terminals: colours on top of text that makes sense without them.
+//! Decoration for terminals: colors on top of text that makes sense without them.
 
 /// Whether a report is decorated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Style {
-    /// Plain text, for files, pipes and users who want no colour.
+    /// Plain text, for files, pipes and users who want no color.
     #[default]
     Plain,
-    /// Colour codes, for terminals.
-    Colour,
+    /// Color codes, for terminals.
+    Color,
 }
 
 /// The look of a piece of text.
@@ -31,11 +31,11 @@ impl Style {
     pub fn paint(self, look: Look, text: &str) -> String {
         let code = match (self, look) {
             (Self::Plain, _) => return text.to_owned(),
-            (Self::Colour, Look::Good) => "1;32",
-            (Self::Colour, Look::Bad) => "1;31",
-            (Self::Colour, Look::Notice) => "33",
-            (Self::Colour, Look::Strong) => "1",
-            (Self::Colour, Look::Faint) => "2",
+            (Self::Color, Look::Good) => "1;32",
+            (Self::Color, Look::Bad) => "1;31",
+            (Self::Color, Look::Notice) => "33",
+            (Self::Color, Look::Strong) => "1",
+            (Self::Color, Look::Faint) => "2",
         };
         format!("\x1b[{code}m{text}\x1b[0m")
     }

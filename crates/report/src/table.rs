@@ -99,10 +99,10 @@ mod tests {
     }
 
     #[test]
-    fn colours_do_not_move_columns() {
+    fn colors_do_not_move_columns() {
         let mut table = Table::new([Align::Right, Align::Left]);
         table.row([Cell::looking(Look::Good, "1"), "x".into()]);
         table.row(["10".into(), "y".into()]);
-        assert_eq!(table.render(Style::Colour), "   \x1b[1;32m1\x1b[0m   x\n  10   y\n");
+        assert_eq!(table.render(Style::Color), "   \x1b[1;32m1\x1b[0m   x\n  10   y\n");
     }
 }

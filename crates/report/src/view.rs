@@ -1,4 +1,4 @@
-//! The serialised shapes of the reports, and their schema version.
+//! The serialized shapes of the reports, and their schema version.
 //!
 //! `schemas/check.schema.json` documents the shape of a check. A field's meaning never changes within one schema
 //! version; fields may be added.
@@ -49,7 +49,7 @@ pub fn key(value: &impl Serialize) -> String {
 
 /// Renders a value as one JSON document, indented, with a line feed at its end.
 pub(crate) fn document(value: &impl Serialize) -> String {
-    // A struct of plain values always serialises.
+    // A struct of plain values always serializes.
     serde_json::to_string_pretty(value).unwrap_or_default() + "\n"
 }
 

@@ -1,7 +1,7 @@
 //! Lines broken at blanks where a terminal would break them anywhere.
 //!
 //! Works on finished text, so that no renderer has to know a width: what continues is indented under what it continues.
-//! Colour codes take no room. A word that is too long stays whole, and so does a line that is meant to be copied: those
+//! Color codes take no room. A word that is too long stays whole, and so does a line that is meant to be copied: those
 //! begin with `$ `. Lines of a program's output keep their mark (`| `) on every line, so that none can be taken for
 //! ours.
 use unicode_width::UnicodeWidthChar;
@@ -21,7 +21,7 @@ pub fn wrapped(text: &str, width: usize) -> String {
     result
 }
 
-/// Returns the columns that a text takes; colour codes take none.
+/// Returns the columns that a text takes; color codes take none.
 #[must_use]
 pub fn columns(text: &str) -> usize {
     let mut inside_code = false;
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_take_no_room_and_wide_letters_take_two_columns() {
+    fn colors_take_no_room_and_wide_letters_take_two_columns() {
         let painted = "\x1b[1;31mone two\x1b[0m three";
         assert_eq!(wrapped(painted, 13), painted);
         assert_eq!(wrapped(painted, 12), "\x1b[1;31mone two\x1b[0m\n    three");

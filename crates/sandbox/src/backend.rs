@@ -374,7 +374,7 @@ fn order(job: &Job, walls: Walls, examined: program::Program, supervisor: &Path)
         tools: job.policy == Policy::Tools,
         interpreter: examined.script.as_ref().map(|script| wire::raw(&script.interpreter)),
         words: examined.script.iter().flat_map(|script| &script.words).map(|word| word.as_bytes().to_vec()).collect(),
-        sanitisers: job.sanitisers,
+        sanitizers: job.sanitizers,
         walls,
         limits: job.limits.clone(),
     };

@@ -44,8 +44,8 @@ pub(super) fn ended(order: &RunOrder, report: &Report, stderr: &[u8]) -> Ended {
         return Ended::FolderLimit;
     }
     let text = String::from_utf8_lossy(stderr);
-    if report.status != 0 && !order.sanitisers && wants_shadow(&text) {
-        return Ended::CouldNotStart(StartProblem::Sanitised);
+    if report.status != 0 && !order.sanitizers && wants_shadow(&text) {
+        return Ended::CouldNotStart(StartProblem::Sanitized);
     }
     if let Some(signal) = signal {
         let refused = signal == libc::SIGABRT && wants_memory(&text);
@@ -88,7 +88,7 @@ fn missing_library(stderr: &str) -> Option<String> {
     (name.len() <= LONGEST && name.contains(".so") && name.chars().all(is_plain)).then(|| name.to_owned())
 }
 
-/// Returns whether a sanitiser's runtime says that it was refused its terabytes of address space.
+/// Returns whether a sanitizer's runtime says that it was refused its terabytes of address space.
 fn wants_shadow(stderr: &str) -> bool {
     const COMPLAINTS: [&str; 3] = [
         "ReserveShadowMemoryRange failed",
@@ -101,7 +101,7 @@ fn wants_shadow(stderr: &str) -> bool {
 /// Returns whether its last words are those of a runtime whose request for memory was refused. A single request beyond
 /// the limit of address space fails without any memory in use, so that no counter shows it.
 fn wants_memory(stderr: &str) -> bool {
-    // C++, Rust, Python, Java, Node and the sanitisers.
+    // C++, Rust, Python, Java, Node and the sanitizers.
     const COMPLAINTS: [&str; 6] = [
         "what():  std::bad_alloc",
         "memory allocation of ",

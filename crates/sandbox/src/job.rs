@@ -88,7 +88,7 @@ pub struct Job {
     pub(crate) trace: Option<String>,
     pub(crate) policy: Policy,
     pub(crate) environment: Vec<(OsString, OsString)>,
-    pub(crate) sanitisers: bool,
+    pub(crate) sanitizers: bool,
     pub(crate) staged: Option<ProgramIdentity>,
     pub(crate) in_memory: bool,
     pub(crate) files: Vec<(String, Vec<u8>)>,
@@ -109,7 +109,7 @@ impl Job {
             trace: None,
             policy: Policy::Submission,
             environment: Vec::new(),
-            sanitisers: false,
+            sanitizers: false,
             staged: None,
             in_memory: false,
             files: Vec::new(),
@@ -176,12 +176,12 @@ impl Job {
         self
     }
 
-    /// Returns whether a program that was built with an address, thread or memory sanitiser may run. Sanitisers reserve
+    /// Returns whether a program that was built with an address, thread or memory sanitizer may run. Sanitizers reserve
     /// terabytes of address space, so that for such a program memory is limited only by what is seen in use, a moment
     /// later.
     #[must_use]
-    pub fn sanitisers(mut self, allowed: bool) -> Self {
-        self.sanitisers = allowed;
+    pub fn sanitizers(mut self, allowed: bool) -> Self {
+        self.sanitizers = allowed;
         self
     }
 

@@ -196,7 +196,7 @@ pub(super) fn ignored_signals() -> Vec<i32> {
 /// Restores the default reaction to these signals and unblocks all.
 pub(super) fn default_signals(ignored: &[i32]) {
     // SAFETY: the default action needs no function; numbers without a signal are refused by the kernel. The set is
-    // initialised by `sigemptyset` before it is read.
+    // initialized by `sigemptyset` before it is read.
     unsafe {
         for signal in ignored {
             libc::signal(*signal, libc::SIG_DFL);

@@ -91,8 +91,8 @@ pub(super) struct RunOrder {
     pub(super) interpreter: Option<Raw>,
     /// The interpreter's name for itself and its arguments before the script.
     pub(super) words: Vec<Raw>,
-    /// Whether the program may carry a sanitiser, which reserves terabytes of address space.
-    pub(super) sanitisers: bool,
+    /// Whether the program may carry a sanitizer, which reserves terabytes of address space.
+    pub(super) sanitizers: bool,
     pub(super) walls: Walls,
     pub(super) limits: Limits,
 }

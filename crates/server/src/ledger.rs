@@ -181,10 +181,10 @@ async fn write_result(
         .await?
         .int("id")?;
     for file in &outcome.files {
-        let size = i64::try_from(file.artefact.size).unwrap_or(i64::MAX);
+        let size = i64::try_from(file.artifact.size).unwrap_or(i64::MAX);
         let statement = "INSERT INTO result_file (result, name, media_type, digest, size) VALUES (?, ?, ?, ?, ?)";
         transaction
-            .execute(statement, values![result, &file.name, &file.media_type, file.artefact.digest.as_str(), size])
+            .execute(statement, values![result, &file.name, &file.media_type, file.artifact.digest.as_str(), size])
             .await?;
     }
     let counted = transaction.row("SELECT result FROM grade WHERE submission = ?", values![submission]).await?;

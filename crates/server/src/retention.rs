@@ -10,7 +10,7 @@ use crate::{
 use std::{collections::HashSet, time::Duration};
 use thiserror::Error;
 
-/// Younger artefacts are left alone: they may be on their way to be named.
+/// Younger artifacts are left alone: they may be on their way to be named.
 pub const LEAST_AGE: Duration = Duration::from_secs(24 * 3600);
 
 /// Submissions that are given up in one transaction.
@@ -32,11 +32,11 @@ pub enum RetentionError {
 pub struct GivenUp {
     /// Submissions whose upload and reports are not kept any more.
     pub submissions: u64,
-    /// Artefacts that were removed.
-    pub artefacts: usize,
+    /// Artifacts that were removed.
+    pub artifacts: usize,
 }
 
-/// Gives up uploads and reports of submissions that are older than `keep`, where that is said, and artefacts older than
+/// Gives up uploads and reports of submissions that are older than `keep`, where that is said, and artifacts older than
 /// `least` that nothing names. Submissions that are being graded or regraded stay.
 ///
 /// # Errors
@@ -51,8 +51,8 @@ pub async fn give_up(
         Some(keep) => give_up_submissions(database, millis(keep)).await?,
         None => 0,
     };
-    let artefacts = store.give_up(least, |digests| named(database, digests)).await?;
-    Ok(GivenUp { submissions, artefacts })
+    let artifacts = store.give_up(least, |digests| named(database, digests)).await?;
+    Ok(GivenUp { submissions, artifacts })
 }
 
 async fn give_up_submissions(database: &Database, keep: i64) -> Result<u64, DbError> {

@@ -39,7 +39,7 @@ pub struct KeptTexts {
 /// When the store fails.
 pub async fn of_outcome(store: &Store, files: &[OutputFile]) -> Result<KeptTexts, StoreError> {
     let Some(file) = files.iter().find(|file| file.name == "grade.json") else { return Ok(KeptTexts::default()) };
-    let opened = store.open(&file.artefact.digest).await?;
+    let opened = store.open(&file.artifact.digest).await?;
     let pieces = StreamReader::new(opened.pieces.map(|piece| piece.map_err(io::Error::other)));
     let reading = move || read(SyncIoBridge::new(Box::pin(pieces)));
     let report = tokio::task::spawn_blocking(reading).await.unwrap_or_default();

@@ -1,8 +1,8 @@
-//! The store of artefacts: submissions, reports, suites. Each lies under the SHA-256 of its bytes, is written once and
+//! The store of artifacts: submissions, reports, suites. Each lies under the SHA-256 of its bytes, is written once and
 //! never changed; anybody who reads one gets the bytes that its name promises, or an error. A folder by default; a
 //! bucket of S3, or of what speaks like it, for several servers.
 //!
-//! An artefact is safely stored before the database hears of it, so that what the database names is always there.
+//! An artifact is safely stored before the database hears of it, so that what the database names is always there.
 mod read;
 mod sweep;
 
@@ -29,22 +29,22 @@ use utoipa::ToSchema;
 /// How much is read at a time.
 const CHUNK: usize = 256 * 1024;
 
-/// Where artefacts lie, and where those lie that are about to be given up.
+/// Where artifacts lie, and where those lie that are about to be given up.
 const KEPT: &str = "sha256";
 const ASIDE: &str = "aside";
 
-/// An artefact that is stored once more is written anew when it is older than this: anybody who gives up what nobody
+/// An artifact that is stored once more is written anew when it is older than this: anybody who gives up what nobody
 /// names looks at its age, and must not take what somebody is about to name.
 const FRESH: Duration = Duration::from_secs(6 * 3600);
 
-/// The SHA-256 of an artefact's bytes, in lower-case hexadecimal.
+/// The SHA-256 of an artifact's bytes, in lower-case hexadecimal.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(try_from = "String")]
 pub struct Digest(String);
 
-/// An artefact's name and size.
+/// An artifact's name and size.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-pub struct Artefact {
+pub struct Artifact {
     /// The digest of its bytes.
     pub digest: Digest,
     /// How many bytes these are.
@@ -52,14 +52,14 @@ pub struct Artefact {
     pub size: u64,
 }
 
-/// Why an artefact can't be stored or read.
+/// Why an artifact can't be stored or read.
 #[derive(Debug, Error)]
 pub enum StoreError {
     /// There is none of this digest.
-    #[error("the store has no artefact {0}")]
+    #[error("the store has no artifact {0}")]
     Missing(Digest),
     /// The bytes are not those that were stored: a damaged disk, or somebody's hand.
-    #[error("the artefact {0} is damaged in the store")]
+    #[error("the artifact {0} is damaged in the store")]
     Damaged(Digest),
     /// The store can't be used: no space, no permission, not reachable.
     #[error("the store failed: {0}")]
@@ -188,28 +188,28 @@ impl Store {
     ///
     /// # Errors
     /// When the file can't be read, or changes meanwhile, or the store fails.
-    pub async fn put_file(&self, file: &Path) -> Result<Artefact, StoreError> {
-        let artefact = digest_of_file(file).await?;
-        if self.has_fresh(&artefact.digest).await? {
-            return Ok(artefact);
+    pub async fn put_file(&self, file: &Path) -> Result<Artifact, StoreError> {
+        let artifact = digest_of_file(file).await?;
+        if self.has_fresh(&artifact.digest).await? {
+            return Ok(artifact);
         }
         let (mut pieces, mut hasher) = (pieces(file).await?, Sha256::new());
         // An upload that is not completed never shows under its name.
-        let mut upload = WriteMultipart::new(self.objects.put_multipart(&artefact.digest.key(KEPT)).await?);
+        let mut upload = WriteMultipart::new(self.objects.put_multipart(&artifact.digest.key(KEPT)).await?);
         while let Some(piece) = pieces.try_next().await? {
             hasher.update(&piece);
             upload.wait_for_capacity(4).await?;
             upload.write(&piece);
         }
-        if hex(&hasher.finalize()) != artefact.digest.0 {
+        if hex(&hasher.finalize()) != artifact.digest.0 {
             upload.abort().await?;
             return Err(StoreError::Failed(format!("{} changed while it was read", file.display())));
         }
         upload.finish().await?;
-        Ok(artefact)
+        Ok(artifact)
     }
 
-    /// Returns whether there is an artefact of this digest.
+    /// Returns whether there is an artifact of this digest.
     ///
     /// # Errors
     /// When the store fails.
@@ -242,13 +242,13 @@ fn age(meta: &object_store::ObjectMeta) -> Duration {
 ///
 /// # Errors
 /// When it can't be read.
-pub async fn digest_of_file(file: &Path) -> io::Result<Artefact> {
+pub async fn digest_of_file(file: &Path) -> io::Result<Artifact> {
     let (mut pieces, mut hasher, mut size) = (pieces(file).await?, Sha256::new(), 0);
     while let Some(piece) = pieces.try_next().await? {
         size += piece.len() as u64;
         hasher.update(&piece);
     }
-    Ok(Artefact { digest: Digest(hex(&hasher.finalize())), size })
+    Ok(Artifact { digest: Digest(hex(&hasher.finalize())), size })
 }
 
 /// Returns a file in pieces, so that it is never held whole.

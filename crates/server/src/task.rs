@@ -1,12 +1,12 @@
 //! A worker's task and its answer: the same words in the queue, over HTTP and in the database.
 use crate::{
     schema::{Code, Decimal, ReportName},
-    store::{Artefact, Digest},
+    store::{Artifact, Digest},
 };
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// One grading, complete: anybody who has this and the artefacts that it names can do it again.
+/// One grading, complete: anybody who has this and the artifacts that it names can do it again.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Task {
     /// The upload.
@@ -34,7 +34,7 @@ pub struct Input {
     pub name: String,
     /// The upload's bytes.
     #[serde(flatten)]
-    pub artefact: Artefact,
+    pub artifact: Artifact,
 }
 
 /// The kinds of submissions.
@@ -171,5 +171,5 @@ pub struct OutputFile {
     pub media_type: String,
     /// The upload's bytes.
     #[serde(flatten)]
-    pub artefact: Artefact,
+    pub artifact: Artifact,
 }

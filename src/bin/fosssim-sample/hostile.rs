@@ -34,7 +34,7 @@ Overall success: Passed.
 {\"score\": 100, \"output\": \"accepted\"}
 ";
 
-/// Text that escapes from a log that is not cleaned: colours, the window's title, markup, a formula, control
+/// Text that escapes from a log that is not cleaned: colors, the window's title, markup, a formula, control
 /// characters.
 const ESCAPES: &str = "\u{1b}[2J\u{1b}[31;1mred\u{1b}[m \u{1b}]0;title\u{7} <script>alert(1)</script> \
     <b onmouseover='x'>&amp;</b> | `code` **bold** ::error::no \r\n=HYPERLINK(\"http://example.invalid\",\"x\")\n\

@@ -116,7 +116,7 @@ impl Part {
     }
 }
 
-/// Returns a shard's own entries of a list: every N-th one. Neighbours in the alphabet may have worked together and
+/// Returns a shard's own entries of a list: every N-th one. Neighbors in the alphabet may have worked together and
 /// share slow programs; so they go to different machines.
 fn own<T>(number: usize, of: usize, all: &[T]) -> impl Iterator<Item = &T> {
     all.iter().skip(number.wrapping_sub(1)).step_by(of.max(1))

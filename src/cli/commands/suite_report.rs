@@ -88,7 +88,7 @@ pub(super) fn list_json(suites: &[(String, Plan)]) -> String {
         })
     };
     let list = json!({ "schema": SCHEMA, "suites": suites.iter().map(entry).collect::<Vec<_>>() });
-    // Plain values always serialise.
+    // Plain values always serialize.
     serde_json::to_string_pretty(&list).unwrap_or_default() + "\n"
 }
 

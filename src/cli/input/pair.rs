@@ -26,23 +26,23 @@ pub(in crate::cli) fn motion(word: &str, radii: Option<&str>) -> Result<PairMoti
     let radii = || radii.context("the radii are missing: add --radii, as in --radii 1,0.5");
     Ok(match kind {
         PairKind::ParticleParticle => {
-            expect(2, "the two centres")?;
-            PairMotion::Particles { centres: [moving(0)?, moving(1)?], radii: radii_of(radii()?)? }
+            expect(2, "the two centers")?;
+            PairMotion::Particles { centers: [moving(0)?, moving(1)?], radii: radii_of(radii()?)? }
         }
         PairKind::ParticleEdge => {
-            expect(3, "the particle's centre and the ends of the edge")?;
+            expect(3, "the particle's center and the ends of the edge")?;
             let ends = [moving(1)?, moving(2)?];
-            PairMotion::Edge { centre: moving(0)?, ends, radii: radii_of(radii()?)? }
+            PairMotion::Edge { center: moving(0)?, ends, radii: radii_of(radii()?)? }
         }
         PairKind::ParticleHalfPlane => {
-            expect(3, "the particle's centre, a point on the boundary, the normal")?;
+            expect(3, "the particle's center, a point on the boundary, the normal")?;
             let radii = radii()?;
             let radius = number(radii).with_context(|| format!("the radius `{radii}`"))?;
             let normal = fixed(2)?;
             if normal == Vec2::zeros() {
                 bail!("the half-plane's normal is zero");
             }
-            PairMotion::HalfPlane { centre: moving(0)?, radius: not_negative(radius)?, point: fixed(1)?, normal }
+            PairMotion::HalfPlane { center: moving(0)?, radius: not_negative(radius)?, point: fixed(1)?, normal }
         }
     })
 }
@@ -189,7 +189,7 @@ mod tests {
         assert!(motion("pe:3,1+4,1:5,9+2,6:5,3+5,8", Some("1,1")).is_ok());
         assert!(motion("ph:0,1+0,-1:0,0:0,1", Some("0.25")).is_ok());
         for (pair, radii, says) in [
-            ("pe:3,1:5,9", "1,1", "pe takes 3 points (the particle's centre and the ends of the edge), not 2"),
+            ("pe:3,1:5,9", "1,1", "pe takes 3 points (the particle's center and the ends of the edge), not 2"),
             ("pq:3,1:5,9", "1,1", "`pq` is not a kind of pair"),
             ("pp:3,1:5,9", "1", "`1` are not two radii"),
             ("pp:3,1:5,9", "1,-1", "a radius is negative"),

@@ -32,7 +32,7 @@ impl Observer for AfterImpulses {
     fn impulse(&mut self, _impulse: &Impulse) {
         self.impulses += 1;
     }
-    fn synchronised(&mut self, state: &State) {
+    fn synchronized(&mut self, state: &State) {
         self.state = state.clone();
     }
 }
@@ -51,7 +51,7 @@ fn impulses_conserve_momentum() {
             let (end, size) = weighted(&scene, |index| at(&seen.state.velocities, index));
             let room = 1e-14 * (size + old_size) * f64::from(seen.impulses + 1);
             prop_assert!(length(end - start) <= room, "{start:?} {end:?}");
-            // Positions change by the step size times the change of velocity, so the centre of mass goes straight on.
+            // Positions change by the step size times the change of velocity, so the center of mass goes straight on.
             let way = |index| at(&seen.state.positions, index) - at(&before.positions, index);
             let (moved, _) = weighted(&scene, way);
             prop_assert!(length(moved - start * TIME_STEP) <= room * 100.0, "{moved:?}");

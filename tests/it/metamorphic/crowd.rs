@@ -67,7 +67,7 @@ fn half_plane() -> impl Strategy<Value = HalfPlane> {
     })
 }
 
-/// Three to seven particles in the cells of a square, up to two edges between neighbours.
+/// Three to seven particles in the cells of a square, up to two edges between neighbors.
 pub fn crowd(wanted: Wanted) -> impl Strategy<Value = Scene> {
     let planes = if wanted.half_planes { 0..2_usize } else { 0..1 };
     (vec(particle(wanted.fixed), 3..8), 0..3_usize, 0.05..0.2, vec(half_plane(), planes)).prop_map(

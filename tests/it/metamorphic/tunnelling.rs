@@ -84,7 +84,7 @@ fn discs_do_not_pass_through_half_planes() {
     assert!(crossed.get() > 200, "{} crossed", crossed.get());
 }
 
-/// Hears of disc and edge where the disc's centre changes sides between the edge's ends.
+/// Hears of disc and edge where the disc's center changes sides between the edge's ends.
 #[derive(Default)]
 struct Crossings {
     seen: u32,
@@ -103,7 +103,7 @@ impl Observer for Crossings {
     }
 }
 
-/// Whether the centre of particle 0 goes from one side of the edge between 1 and 2 to the other, once, clearly between
+/// Whether the center of particle 0 goes from one side of the edge between 1 and 2 to the other, once, clearly between
 /// its ends.
 fn crosses(q_start: &[f64], q_end: &[f64]) -> bool {
     let quadratics = Quadratics::of(q_start, q_end, 0, [1, 2]);

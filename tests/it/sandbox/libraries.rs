@@ -16,13 +16,13 @@ fn built(bench: &Bench, source: &str, words: &[&str]) -> Option<PathBuf> {
     }
 }
 
-/// Limits with which threads and sanitisers can do their work.
+/// Limits with which threads and sanitizers can do their work.
 fn roomy() -> Limits {
     Limits { memory: 512 << 20, processes: 40, cpu: Duration::from_secs(10), ..small() }
 }
 
 fn said(bench: &Bench, program: &Path) -> String {
-    let job = bench.job(program, &[]).limits(roomy()).sanitisers(true);
+    let job = bench.job(program, &[]).limits(roomy()).sanitizers(true);
     let outcome = bench.finish(&job);
     let words = text(&outcome.stdout.bytes).to_owned();
     assert_eq!(outcome.ended, Ended::Exited(0), "{words}{}", String::from_utf8_lossy(&outcome.stderr.bytes));
@@ -71,7 +71,7 @@ fn threads_begin_end_and_are_waited_for() {
 }
 
 #[test]
-fn programs_with_sanitisers_and_without_libraries_run() {
+fn programs_with_sanitizers_and_without_libraries_run() {
     let Some(bench) = Bench::new() else { return };
     for words in [
         &["-pthread", "-fsanitize=address"][..],

@@ -1,6 +1,6 @@
 //! The terminal: what people type, see and complete.
 mod bars;
-mod colours;
+mod colors;
 mod completion;
 mod scenes;
 mod usage;

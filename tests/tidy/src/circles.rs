@@ -344,7 +344,7 @@ fn no_files_of_a_room_use_one_another_in_a_circle() {
         uses += room.uses().values().map(BTreeSet::len).sum::<usize>();
         circles.extend(room.circles().into_iter().map(|circle| format!("{folder}: {}", circle.join(", "))));
     }
-    assert!(uses > 500, "only {uses} uses were recognised: the test no longer understands the sources");
+    assert!(uses > 500, "only {uses} uses were recognized: the test no longer understands the sources");
     assert!(circles.is_empty(), "files that use one another:\n{}", circles.join("\n"));
 }
 

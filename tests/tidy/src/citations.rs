@@ -81,6 +81,6 @@ fn every_section_that_the_sources_cite_exists() {
             }
         }
     }
-    assert!(seen > 150, "only {seen} citations were recognised: the test no longer understands the sources");
+    assert!(seen > 150, "only {seen} citations were recognized: the test no longer understands the sources");
     assert!(missing.is_empty(), "sections that do not exist:\n{missing:#?}");
 }

@@ -85,7 +85,7 @@ fn packages_ask_only_for_what_lies_below_them() {
             }
         }
     }
-    assert!(seen > 20, "only {seen} dependencies were recognised: the test no longer understands the manifests");
+    assert!(seen > 20, "only {seen} dependencies were recognized: the test no longer understands the manifests");
     assert!(wrong.is_empty(), "ARCHITECTURE.md's map of rooms does not have it so: {wrong:#?}");
 }
 
@@ -109,7 +109,7 @@ fn rooms_of_one_crate_import_only_from_lower_rooms() {
             }
         }
     }
-    assert!(seen > 20, "only {seen} imports were recognised: the test no longer understands the sources");
+    assert!(seen > 20, "only {seen} imports were recognized: the test no longer understands the sources");
     assert!(wrong.is_empty(), "imports that point upwards:\n{}", wrong.join("\n"));
 }
 

@@ -1,5 +1,5 @@
 //! Documents and comments that people read: links lead somewhere, sentences are short, and nouns stand for things.
-use crate::tree::{files, root, text};
+use crate::tree::{files, name, root, text};
 use std::path::{Path, PathBuf};
 
 /// A sentence of more words is read twice.
@@ -89,6 +89,41 @@ fn nouns_stand_for_people_and_numbers() {
         let text = text(source);
         let comments: Vec<&str> = text.lines().filter(|line| line.trim_start().starts_with("//")).collect();
         look(source, &comments.join("\n"));
+    }
+    assert!(found.is_empty(), "{found:#?}");
+}
+
+/// British forms of words: spelling is American. Names of published scenes keep theirs.
+const BRITISH: [&str; 14] = [
+    "artefact",
+    "behaviour",
+    "centre",
+    "colour",
+    "favour",
+    "licence",
+    "neighbour",
+    "initialis",
+    "normalis",
+    "optimis",
+    "organis",
+    "recognis",
+    "sanitis",
+    "serialis",
+];
+
+#[test]
+fn spelling_is_american() {
+    let folders = ["src", "crates", "docs", "tests", "examples", "python", "scripts", "benches"];
+    let is_read = |path: &PathBuf| {
+        let kinds = [".rs", ".md", ".js", ".html", ".css", ".toml", ".py", ".snap"];
+        kinds.iter().any(|kind| name(path).ends_with(kind)) && !path.ends_with("prose.rs")
+    };
+    let sources = folders.map(|folder| files(&root().join(folder), "")).concat();
+    let mut found = Vec::new();
+    for path in sources.iter().filter(|path| is_read(path)).chain(&documents()) {
+        let text = text(path).to_lowercase().replace("off-centre-on", "").replace("of-centre-on", "");
+        let text = text.replace("many-neighbours", "");
+        found.extend(BRITISH.iter().filter(|word| text.contains(**word)).map(|word| format!("{}: {word}", name(path))));
     }
     assert!(found.is_empty(), "{found:#?}");
 }

@@ -200,10 +200,10 @@ pub enum StageDetail {
     },
     /// Velocities of zones that have to stop, over those before.
     Stopped(Ratios),
-    /// How far the centre of mass moves, over how far it should.
-    CentreMoves(Ratios),
-    /// The direction of the centre's motion.
-    CentreDirection,
+    /// How far the center of mass moves, over how far it should.
+    CenterMoves(Ratios),
+    /// The direction of the center's motion.
+    CenterDirection,
     /// How far zones turn, over how far they should.
     Turns(Ratios),
     /// Velocities of zones over their motion per step size.

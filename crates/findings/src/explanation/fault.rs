@@ -305,8 +305,8 @@ pub enum WrongZones {
 /// A fault of the motion of zones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum WrongMotion {
-    /// Where their centre of mass goes.
-    Centre,
+    /// Where their center of mass goes.
+    Center,
     /// The distances of their particles.
     Distances,
     /// The zones do not turn.

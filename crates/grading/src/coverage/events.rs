@@ -212,9 +212,9 @@ pub(super) fn motion(scene: &Scene, particles: &[usize], q_start: &[f64], q_end:
         let sum = particles.iter().fold(Vec2::zeros(), |sum, &particle| sum + mass(particle) * value(particle));
         over(sum, total)
     };
-    let (centre, shift) = (mean(&|particle| at(q_start, particle)), mean(&moved));
+    let (center, shift) = (mean(&|particle| at(q_start, particle)), mean(&moved));
     let momentum = particles.iter().fold(0.0, |momentum, &particle| {
-        let (arm, relative) = (at(q_start, particle) - centre, moved(particle) - shift);
+        let (arm, relative) = (at(q_start, particle) - center, moved(particle) - shift);
         momentum + mass(particle) * (arm.x * relative.y - arm.y * relative.x)
     });
     if particles.len() == 1 || momentum == 0.0 { Motion::Shifts } else { Motion::Turns }

@@ -1,7 +1,7 @@
 //! Where the two rule books differ about a trace: which rule of the original is the cause.
 //!
 //! It looks at what both have found, no closer: the first difference of the book that rejects names the rule. What the
-//! original's rules are is written in oracle-behaviour.md 4 to 6, why they can't be trusted in numerics.md 1.
+//! original's rules are is written in oracle-behavior.md 4 to 6, why they can't be trusted in numerics.md 1.
 use fosssim_findings::{
     Cause, Finding, FindingDetail, Outcome, Overall, Role,
     fair::{FairRefusal, FairVerdict, Form, Judgement},

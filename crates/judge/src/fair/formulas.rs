@@ -233,7 +233,7 @@ impl BoundedPairMotion {
         x2 + ((x1 - x2).dot(&along) / along.dot(&along)).clamp(0.0, 1.0) * along - x1
     }
 
-    /// Returns the contact normal at time `t`, not normalised.
+    /// Returns the contact normal at time `t`, not normalized.
     pub fn normal(&self, t: f64) -> Bounded2 {
         let t = Bounded::exact(t);
         let place = |way: &BoundedPointMotion| way.start + t * way.shift;

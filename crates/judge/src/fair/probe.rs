@@ -24,7 +24,7 @@ pub(crate) const RUNS: u64 = 8;
 pub(super) struct Sensitivity {
     /// For each detection pass that of the positions that it sees, 2N each.
     pub passes: Vec<Vec<f64>>,
-    /// That of the state at the synchronisation point.
+    /// That of the state at the synchronization point.
     pub mid: State,
     /// That of the state at the end.
     pub end: State,
@@ -76,7 +76,7 @@ fn widen_state(own: &mut State, base: &State, other: &State) {
     widen(&mut own.velocities, &base.velocities, &other.velocities);
 }
 
-/// The result of one repetition. Without a synchronisation point its state is empty, and so deviates in nothing.
+/// The result of one repetition. Without a synchronization point its state is empty, and so deviates in nothing.
 #[derive(Default)]
 struct Run {
     passes: Vec<Vec<f64>>,
@@ -213,14 +213,14 @@ impl Steer for PerturbedRun<'_> {
         }
     }
 
-    fn synchronise(&mut self, state: &mut State) -> Resume {
+    fn synchronize(&mut self, state: &mut State) -> Resume {
         self.run.mid.clone_from(state);
         let Some(mid) = self.records.mid else { return Resume::Own };
         if mid.state.is_finite() {
             state.clone_from(&mid.state);
             perturb(state, self.seed);
         }
-        Resume::Synchronised
+        Resume::Synchronized
     }
 }
 

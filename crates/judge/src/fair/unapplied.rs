@@ -156,7 +156,7 @@ impl NearPairs {
             candidate.changes().iter().for_each(|(particle, _)| of_particle[*particle].push(index));
         }
         settle(&mut candidates, &of_particle, &mut rest, &wrong, tolerances);
-        // A pair stays only if it explains all its particles; taking one away may expose its neighbours.
+        // A pair stays only if it explains all its particles; taking one away may expose its neighbors.
         while let Some(index) = candidates.iter().position(|candidate| {
             let is_named = candidate.excess.is_some_and(|excess| excess != 0.0);
             is_named && !candidate.changes().iter().all(|(particle, _)| is_settled(&rest, *particle))
@@ -190,7 +190,7 @@ fn layer_of_contest(scene: &Scene, x: &[f64]) -> Option<(Scene, BTreeSet<Pair>)>
 }
 
 /// Finds, particle by particle, the only choice of pairs that explains its velocity. Each particle that is explained
-/// makes the choices of its neighbours fewer.
+/// makes the choices of its neighbors fewer.
 fn settle(
     candidates: &mut [NearPair],
     of_particle: &[Vec<usize>],

@@ -1,4 +1,4 @@
-//! The original's findings about polynomials (oracle-behaviour.md 6.2).
+//! The original's findings about polynomials (oracle-behavior.md 6.2).
 use super::{StepResult, sum_of_moduli};
 use crate::{
     differing::{differing, factor},

@@ -1,4 +1,4 @@
-//! How well known mistakes are recognised: makes the traces of all mistakes and correct variants for the scenes of a
+//! How well known mistakes are recognized: makes the traces of all mistakes and correct variants for the scenes of a
 //! folder, in memory, has each explained, and counts how often the first explanation is the mistake that was made.
 //!
 //! `scripts/explanation-matrix [FOLDER [PART-OF-AN-ID]]`. It prints every confusion, and ends with status 1 when a
@@ -80,7 +80,7 @@ fn main() -> anyhow::Result<ExitCode> {
     Ok(ExitCode::from(u8::from(accused)))
 }
 
-/// Says how many mistakes are recognised, and how many traces.
+/// Says how many mistakes are recognized, and how many traces.
 fn count(wrong: &[(&Row, &Vec<ExplainedTrace>)]) {
     let best = |is: fn(&Outcome) -> bool| wrong.iter().filter(|(_, all)| all.iter().any(|one| is(&one.0))).count();
     let all = |is: fn(&Outcome) -> bool| wrong.iter().flat_map(|(_, all)| *all).filter(|one| is(&one.0)).count();

@@ -1,5 +1,5 @@
 //! The verdicts of both rule books on a corpus of submissions, one line each: what `docs/rules/measurements.md`
-//! summarises.
+//! summarizes.
 //!
 //! usage: `fair-table CORPUS [--all]`. The folder holds `verdicts.jsonl`, `scenes/` and `submissions/`. Without `--all`
 //! only rows where the two differ, and rows of correct kinds that fair refuses, are printed; the summary counts all.

@@ -3,7 +3,7 @@ use crate::runs::judged;
 use fosssim_model::{assignments::Assignment, scene};
 use fosssim_oracle::{judge::fair::FairVerdict, suite::library};
 
-/// A scene of linearised implicit steps whose bodies have these masses.
+/// A scene of linearized implicit steps whose bodies have these masses.
 fn scene(masses: [f64; 3]) -> Scene {
     let [a, b, c] = masses;
     let text = format!(

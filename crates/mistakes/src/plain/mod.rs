@@ -50,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn formulas_are_recognised() {
+    fn formulas_are_recognized() {
         for text in [
             "The t^2 coefficient lacks it.",
             "It has b c for it.",

@@ -4,7 +4,7 @@ use fosssim_num::vector::Vec2;
 /// Something round on its way through the step: it moves from `start` by `displacement`, evenly.
 #[derive(Clone, Copy)]
 pub struct MovingBody {
-    /// Where its centre is at the start of the step.
+    /// Where its center is at the start of the step.
     pub start: Vec2,
     /// How far it goes within the step.
     pub displacement: Vec2,
@@ -13,12 +13,12 @@ pub struct MovingBody {
 }
 
 impl MovingBody {
-    /// Returns where its centre is at time `t`, a fraction of the step.
+    /// Returns where its center is at time `t`, a fraction of the step.
     pub fn at(&self, t: f64) -> Vec2 {
         self.start + t * self.displacement
     }
 
-    /// Returns where its centre is at the end of the step.
+    /// Returns where its center is at the end of the step.
     pub fn end(&self) -> Vec2 {
         self.at(1.0)
     }

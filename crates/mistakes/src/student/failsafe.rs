@@ -89,11 +89,11 @@ fn stop(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
 struct Rigid<'a> {
     world: &'a World,
     q_start: &'a [f64],
-    /// Centre of mass at the start of the step.
-    centre: Vec2,
+    /// Center of mass at the start of the step.
+    center: Vec2,
     /// How far it moves within the step.
     shift: Vec2,
-    /// The zone's angular momentum about the centre, times the step.
+    /// The zone's angular momentum about the center, times the step.
     momentum: f64,
     /// How far the body turns within the step, radians.
     angle: f64,
@@ -103,8 +103,8 @@ struct Rigid<'a> {
 
 impl<'a> Rigid<'a> {
     fn new(world: &'a World, zone: &Zone, q_start: &'a [f64], state: &State) -> Self {
-        let (centre, shift) = (Vec2::zeros(), Vec2::zeros());
-        let mut rigid = Self { world, q_start, centre, shift, momentum: 0.0, angle: 0.0, inertia: 0.0 };
+        let (center, shift) = (Vec2::zeros(), Vec2::zeros());
+        let mut rigid = Self { world, q_start, center, shift, momentum: 0.0, angle: 0.0, inertia: 0.0 };
         rigid.translation(zone, state);
         rigid.rotation(zone, state);
         rigid
@@ -127,7 +127,7 @@ impl<'a> Rigid<'a> {
         self.world.masses[index]
     }
 
-    /// Computes the centre of mass and its motion, from the particles' momenta.
+    /// Computes the center of mass and its motion, from the particles' momenta.
     fn translation(&mut self, zone: &Zone, state: &State) {
         let mut total = 0.0;
         let (student, both) = (self.world.student, self.mistake() == Some(Mistake::FailsafeMeansUnweighted));
@@ -136,13 +136,13 @@ impl<'a> Rigid<'a> {
             let mass = self.mass(number, particle);
             let start = at(self.q_start, particle);
             let moved = at(&state.x, particle) - start;
-            let position = if self.mistake() == Some(Mistake::FailsafeCentreAtEnd) { start + moved } else { start };
+            let position = if self.mistake() == Some(Mistake::FailsafeCenterAtEnd) { start + moved } else { start };
             let weight = |forgotten| if is_unweighted(forgotten) { 1.0 } else { mass };
             let motion = match self.mistake() {
                 Some(Mistake::FailsafeMomentumVelocity) => at(&state.v, particle),
                 _ => moved,
             };
-            self.centre = student.add_scaled(self.centre, weight(Mistake::FailsafeCentreUnweighted), position);
+            self.center = student.add_scaled(self.center, weight(Mistake::FailsafeCenterUnweighted), position);
             self.shift = student.add_scaled(self.shift, weight(Mistake::FailsafeMomentumUnweighted), motion);
             total += mass;
             match self.mistake() {
@@ -153,8 +153,8 @@ impl<'a> Rigid<'a> {
         }
         #[expect(clippy::cast_precision_loss, reason = "a number of particles")]
         let count = zone.particles.len() as f64;
-        let by_count = is_unweighted(Mistake::FailsafeCentreUnweighted);
-        self.centre = over(self.centre, if by_count { count } else { total });
+        let by_count = is_unweighted(Mistake::FailsafeCenterUnweighted);
+        self.center = over(self.center, if by_count { count } else { total });
         let by_count = is_unweighted(Mistake::FailsafeMomentumUnweighted);
         self.shift = over(self.shift, if by_count { count } else { total });
         if self.mistake() == Some(Mistake::FailsafeNoTranslation) {
@@ -162,7 +162,7 @@ impl<'a> Rigid<'a> {
         }
     }
 
-    /// Computes the angle from the particles' angular momenta about the centre of mass.
+    /// Computes the angle from the particles' angular momenta about the center of mass.
     fn rotation(&mut self, zone: &Zone, state: &State) {
         let mut momentum = 0.0;
         let mut inertia = 0.0;
@@ -172,12 +172,12 @@ impl<'a> Rigid<'a> {
             let moved = at(&state.x, particle) - start;
             let arm = match self.mistake() {
                 Some(Mistake::FailsafeAboutOrigin) => start,
-                _ => start - self.centre,
+                _ => start - self.center,
             };
             let relative = match self.mistake() {
                 Some(Mistake::FailsafeWholeDisplacement) => moved,
                 Some(Mistake::FailsafeAngularVelocity) => at(&state.v, particle),
-                Some(Mistake::FailsafeMomentumFromEnd) => at(&state.x, particle) - self.centre,
+                Some(Mistake::FailsafeMomentumFromEnd) => at(&state.x, particle) - self.center,
                 _ => moved - self.shift,
             };
             let weight = |forgotten| if student.makes(forgotten) { 1.0 } else { self.mass(number, particle) };
@@ -198,7 +198,7 @@ impl<'a> Rigid<'a> {
             let square = match self.mistake() {
                 Some(Mistake::FailsafeInertiaDistance) => length(arm),
                 Some(Mistake::FailsafeInertiaAtEnd) => {
-                    let arm = at(&state.x, particle) - self.centre - self.shift;
+                    let arm = at(&state.x, particle) - self.center - self.shift;
                     arm.dot(&arm)
                 }
                 Some(Mistake::FailsafeInertiaAboutOrigin) => start.dot(&start),
@@ -245,22 +245,22 @@ impl<'a> Rigid<'a> {
         for particle in particles(self.world, zone) {
             let start = at(self.q_start, particle);
             let arm = match self.mistake() {
-                Some(Mistake::FailsafeTurnsEnd) => at(&state.x, particle) - self.centre - self.shift,
-                _ => start - self.centre,
+                Some(Mistake::FailsafeTurnsEnd) => at(&state.x, particle) - self.center - self.shift,
+                _ => start - self.center,
             };
             let across = match self.mistake() {
                 Some(Mistake::FailsafePerpendicular) => Vec2::new(arm.y, arm.x),
                 _ => Vec2::new(-arm.y, arm.x),
             };
             let x = match self.mistake() {
-                Some(Mistake::FailsafeNoCentre) => self.shift + cosine * arm + sine * across,
-                Some(Mistake::FailsafeShiftTwice) => self.centre + 2.0 * self.shift + cosine * arm + sine * across,
+                Some(Mistake::FailsafeNoCenter) => self.shift + cosine * arm + sine * across,
+                Some(Mistake::FailsafeShiftTwice) => self.center + 2.0 * self.shift + cosine * arm + sine * across,
                 Some(Mistake::FailsafeRotationMatrix) => {
                     let turned = Vec2::new(cosine * arm.x - sine * arm.y, sine * arm.x + cosine * arm.y);
-                    self.centre + (self.shift + turned)
+                    self.center + (self.shift + turned)
                 }
                 _ => {
-                    let to = self.centre + self.shift;
+                    let to = self.center + self.shift;
                     student.add_scaled(student.add_scaled(to, cosine, arm), sine, across)
                 }
             };
@@ -270,7 +270,7 @@ impl<'a> Rigid<'a> {
                 Some(Mistake::FailsafeVelocityNoStep) => x - start,
                 Some(Mistake::FailsafeVelocityAdded) => before + over(x - start, h),
                 Some(Mistake::FailsafeVelocityFromPrediction) => over(x - at(&state.x, particle), h),
-                Some(Mistake::FailsafeVelocityOfCentre) => over(self.shift, h),
+                Some(Mistake::FailsafeVelocityOfCenter) => over(self.shift, h),
                 _ => over(x - start, h),
             };
             put(&mut state.x, particle, x);

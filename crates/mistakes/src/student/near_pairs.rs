@@ -31,7 +31,7 @@ impl<'a> NearPairSearch<'a> {
             () => x.to_vec(),
         };
         let mut ranks = Vec::new();
-        if student.makes(StepMistake::NearPairsNeighboursOnly) {
+        if student.makes(StepMistake::NearPairsNeighborsOnly) {
             let begin = |i: usize| x[2 * i] - world.scene.particles[i].radius;
             let mut order: Vec<usize> = (0..world.scene.particles.len()).collect();
             order.sort_by(|&one, &other| begin(one).total_cmp(&begin(other)));
@@ -73,8 +73,8 @@ impl<'a> NearPairSearch<'a> {
         }
         match kind {
             PairKind::ParticleParticle => {
-                let are_neighbours = self.ranks.is_empty() || self.ranks[one].abs_diff(self.ranks[other]) == 1;
-                are_neighbours && self.meet(self.particle(one), self.particle(other))
+                let are_neighbors = self.ranks.is_empty() || self.ranks[one].abs_diff(self.ranks[other]) == 1;
+                are_neighbors && self.meet(self.particle(one), self.particle(other))
             }
             PairKind::ParticleEdge => {
                 !(makes(StepMistake::NearPairsLastEdgeMissing) && other + 1 == scene.edges.len())
@@ -103,8 +103,8 @@ impl<'a> NearPairSearch<'a> {
     fn particle(&self, particle: usize) -> BoundingBox {
         let is_point = self.world.student.makes(StepMistake::NearPairsBoxesOfPoints);
         let radius = if is_point { 0.0 } else { self.world.scene.particles[particle].radius };
-        let (centre, side) = (at(&self.x, particle), radius + 0.5 * self.h);
-        [centre - Vec2::new(side, side), centre + Vec2::new(side, side)]
+        let (center, side) = (at(&self.x, particle), radius + 0.5 * self.h);
+        [center - Vec2::new(side, side), center + Vec2::new(side, side)]
     }
 
     /// Returns the boxes by which an edge is looked for.

@@ -47,7 +47,7 @@ impl Object {
 pub struct Contact {
     /// The pair that collides.
     pub pair: Pair,
-    /// The shortest vector from the particle to the object at the time of impact, not normalised.
+    /// The shortest vector from the particle to the object at the time of impact, not normalized.
     pub n: Vec2,
     /// The time of impact as a fraction of the step.
     pub time: f64,

@@ -112,7 +112,7 @@ impl PenaltySum<'_> {
         let particles = &self.world.scene.particles;
         let n = at(self.x, j) - at(self.x, i);
         let Some([k, depth]) = self.depth(term, length(n), [particles[i].radius, particles[j].radius]) else { return };
-        // In the contest the original's direction is normalised twice.
+        // In the contest the original's direction is normalized twice.
         let is_contest = self.layer.detection == CollisionDetection::Contest;
         let u = if is_contest { unit(unit(n)) } else { unit(n) };
         self.push(term, (0, i), length(n), k * depth * u);

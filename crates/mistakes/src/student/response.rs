@@ -38,7 +38,7 @@ fn restitution(world: &World) -> f64 {
 /// Changes `result` so that `contact` does not happen. The impulse is computed from the motion from `q_start` to
 /// `predicted.x`, which may be an earlier state than the one that is changed.
 pub fn respond(world: &World, contact: &Contact, q_start: &[f64], predicted: &State, result: &mut State) {
-    let u = if world.student.makes(Mistake::ResponseNotNormalised) { contact.n } else { unit(contact.n) };
+    let u = if world.student.makes(Mistake::ResponseNotNormalized) { contact.n } else { unit(contact.n) };
     let mut response = PairResponse { world, q_start, predicted, result, u, bounce: bounce(world) };
     let particle = contact.pair.particle;
     match contact.pair.object {

@@ -127,8 +127,7 @@ impl<'a> OfParticle<'a> {
         let Scene { particles, .. } = self.scene;
         let makes = move |mistake: Mistake| self.student.makes(mistake);
         let first = if makes(Mistake::PairsBothOrders) { 0 } else { particle + 1 };
-        let last =
-            if makes(Mistake::PairsNeighboursOnly) { particles.len().min(particle + 2) } else { particles.len() };
+        let last = if makes(Mistake::PairsNeighborsOnly) { particles.len().min(particle + 2) } else { particles.len() };
         let is_kept = move |other: &usize| {
             let both_fixed = particles[particle].fixed && particles[*other].fixed;
             *other != particle

@@ -103,7 +103,7 @@ pub struct Definition {
     pub dropping: Dropping,
     /// The version that the original program shows above a run.
     pub version: &'static str,
-    /// How the original calls its verdict on collisions (oracle-behaviour.md 6).
+    /// How the original calls its verdict on collisions (oracle-behavior.md 6).
     pub verdict: &'static str,
     /// Whether the original says after each step how long it took, and writes into `residual.txt` whether collisions
     /// passed.
@@ -175,7 +175,7 @@ pub struct Handling {
     pub collision: CollisionType,
     /// The lists in its records.
     pub records: RecordLists,
-    /// How the original calls it above a run (oracle-behaviour.md 3).
+    /// How the original calls it above a run (oracle-behavior.md 3).
     pub heading: &'static str,
 }
 

@@ -87,7 +87,7 @@ impl PairKind {
         }
     }
 
-    /// Returns the original's name for the second object (oracle-behaviour.md 6.1).
+    /// Returns the original's name for the second object (oracle-behavior.md 6.1).
     #[must_use]
     pub const fn second_of_original(self) -> &'static str {
         match self {

@@ -28,7 +28,7 @@ impl Element {
         self.number(x, value.x).number(y, value.y)
     }
 
-    /// Returns a colour's three attributes.
+    /// Returns a color's three attributes.
     pub(super) fn color(self, Color { red, green, blue }: Color) -> Self {
         self.number("r", red).number("g", green).number("b", blue)
     }

@@ -179,7 +179,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         None
     }
 
-    /// Returns the colour in `r`, `g` and `b`.
+    /// Returns the color in `r`, `g` and `b`.
     pub(super) fn color(&mut self) -> Option<Color> {
         let mut component = |name: &str| {
             let value = self.scalar(name)?;

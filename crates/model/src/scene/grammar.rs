@@ -87,7 +87,7 @@ fn plain(word: &str) -> String {
     word.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
 }
 
-/// Counts the insertions, deletions, replacements and swaps of neighbours that lead from one word to the other.
+/// Counts the insertions, deletions, replacements and swaps of neighbors that lead from one word to the other.
 fn distance(a: &str, b: &str) -> usize {
     let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
     let mut before: Vec<usize> = Vec::new();

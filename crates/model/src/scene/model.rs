@@ -120,7 +120,7 @@ pub enum CollisionDetection {
 /// A particle: a disc with a mass.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Particle {
-    /// Centre at the start.
+    /// Center at the start.
     pub position: Vec2,
     /// Velocity at the start.
     pub velocity: Vec2,
@@ -216,11 +216,11 @@ pub struct Display {
     pub background: Option<Color>,
     /// `scenetag tag`
     pub tag: Option<String>,
-    /// `particlecolor`: particle and colour, in document order.
+    /// `particlecolor`: particle and color, in document order.
     pub particle_colors: Vec<(usize, Color)>,
-    /// `edgecolor`: edge and colour, in document order.
+    /// `edgecolor`: edge and color, in document order.
     pub edge_colors: Vec<(usize, Color)>,
-    /// `halfplanecolor`: half-plane and colour, in document order.
+    /// `halfplanecolor`: half-plane and color, in document order.
     pub half_plane_colors: Vec<(usize, Color)>,
     /// `particlepath`
     pub paths: Vec<ParticlePath>,
@@ -229,13 +229,13 @@ pub struct Display {
 /// The visible part of the plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Viewport {
-    /// The viewport's centre.
+    /// The viewport's center.
     pub center: Vec2,
     /// Half its extent; zero or negative means "fit".
     pub size: f64,
 }
 
-/// A colour, components in [0, 1].
+/// A color, components in [0, 1].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Color {
     /// Red.
@@ -253,6 +253,6 @@ pub struct ParticlePath {
     pub particle: usize,
     /// How long the trail lasts, seconds.
     pub duration: f64,
-    /// The path's colour.
+    /// The path's color.
     pub color: Color,
 }

@@ -91,8 +91,8 @@ fn names_that_do_not_exist() {
     says("<half-plane/>", "4:1: unknown element `half-plane` (did you mean `halfplane`?)");
     says("<edge i='0' j='1' radios='1'/>", "4:19: unknown attribute `radios` of `edge` (did you mean `radius`?)");
     says(
-        "<dragdamping b='1' colour='red'/>",
-        "4:20: unknown attribute `colour` of `dragdamping` (`dragdamping` has `b`)",
+        "<dragdamping b='1' color='red'/>",
+        "4:20: unknown attribute `color` of `dragdamping` (`dragdamping` has `b`)",
     );
     says(
         "<simplegravity fx='0' fz='1' fy='1'/>",

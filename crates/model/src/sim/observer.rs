@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 ///
 /// Order within one step: `begin_step`; then, for collision types with a handler, per detection pass `begin_pass`, a
 /// `detection` per pair (and, for `simple` and `continuous-time`, an `impulse` right after the detection that caused
-/// it), `end_pass`; for `hybrid` the pass's `impulse`s follow its `end_pass`. Then `synchronised` (continuous-time: at
+/// it), `end_pass`; for `hybrid` the pass's `impulse`s follow its `end_pass`. Then `synchronized` (continuous-time: at
 /// the end of the handler; hybrid: after the impulses, before the geometric part). In the geometric part: `begin_pass`
 /// .. `end_pass`, then per round a `failsafe` per zone and the next pass; `zones` after each merge. Last `end_step`.
 ///
@@ -39,8 +39,8 @@ pub trait Observer {
     fn end_pass(&mut self, _pass: Pass, _hits: usize) {}
     /// Hears that a response was applied.
     fn impulse(&mut self, _impulse: &Impulse) {}
-    /// Hears the synchronisation point: the state that the mid record holds, before anybody puts another in its place.
-    fn synchronised(&mut self, _state: &State) {}
+    /// Hears the synchronization point: the state that the mid record holds, before anybody puts another in its place.
+    fn synchronized(&mut self, _state: &State) {}
     /// Hears the impact zones after the merge of geometric round `round` (0: before the first failsafe).
     fn zones(&mut self, _round: u32, _zones: &[Zone<'_>]) {}
     /// Hears that the rigid failsafe is about to move this zone.
@@ -62,9 +62,9 @@ pub trait Steer {
     fn decide(&mut self, _pair: Pair, decision: Decision) -> Decision {
         decision
     }
-    /// Returns the synchronisation point, after [`Observer::synchronised`]. What is written here is what the step goes
+    /// Returns the synchronization point, after [`Observer::synchronized`]. What is written here is what the step goes
     /// on with; the geometric part of `hybrid` starts from the values that the answer names.
-    fn synchronise(&mut self, _state: &mut State) -> Resume {
+    fn synchronize(&mut self, _state: &mut State) -> Resume {
         Resume::Own
     }
 }
@@ -79,10 +79,10 @@ impl<S: Steer> Observer for Steering<S> {
     }
 }
 
-/// Tells an observer the state of the synchronisation point, and has it steered.
-pub(super) fn synchronise<O: Observer>(observer: &mut O, state: &mut State) -> Resume {
-    observer.synchronised(state);
-    observer.steers().map_or(Resume::Own, |steer| steer.synchronise(state))
+/// Tells an observer the state of the synchronization point, and has it steered.
+pub(super) fn synchronize<O: Observer>(observer: &mut O, state: &mut State) -> Resume {
+    observer.synchronized(state);
+    observer.steers().map_or(Resume::Own, |steer| steer.synchronize(state))
 }
 
 /// The wishes of an observer about the pairs of a detection pass.
@@ -114,7 +114,7 @@ macro_rules! go_on {
         fn hit(&mut $self, pair: Pair) { $($to.hit(pair);)+ }
         fn end_pass(&mut $self, pass: Pass, hits: usize) { $($to.end_pass(pass, hits);)+ }
         fn impulse(&mut $self, impulse: &Impulse) { $($to.impulse(impulse);)+ }
-        fn synchronised(&mut $self, state: &State) { $($to.synchronised(state);)+ }
+        fn synchronized(&mut $self, state: &State) { $($to.synchronized(state);)+ }
         fn zones(&mut $self, round: u32, zones: &[Zone<'_>]) { $($to.zones(round, zones);)+ }
         fn failsafe(&mut $self, round: u32, zone: &Zone<'_>) { $($to.failsafe(round, zone);)+ }
         fn end_step(&mut $self, step: u32, state: &State) { $($to.end_step(step, state);)+ }
@@ -152,7 +152,7 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
     }
 }
 
-/// A state that the first one puts in place is seen by the second one. The geometric part starts from the synchronised
+/// A state that the first one puts in place is seen by the second one. The geometric part starts from the synchronized
 /// state if one of them says so.
 impl<A: Observer, B: Observer> Steer for (A, B) {
     fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
@@ -163,22 +163,22 @@ impl<A: Observer, B: Observer> Steer for (A, B) {
         let both = [self.0.steers(), self.1.steers()].into_iter().flatten();
         both.fold(decision, |decision, steer| steer.decide(pair, decision))
     }
-    fn synchronise(&mut self, state: &mut State) -> Resume {
+    fn synchronize(&mut self, state: &mut State) -> Resume {
         let both = [self.0.steers(), self.1.steers()].into_iter().flatten();
-        both.fold(Resume::Own, |resume, steer| match steer.synchronise(state) {
+        both.fold(Resume::Own, |resume, steer| match steer.synchronize(state) {
             Resume::Own => resume,
-            Resume::Synchronised => Resume::Synchronised,
+            Resume::Synchronized => Resume::Synchronized,
         })
     }
 }
 
-/// The state from which the geometric part of `hybrid` starts, after the synchronisation point.
+/// The state from which the geometric part of `hybrid` starts, after the synchronization point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Resume {
     /// The simulator's own values, as the original grades (collisions.md 5.4).
     Own,
     /// The state that was put in place.
-    Synchronised,
+    Synchronized,
 }
 
 /// One detection pass over all pairs.
@@ -210,7 +210,7 @@ pub enum Stage {
     },
 }
 
-/// A pass in its serialised form: the round is 0 in stages that have one pass.
+/// A pass in its serialized form: the round is 0 in stages that have one pass.
 #[derive(Serialize, Deserialize, schemars::JsonSchema)]
 struct PassForm {
     /// Number of the pass within the step, from 0.
@@ -281,7 +281,7 @@ pub enum Decision {
     Hit {
         /// Time of impact in [0, 1]; 0 for `simple`.
         time: f64,
-        /// Contact normal, not normalised.
+        /// Contact normal, not normalized.
         normal: Vec2,
     },
     /// The objects do not collide within the step.
@@ -324,7 +324,7 @@ pub enum Time {
 pub struct Impulse {
     /// The pair.
     pub pair: Pair,
-    /// Contact normal, not normalised.
+    /// Contact normal, not normalized.
     #[serde(with = "fosssim_num::written")]
     pub normal: Vec2,
     /// Time of impact as a fraction of the step.

@@ -129,7 +129,7 @@ mod tests {
     };
     use fosssim_num::vector::Vec2;
 
-    /// Writes down what it hears; may replace the state at the synchronisation point.
+    /// Writes down what it hears; may replace the state at the synchronization point.
     #[derive(Default)]
     struct Log {
         lines: Vec<String>,
@@ -161,8 +161,8 @@ mod tests {
         fn steers(&mut self) -> Option<&mut dyn Steer> {
             Some(self)
         }
-        fn synchronised(&mut self, _state: &State) {
-            self.lines.push("synchronise".to_owned());
+        fn synchronized(&mut self, _state: &State) {
+            self.lines.push("synchronize".to_owned());
         }
         fn zones(&mut self, round: u32, zones: &[Zone<'_>]) {
             self.lines.push(format!("zones {round} {:?}", zones.iter().map(|z| z.particles).collect::<Vec<_>>()));
@@ -176,7 +176,7 @@ mod tests {
     }
 
     impl Steer for Log {
-        fn synchronise(&mut self, state: &mut State) -> Resume {
+        fn synchronize(&mut self, state: &mut State) -> Resume {
             if let Some(replacement) = &self.replacement {
                 state.clone_from(replacement);
             }
@@ -209,7 +209,7 @@ mod tests {
         assert_eq!(simulation.state().positions, [0.0, 1.0]);
         assert_eq!(simulation.state().velocities, [0.0, 1.0]);
         let expected =
-            ["step 1", "pass 0 ContinuousTime", "hit at 0.5", "impulse -0 -0.25", "1 hits", "synchronise", "end 1"];
+            ["step 1", "pass 0 ContinuousTime", "hit at 0.5", "impulse -0 -0.25", "1 hits", "synchronize", "end 1"];
         assert_eq!(log.lines, expected);
         assert_eq!(simulation.steps_done, 1);
     }
@@ -253,7 +253,7 @@ mod tests {
             "pass 1 Impulses { round: 1 }",
             "miss",
             "0 hits",
-            "synchronise",
+            "synchronize",
             "end 1",
         ];
         assert_eq!(log.lines, expected);
@@ -266,7 +266,7 @@ mod tests {
         let simulation = stepped(&falling(hybrid(-3)), &mut log);
         let expected = [
             "step 1",
-            "synchronise",
+            "synchronize",
             "pass 0 Geometric { round: 0 }",
             "hit at 0.5",
             "1 hits",
@@ -293,7 +293,7 @@ mod tests {
         );
     }
 
-    /// The step ends with the state that the observer writes at the synchronisation point, but for the geometric part.
+    /// The step ends with the state that the observer writes at the synchronization point, but for the geometric part.
     #[test]
     fn the_synchronised_state_counts_unless_zones_are_moved() {
         let replacement = State { positions: vec![7.0, 8.0], velocities: vec![9.0, 10.0] };

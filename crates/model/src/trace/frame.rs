@@ -58,12 +58,12 @@ pub struct ImpulsePair {
     second: i64,
 }
 
-/// A logged impulse in its serialised form, which is that of an [`Impulse`].
+/// A logged impulse in its serialized form, which is that of an [`Impulse`].
 #[derive(Serialize, Deserialize, schemars::JsonSchema)]
 struct ImpulseForm {
     /// The objects that collide.
     pair: ImpulsePair,
-    /// From the first object to the second, not normalised.
+    /// From the first object to the second, not normalized.
     #[serde(with = "fosssim_num::written")]
     #[schemars(with = "[fosssim_num::written::Number; 2]")]
     normal: Vec2,

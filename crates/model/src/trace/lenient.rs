@@ -1,4 +1,4 @@
-//! The original's reading, bit for bit (oracle-behaviour.md 5): what it believes, what it passes over, where it stops.
+//! The original's reading, bit for bit (oracle-behavior.md 5): what it believes, what it passes over, where it stops.
 //!
 //! A stream that has run out stays failed; a value that is only partly there takes the bytes that are there as its
 //! low-order ones; polynomials are read without any check. The one thing not reproduced is how the original dies of

@@ -113,7 +113,7 @@ pub struct StepView {
 }
 
 impl Summary {
-    /// Summarises a trace of `scene`, in the memory of one record and eight bytes per step. A malformed trace has a
+    /// Summarizes a trace of `scene`, in the memory of one record and eight bytes per step. A malformed trace has a
     /// summary, too: it says where reading ended.
     pub fn for_scene(scene: &Scene, mut trace: impl Read) -> Self {
         let layout = Layout::for_scene(scene);

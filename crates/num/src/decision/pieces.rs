@@ -158,7 +158,7 @@ impl PieceWalk<'_> {
         loop {
             let middle = lo + (hi - lo) * 0.5;
             let (value, error) = polynomial.value_at(middle);
-            // The middle of neighbours is one of them, and ends the loop, too.
+            // The middle of neighbors is one of them, and ends the loop, too.
             if value > error && middle < hi {
                 hi = middle;
             } else if value < -error && middle > lo {

@@ -45,7 +45,7 @@ fn the_bits_are_those_of_the_gnu_c_library() {
         let sign = if bits() & 1 == 0 { 1.0 } else { -1.0 };
         let small = sign * unit(bits());
         let around = |center: f64, width: f64| center + width * small;
-        // All bit patterns; turns; where subnormal and infinite results begin; the neighbourhood of one.
+        // All bit patterns; turns; where subnormal and infinite results begin; the neighborhood of one.
         for x in [any, 4.0 * small, 1e3 * small, 1e9 * small, around(-720.0, 30.0), around(1.0, 0.1), 1e-309 * small] {
             for (name, ours, theirs) in
                 [("exp", exp(x), x.exp()), ("ln", ln(x), x.ln()), ("sin", sin(x), x.sin()), ("cos", cos(x), x.cos())]

@@ -1,15 +1,15 @@
-//! A GIF: 256 colours for the whole film, chosen from the scene's own.
+//! A GIF: 256 colors for the whole film, chosen from the scene's own.
 //!
-//! Edges of shapes are blends of two colours; the palette holds the way from each colour to the background in steps,
-//! and a cube of all colours where there is room. What is not in it becomes the nearest that is.
+//! Edges of shapes are blends of two colors; the palette holds the way from each color to the background in steps,
+//! and a cube of all colors where there is room. What is not in it becomes the nearest that is.
 use super::{Rate, changed::ChangedArea};
-use crate::{colour::Colour, raster::Raster, size::Size};
+use crate::{color::Rgb, raster::Raster, size::Size};
 use std::{
     collections::{BTreeSet, HashMap},
     io::{self, Write},
 };
 
-/// Steps on the way from a colour to the background.
+/// Steps on the way from a color to the background.
 const STEPS: u8 = 8;
 
 /// A GIF that is being written.
@@ -17,21 +17,21 @@ pub struct Gif<'a> {
     encoder: gif::Encoder<&'a mut dyn Write>,
     size: Size,
     rate: Rate,
-    palette: Vec<Colour>,
-    /// Colours that have been looked up.
+    palette: Vec<Rgb>,
+    /// Colors that have been looked up.
     known: HashMap<[u8; 3], u8>,
     before: Vec<u8>,
     pictures: u64,
 }
 
 impl<'a> Gif<'a> {
-    /// Begins a film, played for ever, in these colours, the background first.
+    /// Begins a film, played for ever, in these colors, the background first.
     ///
     /// # Errors
     /// When `out` can't be written, or the pictures are larger than a GIF can say.
-    pub fn new(out: &'a mut dyn Write, size: Size, rate: Rate, colours: &[Colour]) -> io::Result<Self> {
-        let palette = palette(colours);
-        let bytes: Vec<u8> = palette.iter().flat_map(|colour| colour.0).collect();
+    pub fn new(out: &'a mut dyn Write, size: Size, rate: Rate, colors: &[Rgb]) -> io::Result<Self> {
+        let palette = palette(colors);
+        let bytes: Vec<u8> = palette.iter().flat_map(|color| color.0).collect();
         let mut encoder = gif::Encoder::new(out, side(size.width()), side(size.height()), &bytes).map_err(error)?;
         encoder.set_repeat(gif::Repeat::Infinite).map_err(error)?;
         Ok(Self { encoder, size, rate, palette, known: HashMap::new(), before: Vec::new(), pictures: 0 })
@@ -47,8 +47,8 @@ impl<'a> Gif<'a> {
             .rgba()
             .chunks_exact(4)
             .map(|pixel| {
-                let colour = [pixel[0], pixel[1], pixel[2]];
-                *known.entry(colour).or_insert_with(|| nearest(palette, colour))
+                let color = [pixel[0], pixel[1], pixel[2]];
+                *known.entry(color).or_insert_with(|| nearest(palette, color))
             })
             .collect();
         let part = ChangedArea::between(self.size, &self.before, &after);
@@ -92,36 +92,36 @@ fn error(error: gif::EncodingError) -> io::Error {
     }
 }
 
-/// Returns at most 256 colours: the given ones first, then steps towards the first one, then a cube of all colours.
-fn palette(colours: &[Colour]) -> Vec<Colour> {
-    let background = colours.first().copied().unwrap_or(Colour::WHITE);
+/// Returns at most 256 colors: the given ones first, then steps towards the first one, then a cube of all colors.
+fn palette(colors: &[Rgb]) -> Vec<Rgb> {
+    let background = colors.first().copied().unwrap_or(Rgb::WHITE);
     let mut palette = Vec::new();
     let mut seen = BTreeSet::new();
-    let mut add = |colour: Colour| {
-        if palette.len() < 256 && seen.insert(colour) {
-            palette.push(colour);
+    let mut add = |color: Rgb| {
+        if palette.len() < 256 && seen.insert(color) {
+            palette.push(color);
         }
     };
-    colours.iter().copied().for_each(&mut add);
-    // Half the way first: where there are many colours, few steps of each are better than all of a few.
+    colors.iter().copied().for_each(&mut add);
+    // Half the way first: where there are many colors, few steps of each are better than all of a few.
     for step in [4, 2, 6, 1, 3, 5, 7] {
         debug_assert!(step < STEPS);
-        colours.iter().for_each(|&colour| add(colour.towards(background, step)));
+        colors.iter().for_each(|&color| add(color.towards(background, step)));
     }
     for levels in [6_u8, 4] {
         let part = |index: u8| u8::try_from(255 * u32::from(index) / u32::from(levels - 1)).unwrap_or(u8::MAX);
         for red in 0..levels {
             for green in 0..levels {
-                (0..levels).for_each(|blue| add(Colour([red, green, blue].map(part))));
+                (0..levels).for_each(|blue| add(Rgb([red, green, blue].map(part))));
             }
         }
     }
     palette
 }
 
-fn nearest(palette: &[Colour], colour: [u8; 3]) -> u8 {
-    let distance = |other: &Colour| -> u32 {
-        other.0.iter().zip(colour).map(|(&own, other)| u32::from(own.abs_diff(other)).pow(2)).sum()
+fn nearest(palette: &[Rgb], color: [u8; 3]) -> u8 {
+    let distance = |other: &Rgb| -> u32 {
+        other.0.iter().zip(color).map(|(&own, other)| u32::from(own.abs_diff(other)).pow(2)).sum()
     };
     let nearest = palette.iter().enumerate().min_by_key(|(_, other)| distance(other));
     nearest.map_or(0, |(index, _)| u8::try_from(index).unwrap_or(0))
@@ -132,12 +132,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_scenes_colours_are_exact() {
-        let many: Vec<Colour> = (0..200).map(|k| Colour([k, 255 - k, 7])).collect();
+    fn the_scenes_colors_are_exact() {
+        let many: Vec<Rgb> = (0..200).map(|k| Rgb([k, 255 - k, 7])).collect();
         let palette = palette(&many);
         assert_eq!(palette.len(), 256);
-        for colour in many {
-            assert_eq!(palette[usize::from(nearest(&palette, colour.0))], colour);
+        for color in many {
+            assert_eq!(palette[usize::from(nearest(&palette, color.0))], color);
         }
         assert!(super::palette(&[]).len() <= 256);
     }

@@ -1,7 +1,7 @@
 //! Plots as SVG: residuals over the steps, detection passes per step, detection polynomials on the step.
 //!
 //! Every plot has a title and a description in words, needs no script, and prints. Series differ by dash and marker,
-//! not by colour alone; the colours follow the reader's light or dark scheme by CSS variables (`--plot-ink`, `--plot-1`
+//! not by color alone; the colors follow the reader's light or dark scheme by CSS variables (`--plot-ink`, `--plot-1`
 //! and so on override them), with plain attributes as fallback where there is no CSS.
 mod curves;
 mod passes;

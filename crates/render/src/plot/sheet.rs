@@ -13,7 +13,7 @@ pub const RIGHT: f64 = WIDTH - 16.0;
 /// The axis's ends, for others who draw on them.
 pub const STEPS_AXIS: [f64; 2] = [LEFT, RIGHT];
 
-/// The ink of a mark: its class in the style sheet, and the colour for readers without one.
+/// The ink of a mark: its class in the style sheet, and the color for readers without one.
 #[derive(Debug, Clone, Copy)]
 pub enum Ink {
     /// Axes.
@@ -26,11 +26,11 @@ pub enum Ink {
     Series(usize),
 }
 
-/// The colours of series.
+/// The colors of series.
 const SERIES: [&str; 4] = ["#0063a6", "#a34e00", "#00694a", "#84367c"];
 
 impl Ink {
-    /// Returns the class of what is drawn along (`s`) or filled (`f`), and the colour. Axes and grids are never filled.
+    /// Returns the class of what is drawn along (`s`) or filled (`f`), and the color. Axes and grids are never filled.
     fn look(self, kind: char) -> (String, &'static str) {
         match self {
             Self::Axis => ("ax".to_owned(), "#1b1f24"),
@@ -114,14 +114,14 @@ impl Sheet {
 
     /// Returns the attributes of a path that is drawn along.
     fn along(&self, ink: Ink) -> String {
-        let (class, colour) = ink.look('s');
-        format!(" class=\"{class}\"{}{}", self.look("stroke", colour), self.look("fill", "none"))
+        let (class, color) = ink.look('s');
+        format!(" class=\"{class}\"{}{}", self.look("stroke", color), self.look("fill", "none"))
     }
 
     /// Returns the attributes of a shape that is filled.
     fn filled(&self, ink: Ink) -> String {
-        let (class, colour) = ink.look('f');
-        format!(" class=\"{class}\"{}", self.look("fill", colour))
+        let (class, color) = ink.look('f');
+        format!(" class=\"{class}\"{}", self.look("fill", color))
     }
 
     /// Draws a thin straight line without dashes.
@@ -209,7 +209,7 @@ impl Sheet {
             Anchor::Middle => " text-anchor=\"middle\"",
             Anchor::End => " text-anchor=\"end\"",
         };
-        let (class, colour) = match tone {
+        let (class, color) = match tone {
             Tone::Plain => ("", "#1b1f24"),
             Tone::Faint => (" class=\"ft\"", "#5f6871"),
             Tone::Bad => (" class=\"bt\"", "#b3261e"),
@@ -218,7 +218,7 @@ impl Sheet {
         let _ = writeln!(
             self.svg,
             "<text{class} x=\"{x}\" y=\"{y}\"{anchor}{}>{}</text>",
-            self.look("fill", colour),
+            self.look("fill", color),
             escaped(text)
         );
     }

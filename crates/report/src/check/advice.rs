@@ -29,7 +29,7 @@ fn of_milestone(finding: &Finding, collisions: CollisionType) -> Option<&'static
         ],
         (FindingDetail::WrongNormal { .. }, CollisionType::Simple) => &[
             "the contact normal: from the first object to the nearest point of the second, at the end of the step, not \
-             normalised",
+             normalized",
         ],
         (FindingDetail::Position { .. } | FindingDetail::Velocity { .. }, CollisionType::None) if finding.step > 0 => {
             &["the integrator or the forces: the step starts from the trace's own state, so errors of earlier steps \
@@ -61,7 +61,7 @@ fn of_finding(finding: &Finding, collisions: CollisionType) -> &'static [&'stati
             "are the objects approaching, and is the time of impact inside the step?",
         ],
         FindingDetail::WrongNormal { .. } => &[
-            "the contact normal: from the first object to the second, at the time of impact, not normalised",
+            "the contact normal: from the first object to the second, at the time of impact, not normalized",
             "is it taken from the positions at that time, and not from those at the end of the step?",
         ],
         FindingDetail::PolynomialCount { actual: 0, .. } => &[

@@ -123,7 +123,7 @@ const fn not(is: bool) -> &'static str {
 pub(super) struct OverlapView {
     /// The nearest point of an edge, from 0 at its first end to 1 at its second; null without an edge.
     alpha: Option<Number>,
-    /// From the first object to the nearest point of the second, not normalised.
+    /// From the first object to the nearest point of the second, not normalized.
     normal: [Number; 2],
     /// The length of the normal.
     distance: Number,

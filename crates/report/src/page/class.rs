@@ -318,7 +318,7 @@ fn is_failed(scene: &SceneGrade) -> bool {
     !matches!(scene.verdict, Verdict::Accepted | Verdict::NotRun | Verdict::JudgeError)
 }
 
-/// Returns the state of a submission by which rows are filtered and coloured.
+/// Returns the state of a submission by which rows are filtered and colored.
 fn state(grade: &Grade) -> &'static str {
     match grade {
         _ if grade.verdict.is_accepted() => "good",
@@ -327,7 +327,7 @@ fn state(grade: &Grade) -> &'static str {
     }
 }
 
-/// Returns the scenes of a submission in a row: those that are not accepted are drawn, each kind in a colour of its
+/// Returns the scenes of a submission in a row: those that are not accepted are drawn, each kind in a color of its
 /// own.
 fn heat(grade: &Grade) -> String {
     let (all, accepted) = (grade.scenes().count(), grade.count(Verdict::Accepted));

@@ -44,8 +44,8 @@ impl Decoy {
             std::fs::remove_dir_all(root)?;
         }
         let (secrets, work) = (root.join("secrets"), root.join("work"));
-        let (scenes, neighbour) = (root.join("scenes"), root.join("neighbour"));
-        for folder in [&secrets.join("inner"), &secrets.join("empty"), &work, &scenes, &neighbour] {
+        let (scenes, neighbor) = (root.join("scenes"), root.join("neighbor"));
+        for folder in [&secrets.join("inner"), &secrets.join("empty"), &work, &scenes, &neighbor] {
             std::fs::create_dir_all(folder)?;
         }
         let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
@@ -55,14 +55,14 @@ impl Decoy {
             (secrets.join("reference.bin"), secret.as_str(), 0o644),
             (secrets.join("private.txt"), secret.as_str(), 0o600),
             (secrets.join("inner/more.txt"), secret.as_str(), 0o644),
-            (neighbour.join("answer.txt"), secret.as_str(), 0o644),
+            (neighbor.join("answer.txt"), secret.as_str(), 0o644),
             (scene.clone(), "<scene/>", 0o644),
         ] {
             std::fs::write(&path, text)?;
             std::fs::set_permissions(&path, std::fs::Permissions::from_mode(mode))?;
         }
         // The umask must not be what protects the secrets: open every folder on the way to all users.
-        for folder in [root, &secrets, &secrets.join("inner"), &scenes, &neighbour] {
+        for folder in [root, &secrets, &secrets.join("inner"), &scenes, &neighbor] {
             std::fs::set_permissions(folder, std::fs::Permissions::from_mode(0o755))?;
         }
         let null = Stdio::null;
@@ -77,13 +77,13 @@ impl Decoy {
         Ok(own)
     }
 
-    /// Returns the arguments of the program: secrets, victim, scene, neighbour.
+    /// Returns the arguments of the program: secrets, victim, scene, neighbor.
     pub(super) fn arguments(&self) -> [OsString; 4] {
         [
             self.root.join("secrets").into(),
             self.victim.id().to_string().into(),
             self.scene.clone().into(),
-            self.root.join("neighbour").into(),
+            self.root.join("neighbor").into(),
         ]
     }
 
@@ -100,7 +100,7 @@ impl Decoy {
     /// Returns the state of everything but the working folder.
     pub(super) fn state(&self) -> io::Result<State> {
         let mut state = BTreeMap::new();
-        for folder in ["secrets", "scenes", "neighbour"] {
+        for folder in ["secrets", "scenes", "neighbor"] {
             record(&self.root.join(folder), &mut state)?;
         }
         Ok(State(state))
@@ -159,7 +159,7 @@ mod tests {
         std::fs::set_permissions(&reference, std::fs::Permissions::from_mode(0o644)).unwrap();
         assert!(before.difference(&decoy.state().unwrap()).unwrap().ends_with("reference.bin"), "even when undone");
         let before = decoy.state().unwrap();
-        std::fs::write(folder.path().join("run/neighbour/planted"), "x").unwrap();
+        std::fs::write(folder.path().join("run/neighbor/planted"), "x").unwrap();
         assert!(before.difference(&decoy.state().unwrap()).is_some());
         let secret = std::fs::read(&reference).unwrap();
         assert!(decoy.is_betrayed(&[b"it is ", &secret[..]].concat()) && !decoy.is_betrayed(b"it is"));

@@ -42,7 +42,7 @@ const GRADER: &str = "FOSSSIM_GRADER";
 const GROUP: &str = "FOSSSIM_GRADER_GROUP";
 /// How an attack ends whose forbidden call was refused, and not by the sandbox, which would have ended it.
 const REFUSED: Ended = Ended::Exited(77);
-/// Attacks are built without optimisation, which would take useless-looking stores and loops away.
+/// Attacks are built without optimization, which would take useless-looking stores and loops away.
 const FLAGS: [&str; 3] = ["-O0", "-w", "-pthread"];
 /// The trace's file.
 const TRACE: &str = "trace.bin";

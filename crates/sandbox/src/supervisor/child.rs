@@ -132,8 +132,8 @@ fn limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
     // The run's own user has no other processes but in another container that hands out the same numbers.
     const SPARE_FOR_OTHERS: u64 = 128;
     const PENDING_SIGNALS: u64 = 1024;
-    // The address sanitiser reserves 20 TiB and what the program itself needs, others more.
-    const SANITISERS_SPACE: u64 = 64 << 40;
+    // The address sanitizer reserves 20 TiB and what the program itself needs, others more.
+    const SANITIZERS_SPACE: u64 = 64 << 40;
     // One byte, not none: the kernel pipes the dumps of programs with a limit of 0 to a handler, if the host has one.
     sys::limit(Resource::Core, 1)?;
     let limits = &order.limits;
@@ -149,7 +149,7 @@ fn limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
     sys::limit(Resource::Sigpending, PENDING_SIGNALS)?;
     // Address space is not memory: libraries reserve more than they touch. What is touched is watched.
     let space = limits.memory.saturating_mul(2).saturating_add(SPARE_MEMORY);
-    sys::limit(Resource::As, if order.sanitisers { space.max(SANITISERS_SPACE) } else { space })?;
+    sys::limit(Resource::As, if order.sanitizers { space.max(SANITIZERS_SPACE) } else { space })?;
     // The kernel counts for a user, or for a user namespace: where both are shared with other runs, the limit is only
     // against bombs, because the supervisor counts the run's own.
     let processes = u64::from(limits.processes) + SPARE_PROCESSES;
@@ -260,7 +260,7 @@ fn environment(order: &RunOrder) -> io::Result<Strings> {
         (b"HOME".to_vec(), home.clone()),
         (b"TMPDIR".to_vec(), home),
     ];
-    if order.sanitisers {
+    if order.sanitizers {
         // The leak check starts a process that traces its parent, which no filter allows.
         variables.push((b"ASAN_OPTIONS".to_vec(), b"detect_leaks=0".to_vec()));
     }

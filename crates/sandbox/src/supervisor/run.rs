@@ -465,7 +465,7 @@ impl Run {
         let user = self.user();
         let members = processes::members(self.child, self.has_children());
         let root = wire::path(&self.order.folder);
-        let page_tables = self.order.sanitisers;
+        let page_tables = self.order.sanitizers;
         let held = sys::with_files_of(user, || holdings::of(&members, &root, self.order.tools, page_tables));
         if !self.order.volatile {
             contents.bytes += held.nameless;
@@ -478,7 +478,7 @@ impl Run {
     /// Returns whether there may be memory that is resident for nobody: files that are neither in the folder nor
     /// refused by rules.
     fn can_hide_memory(&self) -> bool {
-        self.order.tools || self.order.sanitisers || !self.order.walls.landlock || !self.order.walls.seccomp
+        self.order.tools || self.order.sanitizers || !self.order.walls.landlock || !self.order.walls.seccomp
     }
 
     /// Returns whether there may be other processes than the main one. Without the filter anybody can start some.

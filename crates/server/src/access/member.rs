@@ -7,7 +7,7 @@ use crate::{
     db::{DbError, Transaction},
     problem::Problem,
     shown::{self, Shown},
-    store::{Artefact, Digest, Opened},
+    store::{Artifact, Digest, Opened},
     task::OutputFile,
     values,
     worker::{PUBLISHED_PAGE, STAFF_PAGE},
@@ -173,12 +173,12 @@ impl Member {
     ///
     /// # Errors
     /// When they may see none of this number.
-    pub async fn upload(&self, id: i64) -> Result<(Submission, Artefact), Problem> {
+    pub async fn upload(&self, id: i64) -> Result<(Submission, Artifact), Problem> {
         let submission = self.kept(id).await?;
         let wrong = |what: &str| Problem::from(DbError::Other(format!("a submission's {what} is invalid")));
         let digest: Digest = submission.digest.parse().map_err(|_| wrong("digest"))?;
         let size = u64::try_from(submission.size).map_err(|_| wrong("size"))?;
-        Ok((submission, Artefact { digest, size }))
+        Ok((submission, Artifact { digest, size }))
     }
 
     /// Returns a submission whose bytes are still there.
@@ -187,20 +187,20 @@ impl Member {
         if submission.removed_at.is_some() { Err(Problem::removed()) } else { Ok(submission) }
     }
 
-    /// Opens an artefact that they may see.
+    /// Opens an artifact that they may see.
     ///
     /// # Errors
     /// When the store fails.
-    pub async fn open(&self, artefact: &Artefact) -> Result<Opened, Problem> {
-        Ok(self.app.0.store.open(&artefact.digest).await?)
+    pub async fn open(&self, artifact: &Artifact) -> Result<Opened, Problem> {
+        Ok(self.app.0.store.open(&artifact.digest).await?)
     }
 
-    /// Returns the first bytes of an artefact that they may see.
+    /// Returns the first bytes of an artifact that they may see.
     ///
     /// # Errors
     /// When the store fails.
-    pub async fn beginning(&self, artefact: &Artefact, most: usize) -> Result<Vec<u8>, Problem> {
-        let mut pieces = self.open(artefact).await?.pieces;
+    pub async fn beginning(&self, artifact: &Artifact, most: usize) -> Result<Vec<u8>, Problem> {
+        let mut pieces = self.open(artifact).await?.pieces;
         let mut bytes = Vec::new();
         while bytes.len() < most
             && let Some(piece) = pieces.next().await

@@ -4,7 +4,7 @@ use super::App;
 use crate::{
     problem::{Problem, ensure},
     queue::{Lease, Progress},
-    store::{Artefact, Digest, Opened},
+    store::{Artifact, Digest, Opened},
     task::{Outcome, Suite, Task},
     values,
     wire::{Claimed, Manners},
@@ -156,11 +156,11 @@ impl Remote {
             file.media_type = (*media_type).to_owned();
             let statement = "SELECT size FROM job_file WHERE job = ? AND attempt = ? AND digest = ?";
             let stored =
-                transaction.row(statement, values![lease.job, lease.attempt, file.artefact.digest.as_str()]).await?;
+                transaction.row(statement, values![lease.job, lease.attempt, file.artifact.digest.as_str()]).await?;
             let Some(stored) = stored else {
                 return Err(Problem::conflict("a report was not stored for this job", "store it first"));
             };
-            file.artefact.size = u64::try_from(stored.int("size")?).unwrap_or(0);
+            file.artifact.size = u64::try_from(stored.int("size")?).unwrap_or(0);
         }
         Ok(outcome)
     }
@@ -175,14 +175,14 @@ impl Remote {
         serde_json::from_str(&row.text("payload")?).map_err(|_| Problem::fault())
     }
 
-    /// Returns an artefact of a job that it holds.
+    /// Returns an artifact of a job that it holds.
     ///
     /// # Errors
-    /// When the job is not its own (any more), or the artefact is not the job's.
-    pub async fn artefact(&self, lease: &Lease, digest: &Digest) -> Result<Opened, Problem> {
+    /// When the job is not its own (any more), or the artifact is not the job's.
+    pub async fn artifact(&self, lease: &Lease, digest: &Digest) -> Result<Opened, Problem> {
         let task = self.held(lease).await?;
         let suite = matches!(&task.suite, Suite::Archive(suite) if suite == digest);
-        ensure(task.submission.artefact.digest == *digest || suite, Problem::not_found("artefact of this job"))?;
+        ensure(task.submission.artifact.digest == *digest || suite, Problem::not_found("artifact of this job"))?;
         Ok(self.app.0.store.open(digest).await?)
     }
 
@@ -190,21 +190,21 @@ impl Remote {
     ///
     /// # Errors
     /// When the job is not its own (any more), or the store fails.
-    pub async fn store(&self, lease: &Lease, file: &Path) -> Result<Artefact, Problem> {
+    pub async fn store(&self, lease: &Lease, file: &Path) -> Result<Artifact, Problem> {
         self.held(lease).await?;
-        let artefact = self.app.0.store.put_file(file).await?;
+        let artifact = self.app.0.store.put_file(file).await?;
         let mut transaction = self.app.0.database.first().begin().await?;
         // A request that takes the job away meanwhile waits for this one, or this one finds the job taken.
         let statement = "SELECT id FROM job WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running'
             {for update}";
         let held = transaction.row(statement, values![lease.job, lease.attempt, &lease.key]).await?;
         ensure(held.is_some(), Problem::not_found("job of yours"))?;
-        let size = i64::try_from(artefact.size).unwrap_or(i64::MAX);
+        let size = i64::try_from(artifact.size).unwrap_or(i64::MAX);
         let statement = "INSERT INTO job_file (job, attempt, digest, size) VALUES (?, ?, ?, ?)
             ON CONFLICT (job, attempt, digest) DO NOTHING";
-        transaction.execute(statement, values![lease.job, lease.attempt, artefact.digest.as_str(), size]).await?;
+        transaction.execute(statement, values![lease.job, lease.attempt, artifact.digest.as_str(), size]).await?;
         transaction.commit().await?;
-        Ok(artefact)
+        Ok(artifact)
     }
 
     /// Returns whether it holds the job: before anything is received for it.

@@ -9,7 +9,7 @@ use crate::{
     lti::score,
     problem::Problem,
     queue::{self, Lane, NewJob, Turn},
-    store::{Artefact, digest_of_file},
+    store::{Artifact, digest_of_file},
     task::{Form, Input},
     values,
 };
@@ -65,20 +65,20 @@ impl Member {
         // the one before leaves no room for.
         let _turn = self.app.limits.turn(self.account.id).await?;
         // Nothing is stored of an upload that is refused, or was stored before.
-        let artefact = digest_of_file(upload.file).await?;
+        let artifact = digest_of_file(upload.file).await?;
         let mut transaction = self.app.0.database.read().await?;
-        if let Some(submission) = self.admit(&mut transaction, &assignment, upload, &artefact).await? {
+        if let Some(submission) = self.admit(&mut transaction, &assignment, upload, &artifact).await? {
             return Ok(Accepted { submission, repeated: true });
         }
         drop(transaction);
-        let artefact = self.app.0.store.put_file(upload.file).await?;
+        let artifact = self.app.0.store.put_file(upload.file).await?;
         let mut transaction = self.app.0.database.begin_within(CROWD).await?;
         // One after another for each student: numbers are given out here, and limits counted.
         transaction.one("SELECT id FROM account WHERE id = ? {for update}", values![self.account.id]).await?;
-        if let Some(submission) = self.admit(&mut transaction, &assignment, upload, &artefact).await? {
+        if let Some(submission) = self.admit(&mut transaction, &assignment, upload, &artifact).await? {
             return Ok(Accepted { submission, repeated: true });
         }
-        let submission = self.write(&mut transaction, &assignment, upload, &artefact).await?;
+        let submission = self.write(&mut transaction, &assignment, upload, &artifact).await?;
         self.app.0.notifier.commit(transaction).await?;
         Ok(Accepted { submission: self.submission(submission).await?, repeated: false })
     }
@@ -118,17 +118,17 @@ impl Member {
         transaction: &mut Transaction,
         assignment: &Assignment,
         upload: &Upload<'_>,
-        artefact: &Artefact,
+        artifact: &Artifact,
     ) -> Result<Option<Submission>, Problem> {
         if let Some(key) = upload.key
-            && let Some(submission) = self.by_key(transaction, key, assignment, artefact).await?
+            && let Some(submission) = self.by_key(transaction, key, assignment, artifact).await?
         {
             return Ok(Some(submission));
         }
         if !self.is_staff {
             self.check_limits(transaction, assignment, upload.came_at).await?;
         }
-        self.check_quota(transaction, artefact.size).await?;
+        self.check_quota(transaction, artifact.size).await?;
         Ok(None)
     }
 
@@ -137,12 +137,12 @@ impl Member {
         transaction: &mut Transaction,
         key: &str,
         assignment: &Assignment,
-        artefact: &Artefact,
+        artifact: &Artifact,
     ) -> Result<Option<Submission>, Problem> {
         let statement = "SELECT assignment, digest, submission FROM upload_key WHERE account = ? AND word = ?";
         let row = transaction.row(statement, values![self.account.id, key]).await?;
         let Some(row) = row else { return Ok(None) };
-        if row.int("assignment")? != assignment.id || row.text("digest")? != artefact.digest.as_str() {
+        if row.int("assignment")? != assignment.id || row.text("digest")? != artifact.digest.as_str() {
             return Err(Problem::conflict(
                 "this key was used for another upload",
                 "give every upload a key of its own",
@@ -197,9 +197,9 @@ impl Member {
         transaction: &mut Transaction,
         assignment: &Assignment,
         upload: &Upload<'_>,
-        artefact: &Artefact,
+        artifact: &Artifact,
     ) -> Result<i64, Problem> {
-        let input = Input { form: upload.form, name: upload.name.to_owned(), artefact: artefact.clone() };
+        let input = Input { form: upload.form, name: upload.name.to_owned(), artifact: artifact.clone() };
         let task = assignment.settings.task(input);
         // A number that was given out once is not given out again, whatever was removed since.
         let statement = "INSERT INTO numbering (assignment, account, last) VALUES (?, ?, 1)
@@ -208,8 +208,8 @@ impl Member {
         let statement =
             "INSERT INTO submission (assignment, account, number, form, file_name, digest, size, created_at)
             VALUES (?, ?, ?, ?, ?, ?, ?, ?) RETURNING id";
-        let (account, digest) = (self.account.id, artefact.digest.as_str());
-        let size = i64::try_from(artefact.size).unwrap_or(i64::MAX);
+        let (account, digest) = (self.account.id, artifact.digest.as_str());
+        let size = i64::try_from(artifact.size).unwrap_or(i64::MAX);
         let (form, came_at) = (upload.form.name(), upload.came_at);
         let values = values![assignment.id, account, number, form, upload.name, digest, size, came_at];
         let submission = transaction.one(statement, values).await?.int("id")?;

@@ -6,7 +6,7 @@ use crate::{
     late::Late,
     queue::{self, Lane, Progress},
     shown::{Shown, hour},
-    store::Artefact,
+    store::Artifact,
     task::{Outcome, OutputFile, Suite, Task},
     values,
 };
@@ -387,7 +387,7 @@ pub(super) async fn submission(
             let wrong = |what: &str| DbError::Other(format!("a report's {what} is invalid"));
             let digest = row.text("digest")?.parse().map_err(|_| wrong("digest"))?;
             let size = u64::try_from(row.int("size")?).map_err(|_| wrong("size"))?;
-            Ok(read_row!(row => OutputFile { name, media_type; artefact: Artefact { digest, size } }))
+            Ok(read_row!(row => OutputFile { name, media_type; artifact: Artifact { digest, size } }))
         };
         if submission.removed_at.is_none() {
             grade.outcome.files = rows.iter().map(read).collect::<Result<_, DbError>>()?;
@@ -456,7 +456,7 @@ fn by_what(task: &str, is_staff: bool) -> String {
         suite => suite.short(),
     };
     let rules = task.rules.as_deref().unwrap_or("of the suite");
-    format!("suite {suite}, rules {rules}, upload {}", task.submission.artefact.digest.short())
+    format!("suite {suite}, rules {rules}, upload {}", task.submission.artifact.digest.short())
 }
 
 impl FromRow for Assignment {

@@ -39,13 +39,13 @@ pub(super) enum Command {
 /// Where everything is kept.
 #[derive(Debug, Args)]
 pub(super) struct Place {
-    /// The folder of the database, the artefacts and the jobs' working folders.
+    /// The folder of the database, the artifacts and the jobs' working folders.
     #[arg(long, value_name = "DIR", default_value = "fosssim-data", env = "FOSSSIM_DATA")]
     pub(super) data: PathBuf,
     /// The database: sqlite:FILE or postgres://USER:PASSWORD@HOST/NAME. A SQLite file in the data folder by default.
     #[arg(long, value_name = "ADDRESS", env = "FOSSSIM_DATABASE", hide_env_values = true)]
     pub(super) database: Option<Address>,
-    /// A bucket for artefacts instead of a folder in the data folder: s3://BUCKET/PREFIX. How to reach it stands in the
+    /// A bucket for artifacts instead of a folder in the data folder: s3://BUCKET/PREFIX. How to reach it stands in the
     /// usual variables, AWS_ACCESS_KEY_ID and so on.
     #[arg(long, value_name = "s3://BUCKET/PREFIX", env = "FOSSSIM_STORE")]
     pub(super) store: Option<String>,

@@ -141,7 +141,7 @@ async fn give_up(database: Database, store: Store, keep: Option<Duration>) {
     loop {
         match retention::give_up(&database, &store, keep, retention::LEAST_AGE).await {
             Ok(found) if found == retention::GivenUp::default() => {}
-            Ok(found) => tracing::info!(found.submissions, found.artefacts, "what is too old is not kept any longer"),
+            Ok(found) => tracing::info!(found.submissions, found.artifacts, "what is too old is not kept any longer"),
             Err(error) => tracing::warn!(%error, "what is too old could not be given up"),
         }
         tokio::time::sleep(GIVE_UP_EVERY).await;

@@ -90,7 +90,7 @@ enum Engine {
 /// Which database it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dialect {
-    /// The embedded one: a file beside the artefacts.
+    /// The embedded one: a file beside the artifacts.
     Sqlite,
     /// The distributed one.
     Postgres,

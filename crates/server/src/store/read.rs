@@ -1,4 +1,4 @@
-//! Reading artefacts: in pieces, so that memory is the same for each, however large it is.
+//! Reading artifacts: in pieces, so that memory is the same for each, however large it is.
 use super::{ASIDE, Digest, KEPT, Store, StoreError};
 use crate::secret::hex;
 use axum::body::Bytes;
@@ -8,18 +8,18 @@ use sha2::{Digest as _, Sha256};
 use std::path::Path;
 use tokio::io::AsyncWriteExt;
 
-/// An artefact that is being read.
+/// An artifact that is being read.
 pub struct Opened {
     /// How large all of it is.
     pub size: u64,
-    /// The artefact's bytes.
+    /// The artifact's bytes.
     pub pieces: BoxStream<'static, Result<Bytes, StoreError>>,
 }
 
 impl Store {
-    /// Opens an artefact. Its last piece comes only if all are what they should be:
+    /// Opens an artifact. Its last piece comes only if all are what they should be:
     /// anybody who gets all bytes got the right ones. Who reads the first piece before saying anything knows that an
-    /// artefact of one piece is undamaged.
+    /// artifact of one piece is undamaged.
     ///
     /// # Errors
     /// When there is none, it is damaged, or the store fails.
@@ -41,7 +41,7 @@ impl Store {
         Ok(Opened { size, pieces })
     }
 
-    /// Writes an artefact into a new file.
+    /// Writes an artifact into a new file.
     ///
     /// # Errors
     /// When there is none or it is damaged (no file is left then), the file can't be written, or the store fails.

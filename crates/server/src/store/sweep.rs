@@ -1,4 +1,4 @@
-//! Giving up what nobody names any more, in batches, so that memory is the same however many artefacts there are.
+//! Giving up what nobody names any more, in batches, so that memory is the same however many artifacts there are.
 use super::{ASIDE, Digest, KEPT, Key, Store, StoreError, age};
 use futures_util::{StreamExt, TryStreamExt};
 use object_store::ObjectStoreExt;
@@ -9,11 +9,11 @@ use std::{
     time::{Duration, SystemTime},
 };
 
-/// Artefacts that are asked about at a time.
+/// Artifacts that are asked about at a time.
 const BATCH: usize = 500;
 
 impl Store {
-    /// Gives up every artefact that is older than `least` and not named; how many these were. `named` tells which of
+    /// Gives up every artifact that is older than `least` and not named; how many these were. `named` tells which of
     /// some digests are.
     ///
     /// Anybody who stores one of them at this very moment does not lose it: it is put aside first, where it is still
@@ -66,7 +66,7 @@ impl Store {
         Ok(given_up)
     }
 
-    /// Returns every artefact, one after the other; one that is put aside meanwhile may come twice.
+    /// Returns every artifact, one after the other; one that is put aside meanwhile may come twice.
     pub fn digests(&self) -> impl futures_util::Stream<Item = Result<Digest, StoreError>> + Unpin {
         self.list(KEPT).chain(self.list(ASIDE)).map_ok(|(digest, _)| digest)
     }
@@ -79,7 +79,7 @@ impl Store {
         }
     }
 
-    /// Returns the artefacts below a prefix, with their ages.
+    /// Returns the artifacts below a prefix, with their ages.
     fn list(&self, prefix: &str) -> impl futures_util::Stream<Item = Result<(Digest, Duration), StoreError>> + Unpin {
         let listing = self.objects.list(Some(&Key::from(prefix))).map_err(StoreError::from);
         let found = listing.try_filter_map(async |meta| {
@@ -100,7 +100,7 @@ fn renew(file: &Path) {
     }
 }
 
-/// Removes parts of artefacts that a server left behind when it was killed; how many there were. They are called
+/// Removes parts of artifacts that a server left behind when it was killed; how many there were. They are called
 /// `NAME#NUMBER` until they are whole, and listings leave them out.
 fn remove_parts(folder: &Path, least: Duration) -> usize {
     let below = |folder: &Path| fs::read_dir(folder).into_iter().flatten().flatten();

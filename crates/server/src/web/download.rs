@@ -1,8 +1,8 @@
-//! Sending artefacts: in pieces as they are read, and not at all to who has them.
+//! Sending artifacts: in pieces as they are read, and not at all to who has them.
 use crate::{
     access::{Member, Transfer},
     problem::Problem,
-    store::{Artefact, Opened},
+    store::{Artifact, Opened},
 };
 use axum::{
     body::Body,
@@ -11,22 +11,22 @@ use axum::{
 };
 use futures_util::TryStreamExt;
 
-/// Answers with an artefact, unless the request's headers say that it is known.
-pub(super) async fn send(member: &Member, asked: &HeaderMap, artefact: &Artefact) -> Result<Response, Problem> {
+/// Answers with an artifact, unless the request's headers say that it is known.
+pub(super) async fn send(member: &Member, asked: &HeaderMap, artifact: &Artifact) -> Result<Response, Problem> {
     let transfer = member.transfer()?;
-    let tag = format!("\"{}\"", artefact.digest);
+    let tag = format!("\"{}\"", artifact.digest);
     let names_it =
         |tags: &str| tags == "*" || tags.split(',').any(|other| other.trim().trim_start_matches("W/") == tag);
     let known = asked.get(header::IF_NONE_MATCH).and_then(|value| value.to_str().ok()).is_some_and(names_it);
     let mut response = match known {
         true => StatusCode::NOT_MODIFIED.into_response(),
-        false => whole(member.open(artefact).await?, Some(transfer)),
+        false => whole(member.open(artifact).await?, Some(transfer)),
     };
     insert(&mut response, header::ETAG, &tag);
     Ok(response)
 }
 
-/// Returns all of an artefact.
+/// Returns all of an artifact.
 pub(super) fn whole(opened: Opened, transfer: Option<Transfer>) -> Response {
     let pieces = opened.pieces.inspect_err(move |error| {
         // The answer breaks off; anybody who gets it sees that bytes are missing.

@@ -5,7 +5,7 @@ use crate::{
     health, ledger,
     queue::{self, Claimant, Completion, Failure, Lane, Lease, Notifier, Progress, QueuePolicy, Subscription},
     shown::{self, KeptTexts},
-    store::{Artefact, Digest, Store, StoreError},
+    store::{Artifact, Digest, Store, StoreError},
     task::{Outcome, Task},
     wire::{Claimed, LeaseAnswer},
 };
@@ -138,7 +138,7 @@ impl JobSource for LocalSource {
 
     async fn finish(&self, lease: &Lease, outcome: &Outcome) -> Result<LeaseAnswer, SourceError> {
         for file in &outcome.files {
-            if !self.store.has(&file.artefact.digest).await? {
+            if !self.store.has(&file.artifact.digest).await? {
                 return Err(SourceError::Refused(format!("{} is not in the store", file.name)));
             }
         }
@@ -171,7 +171,7 @@ impl JobSource for LocalSource {
         Ok(self.store.fetch(digest, file).await?)
     }
 
-    async fn store(&self, _: &Lease, file: &Path) -> Result<Artefact, SourceError> {
+    async fn store(&self, _: &Lease, file: &Path) -> Result<Artifact, SourceError> {
         Ok(self.store.put_file(file).await?)
     }
 

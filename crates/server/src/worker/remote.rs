@@ -2,7 +2,7 @@
 use super::{JobSource, SourceError};
 use crate::{
     queue::{Lease, Progress},
-    store::{Artefact, Digest, digest_of_file},
+    store::{Artifact, Digest, digest_of_file},
     task::Outcome,
     wire::{Alive, Claimed, Finished, JobFault, LeaseAnswer, Manners, Renewal},
 };
@@ -204,9 +204,9 @@ impl JobSource for RemoteSource {
         Ok(())
     }
 
-    async fn store(&self, lease: &Lease, file: &Path) -> Result<Artefact, SourceError> {
-        let artefact = digest_of_file(file).await.map_err(|error| SourceError::Refused(error.to_string()))?;
-        let (lease, digest, place) = (shown(lease), artefact.digest.clone(), file.to_owned());
+    async fn store(&self, lease: &Lease, file: &Path) -> Result<Artifact, SourceError> {
+        let artifact = digest_of_file(file).await.map_err(|error| SourceError::Refused(error.to_string()))?;
+        let (lease, digest, place) = (shown(lease), artifact.digest.clone(), file.to_owned());
         self.call(move |parts| {
             let input = fs::File::open(&place).map_err(|error| SourceError::Refused(error.to_string()))?;
             let request = parts.signed(parts.agent.put(parts.url(&format!("files/{digest}"))), Some(&lease));
@@ -214,7 +214,7 @@ impl JobSource for RemoteSource {
             checked(answer).map(drop)
         })
         .await?;
-        Ok(artefact)
+        Ok(artifact)
     }
 
     async fn tick(&self, slots: usize, fault: Option<&str>) -> Result<(), SourceError> {

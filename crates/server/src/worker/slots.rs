@@ -214,7 +214,7 @@ async fn attempt<D: JobSource, G: Grader>(
 ) -> Result<Outcome, GraderFault> {
     let start = Instant::now();
     let submission = folder.join("submission");
-    patiently(|| source.fetch(&job.lease, &job.task.submission.artefact.digest, &submission)).await?;
+    patiently(|| source.fetch(&job.lease, &job.task.submission.artifact.digest, &submission)).await?;
     let suite = match &job.task.suite {
         Suite::Named(_) => None,
         Suite::Archive(digest) => {
@@ -228,8 +228,8 @@ async fn attempt<D: JobSource, G: Grader>(
     let graded = grader.grade(&job.task, &submission, suite.as_deref(), &work, halt).await?;
     let mut files = Vec::new();
     for file in &graded.files {
-        let artefact = patiently(|| source.store(&job.lease, &file.path)).await?;
-        files.push(OutputFile { name: file.name.clone(), media_type: file.media_type.clone(), artefact });
+        let artifact = patiently(|| source.store(&job.lease, &file.path)).await?;
+        files.push(OutputFile { name: file.name.clone(), media_type: file.media_type.clone(), artifact });
     }
     let seconds = format!("{:.3}", start.elapsed().as_secs_f64());
     Ok(Outcome { seconds, files, ..graded.outcome })

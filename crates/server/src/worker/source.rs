@@ -1,7 +1,7 @@
 //! Where workers get their jobs and bring their results: the database itself, or a server over HTTP.
 use crate::{
     queue::{Lease, Progress},
-    store::{Artefact, Digest},
+    store::{Artifact, Digest},
     task::Outcome,
     wire::{Claimed, LeaseAnswer},
 };
@@ -48,7 +48,7 @@ pub trait JobSource: Clone + Send + Sync + 'static {
     /// Says that the try came to nothing through no fault of the submission.
     fn fail(&self, lease: &Lease, fault: &str) -> impl Future<Output = Result<LeaseAnswer, SourceError>> + Send;
 
-    /// Copies an artefact of the job into a new file.
+    /// Copies an artifact of the job into a new file.
     fn fetch(
         &self,
         lease: &Lease,
@@ -57,7 +57,7 @@ pub trait JobSource: Clone + Send + Sync + 'static {
     ) -> impl Future<Output = Result<(), SourceError>> + Send;
 
     /// Stores a file for the result of the job.
-    fn store(&self, lease: &Lease, file: &Path) -> impl Future<Output = Result<Artefact, SourceError>> + Send;
+    fn store(&self, lease: &Lease, file: &Path) -> impl Future<Output = Result<Artifact, SourceError>> + Send;
 
     /// Says that this worker is alive, with this many slots, and why it can't grade where it can't; called every now
     /// and then.

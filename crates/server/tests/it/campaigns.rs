@@ -81,7 +81,7 @@ async fn a_class_is_graded_again_beside_uploads(fresh: Fresh) {
     let task: fosssim_server::task::Task =
         serde_json::from_str(&row.and_then(|row| row.text("payload")).expect("text")).expect("a task");
     drop(transaction);
-    assert_eq!((task.submission.name.as_str(), task.submission.artefact.size), ("FOSS\"Sim", 12));
+    assert_eq!((task.submission.name.as_str(), task.submission.artifact.size), ("FOSS\"Sim", 12));
     // A submission that came in while it began is graded, too.
     let path = format!("{BASE}/{id}");
     grade_all(&fresh).await;

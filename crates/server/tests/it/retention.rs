@@ -38,7 +38,7 @@ async fn old_uploads_go_and_grades_stay(fresh: Fresh) {
     };
     // Nothing is that old.
     let found = give_up(1).await;
-    assert_eq!((found.submissions, found.artefacts), (0, 0), "what is named stays, however old the file");
+    assert_eq!((found.submissions, found.artifacts), (0, 0), "what is named stays, however old the file");
     let mut transaction = fresh.database.begin().await.expect("a transaction");
     let statement = "UPDATE submission SET created_at = created_at - 172800000 WHERE id <> ?";
     transaction.execute(statement, values![new]).await.expect("a statement");
@@ -46,7 +46,7 @@ async fn old_uploads_go_and_grades_stay(fresh: Fresh) {
     let found = give_up(1).await;
     assert_eq!(found.submissions, 1, "what is being graded stays");
     // Reports that say the same of others lie in the store once, and stay.
-    assert!(found.artefacts >= 2, "the upload and its grade: {found:?}");
+    assert!(found.artifacts >= 2, "the upload and its grade: {found:?}");
     assert_eq!(give_up(1).await, retention::GivenUp::default(), "once");
     // The grade stands, with its history; the bytes are gone, and that is said.
     let path = |id: i64, rest: &str| format!("/api/v1/courses/physics/submissions/{id}{rest}");

@@ -2,7 +2,7 @@
 use crate::support::engines::{Fresh, run};
 use fosssim_server::{
     queue::{self, Lane, NewJob, Notifier, QueuePolicy, Turn},
-    store::{Artefact, Store},
+    store::{Artifact, Store},
     task::{Form, Input, Outcome, Suite, Task},
     values,
     worker::{self, Graded, Grader, GraderFault, LocalSource},
@@ -47,11 +47,11 @@ impl Grader for Willing {
 }
 
 /// Jobs in the queue.
-async fn enqueue(fresh: &Fresh, artefact: &Artefact, jobs: i64) {
+async fn enqueue(fresh: &Fresh, artifact: &Artifact, jobs: i64) {
     let mut transaction = fresh.database.begin().await.expect("a transaction");
     for number in 0..jobs {
         let task = Task {
-            submission: Input { form: Form::Program, name: "program".to_owned(), artefact: artefact.clone() },
+            submission: Input { form: Form::Program, name: "program".to_owned(), artifact: artifact.clone() },
             suite: Suite::Named("t2m2".to_owned()),
             rules: None,
             hints: None,
@@ -111,8 +111,8 @@ fn a_broken_worker_costs_no_job_its_tries() {
             let fresh = Fresh::sqlite().await.expect("SQLite").with_tables().await;
             let folder = tempfile::tempdir().expect("a folder");
             let store = Store::folder(&folder.path().join("store")).expect("a store");
-            let artefact = crate::support::put(&store, b"a program").await;
-            enqueue(&fresh, &artefact, 30).await;
+            let artifact = crate::support::put(&store, b"a program").await;
+            enqueue(&fresh, &artifact, 30).await;
             let stop = CancellationToken::new();
             let broken = Broken { knows, tried: Arc::default() };
             let policy = QueuePolicy::default();

@@ -33,7 +33,7 @@ def group(one, tests):
         "name": one["name"],
         "verdict": one["verdict"],
         "points": points(one),
-        "colour": "success" if is_right else "danger",
+        "color": "success" if is_right else "danger",
         "wrong": [scene(test) for test in wrong],
         "has_wrong": bool(wrong),
         "right": ", ".join(test["name"] for test in right),
@@ -53,7 +53,7 @@ def render(_element_html, data):
         "lines": [line for line in (results.get("output") or "").splitlines() if line],
         "groups": [group(one, results.get("tests") or []) for one in groups],
         "has_groups": bool(groups),
-        "colour": "success" if groups and all(one["verdict"] == "accepted" for one in groups) else "danger",
+        "color": "success" if groups and all(one["verdict"] == "accepted" for one in groups) else "danger",
     }
     with open("fosssim-report.mustache", encoding="utf-8") as template:
         return chevron.render(template, values).strip()

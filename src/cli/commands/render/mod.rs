@@ -284,7 +284,7 @@ impl RenderTarget {
             }
             (Self::Stream(output), _) => {
                 let mut out = CountedWriter { out: BufWriter::new(output), bytes: 0 };
-                let mut gif = Gif::new(&mut out, size, rate, &reel.painter.colours())?;
+                let mut gif = Gif::new(&mut out, size, rate, &reel.painter.colors())?;
                 reel.each_raster(|_, raster| Ok(gif.picture(raster)?))?;
                 gif.finish()?;
                 let bytes = out.bytes;
@@ -299,7 +299,7 @@ impl RenderTarget {
 fn picture(
     form: RenderFormat,
     raster: &mut Raster,
-    background: crate::render::colour::Colour,
+    background: crate::render::color::Rgb,
     step: u32,
     shapes: &[Shape],
 ) -> Result<Vec<u8>> {

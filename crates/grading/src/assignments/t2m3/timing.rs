@@ -56,7 +56,7 @@ fn particle(text: &mut String, place: [i32; 2], velocity: [i32; 2], radius: i32,
     );
 }
 
-/// Returns 15,000 balls in a box of four edges, each near its neighbours; a few of them go fast.
+/// Returns 15,000 balls in a box of four edges, each near its neighbors; a few of them go fast.
 fn box_of_balls() -> String {
     let mut text = begin("15,000 balls in a box of four edges. The time that it takes counts.", 100);
     let mut drawn = Drawn(1);

@@ -77,7 +77,7 @@ fn faults() -> Vec<StageFault> {
         StageFault::AfterRounds,
         StageFault::ZoneRounds(WrongZoneRounds::Later),
         StageFault::Zones(WrongZones::KeepVelocities),
-        StageFault::Motion { wrong: vec![WrongMotion::Centre, WrongMotion::Speeds], or_zones: true },
+        StageFault::Motion { wrong: vec![WrongMotion::Center, WrongMotion::Speeds], or_zones: true },
     ]
 }
 
@@ -130,8 +130,8 @@ fn details() -> Vec<Detail> {
         change(Amount::Right),
         change(Amount::Ratio(Ratios::All(1.5))),
         StageDetail::Stopped(Ratios::All(0.5)),
-        StageDetail::CentreMoves(Ratios::All(0.5)),
-        StageDetail::CentreDirection,
+        StageDetail::CenterMoves(Ratios::All(0.5)),
+        StageDetail::CenterDirection,
         StageDetail::Turns(Ratios::All(0.5)),
         StageDetail::Velocities(Ratios::All(0.5)),
     ];

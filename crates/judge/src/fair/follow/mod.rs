@@ -296,7 +296,7 @@ impl Steer for Follower<'_> {
         decision
     }
 
-    fn synchronise(&mut self, state: &mut State) -> Resume {
+    fn synchronize(&mut self, state: &mut State) -> Resume {
         let Some(mid) = self.records.mid else { return Resume::Own };
         if let Some(logged) = self.logged_passes
             && logged[0] != self.passes[0]
@@ -313,6 +313,6 @@ impl Steer for Follower<'_> {
         if mid.state.is_finite() {
             state.clone_from(&mid.state);
         }
-        Resume::Synchronised
+        Resume::Synchronized
     }
 }

@@ -351,14 +351,14 @@ fn far(random: &mut Random) -> RandomMotion {
 /// Returns an edge that turns by up to half a turn and stretches a little.
 fn turning(random: &mut Random) -> RandomMotion {
     let scale = random.log(-2.0, 3.0);
-    let (centre, half) = (random.point(scale), random.direction() * (scale * random.uniform(0.1, 1.0)));
+    let (center, half) = (random.point(scale), random.direction() * (scale * random.uniform(0.1, 1.0)));
     let angle = random.uniform(-1.0, 1.0) * random.log(-6.0, 0.5);
     let stretch = 1.0 + random.uniform(-0.5, 0.5) * random.log(-6.0, 0.0);
     let turned = (half * angle.cos() + turned(half) * angle.sin()) * stretch;
     let shift = random.direction() * (scale * random.log(-6.0, 0.5));
     let particle = random.direction() * (scale * random.log(-6.0, 0.5));
     RandomMotion {
-        x: [random.point(2.0 * scale), centre + half, centre - half],
+        x: [random.point(2.0 * scale), center + half, center - half],
         d: [particle, shift + turned - half, shift - turned + half],
         radius: scale * random.log(-3.0, 0.0),
     }

@@ -19,11 +19,11 @@ rows! {
             => "k (l + l0) n is used instead of k (l - l0) n.";
         SpringStrain "spring-strain": "The elastic part of the spring force is divided by the rest length."
             => "k (l - l0) / l0 n is used instead of k (l - l0) n.";
-        SpringDirection "spring-direction": "The direction of a spring is never normalised."
+        SpringDirection "spring-direction": "The direction of a spring is never normalized."
             => "d = x_b - x_a is used instead of n = d / |d| in the elastic part and in the damping; \
             normalized() returns the unit vector and leaves d as it is, normalize() changes d.";
         SpringDirectionEverywhere "spring-direction-everywhere":
-            "The direction of a spring is never normalised, in the force as in its derivatives."
+            "The direction of a spring is never normalized, in the force as in its derivatives."
             => "d = x_b - x_a is used instead of n = d / |d| in the force and its Hessians; normalized() \
             returns the unit vector and leaves d as it is, normalize() changes d.";
         SpringDampingNoCoefficient "spring-damping-no-coefficient": "The damping of a spring ignores its coefficient."
@@ -61,13 +61,13 @@ rows! {
             "In the derivatives of a spring's elastic part the stretch is divided by the rest length."
             => "(l - l0) / l0 is used instead of (l - l0) / l.";
         JacobianElasticDirection "jacobian-elastic-direction":
-            "The direction in the second derivatives of a spring's elastic part is not normalised."
+            "The direction in the second derivatives of a spring's elastic part is not normalized."
             => "d d^T is used instead of n n^T, with d = x_b - x_a and n = d / |d|.";
         JacobianDampingNoProjection "jacobian-damping-no-projection":
             "The derivatives of a spring's damping by positions are not projected across the spring."
             => "(I - n n^T) is missing behind n w^T + (n . w) I, with w = v_b - v_a.";
         JacobianDampingDirection "jacobian-damping-direction":
-            "The direction in the derivatives of a spring's damping by positions is not normalised."
+            "The direction in the derivatives of a spring's damping by positions is not normalized."
             => "d is used instead of n = d / |d| in n w^T, n . w and n n^T.";
         JacobianVelocityIdentity "jacobian-velocity-identity":
             "The derivatives of a spring's damping by velocities act in all directions, not along the spring."
@@ -76,7 +76,7 @@ rows! {
             "The second derivatives of the gravitational force lack a factor."
             => "I - n n^T is used instead of I - 3 n n^T.";
         JacobianGravitationDirection "jacobian-gravitation-direction":
-            "The direction in the second derivatives of the gravitational force is not normalised."
+            "The direction in the second derivatives of the gravitational force is not normalized."
             => "d d^T is used instead of n n^T, with d = x_b - x_a and n = d / |d|.";
     }
     Wrong Integrator {
@@ -93,7 +93,7 @@ rows! {
             "Forces and matrix are computed with twice the velocity, which is passed as its own change."
             => "F(x + h v, 2 v) is used instead of F(x + h v, v): the change of velocities that is passed should be 0.";
         LinearIterates "linear-iterates":
-            "The linearised step is repeated until nothing changes, instead of being solved once."
+            "The linearized step is repeated until nothing changes, instead of being solved once."
             => "Newton's loop is used instead of one solve of A dv = h F.";
         ImplicitPositionsKept "implicit-positions-kept": "Newton's method never moves its positions."
             => "dx = h (v + dv) is missing: dx stays h v.";
@@ -125,7 +125,7 @@ rows! {
         NearPairsHalfPlanesDoubled "near-pairs-half-planes-doubled":
             "Each pair of a particle and a half-plane is reported twice."
             => "A pair counts 1 time.";
-        NearPairsNeighboursOnly "near-pairs-neighbours-only": "The sweep compares a particle with the next one only."
+        NearPairsNeighborsOnly "near-pairs-neighbors-only": "The sweep compares a particle with the next one only."
             => "The sweep goes on until the next body begins behind this one's end.";
         NearPairsBoxesOfPoints "near-pairs-boxes-of-points": "The bounding boxes of particles lack their radius."
             => "Boxes from x to x are compared instead of boxes from x - r to x + r.";

@@ -44,10 +44,10 @@ impl Slip {
             Self::Mass(-1) if of.id.ends_with("-mass") => "is taken as one for every particle",
             Self::Mass(by) => return power(of.mass, by, "the mass"),
             Self::Step(by) => return power(of.step, by, "the step size"),
-            Self::Length(1) if of.length == 0 => "has a direction that is not normalised",
-            Self::Length(2) if of.length == 0 => "has a direction that is not normalised, in both of its places",
+            Self::Length(1) if of.length == 0 => "has a direction that is not normalized",
+            Self::Length(2) if of.length == 0 => "has a direction that is not normalized, in both of its places",
             Self::Length(1) if of.length < -1 => {
-                "is divided by the distance once too seldom, or its direction is not normalised"
+                "is divided by the distance once too seldom, or its direction is not normalized"
             }
             Self::Length(by) => return power(of.length, by, "the distance"),
             Self::FirstOnly if of.area() == Area::SimpleDetection => {
@@ -120,7 +120,7 @@ impl Slip {
             Self::OneSidedLong => "is along the half-plane's normal as it is given, on both of its sides",
             Self::OneSidedBack => "has the opposite direction of the half-plane's normal, on both of its sides",
             Self::OneSided => "has the direction of the half-plane's normal, on both of its sides",
-            Self::Unit => "is normalised, although its length must be the distance",
+            Self::Unit => "is normalized, although its length must be the distance",
             Self::NoFactor => "takes the coefficient of restitution as one",
             Self::Inelastic => "takes the coefficient of restitution as zero",
             Self::RestitutionOnly => "has the coefficient of restitution alone, without one added to it",

@@ -207,7 +207,7 @@ rows! {
         HalfPlaneContactAtStart "ph-contact-at-start": "The contact vector is taken at the start of the step." => "x is used instead of x + t dx.";
         HalfPlaneContactAtEnd "ph-contact-at-end": "The contact vector is taken at the end of the step." => "x + dx is used instead of x + t dx.";
         HalfPlaneContactToPoint "ph-contact-to-point": "The contact vector goes to the half-plane's point, not to the closest one." => "p - x(t) is used instead of ((p - x(t)).n) / (n.n) n.";
-        ContactUnitLength "contact-unit-length": "Contact vectors are normalised to unit length." => "n / |n| is returned instead of n.";
+        ContactUnitLength "contact-unit-length": "Contact vectors are normalized to unit length." => "n / |n| is returned instead of n.";
         ContactSingle "contact-float": "Contact vectors are stored as float." => "float holds 24 bits; double, with 53, is expected.";
         ContactNoise "contact-noise": "Contact vectors are wrong by a tiny part of their length." => "n is off by 1e-7 of its length.";
         ContactTimeZero "contact-time-zero": "The time of impact is always returned as zero." => "time = 0 is used instead of the root finder's result.";
@@ -235,7 +235,7 @@ rows! {
         ParticleEdgePrediction "pe-detects-prediction": "Every round detects on the integrator's prediction, for pairs of a particle and an edge only." => "scene.getX() is used instead of qe.";
         HalfPlanePrediction "ph-detects-prediction": "Every round detects on the integrator's prediction, for half-planes only." => "scene.getX() is used instead of qe.";
         PairsBothOrders "pairs-both-orders": "Each pair of particles is tested twice." => "The inner loop begins at j = 0; it begins at j = i + 1.";
-        PairsNeighboursOnly "pairs-neighbours-only": "A particle is tested only against the next one in the list." => "The inner loop ends at j = i + 1; it runs to the last particle.";
+        PairsNeighborsOnly "pairs-neighbors-only": "A particle is tested only against the next one in the list." => "The inner loop ends at j = i + 1; it runs to the last particle.";
         PairsEndpointsToo "pairs-endpoints-too": "Edges are tested against their own endpoints." => "The test i != edge.first && i != edge.second is missing.";
         PairsFixedSkipped "pairs-fixed-skipped": "Pairs of fixed objects are skipped, so their polynomials are missing." => "isFixed(i) && isFixed(j) leaves a pair out; every pair is tested.";
         PairsFixedEdgesSkipped "pairs-fixed-edges-skipped": "Edges whose ends are both fixed are skipped, so their polynomials are missing." => "isFixed(j) && isFixed(k) leaves a pair out; every pair is tested.";
@@ -250,7 +250,7 @@ rows! {
         ResponseNoRestitution "response-no-restitution": "The coefficient of restitution is taken as for elastic collisions." => "COR = 1 is used instead of the scene's COR.";
         ResponseInelastic "response-inelastic": "The coefficient of restitution is taken as zero." => "COR = 0 is used instead of the scene's COR.";
         ResponseRestitutionOnly "response-restitution-only": "The coefficient of restitution is used instead of its mean with one." => "COR / 2 is used instead of (1 + COR) / 2.";
-        ResponseNotNormalised "response-not-normalised": "The impulse uses the contact vector without normalising it." => "n is used instead of n / |n|.";
+        ResponseNotNormalized "response-not-normalized": "The impulse uses the contact vector without normalizing it." => "n is used instead of n / |n|.";
         ResponseEndVelocity "response-end-velocity": "The impulse uses the velocity at the end of the step, not the mean velocity of the motion." => "v is used instead of (qe - qs) / dt.";
         ResponseVelocitiesOnly "response-velocities-only": "Only velocities change, not positions." => "q += dt I / m is missing.";
         ResponsePositionsOnly "response-positions-only": "Only positions change, not velocities." => "v += I / m is missing.";
@@ -358,22 +358,22 @@ rows! {
     Wrong Failsafe {
         FailsafeEmpty "failsafe-empty": "The failsafe is left empty." => "x and v of the zone do not change; expected are x = x_cm + dx_cm + R (xs - x_cm) and v = (x - xs) / dt.";
         FailsafeUnweighted "failsafe-unweighted": "All masses are left out." => "m is missing in all four sums: x_cm, dx_cm, L and I.";
-        FailsafeMeansUnweighted "failsafe-means-unweighted": "Neither the centre of mass nor its motion is weighted with the masses." => "sum(xs) / N and sum(dx) / N are used instead of sum(m xs) / sum(m) and sum(m dx) / sum(m).";
-        FailsafeCentreUnweighted "failsafe-centre-unweighted": "The centre of mass is not weighted with the masses." => "sum(xs) / N is used instead of sum(m xs) / sum(m).";
-        FailsafeCentreAtEnd "failsafe-centre-at-end": "The centre of mass is taken at the end of the step." => "sum(m xe) / sum(m) is used instead of sum(m xs) / sum(m).";
-        FailsafeNoCentre "failsafe-no-centre": "The centre of mass is not added back." => "dx_cm + R (xs - x_cm) lacks x_cm.";
+        FailsafeMeansUnweighted "failsafe-means-unweighted": "Neither the center of mass nor its motion is weighted with the masses." => "sum(xs) / N and sum(dx) / N are used instead of sum(m xs) / sum(m) and sum(m dx) / sum(m).";
+        FailsafeCenterUnweighted "failsafe-center-unweighted": "The center of mass is not weighted with the masses." => "sum(xs) / N is used instead of sum(m xs) / sum(m).";
+        FailsafeCenterAtEnd "failsafe-center-at-end": "The center of mass is taken at the end of the step." => "sum(m xe) / sum(m) is used instead of sum(m xs) / sum(m).";
+        FailsafeNoCenter "failsafe-no-center": "The center of mass is not added back." => "dx_cm + R (xs - x_cm) lacks x_cm.";
         FailsafeMomentumUnweighted "failsafe-momentum-unweighted": "The momentum is not weighted with the masses." => "sum(dx) / N is used instead of sum(m dx) / sum(m).";
         FailsafeMomentumVelocity "failsafe-momentum-velocity": "The momentum is computed from velocities instead of displacements." => "sum(m v) is used instead of sum(m dx).";
         FailsafeAngularVelocity "failsafe-angular-velocity": "The angular momentum is computed from velocities instead of displacements." => "L = sum(m (xs - x_cm) x v) is used instead of L = sum(m (xs - x_cm) x (dx - dx_cm)).";
-        FailsafeNoTranslation "failsafe-no-translation": "The centre of mass does not move." => "dx_cm is missing in x_cm + dx_cm + R (xs - x_cm).";
-        FailsafeShiftTwice "failsafe-shift-twice": "The centre of mass moves twice as far as it should." => "x_cm + 2 dx_cm + R (xs - x_cm) is used instead of x_cm + dx_cm + R (xs - x_cm).";
+        FailsafeNoTranslation "failsafe-no-translation": "The center of mass does not move." => "dx_cm is missing in x_cm + dx_cm + R (xs - x_cm).";
+        FailsafeShiftTwice "failsafe-shift-twice": "The center of mass moves twice as far as it should." => "x_cm + 2 dx_cm + R (xs - x_cm) is used instead of x_cm + dx_cm + R (xs - x_cm).";
         FailsafeRange "failsafe-range": "All particles between a zone's first and last one in the list are moved with it." => "The loop runs from the smallest to the largest number of Z, not over its members.";
         FailsafeAngularUnweighted "failsafe-angular-unweighted": "The angular momentum is not weighted with the masses." => "m is missing in L = sum(m (xs - x_cm) x (dx - dx_cm)).";
         FailsafeAngularOverwritten "failsafe-angular-overwritten": "The angular momentum is overwritten instead of summed." => "L = ... is used instead of L += ....";
         FailsafeAngularDoubled "failsafe-angular-doubled": "The angular momentum is overwritten, then doubled." => "L = ...; L += L is used instead of L += ...";
         FailsafeCrossSum "failsafe-cross-sum": "The cross product adds its two products." => "a d + b c is used instead of a d - b c.";
         FailsafeDotProduct "failsafe-dot-product": "A dot product is used instead of the cross product." => "a c + b d is used instead of a d - b c.";
-        FailsafeAboutOrigin "failsafe-about-origin": "The rotation is taken about the origin, not about the centre of mass." => "xs is used instead of xs - x_cm in the angular momentum and the moment of inertia.";
+        FailsafeAboutOrigin "failsafe-about-origin": "The rotation is taken about the origin, not about the center of mass." => "xs is used instead of xs - x_cm in the angular momentum and the moment of inertia.";
         FailsafeInertiaUnweighted "failsafe-inertia-unweighted": "The moment of inertia is not weighted with the masses." => "m is missing in I = sum(m |xs - x_cm|^2).";
         FailsafeInertiaDistance "failsafe-inertia-distance": "The moment of inertia has distances that are not squared." => "m |xs - x_cm| is used instead of m |xs - x_cm|^2.";
         FailsafeInertiaAboutOrigin "failsafe-inertia-about-origin": "The moment of inertia is taken about the origin." => "m |xs|^2 is used instead of m |xs - x_cm|^2.";
@@ -407,14 +407,14 @@ rows! {
         FailsafeVelocityAdded "failsafe-velocity-added": "The new velocity is added to the old one." => "v += (x - xs) / dt is used instead of v = (x - xs) / dt.";
         FailsafeVelocityNoStep "failsafe-velocity-no-step": "The new velocity is not divided by the step size." => "v = x - xs is used instead of v = (x - xs) / dt.";
         FailsafeVelocityFromPrediction "failsafe-velocity-from-prediction": "The new velocity is measured from the predicted position." => "v = (x - xe) / dt is used instead of v = (x - xs) / dt.";
-        FailsafeVelocityOfCentre "failsafe-velocity-of-centre": "All particles of a zone get the velocity of its centre." => "v = dx_cm / dt is used instead of v = (x - xs) / dt.";
+        FailsafeVelocityOfCenter "failsafe-velocity-of-center": "All particles of a zone get the velocity of its center." => "v = dx_cm / dt is used instead of v = (x - xs) / dt.";
     }
     Wrong Trace {
         LogLowestFirst "log-lowest-first": "The logged coefficients are lowest power first." => "The coefficient of the highest power comes first.";
         LogNegated "log-negated": "The logged coefficients are negated." => "Every logged coefficient is multiplied by -1.";
         LogNan "log-nan": "All logged coefficients are not a number." => "Every coefficient is NaN.";
         LogTiny "log-tiny": "All logged coefficients are the same number." => "Every coefficient is 1e-11.";
-        LogSwapped "log-swapped": "Each two neighbouring polynomials are logged in the wrong order." => "Polynomial 2 comes before polynomial 1, 4 before 3, and so on.";
+        LogSwapped "log-swapped": "Each two neighboring polynomials are logged in the wrong order." => "Polynomial 2 comes before polynomial 1, 4 before 3, and so on.";
         LogTrailingZero "log-trailing-zero": "Every logged polynomial has a zero too many at the end." => "A 0 after the constant coefficient multiplies the polynomial by t.";
         LogRounded "log-rounded": "Logged coefficients are rounded to a few digits." => "6 digits are written instead of all 17.";
         LogPolynomialsKept "log-polynomials-kept": "The list of polynomials is never emptied." => "Each record repeats the polynomials of steps 1, 2, ... before its own.";
@@ -438,9 +438,9 @@ rows! {
         ScaleParticleParticleTwo "scale-pp-2": "Particle-particle polynomials carry a positive factor." => "Every coefficient is multiplied by 2.";
         ScaleParticleEdgeThree "scale-pe-3": "Particle-edge polynomials carry a positive factor." => "Every coefficient is multiplied by 3.";
         ScaleHalfPlaneThree "scale-ph-3": "Particle-half-plane polynomials carry a positive factor." => "Every coefficient is multiplied by 3.";
-        NormalisedLargest "normalised-largest": "Every polynomial is divided by its largest coefficient." => "p / max |c| is used instead of p.";
-        NormalisedNorm "normalised-norm": "Every polynomial is divided by the norm of its coefficients." => "p / |p| is used instead of p.";
-        NormalisedPerPair "normalised-per-pair": "Each pair's polynomials are divided by a number of its own." => "The squared motion, (dx.n)^2, or the edge's squared length.";
+        NormalizedLargest "normalized-largest": "Every polynomial is divided by its largest coefficient." => "p / max |c| is used instead of p.";
+        NormalizedNorm "normalized-norm": "Every polynomial is divided by the norm of its coefficients." => "p / |p| is used instead of p.";
+        NormalizedPerPair "normalized-per-pair": "Each pair's polynomials are divided by a number of its own." => "The squared motion, (dx.n)^2, or the edge's squared length.";
         ThroughBernstein "through-bernstein": "All polynomials are written in Bernstein's basis and back." => "b_i of the degree's Bernstein polynomials on [0, 1].";
         InterpolatedAll "interpolated-all": "All polynomials but the supplied approach are interpolated from values within the step." => "t = 0, 1/4, 1/2, ...";
         FrameShifted "frame-shifted": "Detection computes with another origin." => "x - o is used instead of x.";
@@ -454,15 +454,15 @@ rows! {
     }
     Variant ParticleEdge {
         RearrangedParticleEdge "rearranged-pe": "The overlap's terms are put into other parentheses." => "For example 2 (b c - (e i + h f)) for 2 b c - 2 e i - 2 f h.";
-        FactorisedQuartic "factorised-quartic": "The overlap comes from the cross product of edge and offset." => "R^2 e.e - (e x w)^2, with e = x3 - x2 and w = x1 - x2.";
-        FactorisedAll "factorised-all": "All polynomials of particle and edge come from three quadratics, the approach mathematically right." => "R^2 g - q^2, a, g - a and -q (2 q' g - q g') / 2.";
+        FactorizedQuartic "factorized-quartic": "The overlap comes from the cross product of edge and offset." => "R^2 e.e - (e x w)^2, with e = x3 - x2 and w = x1 - x2.";
+        FactorizedAll "factorized-all": "All polynomials of particle and edge come from three quadratics, the approach mathematically right." => "R^2 g - q^2, a, g - a and -q (2 q' g - q g') / 2.";
         InterpolatedQuartic "interpolated-quartic": "The overlap is interpolated from its values at five times." => "t = -2, -1, 0, 1, 2.";
         QuinticRight "quintic-right": "The approach is derived anew, with the right cubic coefficient." => "-2 f h q for the supplied -2 f g q.";
         QuinticRightRearranged "quintic-mended": "The approach is the course's, with its one wrong letter corrected." => "-2 f h q for the supplied -2 f g q.";
     }
     Variant ParticleHalfPlane {
         RearrangedHalfPlane "rearranged-ph": "The overlap's constant is a product of sum and difference." => "(r |n| - w) (r |n| + w) for r^2 (n.n) - w^2.";
-        HalfPlaneUnitNormal "unit-normal": "The half-plane's normal is normalised first." => "n / |n| for n.";
+        HalfPlaneUnitNormal "unit-normal": "The half-plane's normal is normalized first." => "n / |n| for n.";
     }
     Variant ContactVector {
         WideArithmetic "wide-arithmetic": "The overlaps are computed with extended precision and rounded at the end." => "106 bits for 53.";
@@ -478,8 +478,8 @@ rows! {
         ZonesReversed "zones-reversed": "Zones are moved in the opposite order, which changes nothing." => "The last zone of Z comes first.";
     }
     Variant Failsafe {
-        FailsafeMomentumFromEnd "momentum-from-end": "The angular momentum uses end positions about the centre; what the start adds is parallel to its arm." => "(xs - x_cm) x (xe - x_cm - dx_cm) for (xs - x_cm) x (dx - dx_cm).";
-        FailsafeWholeDisplacement "whole-displacement": "The angular momentum uses whole displacements; the centre's part cancels." => "(xs - x_cm) x dx for (xs - x_cm) x (dx - dx_cm).";
+        FailsafeMomentumFromEnd "momentum-from-end": "The angular momentum uses end positions about the center; what the start adds is parallel to its arm." => "(xs - x_cm) x (xe - x_cm - dx_cm) for (xs - x_cm) x (dx - dx_cm).";
+        FailsafeWholeDisplacement "whole-displacement": "The angular momentum uses whole displacements; the center's part cancels." => "(xs - x_cm) x dx for (xs - x_cm) x (dx - dx_cm).";
         FailsafeHalfAngle "half-angle": "The rotation is computed from sine and cosine of half of the angle." => "1 - 2 sin(w/2)^2 for cos(w), 2 sin(w/2) cos(w/2) for sin(w).";
         FailsafeRotationMatrix "rotation-matrix": "The rotation is written as a matrix, and the sum in another order." => "(c a - s b, s a + c b) for c (a, b) + s (-b, a).";
     }

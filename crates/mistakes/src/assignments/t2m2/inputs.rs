@@ -27,10 +27,10 @@ impl Inputs {
         let way = BoundedPointMotion::from;
         let still = |point: Vec2| BoundedPointMotion { start: Bounded2::exact(point), shift: Bounded2::default() };
         let (ways, radii) = match *motion {
-            PairMotion::Particles { centres: [one, two], radii } => ([way(one), way(two), still(Vec2::zeros())], radii),
-            PairMotion::Edge { centre, ends: [first, second], radii } => ([centre, first, second].map(way), radii),
-            PairMotion::HalfPlane { centre, radius, point, normal } => {
-                ([way(centre), still(point), still(normal)], [radius, 0.0])
+            PairMotion::Particles { centers: [one, two], radii } => ([way(one), way(two), still(Vec2::zeros())], radii),
+            PairMotion::Edge { center, ends: [first, second], radii } => ([center, first, second].map(way), radii),
+            PairMotion::HalfPlane { center, radius, point, normal } => {
+                ([way(center), still(point), still(normal)], [radius, 0.0])
             }
         };
         let radii = radii.map(Bounded::exact);

@@ -62,8 +62,8 @@ impl<'a> PlacedPair<'a> {
         at(&self.moment.before.positions, particle)
     }
 
-    /// Returns the first body's centre.
-    pub fn centre(&self) -> Vec2 {
+    /// Returns the first body's center.
+    pub fn center(&self) -> Vec2 {
         self.place(self.numbers()[0])
     }
 
@@ -95,9 +95,9 @@ impl<'a> PlacedPair<'a> {
         self.bodies().map(|body| self.moment.boxes[body])
     }
 
-    /// Returns the first body's centre, and the second body's nearest point.
+    /// Returns the first body's center, and the second body's nearest point.
     pub fn points(&self) -> [Vec2; 2] {
-        [self.centre(), self.nearest(&self.moment.before.positions)]
+        [self.center(), self.nearest(&self.moment.before.positions)]
     }
 
     /// Returns whether it is near at other positions, too: boxes that overlap, or a half-plane within reach.
@@ -125,7 +125,7 @@ impl<'a> PlacedPair<'a> {
         all.map(|(_, one)| *one).filter(move |body| (one.min(other)..=one.max(other)).contains(&body[0][axis]))
     }
 
-    /// Returns the point of the second body that is nearest to the first one's centre.
+    /// Returns the point of the second body that is nearest to the first one's center.
     fn nearest(&self, x: &[f64]) -> Vec2 {
         let [first, second] = self.numbers();
         let own = at(x, first);

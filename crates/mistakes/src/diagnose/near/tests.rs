@@ -39,7 +39,7 @@ fn wrong_pairs_are_told_with_what_they_have_in_common() {
         ("near-pairs-doubled", PairKind::ParticleParticle, 2, ""),
         ("near-pairs-edges-doubled", PairKind::ParticleEdge, 2, ""),
         ("near-pairs-half-planes-doubled", PairKind::ParticleHalfPlane, 2, ""),
-        ("near-pairs-neighbours-only", PairKind::ParticleParticle, 0, "between the two horizontally"),
+        ("near-pairs-neighbors-only", PairKind::ParticleParticle, 0, "between the two horizontally"),
         ("near-pairs-boxes-of-points", PairKind::ParticleParticle, 0, ""),
         ("near-pairs-edge-ends", PairKind::ParticleEdge, 0, "far from both ends"),
         ("near-pairs-edge-first-end", PairKind::ParticleEdge, 0, "far from the edge's first end"),

@@ -96,14 +96,14 @@ macro_rules! traits {
 }
 
 traits! {
-    NO_AXIS NO_NUMBER "the particle's centre is behind the half-plane" "(x - p) . n is negative"
-        |pair, _, _| pair.half_plane().is_some_and(|plane| (pair.centre() - plane.point).dot(&plane.normal) < 0.0);
-    NO_AXIS NO_NUMBER "the particle's centre is in front of the half-plane" "(x - p) . n is not negative"
-        |pair, _, _| pair.half_plane().is_some_and(|plane| (pair.centre() - plane.point).dot(&plane.normal) >= 0.0);
+    NO_AXIS NO_NUMBER "the particle's center is behind the half-plane" "(x - p) . n is negative"
+        |pair, _, _| pair.half_plane().is_some_and(|plane| (pair.center() - plane.point).dot(&plane.normal) < 0.0);
+    NO_AXIS NO_NUMBER "the particle's center is in front of the half-plane" "(x - p) . n is not negative"
+        |pair, _, _| pair.half_plane().is_some_and(|plane| (pair.center() - plane.point).dot(&plane.normal) >= 0.0);
     NO_AXIS NO_NUMBER
         "the half-plane's normal is so long that the particle seems out of reach, as if it were a unit vector"
         "|(x - p) . n| is greater than r" |pair, _, _| {
-            let product = pair.half_plane().map(|plane| (pair.centre() - plane.point).dot(&plane.normal));
+            let product = pair.half_plane().map(|plane| (pair.center() - plane.point).dot(&plane.normal));
             product.is_some_and(|product| product.abs() > pair.radius())
         };
     NO_AXIS NO_NUMBER "a particle is fixed" "fixed is 1"
@@ -168,10 +168,10 @@ traits! {
         |pair, axis, _| lows(pair)[0][axis] > lows(pair)[1][axis];
     ONE_AXIS NO_NUMBER "the particle begins before the other body {axis}" "Its smallest {axis} is less"
         |pair, axis, _| lows(pair)[0][axis] < lows(pair)[1][axis];
-    NO_AXIS NO_NUMBER "the particle's centre is outside of the other body's box" "The box lacks r1 on a side"
+    NO_AXIS NO_NUMBER "the particle's center is outside of the other body's box" "The box lacks r1 on a side"
         |pair, _, _| {
-            let (centre, [_, [low, high]]) = (pair.centre(), pair.boxes());
-            centre.inf(&low) != low || centre.sup(&high) != high
+            let (center, [_, [low, high]]) = (pair.center(), pair.boxes());
+            center.inf(&low) != low || center.sup(&high) != high
         };
     ANY_AXIS SHARES "the bodies' boxes overlap little {axis}, as if boxes were too small"
         "They overlap on {axis} by less than {n} of the smaller one" |pair, axis, n| overlap(pair, axis) < n;
@@ -257,7 +257,7 @@ fn overlap(pair: &PlacedPair<'_>, axis: usize) -> f64 {
 fn from_ends(pair: &PlacedPair<'_>) -> Option<[f64; 2]> {
     let edge = pair.edge()?;
     let reach = pair.radius() + pair.other_radius();
-    Some([edge.first, edge.second].map(|end| length(pair.place(end) - pair.centre()) / reach))
+    Some([edge.first, edge.second].map(|end| length(pair.place(end) - pair.center()) / reach))
 }
 
 fn have_common_border(pair: &PlacedPair<'_>, axis: usize, size: f64) -> bool {

@@ -34,11 +34,11 @@ fn digits(case: &Case) -> usize {
 
 fn given(motion: &PairMotion) -> Vec<ExampleValue> {
     match motion {
-        PairMotion::Particles { centres, radii } => moving(centres, [Input::R1, Input::R2], radii),
-        PairMotion::Edge { centre, ends, radii } => moving(&[*centre, ends[0], ends[1]], [Input::R1, Input::Re], radii),
-        PairMotion::HalfPlane { centre, radius, point, normal } => vec![
-            vector(Input::X, centre.start),
-            vector(Input::Dx, centre.shift),
+        PairMotion::Particles { centers, radii } => moving(centers, [Input::R1, Input::R2], radii),
+        PairMotion::Edge { center, ends, radii } => moving(&[*center, ends[0], ends[1]], [Input::R1, Input::Re], radii),
+        PairMotion::HalfPlane { center, radius, point, normal } => vec![
+            vector(Input::X, center.start),
+            vector(Input::Dx, center.shift),
             vector(Input::P, *point),
             vector(Input::N, *normal),
             number(Input::R, *radius),

@@ -193,10 +193,10 @@ impl Steer for Gatherer<'_> {
         decision
     }
 
-    fn synchronise(&mut self, state: &mut State) -> Resume {
+    fn synchronize(&mut self, state: &mut State) -> Resume {
         if self.mid.state.positions.iter().chain(&self.mid.state.velocities).all(|value| value.is_finite()) {
             state.clone_from(&self.mid.state);
         }
-        Resume::Synchronised
+        Resume::Synchronized
     }
 }

@@ -6,7 +6,7 @@ use super::{
     ALIKE, Explanation, common_value,
     events::StepFacts,
     loops, observation, ratios,
-    zones::{Fate, FirstRound, Group, SMALL, centre, near, spin},
+    zones::{Fate, FirstRound, Group, SMALL, center, near, spin},
 };
 use crate::diagnose::{StageDetail, StageFault, WrongMotion, WrongPositions, WrongZoneRounds, WrongZones};
 use fosssim_model::{
@@ -224,7 +224,7 @@ impl Moved {
         let (mut what, details) = self.measured.told();
         if self.bent_of_one + self.bent_of_many > 0 {
             what.insert(
-                what.iter().position(|one| *one != WrongMotion::Centre).unwrap_or(what.len()),
+                what.iter().position(|one| *one != WrongMotion::Center).unwrap_or(what.len()),
                 WrongMotion::Distances,
             );
         }
@@ -247,7 +247,7 @@ struct MotionErrors {
 impl MotionErrors {
     fn motion(&mut self, scene: &Scene, first: &FirstRound<'_>, zone: &Group) {
         let (start, expected, end) = (&first.facts.before, first.expected(zone), first.end);
-        let [from, ours, theirs] = [start, &expected, end].map(|state| centre(scene, zone, state));
+        let [from, ours, theirs] = [start, &expected, end].map(|state| center(scene, zone, state));
         let (should, does) = (ours - from, theirs - from);
         if length(should) > SMALL {
             let ratio = does.dot(&should) / should.dot(&should);
@@ -258,7 +258,7 @@ impl MotionErrors {
         }
         if first.fate(zone) == Fate::Rigid {
             let [right, angle] =
-                [(&expected, ours), (end, theirs)].map(|(state, centre)| turn(zone, start, from, state, centre));
+                [(&expected, ours), (end, theirs)].map(|(state, center)| turn(zone, start, from, state, center));
             let is_once_round = spin(scene, zone, start, first.middle).abs() < std::f64::consts::PI;
             if !is_once_round {
                 // Only the rest of such a turn can be seen: it says neither how far nor which way.
@@ -290,10 +290,10 @@ impl MotionErrors {
     fn told(&self) -> (Vec<WrongMotion>, Vec<StageDetail>) {
         let (mut wrong, mut details) = (Vec::new(), Vec::new());
         if self.has_side_shift || !is_one(&self.shifts) {
-            wrong.push(WrongMotion::Centre);
+            wrong.push(WrongMotion::Center);
             details.push(match common_value(&self.shifts) {
-                Some(_) if !self.has_side_shift => StageDetail::CentreMoves(ratios(&self.shifts)),
-                _ => StageDetail::CentreDirection,
+                Some(_) if !self.has_side_shift => StageDetail::CenterMoves(ratios(&self.shifts)),
+                _ => StageDetail::CenterDirection,
             });
         }
         if !self.is_bent && !is_one(&self.turns) {
@@ -332,7 +332,7 @@ fn is_one(ratios: &[f64]) -> bool {
     ratios.iter().all(|ratio| (ratio - 1.0).abs() <= ALIKE)
 }
 
-/// Returns the angle by which the particles have turned about their centre, radians.
+/// Returns the angle by which the particles have turned about their center, radians.
 #[expect(clippy::disallowed_methods, reason = "angles are compared with a tolerance here: no bit is a contract")]
 fn turn(zone: &Group, start: &State, from: Vec2, end: &State, to: Vec2) -> f64 {
     let (mut across, mut along) = (0.0, 0.0);

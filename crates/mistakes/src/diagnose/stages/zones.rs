@@ -307,10 +307,10 @@ fn perform(scene: &Scene, group: &Group, stops: bool, start: &State, state: &mut
         }
         return;
     }
-    let (centre, to) = (centre(scene, group, start), centre(scene, group, state));
+    let (center, to) = (center(scene, group, start), center(scene, group, state));
     let angle = spin(scene, group, start, state);
     for one in all() {
-        let arm = at(&start.positions, one) - centre;
+        let arm = at(&start.positions, one) - center;
         let across = Vec2::new(-arm.y, arm.x);
         let x = to + elementary::cos(angle) * arm + elementary::sin(angle) * across;
         put(&mut state.positions, one, x);
@@ -321,19 +321,19 @@ fn perform(scene: &Scene, group: &Group, stops: bool, start: &State, state: &mut
 /// Returns the angle by which the failsafe turns a group, radians: its angular momentum over its moment of inertia,
 /// both of the motion from the start of the step to this state (collisions.md 5).
 pub(super) fn spin(scene: &Scene, group: &Group, start: &State, state: &State) -> f64 {
-    let (centre, to) = (centre(scene, group, start), centre(scene, group, state));
+    let (center, to) = (center(scene, group, start), center(scene, group, state));
     let (mut momentum, mut inertia) = (0.0, 0.0);
     for &one in &group.particles {
-        let arm = at(&start.positions, one) - centre;
-        let moved = at(&state.positions, one) - at(&start.positions, one) - (to - centre);
+        let arm = at(&start.positions, one) - center;
+        let moved = at(&state.positions, one) - at(&start.positions, one) - (to - center);
         momentum += scene.particles[one].mass * (arm.x * moved.y - arm.y * moved.x);
         inertia += scene.particles[one].mass * arm.dot(&arm);
     }
     momentum / inertia
 }
 
-/// Returns the centre of mass of a group.
-pub(super) fn centre(scene: &Scene, group: &Group, state: &State) -> Vec2 {
+/// Returns the center of mass of a group.
+pub(super) fn center(scene: &Scene, group: &Group, state: &State) -> Vec2 {
     let mass = |one: usize| scene.particles[one].mass;
     let sum = group.particles.iter().map(|&one| mass(one) * at(&state.positions, one)).sum::<Vec2>();
     over(sum, group.particles.iter().map(|&one| mass(one)).sum())

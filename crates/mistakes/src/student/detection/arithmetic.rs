@@ -69,7 +69,7 @@ fn rounded_vector<N: Number>(v: Vector<N>) -> Vec2 {
     Vec2::new(v[0].rounded(), v[1].rounded())
 }
 
-/// Returns a centre at the time `t`.
+/// Returns a center at the time `t`.
 fn at<N: Number>(body: &MovingBody, t: f64) -> Vector<N> {
     plus(vector(body.start), N::from(t), vector(body.displacement))
 }
@@ -166,7 +166,7 @@ fn quintic<N: Number>(x12: &Vector<N>, x32: &Vector<N>, d12: &Vector<N>, d32: &V
     ]
 }
 
-/// Returns the vector from the first centre to the second at time `t`.
+/// Returns the vector from the first center to the second at time `t`.
 pub fn between_particles<N: Number>(one: &MovingBody, two: &MovingBody, t: f64) -> Vec2 {
     rounded_vector::<N>(minus(at(two, t), at(one, t)))
 }

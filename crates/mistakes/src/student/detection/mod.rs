@@ -20,10 +20,10 @@ use crate::student::{
 
 mod arithmetic;
 mod basis;
-mod factorised;
+mod factorized;
 mod frame;
 mod handover;
-mod normalised;
+mod normalized;
 mod particle_edge;
 mod particle_half_plane;
 mod particle_particle;
@@ -132,7 +132,7 @@ impl Encounter {
         relative.dot(&self.contact_vector(Student::default(), t))
     }
 
-    /// Returns how close the centres may come.
+    /// Returns how close the centers may come.
     fn reach(&self) -> f64 {
         match self {
             Self::Particles(one, two) => one.radius + two.radius,
@@ -197,15 +197,15 @@ fn axes_of(student: Student, pair: Pair) -> Axes {
 pub fn polynomials_of(student: Student, motion: &PairMotion) -> Vec<Vec<f64>> {
     let body = |point: &PointMotion, radius: f64| MovingBody { start: point.start, displacement: point.shift, radius };
     let (encounter, object) = match motion {
-        PairMotion::Particles { centres: [one, two], radii } => {
+        PairMotion::Particles { centers: [one, two], radii } => {
             (Encounter::Particles(body(one, radii[0]), body(two, radii[1])), Object::Particle(1))
         }
-        PairMotion::Edge { centre, ends: [first, second], radii } => {
-            let bodies = [body(centre, radii[0]), body(first, radii[1]), body(second, radii[1])];
+        PairMotion::Edge { center, ends: [first, second], radii } => {
+            let bodies = [body(center, radii[0]), body(first, radii[1]), body(second, radii[1])];
             (Encounter::Edge(bodies, radii[1]), Object::Edge(0))
         }
-        PairMotion::HalfPlane { centre, radius, point, normal } => {
-            (Encounter::HalfPlane(body(centre, *radius), *point, *normal), Object::HalfPlane(0))
+        PairMotion::HalfPlane { center, radius, point, normal } => {
+            (Encounter::HalfPlane(body(center, *radius), *point, *normal), Object::HalfPlane(0))
         }
     };
     let lists = handover::hand_over(student, object, encounter.polynomials(student));
@@ -228,7 +228,7 @@ pub fn detect(
         return Ok(None);
     }
     let mut lists = encounter.polynomials(student);
-    normalised::normalise(student, &encounter, &mut lists);
+    normalized::normalize(student, &encounter, &mut lists);
     if student.makes(Mistake::ThroughBernstein) {
         lists.iter_mut().for_each(|list| *list = basis::through_bernstein(list));
     }

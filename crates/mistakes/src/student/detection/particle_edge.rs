@@ -4,7 +4,7 @@ use fosssim_num::vector::Vec2;
 use super::{
     VECTORS,
     arithmetic::{self, FusedDouble},
-    basis, factorised, quintic,
+    basis, factorized, quintic,
     wide::Wide,
 };
 use crate::student::{
@@ -39,7 +39,7 @@ pub fn polynomials(student: Student, bodies: &[MovingBody; 3], edge_radius: f64)
     let dots = dot_products(bodies);
     let overlap = match mistake {
         Some(Mistake::WideArithmetic) => arithmetic::particle_edge::<Wide>(bodies, edge_radius).swap_remove(0),
-        Some(Mistake::FactorisedQuartic | Mistake::FactorisedAll) => factorised::quartic(bodies, square),
+        Some(Mistake::FactorizedQuartic | Mistake::FactorizedAll) => factorized::quartic(bodies, square),
         Some(Mistake::InterpolatedQuartic) => interpolated(bodies, square),
         Some(Mistake::RearrangedParticleEdge) => rearranged(dots, square),
         _ => quartic(student, dots, square),
@@ -213,7 +213,7 @@ fn alpha_below_one(student: Student, bodies: &[MovingBody; 3], dots: DotProducts
         Some(Mistake::AlphaHighHalfSlope) => vec![d13.dot(&d23), x13.dot(&d23), x13.dot(&x23)],
         Some(Mistake::AlphaHighAtStart) => vec![x13.dot(&x23)],
         Some(Mistake::AlphaHighMissing) => vec![1.0],
-        Some(Mistake::FactorisedAll) => vec![i - c, 2.0 * h - b, g - a],
+        Some(Mistake::FactorizedAll) => vec![i - c, 2.0 * h - b, g - a],
         _ => vec![d13.dot(&d23), d13.dot(&x23) + x13.dot(&d23), x13.dot(&x23)],
     }
 }
@@ -294,8 +294,8 @@ mod tests {
         let correct = &lists(None)[0];
         for variant in [
             Mistake::RearrangedParticleEdge,
-            Mistake::FactorisedQuartic,
-            Mistake::FactorisedAll,
+            Mistake::FactorizedQuartic,
+            Mistake::FactorizedAll,
             Mistake::WideArithmetic,
             Mistake::ExtendedPrecision,
             Mistake::FusedArithmetic,

@@ -96,7 +96,7 @@ fn approach(student: Student, s: f64, w: f64) -> Vec<f64> {
     }
 }
 
-/// Returns the vector from the centre to the boundary at time `t`.
+/// Returns the vector from the center to the boundary at time `t`.
 pub fn contact_vector(student: Student, one: &MovingBody, point: Vec2, normal: Vec2, t: f64) -> Vec2 {
     let offset = point - one.start - t * one.displacement;
     let square = normal.dot(&normal);

@@ -113,7 +113,7 @@ fn approach(student: Student, x: Vec2, d: Vec2, e: Vec2) -> Vec<f64> {
     }
 }
 
-/// Returns the vector from the first centre to the second at time `t`.
+/// Returns the vector from the first center to the second at time `t`.
 pub fn contact_vector(student: Student, one: &MovingBody, two: &MovingBody, t: f64) -> Vec2 {
     match student.mistake_in(VECTORS) {
         Some(Mistake::ParticleParticleContactAtStart) => two.start - one.start,

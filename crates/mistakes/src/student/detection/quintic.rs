@@ -1,5 +1,5 @@
 //! The approach of a particle and an edge: the quintic that the course supplies, and what becomes of it.
-use super::{MovingBody, factorised};
+use super::{MovingBody, factorized};
 use crate::student::{Area, Mistake, author::Student};
 
 /// The parts of the assignment whose mistakes are made here.
@@ -19,7 +19,7 @@ pub fn approach(student: Student, bodies: &[MovingBody; 3]) -> Vec<f64> {
             list
         }
         Some(Mistake::QuinticCutToLinear) => supplied().split_off(4),
-        Some(Mistake::QuinticRight | Mistake::FactorisedAll) => factorised::quintic(bodies),
+        Some(Mistake::QuinticRight | Mistake::FactorizedAll) => factorized::quintic(bodies),
         _ => supplied(),
     }
 }

@@ -76,7 +76,7 @@ impl<'e> Item<'e> {
         values::scalar(text).ok_or_else(|| self.refusal(of, name, &format!("Value must be {what}. Exiting.")))
     }
 
-    /// Returns the colour in `r`, `g`, `b`, each checked before the next is read.
+    /// Returns the color in `r`, `g`, `b`, each checked before the next is read.
     pub(super) fn color(&self) -> Result<Color, Refusal> {
         let component = |name: &str| {
             let value = self.required(name, "value of ", "scalar", values::scalar)?;

@@ -151,7 +151,7 @@ impl<'e> Repeated<'e> {
         Ok(forces)
     }
 
-    /// Colours of one kind of object. The original's check lets an edge or half-plane pass whose index is the count.
+    /// Colors of one kind of object. The original's check lets an edge or half-plane pass whose index is the count.
     fn colors(&mut self, name: &'static str, what: &str, count: usize) -> Result<Vec<(usize, Color)>, Refusal> {
         let slack = usize::from(what != "particle");
         let mut colors = Vec::new();

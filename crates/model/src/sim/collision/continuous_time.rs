@@ -4,7 +4,7 @@
 use super::{
     super::{
         bodies::Bodies,
-        observer::{Impulse, Observer, Pass, Stage, synchronise},
+        observer::{Impulse, Observer, Pass, Stage, synchronize},
         pair::PairKind,
         state::State,
         step_error::StepError,
@@ -14,7 +14,7 @@ use super::{
     response::{Law, Response, Setting},
 };
 
-/// Handles the impacts of a step, then reaches the synchronisation point.
+/// Handles the impacts of a step, then reaches the synchronization point.
 ///
 /// # Errors
 /// [`StepError::RootSearch`]
@@ -34,7 +34,7 @@ pub(super) fn handle<O: Observer>(
         observer.impulse(impulse);
         Reaction::Moved
     })?;
-    synchronise(observer, state);
+    synchronize(observer, state);
     Ok(())
 }
 

@@ -3,7 +3,7 @@
 use super::{
     super::{
         bodies::Bodies,
-        observer::{Impulse, Observer, Pass, Resume, Stage, Zone, synchronise},
+        observer::{Impulse, Observer, Pass, Resume, Stage, Zone, synchronize},
         state::State,
         step_error::StepError,
     },
@@ -27,7 +27,7 @@ pub(super) struct HybridScratch {
     shown: Vec<Zone<'static>>,
 }
 
-/// Handles the impacts of a step. The synchronisation point lies after the impulses.
+/// Handles the impacts of a step. The synchronization point lies after the impulses.
 ///
 /// # Errors
 /// [`StepError::RootSearch`], [`StepError::Work`]
@@ -68,12 +68,12 @@ pub(super) fn handle<O: Observer>(
         }
     }
     if done {
-        synchronise(observer, state);
+        synchronize(observer, state);
         return Ok(());
     }
     // The geometric part goes on with these values, unless somebody steers otherwise.
     scratch.state.clone_from(state);
-    if synchronise(observer, state) == Resume::Synchronised {
+    if synchronize(observer, state) == Resume::Synchronized {
         scratch.state.clone_from(state);
     }
     geometric(bodies, law, detector, scratch, q_start, observer)?;

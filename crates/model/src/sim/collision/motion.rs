@@ -45,15 +45,15 @@ impl PointMotion {
 pub enum PairMotion {
     /// Two discs.
     Particles {
-        /// The particles' centres.
-        centres: [PointMotion; 2],
+        /// The particles' centers.
+        centers: [PointMotion; 2],
         /// The particles' radii.
         radii: [f64; 2],
     },
     /// A disc and an edge.
     Edge {
-        /// The disc's centre.
-        centre: PointMotion,
+        /// The disc's center.
+        center: PointMotion,
         /// The edge's endpoints.
         ends: [PointMotion; 2],
         /// The radii of the disc and of the edge.
@@ -61,8 +61,8 @@ pub enum PairMotion {
     },
     /// A disc and a half-plane.
     HalfPlane {
-        /// The disc's centre.
-        centre: PointMotion,
+        /// The disc's center.
+        center: PointMotion,
         /// The disc's radius.
         radius: f64,
         /// A point on the half-plane's boundary.
@@ -84,17 +84,17 @@ impl PairMotion {
         let radius = scene.particles[first].radius;
         match pair.kind {
             PairKind::ParticleParticle => Self::Particles {
-                centres: [point(first), point(second)],
+                centers: [point(first), point(second)],
                 radii: [radius, scene.particles[second].radius],
             },
             PairKind::ParticleEdge => {
                 let edge = &scene.edges[second];
                 let ends = [point(edge.first), point(edge.second)];
-                Self::Edge { centre: point(first), ends, radii: [radius, edge.radius] }
+                Self::Edge { center: point(first), ends, radii: [radius, edge.radius] }
             }
             PairKind::ParticleHalfPlane => {
                 let half_plane = &scene.half_planes[second];
-                Self::HalfPlane { centre: point(first), radius, point: half_plane.point, normal: half_plane.normal }
+                Self::HalfPlane { center: point(first), radius, point: half_plane.point, normal: half_plane.normal }
             }
         }
     }
@@ -117,16 +117,16 @@ impl PairMotion {
         let radius = bodies.radii[first];
         match pair.kind {
             PairKind::ParticleParticle => {
-                Self::Particles { centres: [point(first), point(second)], radii: [radius, bodies.radii[second]] }
+                Self::Particles { centers: [point(first), point(second)], radii: [radius, bodies.radii[second]] }
             }
             PairKind::ParticleEdge => Self::Edge {
-                centre: point(first),
+                center: point(first),
                 ends: bodies.edges[second].map(point),
                 radii: [radius, bodies.edge_radii[second]],
             },
             PairKind::ParticleHalfPlane => {
                 let (point_on, normal) = (bodies.points[second], bodies.normals[second]);
-                Self::HalfPlane { centre: point(first), radius, point: point_on, normal }
+                Self::HalfPlane { center: point(first), radius, point: point_on, normal }
             }
         }
     }
@@ -145,13 +145,13 @@ impl PairMotion {
             [Polynomial::untrimmed(&overlap), Polynomial::untrimmed(&approach), none, none]
         };
         match *self {
-            Self::Particles { centres: [one, other], radii } => {
+            Self::Particles { centers: [one, other], radii } => {
                 let [x1, d1, x2, d2] = [one.start, one.shift, other.start, other.shift].map(Plane::from);
                 two(particle_particle::coefficients(x1, d1, x2, d2, radii[0] + radii[1]))
             }
-            Self::Edge { centre, ends: [first, second], radii } => {
+            Self::Edge { center, ends: [first, second], radii } => {
                 let [x2, d2, x3, d3] = [first.start, first.shift, second.start, second.shift].map(Plane::from);
-                let (x1, d1, edge) = (centre.start.into(), centre.shift.into(), EdgeMotions::new(x2, d2, x3, d3));
+                let (x1, d1, edge) = (center.start.into(), center.shift.into(), EdgeMotions::new(x2, d2, x3, d3));
                 let pair = particle_edge::coefficients(x1, d1, &edge, radii[0] + radii[1]);
                 [
                     Polynomial::untrimmed(&pair.distance),
@@ -160,28 +160,28 @@ impl PairMotion {
                     Polynomial::untrimmed(&pair.approach),
                 ]
             }
-            Self::HalfPlane { centre, radius, point, normal } => {
-                let [x, d, point, normal] = [centre.start, centre.shift, point, normal].map(Plane::from);
+            Self::HalfPlane { center, radius, point, normal } => {
+                let [x, d, point, normal] = [center.start, center.shift, point, normal].map(Plane::from);
                 two(particle_half_plane::coefficients(x, d, radius, point, normal, normal.dot(normal)))
             }
         }
     }
 
-    /// Returns the contact normal at `time`, from the first object to the second, not normalised. `None` where it is
+    /// Returns the contact normal at `time`, from the first object to the second, not normalized. `None` where it is
     /// zero between a particle and an edge, which is no hit.
     #[must_use]
     pub fn normal(&self, time: f64) -> Option<Vec2> {
         match *self {
-            Self::Particles { centres: [one, two], .. } => {
+            Self::Particles { centers: [one, two], .. } => {
                 Some(particle_particle::normal(one.start, one.shift, two.start, two.shift, time))
             }
-            Self::Edge { centre, ends: [first, second], .. } => {
-                let points = [centre, first, second];
+            Self::Edge { center, ends: [first, second], .. } => {
+                let points = [center, first, second];
                 particle_edge::normal(points.map(|point| point.start), points.map(|point| point.shift), time)
             }
-            Self::HalfPlane { centre, point, normal, .. } => {
+            Self::HalfPlane { center, point, normal, .. } => {
                 let squared = normal.dot(&normal);
-                Some(particle_half_plane::normal(centre.start, centre.shift, point, normal, squared, time))
+                Some(particle_half_plane::normal(center.start, center.shift, point, normal, squared, time))
             }
         }
     }

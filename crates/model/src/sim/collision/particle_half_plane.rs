@@ -29,7 +29,7 @@ where
     ([-s * s, 2.0 * w * s, -w * w + (radius * radius) * squared], [-s * s, w * s])
 }
 
-/// Returns the contact normal at time `t`: from the centre to its foot on the boundary.
+/// Returns the contact normal at time `t`: from the center to its foot on the boundary.
 #[inline]
 pub(super) fn normal(x: Vec2, d: Vec2, point: Vec2, normal: Vec2, squared: f64, t: f64) -> Vec2 {
     (((point - x) - t * d).dot(&normal) / squared) * normal

@@ -23,7 +23,7 @@ where
     ([-squared, -2.0 * x.dot(d), radii * radii - x.dot(x)], [-squared, e.dot(x)])
 }
 
-/// Returns the contact normal at time `t`, from the first to the second centre.
+/// Returns the contact normal at time `t`, from the first to the second center.
 #[inline]
 pub(super) fn normal(x1: Vec2, d1: Vec2, x2: Vec2, d2: Vec2, t: f64) -> Vec2 {
     (x2 + t * d2) - (x1 + t * d1)
@@ -37,7 +37,7 @@ pub(super) fn response(setting: &Setting<'_>, i: usize, j: usize, n: Vec2) -> Re
     exchange(bodies, law.factor, law.time_step, i, j, v2 - v1, unit(n))
 }
 
-/// Returns the simple detection: the vector between the centres when they overlap and approach.
+/// Returns the simple detection: the vector between the centers when they overlap and approach.
 #[inline]
 pub(super) fn overlap(bodies: &Bodies, x: &[f64], v: &[f64], i: usize, j: usize) -> Option<Vec2> {
     let n = at(x, j) - at(x, i);

@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn others_lie_between_neighbours() {
+    fn others_lie_between_neighbors() {
         // 2^60 + 1 over 2^61: just above a half.
         assert_eq!(dyadic("1152921504606846977", 61).enclosure(), [0.5, 0.5_f64.next_up()]);
         // 2^54 - 1 over 2^54 rounds up to 1.

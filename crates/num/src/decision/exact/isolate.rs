@@ -34,7 +34,7 @@ impl Root {
     }
 
     /// Returns two doubles around it: equal if it was met exactly, else a few units of `2^-60` of the step or the
-    /// neighbours.
+    /// neighbors.
     pub(super) fn enclosure(&self, polynomial: &Integer) -> [f64; 2] {
         let mut root = self.clone();
         let before = polynomial.sign_at(&root.lo);

@@ -59,7 +59,7 @@ class Drawing extends Motion {
   draw(context = this.canvas.getContext("2d")) {
     const { width, height } = this.canvas;
     const panels = this.beside && this.baseline() ? ["expected", "yours"] : ["both"];
-    context.fillStyle = colour("--card");
+    context.fillStyle = color("--card");
     context.fillRect(0, 0, width, height);
     panels.forEach((panel, place) => {
       this.view = [(place * width) / panels.length, width / panels.length];
@@ -70,7 +70,7 @@ class Drawing extends Motion {
       this.panel(context, panel);
       context.restore();
     });
-    context.fillStyle = colour("--line");
+    context.fillStyle = color("--line");
     if (panels.length > 1) context.fillRect(width / 2 - 1, 0, 2, height);
     this.view = [0, width];
   }
@@ -80,17 +80,17 @@ class Drawing extends Motion {
     if (panel === "both") {
       this.zones(context);
       if (this.show.reference)
-        this.bodies(context, this.positions("reference"), { stroke: colour("--ref"), dash: [7, 5] });
-      if (expected) this.bodies(context, expected, { stroke: colour("--exp"), dash: [2, 3] });
+        this.bodies(context, this.positions("reference"), { stroke: color("--ref"), dash: [7, 5] });
+      if (expected) this.bodies(context, expected, { stroke: color("--exp"), dash: [2, 3] });
       if (this.show.what && this.data.whatIf)
-        this.bodies(context, this.positions("what"), { stroke: colour("--what"), dash: [12, 4, 2, 4] });
+        this.bodies(context, this.positions("what"), { stroke: color("--what"), dash: [12, 4, 2, 4] });
     }
     if (panel === "expected")
-      this.bodies(context, this.baseline(), { stroke: colour(expected ? "--exp" : "--ref"), dash: [], label: true });
+      this.bodies(context, this.baseline(), { stroke: color(expected ? "--exp" : "--ref"), dash: [], label: true });
     else
       this.bodies(context, this.positions("submission"), {
-        stroke: colour("--own"),
-        fill: colour("--ownfill"),
+        stroke: color("--own"),
+        fill: color("--ownfill"),
         dash: [],
         label: true,
       });
@@ -100,9 +100,9 @@ class Drawing extends Motion {
     const at = `step ${this.step}${this.t < 1 ? `, t = ${this.t.toFixed(3)}` : ""}`;
     const words = panel === "both" ? at : `${panel === "yours" ? "yours" : expected ? "expected" : "reference"}, ${at}`;
     // Lines of the scene end below the words.
-    context.fillStyle = colour("--card");
+    context.fillStyle = color("--card");
     context.fillRect(this.view[0], 0, 20 + 0.56 * this.letters() * words.length, 14 + this.letters());
-    context.fillStyle = colour("--ink");
+    context.fillStyle = color("--ink");
     context.fillText(words, this.view[0] + 10, 6 + this.letters());
   }
   // The motion at another step, small.
@@ -139,7 +139,7 @@ class Drawing extends Motion {
         context.setLineDash(dash);
       }
       context.lineWidth = chosen ? 4 : 2;
-      context.strokeStyle = chosen ? colour("--bad") : stroke;
+      context.strokeStyle = chosen ? color("--bad") : stroke;
       const length = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1;
       const side = [(-(b[1] - a[1]) / length) * r * scale, ((b[0] - a[0]) / length) * r * scale];
       for (const sign of [1, -1]) {
@@ -163,10 +163,10 @@ class Drawing extends Motion {
         context.fill();
       }
       context.lineWidth = chosen ? 4 : 2;
-      context.strokeStyle = chosen ? colour("--bad") : stroke;
+      context.strokeStyle = chosen ? color("--bad") : stroke;
       context.stroke();
       if (label && n <= 60) {
-        context.fillStyle = colour("--ink");
+        context.fillStyle = color("--ink");
         context.font = `${this.letters() - 2}px system-ui, sans-serif`;
         context.textAlign = "center";
         context.fillText(this.data.fixed[k] ? `${k} fixed` : `${k}`, x, y + 4);
@@ -182,8 +182,8 @@ class Drawing extends Motion {
       if (!(length > 0)) return;
       const [ux, uy] = [nx / length, ny / length];
       const chosen = this.isSelected("half-plane", index);
-      context.strokeStyle = chosen ? colour("--bad") : colour("--ink");
-      context.fillStyle = colour("--ground");
+      context.strokeStyle = chosen ? color("--bad") : color("--ink");
+      context.fillStyle = color("--ground");
       context.lineWidth = chosen ? 4 : 2;
       const a = this.to(px - uy * far, py + ux * far);
       const b = this.to(px + uy * far, py - ux * far);
@@ -205,8 +205,8 @@ class Drawing extends Motion {
     const state = this.positions("submission");
     if (!close || !close.zones.length || !state) return;
     const last = close.zones[close.zones.length - 1];
-    context.strokeStyle = colour("--zone");
-    context.fillStyle = colour("--zonefill");
+    context.strokeStyle = color("--zone");
+    context.fillStyle = color("--zonefill");
     context.lineWidth = 1.5;
     for (const zone of last.zones) {
       const points = zone.particles.map((k) => this.to(state[2 * k], state[2 * k + 1])).filter((p) => finite(...p));
@@ -217,7 +217,7 @@ class Drawing extends Motion {
       around.forEach((p, k) => (k ? context.lineTo(...p) : context.moveTo(...p)));
       context.closePath();
       context.lineWidth = 26;
-      context.strokeStyle = colour("--zonefill");
+      context.strokeStyle = color("--zonefill");
       context.stroke();
       context.fill();
       context.lineJoin = "miter";
@@ -234,7 +234,7 @@ class Drawing extends Motion {
     this.factor.value = Math.log10(factor);
     this.factorText.textContent = `${factor >= 1e4 ? factor.toExponential(1) : short(factor)} times (largest difference ${short(apart.most)})`;
     if (!this.show.arrows) return;
-    context.strokeStyle = context.fillStyle = colour("--bad");
+    context.strokeStyle = context.fillStyle = color("--bad");
     context.lineWidth = 2;
     for (let k = 0; k < this.data.n; k++) {
       const [dx, dy] = apart.list[k];
@@ -275,10 +275,10 @@ class Drawing extends Motion {
       }
     };
     const expected = this.pass >= 0 ? close.passes[this.pass].hits : close.expected;
-    draw(expected, colour("--exp"), [2, 3], true);
-    if (this.pass <= 0) draw(close.actual, colour("--own"), [], false);
+    draw(expected, color("--exp"), [2, 3], true);
+    if (this.pass <= 0) draw(close.actual, color("--own"), [], false);
   }
-  // Where a particle touches at a time of the step: its centre as detection sees it.
+  // Where a particle touches at a time of the step: its center as detection sees it.
   place(pair, time) {
     const { first } = parse(pair);
     const start = this.state("submission", this.step - 1);
@@ -292,7 +292,7 @@ class Drawing extends Motion {
     const { strip, steps, first, last } = this.data;
     const { width, height } = this.strip;
     const wide = width / Math.max(1, steps);
-    context.fillStyle = colour("--card");
+    context.fillStyle = color("--card");
     context.fillRect(0, 0, width, height);
     const order = { u: 0, r: 1, i: 2, w: 3 };
     const columns = Math.min(steps, width);
@@ -308,8 +308,8 @@ class Drawing extends Motion {
       }
       const x = (column * width) / columns;
       const w = Math.max(1, width / columns);
-      context.fillStyle = colour({ r: "--good", w: "--bad", i: "--warn", u: "--faint" }[worst]);
-      // Height tells them apart without colour.
+      context.fillStyle = color({ r: "--good", w: "--bad", i: "--warn", u: "--faint" }[worst]);
+      // Height tells them apart without color.
       const tall = { r: 8, i: 14, w: 22, u: 3 }[worst];
       context.fillRect(x, height - 4 - tall, w > 3 ? w - 1 : w, tall);
     }
@@ -317,7 +317,7 @@ class Drawing extends Motion {
     const left = Math.max(0, this.step - 1) * wide,
       most = this.step > 0 ? Math.max(4, wide) : 2,
       middle = left + most / 2;
-    context.fillStyle = context.strokeStyle = colour("--ink");
+    context.fillStyle = context.strokeStyle = color("--ink");
     context.lineWidth = 2;
     context.strokeRect(left + 1, 8, most - 2, height - 10);
     context.beginPath();

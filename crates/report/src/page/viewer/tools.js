@@ -1,6 +1,6 @@
 // Words, packed numbers, drawings as SVG: what knows nothing of a case.
 const SVG = "http://www.w3.org/2000/svg";
-const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+const color = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const finite = (...values) => values.every(Number.isFinite);
 const short = (value) => (value === null || Number.isNaN(value) ? "nan" : Number(value.toPrecision(6)).toString());
 // Two numbers in one notation, and no longer than it takes to see where they part: from there on the second is marked.

@@ -353,7 +353,7 @@ class Viewer extends Words {
     const [right, wrong, after] = ["r", "w", "i"].map((letter) => this.count(letter));
     return `All steps: ${right} right, ${wrong} wrong by themselves, ${after} right but following from a wrong one, ${this.data.steps - right - wrong - after} not judged`;
   }
-  // The colours of the strip in words.
+  // The colors of the strip in words.
   stripKey() {
     const names = [
       ["r", "right"],

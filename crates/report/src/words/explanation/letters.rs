@@ -13,7 +13,7 @@ pub(super) fn of(lines: &[String], kinds: &[PairKind]) -> Option<String> {
     let reach = !has_turn && lines.iter().any(|line| words(line).any(|word| word == "R"));
     let mut parts = Vec::new();
     if has_turn {
-        parts.push("x_cm is the centre of mass at the start of the step, dx_cm its displacement".to_owned());
+        parts.push("x_cm is the center of mass at the start of the step, dx_cm its displacement".to_owned());
         if lines.iter().any(|line| words(line).any(|word| word == "R")) {
             parts.push("R turns a vector by the zone's angle".to_owned());
         }

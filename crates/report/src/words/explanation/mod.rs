@@ -180,7 +180,7 @@ const fn look(area: Area) -> &'static str {
 }
 
 /// Returns the first letter in upper case.
-fn capitalised(text: &str) -> String {
+fn capitalized(text: &str) -> String {
     let mut letters = text.chars();
     let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
     first + letters.as_str()

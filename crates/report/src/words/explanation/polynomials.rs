@@ -1,5 +1,5 @@
 //! Sentences about wrong polynomials.
-use super::{capitalised, letters};
+use super::{capitalized, letters};
 use fosssim_mistakes::{
     assignments::t2m2::{Letter, Reading, Subject, find_exchange, find_special, letter},
     diagnose::{
@@ -11,7 +11,7 @@ use fosssim_mistakes::{
 pub(super) fn what(subjects: &[Subject], found: &OfPolynomials) -> String {
     let names: Vec<&str> = subjects.iter().map(|subject| subject.name()).collect();
     let names = names.join(", ");
-    let place = capitalised(&names);
+    let place = capitalized(&names);
     match found {
         OfPolynomials::Guess(guess) => format!("{place}: {}.", of_guess(guess)),
         OfPolynomials::Missing => format!("Polynomials are not handed over: {names}."),

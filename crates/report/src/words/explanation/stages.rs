@@ -1,5 +1,5 @@
 //! Sentences about stages of a step that no known mistake explains.
-use super::capitalised;
+use super::capitalized;
 use crate::view::key;
 use fosssim_mistakes::{
     diagnose::{
@@ -13,7 +13,7 @@ use fosssim_model::sim::PairKind;
 
 /// Returns the fault of a stage, with its place in front.
 pub(super) fn what(fault: &StageFault) -> String {
-    format!("{}: {}.", place(fault), capitalised(&of_fault(fault)))
+    format!("{}: {}.", place(fault), capitalized(&of_fault(fault)))
 }
 
 /// Returns the parts of the assignment in which it may lie, with the kind of pair that alone it concerns.
@@ -25,8 +25,8 @@ fn place(fault: &StageFault) -> String {
     };
     let areas = if fault.kind().is_some() { areas.replace("collision response", "response") } else { areas };
     match fault.kind() {
-        Some(kind) => format!("{} {areas}", capitalised(kind.name())),
-        None => capitalised(&areas),
+        Some(kind) => format!("{} {areas}", capitalized(kind.name())),
+        None => capitalized(&areas),
     }
 }
 
@@ -194,7 +194,7 @@ const fn of_zones(wrong: WrongZones) -> &'static str {
 
 const fn of_motion(wrong: WrongMotion) -> &'static str {
     match wrong {
-        WrongMotion::Centre => "the centre of mass of a zone does not move as it should",
+        WrongMotion::Center => "the center of mass of a zone does not move as it should",
         WrongMotion::Distances => "the particles of a zone do not keep their distances",
         WrongMotion::NoTurn => "zones do not turn",
         WrongMotion::LessTurn => "zones do not turn as far as they should",
@@ -291,17 +291,17 @@ pub(super) fn detail(detail: &StageDetail) -> Option<String> {
                 Amount::Ratio(ratios) => format!("by {} what it should", times(*ratios)),
             };
             let across = if *across { ", and across the contact vector, too" } else { "" };
-            let (place, quantity) = (capitalised(changed.kind.name()), singular(changed.quantity));
+            let (place, quantity) = (capitalized(changed.kind.name()), singular(changed.quantity));
             let body = body(changed);
             format!("{place}: the {quantity} of {body} changes {amount}{across} (in {wrong} of {of} isolated contacts)")
         }
         StageDetail::OfZones { count, of } => format!("in {count} of {of} zones of the first round"),
         StageDetail::Stopped(Ratios::All(ratio)) if is(*ratio, 1.0) => "they keep the velocity from before".to_owned(),
         StageDetail::Stopped(ratios) => format!("{} their velocity before", times(*ratios)),
-        StageDetail::CentreMoves(Ratios::All(ratio)) if is(*ratio, 0.0) => "it does not move".to_owned(),
-        StageDetail::CentreMoves(Ratios::Between(..)) => "how far it moves differs from zone to zone".to_owned(),
-        StageDetail::CentreMoves(ratios) => format!("it moves {} as far", times(*ratios)),
-        StageDetail::CentreDirection => "its direction is wrong, too".to_owned(),
+        StageDetail::CenterMoves(Ratios::All(ratio)) if is(*ratio, 0.0) => "it does not move".to_owned(),
+        StageDetail::CenterMoves(Ratios::Between(..)) => "how far it moves differs from zone to zone".to_owned(),
+        StageDetail::CenterMoves(ratios) => format!("it moves {} as far", times(*ratios)),
+        StageDetail::CenterDirection => "its direction is wrong, too".to_owned(),
         StageDetail::Turns(Ratios::All(ratio) | Ratios::Between(_, ratio)) if ratio.abs() < 1e-3 => {
             "they hardly turn".to_owned()
         }

@@ -172,7 +172,7 @@ fn faults() -> Vec<StageFault> {
     faults.extend(ZONES.map(StageFault::Zones));
     let motions = [
         vec![],
-        vec![WrongMotion::Centre, WrongMotion::Distances, WrongMotion::Velocities],
+        vec![WrongMotion::Center, WrongMotion::Distances, WrongMotion::Velocities],
         vec![WrongMotion::NoTurn, WrongMotion::Speeds],
         vec![WrongMotion::LessTurn],
         vec![WrongMotion::MoreTurn],
@@ -276,8 +276,8 @@ fn lines_of_all_sorts() -> Vec<Detail> {
         change(Amount::Right, true),
         change(Amount::Ratio(TWO), false),
         StageDetail::Stopped(TWO),
-        StageDetail::CentreMoves(TWO),
-        StageDetail::CentreDirection,
+        StageDetail::CenterMoves(TWO),
+        StageDetail::CenterDirection,
         StageDetail::Turns(Ratios::Between(0.5, 0.75)),
         StageDetail::Velocities(TWO),
     ];

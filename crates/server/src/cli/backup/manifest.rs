@@ -20,7 +20,7 @@ pub(super) struct Manifest {
     /// The version of the tables.
     pub(super) tables: i64,
     pub(super) database: Copy,
-    pub(super) artefacts: Artefacts,
+    pub(super) artifacts: Artifacts,
 }
 
 /// The copy of the database.
@@ -34,7 +34,7 @@ pub(super) struct Copy {
 
 /// The files of the store; each is called by its digest.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) struct Artefacts {
+pub(super) struct Artifacts {
     pub(super) count: u64,
     pub(super) bytes: u64,
 }

@@ -13,7 +13,7 @@ use crate::{
 };
 use anyhow::{Context, Result, bail};
 use futures_util::TryStreamExt;
-use manifest::{Artefacts, Copy, Manifest};
+use manifest::{Artifacts, Copy, Manifest};
 use std::{
     fs,
     os::unix::fs::DirBuilderExt,
@@ -39,9 +39,9 @@ pub(super) async fn backup(arguments: &Backup) -> Result<()> {
     database.close().await;
     let made = made.inspect_err(|_| drop(fs::remove_dir_all(&partial)))?;
     fs::rename(&partial, output).with_context(|| format!("cannot rename {}", partial.display()))?;
-    let Artefacts { count, bytes } = made.artefacts;
+    let Artifacts { count, bytes } = made.artifacts;
     let tables = made.tables;
-    println!("{}: the database (tables of version {tables}) and {count} artefacts of {bytes} bytes", output.display());
+    println!("{}: the database (tables of version {tables}) and {count} artifacts of {bytes} bytes", output.display());
     Ok(())
 }
 
@@ -59,14 +59,14 @@ async fn fill(folder: &Path, database: &Database, store: &Store, address: &Addre
         Address::Sqlite(_) => database.copy_to(&file).await.context("the copy of the database")?,
         Address::Postgres(url) => postgres::dump(url, &file).await?,
     }
-    let artefacts = copy_artefacts(store, &folder.join("store")).await?;
+    let artifacts = copy_artifacts(store, &folder.join("store")).await?;
     let copy = digest_of_file(&file).await?;
     let manifest = Manifest {
         schema: manifest::SCHEMA,
         version: env!("CARGO_PKG_VERSION").to_owned(),
         tables,
         database: Copy { file: name.to_owned(), sha256: copy.digest, bytes: copy.size },
-        artefacts,
+        artifacts,
     };
     // Everything is on the disk before the manifest says so.
     rustix::fs::syncfs(fs::File::open(folder)?)?;
@@ -75,9 +75,9 @@ async fn fill(folder: &Path, database: &Database, store: &Store, address: &Addre
     Ok(manifest)
 }
 
-/// Copies the store's artefacts into a folder that is a store of its own.
-async fn copy_artefacts(store: &Store, folder: &Path) -> Result<Artefacts> {
-    let mut copied = Artefacts::default();
+/// Copies the store's artifacts into a folder that is a store of its own.
+async fn copy_artifacts(store: &Store, folder: &Path) -> Result<Artifacts> {
+    let mut copied = Artifacts::default();
     fs::create_dir_all(folder)?;
     let mut digests = store.digests();
     while let Some(digest) = digests.try_next().await? {

@@ -2,7 +2,7 @@
 //! none, and no half of one.
 use super::{
     super::{arguments::Restore, folders::ServiceFolders},
-    manifest::{Artefacts, Manifest},
+    manifest::{Artifacts, Manifest},
     postgres,
 };
 use crate::{
@@ -65,14 +65,14 @@ async fn fill(arguments: &Restore, manifest: &Manifest, copy: &Path) -> Result<(
         (_, false) => bail!("the backup is one of SQLite: leave out the database's address"),
     }
     let store = folders.store(place)?;
-    let restored = put_artefacts(&store, &from.join("store").join("sha256")).await?;
-    if restored != manifest.artefacts {
+    let restored = put_artifacts(&store, &from.join("store").join("sha256")).await?;
+    if restored != manifest.artifacts {
         bail!(
-            "the backup is damaged: it has {} artefacts of {} bytes, and had {} of {}",
+            "the backup is damaged: it has {} artifacts of {} bytes, and had {} of {}",
             restored.count,
             restored.bytes,
-            manifest.artefacts.count,
-            manifest.artefacts.bytes
+            manifest.artifacts.count,
+            manifest.artifacts.bytes
         );
     }
     match &address {
@@ -83,7 +83,7 @@ async fn fill(arguments: &Restore, manifest: &Manifest, copy: &Path) -> Result<(
         db::LATEST => "of this version".to_owned(),
         older => format!("of version {older}; starting the server brings them up to {}", db::LATEST),
     };
-    println!("{}: the database (tables {tables}) and {} artefacts", place.data.display(), restored.count);
+    println!("{}: the database (tables {tables}) and {} artifacts", place.data.display(), restored.count);
     Ok(())
 }
 
@@ -96,9 +96,9 @@ fn copy_database(copy: &Path, file: &Path) -> Result<()> {
     Ok(fs::rename(&partial, file)?)
 }
 
-/// Stores every file of a folder of artefacts, each of which must be what its name says.
-async fn put_artefacts(store: &Store, folder: &Path) -> Result<Artefacts> {
-    let mut put = Artefacts::default();
+/// Stores every file of a folder of artifacts, each of which must be what its name says.
+async fn put_artifacts(store: &Store, folder: &Path) -> Result<Artifacts> {
+    let mut put = Artifacts::default();
     if !folder.exists() {
         return Ok(put);
     }

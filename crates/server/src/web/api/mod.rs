@@ -72,5 +72,5 @@ operations! {
         grade_errors_again grade_all_errors_again;
     regrades: regrades begin show apply discard;
     platforms: platforms set_platform shut_platform new_key roster scores send_scores;
-    workers: tick claim renew release fail finish artefact store;
+    workers: tick claim renew release fail finish artifact store;
 }

@@ -128,14 +128,14 @@ pub(super) async fn report(member: Member, At { id, name, .. }: At, asked: Heade
         "sandbox; default-src 'none'"
     };
     let headers = [(header::CONTENT_TYPE, kind), (header::CONTENT_SECURITY_POLICY, HeaderValue::from_static(policy))];
-    Ok((headers, download::send(&member, &asked, &file.artefact).await?).into_response())
+    Ok((headers, download::send(&member, &asked, &file.artifact).await?).into_response())
 }
 
 /// Returns the upload.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/submissions/{id}/upload", tag = "submissions",
     responses((status = 200, description = "The file")))]
 pub(super) async fn upload(member: Member, At { id, .. }: At, asked: HeaderMap) -> Result<Response, Problem> {
-    let (submission, artefact) = member.upload(id).await?;
+    let (submission, artifact) = member.upload(id).await?;
     // A stranger's file, to be kept and never to be shown. Its name was made harmless when it came.
     let disposition = format!("attachment; filename=\"{}\"", submission.file_name);
     let headers = [
@@ -146,7 +146,7 @@ pub(super) async fn upload(member: Member, At { id, .. }: At, asked: HeaderMap) 
         ),
         (header::CONTENT_SECURITY_POLICY, HeaderValue::from_static("sandbox; default-src 'none'")),
     ];
-    Ok((headers, download::send(&member, &asked, &artefact).await?).into_response())
+    Ok((headers, download::send(&member, &asked, &artifact).await?).into_response())
 }
 
 /// Returns a class's grades as a table. What spreadsheets would take for a formula is marked as text.

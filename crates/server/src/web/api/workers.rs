@@ -9,7 +9,7 @@ use crate::{
     access::Remote,
     problem::{Problem, ensure},
     queue::Lease,
-    store::{Artefact, Digest},
+    store::{Artifact, Digest},
     wire::{Alive, Claimed, Finished, JobFault, LeaseAnswer, Manners, Renewal},
 };
 use axum::{
@@ -61,9 +61,9 @@ fn lease(headers: &HeaderMap) -> Result<Lease, Problem> {
 #[utoipa::path(get, path = "/api/v1/worker/files/{digest}", tag = "workers",
     params(("Fosssim-Lease" = String, Header)),
     responses((status = 200, description = "The file's bytes")))]
-pub(super) async fn artefact(remote: Remote, At { digest, .. }: At, headers: HeaderMap) -> Result<Response, Problem> {
+pub(super) async fn artifact(remote: Remote, At { digest, .. }: At, headers: HeaderMap) -> Result<Response, Problem> {
     let digest: Digest = digest.parse().map_err(Problem::invalid)?;
-    let opened = remote.artefact(&lease(&headers)?, &digest).await?;
+    let opened = remote.artifact(&lease(&headers)?, &digest).await?;
     let kind = [(header::CONTENT_TYPE, "application/octet-stream")];
     Ok((kind, download::whole(opened, None)).into_response())
 }
@@ -72,8 +72,8 @@ pub(super) async fn artefact(remote: Remote, At { digest, .. }: At, headers: Hea
 #[utoipa::path(put, path = "/api/v1/worker/files/{digest}", tag = "workers",
     params(("Fosssim-Lease" = String, Header)),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),
-    responses((status = 200, body = Artefact)))]
-pub(super) async fn store(remote: Remote, At { digest, .. }: At, request: Request) -> Result<Json<Artefact>, Problem> {
+    responses((status = 200, body = Artifact)))]
+pub(super) async fn store(remote: Remote, At { digest, .. }: At, request: Request) -> Result<Json<Artifact>, Problem> {
     let digest: Digest = digest.parse().map_err(Problem::invalid)?;
     let lease = lease(request.headers())?;
     let most = remote.check_held(&lease).await?;

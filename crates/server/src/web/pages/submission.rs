@@ -81,7 +81,7 @@ pub(super) async fn submission(member: Member, At { id, .. }: At) -> Page {
         |name: &str| submission.grade.as_ref().is_some_and(|grade| grade.files.iter().any(|file| file.name == name));
     let report = if has("report.txt") {
         let file = member.report(id, "report.txt").await?;
-        Some(String::from_utf8_lossy(&member.beginning(&file.artefact, SHOWN).await?).into_owned())
+        Some(String::from_utf8_lossy(&member.beginning(&file.artifact, SHOWN).await?).into_owned())
     } else {
         None
     };

@@ -132,9 +132,9 @@ impl Arena {
     /// Hands something in: stored first, then submission and job in one transaction, tried until it is known to stand.
     pub(super) async fn hand_in(&mut self, name: &str, line: &str, expected: Expected) {
         let store = Store::folder(&self.folder.path().join("store")).expect("a store");
-        let artefact = crate::support::put(&store, format!("{line}\n").as_bytes()).await;
+        let artifact = crate::support::put(&store, format!("{line}\n").as_bytes()).await;
         let task = Task {
-            submission: Input { form: Form::Program, name: name.to_owned(), artefact },
+            submission: Input { form: Form::Program, name: name.to_owned(), artifact },
             suite: Suite::Named("storm".to_owned()),
             rules: None,
             hints: None,
@@ -160,7 +160,7 @@ impl Arena {
             .one(
                 "INSERT INTO submission (assignment, account, number, form, file_name, digest, size, created_at)
                  SELECT ?, max(id), ?, 'program', ?, ?, 0, {now} FROM account RETURNING id",
-                values![self.assignment, number, &task.submission.name, task.submission.artefact.digest.as_str()],
+                values![self.assignment, number, &task.submission.name, task.submission.artifact.digest.as_str()],
             )
             .await?
             .int("id")?;

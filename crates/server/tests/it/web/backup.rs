@@ -47,7 +47,7 @@ async fn what_was_accepted_is_in_a_backup_that_is_made_meanwhile(fresh: Fresh) {
         ended
     });
     assert_eq!(code, Some(0), "{said}");
-    assert!(copy.join("backup.json").is_file() && said.contains("artefacts"), "{said}");
+    assert!(copy.join("backup.json").is_file() && said.contains("artifacts"), "{said}");
     assert_eq!(fs::metadata(&copy).expect("a folder").permissions_mode(), 0o700);
     // A second one is a folder of its own.
     let (code, said) = command(&["backup", copy.to_str().expect("UTF-8")], &server.folder, Some(&server.database()));
@@ -123,18 +123,18 @@ fn a_backup_that_is_damaged_incomplete_or_newer_is_refused() {
         let restore = |number: u32| command(&["restore", text], &folder.path().join(number.to_string()), None);
         let upload = fosssim_server::store::Digest::of(&program("WA", 40));
         let (first, rest) = upload.as_str().split_at(2);
-        let artefact = copy.join("store/sha256").join(first).join(rest);
+        let artifact = copy.join("store/sha256").join(first).join(rest);
         let refused = |number: u32, what: &str| {
             let (code, said) = restore(number);
             assert!(code == Some(2) && said.contains(what), "{code:?} {said}");
             assert!(!folder.path().join(number.to_string()).exists(), "half a data folder is left: {what}");
         };
-        // One artefact is changed, then one is missing.
-        fs::write(&artefact, program("AC", 99)).expect("written");
+        // One artifact is changed, then one is missing.
+        fs::write(&artifact, program("AC", 99)).expect("written");
         refused(1, "is damaged: its bytes have another digest");
-        fs::remove_file(&artefact).expect("removed");
+        fs::remove_file(&artifact).expect("removed");
         refused(2, "the backup is damaged: it has");
-        fs::write(&artefact, program("WA", 40)).expect("written");
+        fs::write(&artifact, program("WA", 40)).expect("written");
         assert_eq!(restore(3).0, Some(0));
         // The manifest of a newer program, of newer tables, and none.
         let manifest = copy.join("backup.json");

@@ -217,7 +217,7 @@ async fn a_worker_reaches_the_jobs_that_it_holds_and_nothing_else(fresh: Fresh) 
         worker.send("POST", "/api/v1/worker/finish", JSON, outcome.as_bytes())
     };
     // A newer worker may say more than this server knows.
-    let alive = br#"{"slots": 1, "version": "99.0", "colour": "blue"}"#;
+    let alive = br#"{"slots": 1, "version": "99.0", "color": "blue"}"#;
     assert!(worker.send("POST", "/api/v1/worker/tick", JSON, alive).expect(200).json()["version"].is_string());
     let workers = admin.get("/api/v1/queue").expect(200).json()["workers"].take();
     assert!(workers.as_array().expect("a list").iter().any(|worker| worker["version"] == "99.0"), "{workers}");

@@ -190,12 +190,12 @@ const ROUNDS: MistakeFamily = MistakeFamily {
 };
 
 const SUMS: MistakeFamily = MistakeFamily {
-    sides: &["centre", "momentum", "angular", "inertia"],
+    sides: &["center", "momentum", "angular", "inertia"],
     rows: &[
         (
             "unweighted",
             &[
-                Is("failsafe-centre-unweighted"),
+                Is("failsafe-center-unweighted"),
                 Is("failsafe-momentum-unweighted"),
                 Is("failsafe-angular-unweighted"),
                 Is("failsafe-inertia-unweighted"),
@@ -204,7 +204,7 @@ const SUMS: MistakeFamily = MistakeFamily {
         (
             "at the end",
             &[
-                Is("failsafe-centre-at-end"),
+                Is("failsafe-center-at-end"),
                 No("a motion has no end"),
                 No("it is the same momentum but for round-off: momentum-from-end"),
                 Is("failsafe-inertia-at-end"),
@@ -222,7 +222,7 @@ const SUMS: MistakeFamily = MistakeFamily {
         (
             "about the origin",
             &[
-                No("it is the centre"),
+                No("it is the center"),
                 No("it is about no point"),
                 Is("failsafe-about-origin"),
                 Is("failsafe-inertia-about-origin"),
@@ -240,7 +240,7 @@ const SUMS: MistakeFamily = MistakeFamily {
         (
             "left out",
             &[
-                Is("failsafe-no-centre"),
+                Is("failsafe-no-center"),
                 Is("failsafe-no-translation"),
                 Is("failsafe-no-rotation"),
                 Is("failsafe-no-inertia"),

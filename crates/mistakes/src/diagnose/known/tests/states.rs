@@ -101,7 +101,7 @@ fn every_mistake_of_states_is_named_and_taken_for_no_other() {
 
 /// A student wrote `n.normalized();` and threw its result away.
 #[test]
-fn a_spring_whose_direction_is_never_normalised_is_named() {
+fn a_spring_whose_direction_is_never_normalized_is_named() {
     for (name, id) in [
         ("t1m3/linear-with-drag", "spring-direction"),
         ("t1m3/linear-with-drag", "spring-direction-everywhere"),

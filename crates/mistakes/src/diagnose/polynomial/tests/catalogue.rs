@@ -86,16 +86,16 @@ fn first_passes(row: &Row, style: Style) -> Vec<Sample> {
             let one = pair.particle;
             let (motion, second) = match pair.object {
                 Object::Particle(two) => {
-                    (PairMotion::Particles { centres: [body(one), body(two)], radii: [radius(one), radius(two)] }, two)
+                    (PairMotion::Particles { centers: [body(one), body(two)], radii: [radius(one), radius(two)] }, two)
                 }
                 Object::Edge(index) => {
                     let edge = world.scene.edges[index];
-                    let (centre, ends) = (body(one), [body(edge.first), body(edge.second)]);
-                    (PairMotion::Edge { centre, ends, radii: [radius(one), edge.radius] }, index)
+                    let (center, ends) = (body(one), [body(edge.first), body(edge.second)]);
+                    (PairMotion::Edge { center, ends, radii: [radius(one), edge.radius] }, index)
                 }
                 Object::HalfPlane(index) => {
                     let HalfPlane { point, normal } = world.scene.half_planes[index];
-                    (PairMotion::HalfPlane { centre: body(one), radius: radius(one), point, normal }, index)
+                    (PairMotion::HalfPlane { center: body(one), radius: radius(one), point, normal }, index)
                 }
             };
             let kind = motion.kind();
@@ -119,7 +119,7 @@ fn concerns_polynomials(row: &Row) -> bool {
 /// Correct variants that this engine would accuse if it were asked; whole explanations ask only where the judge finds
 /// something wrong.
 const ACCUSED_IF_ASKED: [&str; 4] =
-    ["normalised-largest", "normalised-norm", "normalised-per-pair", "interpolated-all"];
+    ["normalized-largest", "normalized-norm", "normalized-per-pair", "interpolated-all"];
 
 #[test]
 fn correct_variants_are_not_accused() {

@@ -32,15 +32,15 @@ impl Numbers {
     fn motion(&mut self, kind: PairKind) -> PairMotion {
         match kind {
             PairKind::ParticleParticle => {
-                PairMotion::Particles { centres: [self.body(), self.body()], radii: [self.radius(), self.radius()] }
+                PairMotion::Particles { centers: [self.body(), self.body()], radii: [self.radius(), self.radius()] }
             }
             PairKind::ParticleEdge => PairMotion::Edge {
-                centre: self.body(),
+                center: self.body(),
                 ends: [self.body(), self.body()],
                 radii: [self.radius(), self.radius()],
             },
             PairKind::ParticleHalfPlane => PairMotion::HalfPlane {
-                centre: self.body(),
+                center: self.body(),
                 radius: self.radius(),
                 point: self.vector(3.0),
                 normal: self.vector(2.0),
@@ -80,7 +80,7 @@ struct Letters {
 }
 
 fn letters(motion: &PairMotion) -> Letters {
-    let PairMotion::Edge { centre: one, ends: [two, three], radii: [r1, re] } = motion else { panic!("no edge") };
+    let PairMotion::Edge { center: one, ends: [two, three], radii: [r1, re] } = motion else { panic!("no edge") };
     let (w0, w1) = (one.start - two.start, one.shift - two.shift);
     let (e0, e1) = (three.start - two.start, three.shift - two.shift);
     Letters {
@@ -146,13 +146,13 @@ fn edge_lists(motion: &PairMotion) -> Lists {
 }
 
 fn particle_lists(motion: &PairMotion) -> Lists {
-    let PairMotion::Particles { centres: [one, two], radii: [r1, r2] } = motion else { panic!("no particles") };
+    let PairMotion::Particles { centers: [one, two], radii: [r1, r2] } = motion else { panic!("no particles") };
     let (x, d, r) = (two.start - one.start, two.shift - one.shift, r1 + r2);
     vec![vec![-d.dot(&d), -2.0 * x.dot(&d), r * r - x.dot(&x)], vec![-d.dot(&d), -d.dot(&x)]]
 }
 
 fn half_plane_lists(motion: &PairMotion) -> Lists {
-    let PairMotion::HalfPlane { centre: body, radius, point, normal } = motion else { panic!("no half-plane") };
+    let PairMotion::HalfPlane { center: body, radius, point, normal } = motion else { panic!("no half-plane") };
     let (s, w) = (body.shift.dot(normal), (*point - body.start).dot(normal));
     vec![vec![-s * s, 2.0 * w * s, radius * radius * normal.dot(normal) - w * w], vec![-s * s, w * s]]
 }
@@ -394,10 +394,10 @@ fn wrong_inputs_are_one_explanation_for_all_polynomials() {
             |_| true,
             |motion| {
                 let mut motion = *motion;
-                if let PairMotion::Edge { centre, ends: [first, second], .. } = &mut motion {
-                    let mut points = [*centre, *first, *second];
+                if let PairMotion::Edge { center, ends: [first, second], .. } = &mut motion {
+                    let mut points = [*center, *first, *second];
                     change(&mut points);
-                    [*centre, *first, *second] = points;
+                    [*center, *first, *second] = points;
                 }
                 edge_lists(&motion)
             },
@@ -516,11 +516,11 @@ fn small_slips_in_quadratics_are_named() {
         lists[0][2] += r * n.sqrt() - r * n;
     });
     half_plane("letter", &stands(Subject::HalfPlaneApproach, "(dx.n)", Substitute::One), &|motion, lists| {
-        let PairMotion::HalfPlane { centre: body, point, normal, .. } = motion else { panic!("no half-plane") };
+        let PairMotion::HalfPlane { center: body, point, normal, .. } = motion else { panic!("no half-plane") };
         lists[1] = vec![-1.0, (*point - body.start).dot(normal)];
     });
     only(PairKind::ParticleEdge, "term-missing", weight(1, "d13.x23", 0.0, 1.0), |motion| {
-        let PairMotion::Edge { centre: one, ends: [two, three], .. } = motion else { panic!("no edge") };
+        let PairMotion::Edge { center: one, ends: [two, three], .. } = motion else { panic!("no edge") };
         let mut lists = edge_lists(motion);
         lists[2][1] = (one.start - three.start).dot(&(two.shift - three.shift));
         lists
@@ -566,9 +566,9 @@ fn hostile_samples_do_no_harm() {
                 1 => sample.polynomials[0] = vec![value; index],
                 2 => sample.polynomials[1].clear(),
                 _ => {
-                    let (PairMotion::HalfPlane { centre: body, .. }
-                    | PairMotion::Particles { centres: [body, _], .. }
-                    | PairMotion::Edge { centre: body, .. }) = &mut sample.motion;
+                    let (PairMotion::HalfPlane { center: body, .. }
+                    | PairMotion::Particles { centers: [body, _], .. }
+                    | PairMotion::Edge { center: body, .. }) = &mut sample.motion;
                     body.start.x = value;
                 }
             }
@@ -589,7 +589,7 @@ fn the_example_is_the_roundest_one() {
         lists
     });
     let still = |x: f64, dx: f64| PointMotion { start: Vec2::new(x, 0.0), shift: Vec2::new(dx, 0.0) };
-    list[20].motion = PairMotion::Particles { centres: [still(0.0, 1.0), still(4.0, -1.0)], radii: [1.0, 1.0] };
+    list[20].motion = PairMotion::Particles { centers: [still(0.0, 1.0), still(4.0, -1.0)], radii: [1.0, 1.0] };
     list[20].polynomials = vec![vec![-12.0, 16.0, -4.0], vec![-4.0, 8.0]];
     let found = explain(&list);
     let example = found[0].example.as_ref().expect("there is a wrong sample");

@@ -27,7 +27,7 @@ impl Observer for Log {
     fn impulse(&mut self, impulse: &Impulse) {
         self.impulses.push(*impulse);
     }
-    fn synchronised(&mut self, state: &State) {
+    fn synchronized(&mut self, state: &State) {
         self.end_step(0, state);
     }
     fn end_step(&mut self, _step: u32, state: &State) {

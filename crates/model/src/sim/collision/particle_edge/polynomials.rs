@@ -205,7 +205,7 @@ mod tests {
         terms.map(|terms| terms[1..].iter().fold(terms[0], |sum, term| sum - term))
     }
 
-    /// Sharing values changes no bit: the formulas of the specification, parenthesised in full.
+    /// Sharing values changes no bit: the formulas of the specification, parenthesized in full.
     #[test]
     fn shared_values_are_those_of_the_formulas() {
         let mut numbers = Numbers(3);

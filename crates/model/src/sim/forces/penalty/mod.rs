@@ -43,7 +43,7 @@ struct Law {
     /// `h`
     thickness: f64,
     /// Whether it is that of Theme 2, Milestone 3 (simulation.md 3.1): bodies at the same place leave each other alone,
-    /// particles compare squares of lengths, and the direction from one to the other is normalised twice.
+    /// particles compare squares of lengths, and the direction from one to the other is normalized twice.
     is_contest: bool,
 }
 

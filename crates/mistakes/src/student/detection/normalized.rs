@@ -10,11 +10,11 @@ use crate::student::{Area, Mistake, author::Student};
 const HERE: &[Area] = &[Area::Handover];
 
 /// Divides as this student does, if at all.
-pub fn normalise(student: Student, encounter: &Encounter, lists: &mut [Vec<f64>]) {
+pub fn normalize(student: Student, encounter: &Encounter, lists: &mut [Vec<f64>]) {
     let size: fn(&Encounter, &[f64]) -> f64 = match student.mistake_in(HERE) {
-        Some(Mistake::NormalisedLargest) => |_, list| list.iter().fold(0.0, |most, c| most.max(c.abs())),
-        Some(Mistake::NormalisedNorm) => |_, list| list.iter().map(|c| c * c).sum::<f64>().sqrt(),
-        Some(Mistake::NormalisedPerPair) => |encounter, _| of_pair(encounter),
+        Some(Mistake::NormalizedLargest) => |_, list| list.iter().fold(0.0, |most, c| most.max(c.abs())),
+        Some(Mistake::NormalizedNorm) => |_, list| list.iter().map(|c| c * c).sum::<f64>().sqrt(),
+        Some(Mistake::NormalizedPerPair) => |encounter, _| of_pair(encounter),
         _ => return,
     };
     for list in lists {

@@ -1,21 +1,21 @@
-//! Colours of scenes, and those that stand out against them.
+//! Colors of scenes, and those that stand out against them.
 use fosssim_model::scene;
 
-/// A colour, eight bits per component.
+/// A color, eight bits per component.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Colour(pub [u8; 3]);
+pub struct Rgb(pub [u8; 3]);
 
-impl Colour {
+impl Rgb {
     /// White, the background of scenes that name none.
     pub const WHITE: Self = Self([255; 3]);
-    /// Black, the colour of half-planes that name none.
+    /// Black, the color of half-planes that name none.
     pub const BLACK: Self = Self([0; 3]);
-    /// The colour of particles that name none (scene-format.md 4).
+    /// The color of particles that name none (scene-format.md 4).
     pub const PARTICLE: Self = Self([166, 75, 0]);
-    /// The colour of edges that name none (scene-format.md 4).
+    /// The color of edges that name none (scene-format.md 4).
     pub const EDGE: Self = Self([0, 99, 99]);
 
-    /// Returns the colour between this one and another, `share` of 8 parts of it.
+    /// Returns the color between this one and another, `share` of 8 parts of it.
     #[must_use]
     pub fn towards(self, other: Self, share: u8) -> Self {
         let part = |own: u8, other: u8| {
@@ -46,12 +46,12 @@ impl Colour {
     }
 }
 
-impl From<scene::Color> for Colour {
-    fn from(colour: scene::Color) -> Self {
+impl From<scene::Color> for Rgb {
+    fn from(color: scene::Color) -> Self {
         // Out of range and NaN can't come from a reader, and saturate.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a byte")]
         let part = |value: f64| (value.clamp(0.0, 1.0) * 255.0).round() as u8;
-        Self([part(colour.red), part(colour.green), part(colour.blue)])
+        Self([part(color.red), part(color.green), part(color.blue)])
     }
 }
 
@@ -61,15 +61,15 @@ mod tests {
 
     #[test]
     fn ink_can_be_read_on_its_background() {
-        assert_eq!(Colour::WHITE.ink(), Colour::BLACK);
-        assert_eq!(Colour([20, 20, 60]).ink(), Colour::WHITE);
-        assert_eq!(Colour([255, 230, 0]).ink(), Colour::BLACK);
+        assert_eq!(Rgb::WHITE.ink(), Rgb::BLACK);
+        assert_eq!(Rgb([20, 20, 60]).ink(), Rgb::WHITE);
+        assert_eq!(Rgb([255, 230, 0]).ink(), Rgb::BLACK);
     }
 
     #[test]
-    fn parts_of_the_way_begin_and_end_at_the_colours() {
-        let (one, two) = (Colour([0, 10, 255]), Colour([255, 10, 0]));
-        assert_eq!((one.towards(two, 0), one.towards(two, 8), one.towards(two, 4)), (one, two, Colour([128, 10, 128])));
-        assert_eq!(Colour::PARTICLE.hex(), "#a64b00");
+    fn parts_of_the_way_begin_and_end_at_the_colors() {
+        let (one, two) = (Rgb([0, 10, 255]), Rgb([255, 10, 0]));
+        assert_eq!((one.towards(two, 0), one.towards(two, 8), one.towards(two, 4)), (one, two, Rgb([128, 10, 128])));
+        assert_eq!(Rgb::PARTICLE.hex(), "#a64b00");
     }
 }

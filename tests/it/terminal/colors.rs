@@ -1,7 +1,7 @@
-//! The choice of colours: `--color` decides, then `NO_COLOR`, then `CLICOLOR_FORCE`, then the terminal.
+//! The choice of colors: `--color` decides, then `NO_COLOR`, then `CLICOLOR_FORCE`, then the terminal.
 use crate::workspace::{DRIFT, Workspace, finish};
 
-fn is_coloured(workspace: &Workspace, words: &[&str], variables: &[(&str, &str)]) -> bool {
+fn is_colored(workspace: &Workspace, words: &[&str], variables: &[(&str, &str)]) -> bool {
     let run = finish(workspace.command().args(words).envs(variables.iter().copied()));
     assert_eq!(run.code, Some(0), "{}", run.shown());
     run.out().contains("\u{1b}[")
@@ -12,7 +12,7 @@ fn words_win_over_variables_and_variables_over_the_terminal() {
     let workspace = Workspace::with_trace(DRIFT);
     let check = ["check", "scene.xml", "trace.bin"];
     let with =
-        |words: &[&str], variables: &[(&str, &str)]| is_coloured(&workspace, &[&check[..], words].concat(), variables);
+        |words: &[&str], variables: &[(&str, &str)]| is_colored(&workspace, &[&check[..], words].concat(), variables);
     assert!(!with(&[], &[]), "standard output is no terminal here");
     assert!(with(&[], &[("CLICOLOR_FORCE", "1")]));
     assert!(!with(&[], &[("CLICOLOR_FORCE", "0")]));
@@ -21,11 +21,11 @@ fn words_win_over_variables_and_variables_over_the_terminal() {
     assert!(!with(&["--color", "never"], &[("CLICOLOR_FORCE", "1")]));
     assert!(!with(&["--color", "auto"], &[]));
     // Before the command it means the same.
-    assert!(is_coloured(&workspace, &[&["--color", "always"][..], &check].concat(), &[]));
+    assert!(is_colored(&workspace, &[&["--color", "always"][..], &check].concat(), &[]));
 }
 
 #[test]
-fn every_report_for_people_can_be_coloured() {
+fn every_report_for_people_can_be_colored() {
     let workspace = Workspace::with_trace(DRIFT);
     for words in [
         &["explain", "scene.xml", "trace.bin"][..],
@@ -33,8 +33,8 @@ fn every_report_for_people_can_be_coloured() {
         &["suite", "check", "t2m2"],
         &["scene", "list"],
     ] {
-        assert!(is_coloured(&workspace, &[words, &["--color=always"]].concat(), &[]), "{words:?}");
-        assert!(!is_coloured(&workspace, words, &[]), "{words:?}");
+        assert!(is_colored(&workspace, &[words, &["--color=always"]].concat(), &[]), "{words:?}");
+        assert!(!is_colored(&workspace, words, &[]), "{words:?}");
     }
 }
 
